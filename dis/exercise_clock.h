@@ -1,0 +1,25 @@
+/* dis/exercise_clock.h: DIS time stamps and capture times -> one exercise time, a clock per sender.
+ *
+ * A sender is (site, application). A stamp counts 3600 s / 2^31 past the hour, in the upper 31 bits; the
+ * lowest bit says absolute (UTC). The first sender heard with a stamp sets the exercise epoch: exercise
+ * time = its seconds past the hour, unwrapped. Absolute senders share that scale when the first is
+ * absolute too; every other sender is tied to it by capture time at its first PDU. A sender whose stamp
+ * leaves capture time by more than 5 s (restart, frame counter) is tied again, and after three of those
+ * its stamps are ignored and capture time is used. Depends on the order of PDUs only. */
+#ifndef DIS_EXERCISE_CLOCK_H
+#define DIS_EXERCISE_CLOCK_H
+
+#include "dis/pdu.h"
+
+typedef struct ExerciseClock ExerciseClock;
+
+Status exercise_clock_create(ExerciseClock **out);
+void   exercise_clock_destroy(ExerciseClock *clock);
+/* Exercise time of a PDU, s. capture_s: when the datagram was captured or received (Unix time, s). */
+double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
+                           double capture_s);
+
+static inline double dis_timestamp_seconds(uint32_t timestamp) { return (timestamp >> 1) * (3600.0 / 2147483648.0); }
+static inline bool   dis_timestamp_is_absolute(uint32_t timestamp) { return timestamp & 1; }
+
+#endif

@@ -1,0 +1,35 @@
+/* dis/log.h: a recorded exercise, whole, in memory: datagrams out of a pcap or pcapng file.
+ *
+ * Link layers: Ethernet (with any VLAN tags), Linux cooked v1 and v2, BSD loopback, raw IP. IPv4 with
+ * fragments put together again (bounded), IPv6 with extension headers; UDP to `port`. */
+#ifndef DIS_LOG_H
+#define DIS_LOG_H
+
+#include "dis/pdu.h"
+
+typedef struct DisDatagram {
+    double         capture_s;  /* Unix time */
+    uint32_t       packet;     /* 1-based number of the packet in the file, as tshark's frame.number */
+    uint32_t       octets;
+    const uint8_t *bytes;      /* owned by the log */
+} DisDatagram;
+
+/* Packets that gave no datagram, by reason. */
+typedef struct DisLogCounters {
+    uint64_t packets, other_protocol, other_port, cut_short, bad_fragment;
+} DisLogCounters;
+
+typedef struct DisLog {
+    int            count;
+    DisDatagram   *datagram; /* in file order */
+    DisLogCounters counters;
+    bool           truncated; /* the file ended inside a packet; what came before is here */
+    void          *storage;
+} DisLog;
+
+/* port 0: any UDP port whose payload begins as a DIS header. A file that is not a capture, or cannot be
+ * read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a warning. */
+Status dis_log_open(DisLog *out, const char *path, uint16_t port);
+void   dis_log_close(DisLog *log);
+
+#endif

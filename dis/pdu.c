@@ -1,0 +1,197 @@
+/* dis/pdu.c: identifiers as text, names, and the walk through a datagram. */
+#include "dis/reader.h"
+
+#include <stdio.h>
+
+static int three_way(unsigned a, unsigned b) { return (a > b) - (a < b); }
+
+int dis_entity_id_compare(DisEntityId a, DisEntityId b)
+{
+    if (a.site != b.site) return three_way(a.site, b.site);
+    if (a.application != b.application) return three_way(a.application, b.application);
+    return three_way(a.entity, b.entity);
+}
+
+bool dis_entity_id_is_none(DisEntityId id) { return id.site == 0 && id.application == 0 && id.entity == 0; }
+
+void dis_entity_id_text(char out[dis_id_text_size], DisEntityId id)
+{
+    snprintf(out, dis_id_text_size, "%u:%u:%u", id.site, id.application, id.entity);
+}
+
+/* Digits only: no sign, no blanks, no empty part. */
+static const char *parse_u16(uint16_t *out, const char *text)
+{
+    unsigned value = 0;
+    if (*text < '0' || *text > '9') return NULL;
+    for (; *text >= '0' && *text <= '9'; text++) {
+        value = 10 * value + (unsigned)(*text - '0');
+        if (value > UINT16_MAX) return NULL;
+    }
+    *out = (uint16_t)value;
+    return text;
+}
+
+bool dis_entity_id_parse(DisEntityId *out, const char *text)
+{
+    DisEntityId id;
+    text = parse_u16(&id.site, text);
+    if (!text || *text != ':') return false;
+    text = parse_u16(&id.application, text + 1);
+    if (!text || *text != ':') return false;
+    text = parse_u16(&id.entity, text + 1);
+    if (!text || *text) return false;
+    *out = id;
+    return true;
+}
+
+void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type)
+{
+    snprintf(out, dis_type_text_size, "%u.%u.%u.%u.%u.%u.%u", type.kind, type.domain, type.country, type.category,
+             type.subcategory, type.specific, type.extra);
+}
+
+const char *dis_drop_name(DisDrop drop)
+{
+    static const char *const name[DIS_DROP_COUNT] = {
+        [DIS_DROP_SHORT_HEADER]     = "short_header",
+        [DIS_DROP_BAD_VERSION]      = "bad_version",
+        [DIS_DROP_LENGTH_TOO_SHORT] = "length_too_short",
+        [DIS_DROP_LENGTH_TOO_LONG]  = "length_too_long",
+        [DIS_DROP_TRUNCATED]        = "truncated",
+        [DIS_DROP_BAD_COUNT]        = "bad_count",
+        [DIS_DROP_NOT_FINITE]       = "not_finite",
+        [DIS_DROP_BAD_POSITION]     = "bad_position",
+        [DIS_DROP_NO_IDENTITY]      = "no_identity",
+        [DIS_DROP_OTHER_EXERCISE]   = "other_exercise",
+        [DIS_DROP_TABLE_FULL]       = "table_full",
+    };
+    return (unsigned)drop < DIS_DROP_COUNT ? name[drop] : "unknown";
+}
+
+/* Types of IEEE 1278.1-2012, table of PDU types. */
+const char *dis_pdu_type_name(uint8_t type)
+{
+    static const char *const name[256] = {
+        [0] = "Other",
+        [1] = "Entity State",
+        [2] = "Fire",
+        [3] = "Detonation",
+        [4] = "Collision",
+        [5] = "Service Request",
+        [6] = "Resupply Offer",
+        [7] = "Resupply Received",
+        [8] = "Resupply Cancel",
+        [9] = "Repair Complete",
+        [10] = "Repair Response",
+        [11] = "Create Entity",
+        [12] = "Remove Entity",
+        [13] = "Start/Resume",
+        [14] = "Stop/Freeze",
+        [15] = "Acknowledge",
+        [16] = "Action Request",
+        [17] = "Action Response",
+        [18] = "Data Query",
+        [19] = "Set Data",
+        [20] = "Data",
+        [21] = "Event Report",
+        [22] = "Comment",
+        [23] = "Electromagnetic Emission",
+        [24] = "Designator",
+        [25] = "Transmitter",
+        [26] = "Signal",
+        [27] = "Receiver",
+        [28] = "IFF",
+        [29] = "Underwater Acoustic",
+        [30] = "Supplemental Emission/Entity State",
+        [31] = "Intercom Signal",
+        [32] = "Intercom Control",
+        [33] = "Aggregate State",
+        [34] = "IsGroupOf",
+        [35] = "Transfer Ownership",
+        [36] = "IsPartOf",
+        [37] = "Minefield State",
+        [38] = "Minefield Query",
+        [39] = "Minefield Data",
+        [40] = "Minefield Response NACK",
+        [41] = "Environmental Process",
+        [42] = "Gridded Data",
+        [43] = "Point Object State",
+        [44] = "Linear Object State",
+        [45] = "Areal Object State",
+        [46] = "TSPI",
+        [47] = "Appearance",
+        [48] = "Articulated Parts",
+        [49] = "LE Fire",
+        [50] = "LE Detonation",
+        [51] = "Create Entity-R",
+        [52] = "Remove Entity-R",
+        [53] = "Start/Resume-R",
+        [54] = "Stop/Freeze-R",
+        [55] = "Acknowledge-R",
+        [56] = "Action Request-R",
+        [57] = "Action Response-R",
+        [58] = "Data Query-R",
+        [59] = "Set Data-R",
+        [60] = "Data-R",
+        [61] = "Event Report-R",
+        [62] = "Comment-R",
+        [63] = "Record-R",
+        [64] = "Set Record-R",
+        [65] = "Record Query-R",
+        [66] = "Collision-Elastic",
+        [67] = "Entity State Update",
+        [68] = "Directed Energy Fire",
+        [69] = "Entity Damage Status",
+        [70] = "Information Operations Action",
+        [71] = "Information Operations Report",
+        [72] = "Attribute",
+    };
+    return name[type] ? name[type] : "unknown type";
+}
+
+/* What a type needs before its variable records. Only for what this node decodes: of the others it has no
+ * business judging the length. */
+static unsigned least_length(uint8_t type)
+{
+    switch (type) {
+    case dis_pdu_entity_state: return 144;
+    case dis_pdu_fire: return 96;
+    case dis_pdu_detonation: return 104;
+    case dis_pdu_remove_entity: return 28;
+    case dis_pdu_start_resume: return 44;
+    case dis_pdu_stop_freeze: return 40;
+    case dis_pdu_entity_state_update: return 72;
+    default: return dis_header_octets;
+    }
+}
+
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end, DisCounters *counters)
+{
+    const size_t left = (size_t)(end - *at);
+    DisDrop      why;
+    if (left == 0) return false;
+    if (left < dis_header_octets) {
+        why = DIS_DROP_SHORT_HEADER;
+    } else {
+        const DisHeader next = dis_load_header(*at);
+        /* A length too short for its type is a misfit of the bundle as well: a sender that wrote 496 for 508
+         * has its next PDU somewhere else than it says. */
+        if (next.version < 5 || next.version > 7) {
+            why = DIS_DROP_BAD_VERSION;
+        } else if (next.length < least_length(next.type)) {
+            why = DIS_DROP_LENGTH_TOO_SHORT;
+        } else if (next.length > left) {
+            why = DIS_DROP_LENGTH_TOO_LONG;
+        } else {
+            counters->pdus[next.type]++;
+            *header = next;
+            *pdu = *at;
+            *at += next.length;
+            return true;
+        }
+    }
+    counters->dropped[why]++;
+    *at = end; /* so that asking again does not count again */
+    return false;
+}

@@ -1,0 +1,92 @@
+/* dis/pdu.h: what every PDU shares: identifiers, types, the header, and the walk through a datagram.
+ *
+ * Wire facts: IEEE 1278.1-1995 (version 5), 1278.1A-1998 (6), 1278.1-2012 (7). Structs are plain and keep
+ * every octet, padding too, so that decode and encode are exact inverses. */
+#ifndef DIS_PDU_H
+#define DIS_PDU_H
+
+#include "pitviper.h"
+
+enum {
+    dis_pdu_entity_state        = 1,
+    dis_pdu_fire                = 2,
+    dis_pdu_detonation          = 3,
+    dis_pdu_remove_entity       = 12,
+    dis_pdu_start_resume        = 13,
+    dis_pdu_stop_freeze         = 14,
+    dis_pdu_entity_state_update = 67,
+    dis_header_octets           = 12,
+    dis_port                    = 3000,
+    dis_max_variable_parameters = 255,
+};
+
+typedef struct DisEntityId {
+    uint16_t site, application, entity;
+} DisEntityId;
+
+typedef struct DisEntityType {
+    uint8_t  kind, domain;
+    uint16_t country;
+    uint8_t  category, subcategory, specific, extra;
+} DisEntityType;
+
+typedef struct DisEventId {
+    uint16_t site, application, number;
+} DisEventId;
+
+typedef struct DisHeader {
+    uint8_t  version; /* 5, 6 or 7 */
+    uint8_t  exercise, type, family;
+    uint32_t timestamp; /* raw; see exercise_clock.h */
+    uint16_t length;    /* octets, header included */
+    uint8_t  status;    /* meaningful in version 7 only; padding before, kept as read */
+    uint8_t  padding;
+} DisHeader;
+
+/* Order of ids everywhere in the program: site, application, entity. <0, 0, >0 like memcmp. */
+int  dis_entity_id_compare(DisEntityId a, DisEntityId b);
+bool dis_entity_id_is_none(DisEntityId id); /* 0:0:0 */
+/* `site:application:entity` and `kind.domain.country.category.subcategory.specific.extra`. */
+enum { dis_id_text_size = 20, dis_type_text_size = 32 };
+void dis_entity_id_text(char out[dis_id_text_size], DisEntityId id);
+bool dis_entity_id_parse(DisEntityId *out, const char *text);
+void dis_entity_type_text(char out[dis_type_text_size], DisEntityType type);
+
+/* Why bytes were dropped. Names appear in run.json. */
+typedef enum DisDrop {
+    DIS_DROP_SHORT_HEADER,    /* fewer than 12 octets left */
+    DIS_DROP_BAD_VERSION,     /* not 5, 6 or 7 */
+    DIS_DROP_LENGTH_TOO_SHORT,/* length field below 12 (zero too), or below what its type needs */
+    DIS_DROP_LENGTH_TOO_LONG, /* length field beyond the datagram */
+    DIS_DROP_TRUNCATED,       /* the record ends before its fields do */
+    DIS_DROP_BAD_COUNT,       /* a count that the length cannot hold */
+    DIS_DROP_NOT_FINITE,      /* NaN or infinity in a kinematic field */
+    DIS_DROP_BAD_POSITION,    /* finite, but not a place near the Earth: the centre, beyond 1e8 m */
+    DIS_DROP_NO_IDENTITY,     /* id with 0, 0xFFFF or 0xFFFE where one entity is needed */
+    DIS_DROP_OTHER_EXERCISE,  /* filtered by exercise id */
+    DIS_DROP_TABLE_FULL,      /* the entity table refused a new entity */
+    DIS_DROP_COUNT
+} DisDrop;
+
+const char *dis_drop_name(DisDrop drop);
+/* `Entity State`, `Attribute`, ...; `unknown type` beyond 72. */
+const char *dis_pdu_type_name(uint8_t type);
+
+typedef struct DisCounters {
+    uint64_t datagrams;
+    uint64_t pdus[256];    /* by type, every well-formed header */
+    uint64_t dropped[DIS_DROP_COUNT];
+} DisCounters;
+
+typedef struct DisReader DisReader;
+typedef struct DisWriter DisWriter;
+
+/* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
+ * false at the end or at the first misfit, which is counted. PDUs returned are counted by type.
+ *
+ *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
+ *
+ * pdu: header.length octets starting at the header, inside the datagram. */
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end, DisCounters *counters);
+
+#endif

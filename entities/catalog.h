@@ -1,0 +1,26 @@
+/* entities/catalog.h: which model an entity type gets, from etc/catalog.csv by the longest match, and the
+ * models themselves, each built once. */
+#ifndef ENTITIES_CATALOG_H
+#define ENTITIES_CATALOG_H
+
+#include "dis/pdu.h"
+#include "entities/model.h"
+
+/* What the sender's position refers to. */
+typedef enum Origin { ORIGIN_BASE, ORIGIN_CENTRE } Origin;
+
+typedef struct Catalog Catalog;
+
+/* path: a CSV with the columns type, model, origin; type is dotted with `*` for anything, e.g.
+ * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
+ * wins (`1.1.*.1` before `1.1.225`: the category says more of the shape than the country), then the one with fewer
+ * stars, then the earlier. A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as parametric_build. */
+Status catalog_open(Catalog **out, const char *path, double sag_m);
+void   catalog_close(Catalog *catalog);
+int    catalog_model_count(const Catalog *catalog);
+const Model *catalog_model(const Catalog *catalog, int model);
+/* Never fails: an unmatched type gets the `unknown` model, model 0. matched (may be NULL): how many leading fields
+ * of the type the row covers, up to the last it names; 0 for unmatched. */
+int    catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched);
+
+#endif

@@ -1,0 +1,83 @@
+/* entities/entity_table_private.h: what entity_table.c keeps of an entity, and snapshot.c reads. */
+#ifndef ENTITIES_ENTITY_TABLE_PRIVATE_H
+#define ENTITIES_ENTITY_TABLE_PRIVATE_H
+
+#include "entities/articulation.h"
+#include "entities/dead_reckoning.h"
+#include "entities/entity_index.h"
+#include "entities/entity_table.h"
+#include "entities/heat.h"
+
+typedef struct EntitySlot {
+    uint32_t      generation; /* odd while somebody lives here */
+    DisEntityId   id;
+    DisEntityType type;
+    uint8_t       force;
+    char          marking[12];
+    uint32_t      appearance;
+    int           model;
+    Origin        origin;
+    uint32_t      roles;      /* of the model's parts: heat_roles */
+    double        created_s, report_s;
+    double        timeout_s;  /* silence longer than this ends it */
+    double        hold_s;     /* longest extrapolation */
+    bool          stopped;    /* by Stop/Freeze, at stop_s */
+    double        stop_s;
+    double        paused_s;   /* spent stopped since the report */
+    double        spin_s, spin_from_s; /* running clock at spin_from_s */
+    double        distance_m; /* gone forward, at the report */
+    Kinematics    reported;   /* as believed: entity_table.c */
+    HeatState     heat;
+    Articulation  articulation;
+} EntitySlot;
+
+/* Who went lately: a late report must not bring them back. */
+enum { entity_grave_count = 256 };
+typedef struct EntityGrave {
+    uint64_t key;
+    double   end_s;
+} EntityGrave;
+
+struct EntityTable {
+    EntityTableConfig config;
+    const Catalog    *catalog;
+    HeatTable         heat;
+    uint32_t         *model_roles; /* [catalog_model_count] */
+    EntityIndex       index;
+    EntitySlot       *slot;        /* [config.capacity]; used below slot_end */
+    int              *free_slot;   /* stack of those below slot_end that are free */
+    int               slot_end, free_count, count;
+    EntityGrave       grave[entity_grave_count];
+    unsigned          grave_next;
+    EntityCounters    counters;
+};
+
+enum { appearance_frozen_bit = 21, appearance_deactivated_bit = 23 };
+
+static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
+static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> appearance_frozen_bit & 1; }
+/* Stopped entities are not expected to speak. */
+static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
+{
+    return !slot->stopped && t_s - slot->report_s > slot->timeout_s;
+}
+
+/* Its own time: exercise time less the pauses since its report, still while it is frozen or stopped. */
+static inline double entity_slot_time(const EntitySlot *slot, double t_s)
+{
+    if (entity_slot_frozen(slot)) return slot->report_s;
+    return (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+}
+
+/* How far to extrapolate the report for t_s. */
+static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
+{
+    return clamp(entity_slot_time(slot, t_s) - slot->report_s, -slot->hold_s, slot->hold_s);
+}
+
+/* The running clock of rotors at t_s. */
+double entity_slot_spin(const EntitySlot *slot, double t_s);
+/* Forward way from the report to a pose reached by dead reckoning. */
+double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9]);
+
+#endif

@@ -1,0 +1,41 @@
+#include "entities/parametric.h"
+
+#include "entities/mesh_builder.h"
+
+/* What stands in for a type that nobody described: 4 m long, 2 m wide, 1.6 m high, of a light vehicle's size.
+ * The front is a ramp that falls forward, a fin stands at the rear on top and a block lies on the right:
+ * forward, up and right can be told apart from any side. */
+static Status parametric_unknown(Model *out, double sag_m)
+{
+    static const double side[5][2] = {{-2, -0.2}, {-2, -1.2}, {0.8, -1.2}, {2, -0.5}, {2, -0.2}};
+    static const double fin[3][2]  = {{-1.9, -1.15}, {-1.9, -1.6}, {-0.7, -1.15}};
+    MeshBuilder *b = mesh_builder_create("unknown", sag_m);
+    if (!b) return STATUS_NO_MEMORY;
+    const int hull = mesh_node(b, "hull", -1, 0, 0, 0);
+    mesh_part(b, hull, "body", "paint_grey", HEAT_HULL);
+    mesh_prism(b, place_at(0, 0, 0), 5, side, -1, 1);
+    mesh_prism(b, place_at(0, 0, 0), 3, fin, -0.06, 0.06);
+    mesh_box(b, place_at(0, 0, 0), -0.9, 0.55, -1.4, 0.1, 0.95, -1.15);
+    mesh_part(b, hull, "base", "rubber_black", HEAT_PASSIVE);
+    mesh_box(b, place_at(0, 0, 0), -1.8, -0.8, -0.25, 1.8, 0.8, 0);
+    return mesh_builder_finish(out, b);
+}
+
+Status parametric_build(Model *out, const char *name, double sag_m)
+{
+    static const struct {
+        const char *name;
+        Status (*build)(Model *out, double sag_m);
+    } table[] = {
+        {"tank", parametric_tank},       {"truck", parametric_truck},     {"helicopter", parametric_helicopter},
+        {"missile", parametric_missile}, {"unknown", parametric_unknown},
+    };
+    if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
+        log_error("parametric: sag out of range: model=%s sag_m=%g range=1e-5..0.1", name, sag_m);
+        return STATUS_BAD_VALUE;
+    }
+    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
+        if (!strcmp(name, table[i].name)) return table[i].build(out, sag_m);
+    log_error("parametric: no such model: name=%s", name);
+    return STATUS_UNSUPPORTED;
+}

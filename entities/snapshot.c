@@ -1,0 +1,237 @@
+/* entities/snapshot.c: the table at one instant: everybody extrapolated, in the order of ids.
+ *
+ * Entities of one algorithm go through dead_reckon_arrays together, in blocks small enough for the nearest cache. */
+#include "entities/entity_table_private.h"
+
+#include <limits.h>
+
+static const double timeout_per_heartbeat = 2.4; /* IEEE 1278.1 */
+
+double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps)
+{
+    static const double threshold_m = 1, unreported_mps2 = 1;
+
+    const double age = fmax(age_s, 0), beyond = fmax(fmin(age, fmax(hold_s, heartbeat_s)) - heartbeat_s, 0);
+    return threshold_m * fmin(age / heartbeat_s, 1) + 0.5 * unreported_mps2 * beyond * beyond +
+           speed_mps * fmax(age - hold_s, 0);
+}
+
+int snapshot_find(const Snapshot *snapshot, DisEntityId id)
+{
+    int low = 0, high = snapshot->count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const int order = dis_entity_id_compare(snapshot->entity[middle].id, id);
+        if (order == 0) return middle;
+        if (order < 0) low = middle + 1;
+        else high = middle;
+    }
+    return -1;
+}
+
+/* ---- order -------------------------------------------------------------------------------- */
+
+typedef struct Ordered {
+    uint64_t key;
+    int      slot;
+} Ordered;
+
+/* Radix sort, an octet a pass, six octets of id; a pass whose octet is the same everywhere is left out. Returns
+ * whichever of the two arrays holds the result. */
+static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
+{
+    for (int shift = 0; shift < 48; shift += 8) {
+        int start[256] = {0}, at = 0;
+        for (int i = 0; i < count; i++) start[from[i].key >> shift & 255]++;
+        if (start[from[0].key >> shift & 255] == count) continue;
+        for (int digit = 0; digit < 256; digit++) {
+            const int here = start[digit];
+            start[digit] = at;
+            at += here;
+        }
+        for (int i = 0; i < count; i++) to[start[from[i].key >> shift & 255]++] = from[i];
+        Ordered *const swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+/* ---- motion ------------------------------------------------------------------------------- */
+
+enum { block_count = 128 };
+
+/* Arrays of one block: 22 in, 15 out, 37 KB. */
+typedef struct MotionBlock {
+    double in[22][block_count], out[15][block_count];
+} MotionBlock;
+
+static void block_arrays(KinematicsArrays *k, MotionArrays *m, MotionBlock *block, int count)
+{
+    int a = 0;
+    for (int i = 0; i < 3; i++) {
+        k->p_ecef[i] = block->in[a++];
+        k->v_mps[i] = block->in[a++];
+        k->a_mps2[i] = block->in[a++];
+        k->w_body_rps[i] = block->in[a++];
+    }
+    for (int i = 0; i < 9; i++) k->r_ecef_from_body[i] = block->in[a++];
+    k->dt_s = block->in[a++];
+    k->count = count;
+    a = 0;
+    for (int i = 0; i < 3; i++) {
+        m->p_ecef[i] = block->out[a++];
+        m->v_ecef_mps[i] = block->out[a++];
+    }
+    for (int i = 0; i < 9; i++) m->r_ecef_from_body[i] = block->out[a++];
+}
+
+/* The reach of geodesy and of every sender's arithmetic: what leaves it was no motion but a wrong report. */
+static bool is_near_earth(const double p_ecef[3])
+{
+    const double r_m = v3_length(p_ecef);
+    return r_m >= 1e5 && r_m <= 1e8;
+}
+
+/* member[count]: indices into entity and order, all of one algorithm. */
+static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int algorithm,
+                         const int *member, int count, double t_s)
+{
+    MotionBlock block;
+    KinematicsArrays k;
+    MotionArrays m;
+
+    block_arrays(&k, &m, &block, count);
+    for (int b = 0; b < count; b++) {
+        const EntitySlot *slot = table->slot + order[member[b]].slot;
+        for (int i = 0; i < 3; i++) {
+            k.p_ecef[i][b] = slot->reported.p_ecef[i];
+            k.v_mps[i][b] = slot->reported.v_mps[i];
+            k.a_mps2[i][b] = slot->reported.a_mps2[i];
+            k.w_body_rps[i][b] = slot->reported.w_body_rps[i];
+        }
+        for (int i = 0; i < 9; i++) k.r_ecef_from_body[i][b] = slot->reported.r_ecef_from_body[i];
+        k.dt_s[b] = entity_slot_dt(slot, t_s);
+    }
+    dead_reckon_arrays(&m, algorithm, &k);
+
+    for (int b = 0; b < count; b++) {
+        const EntitySlot *slot = table->slot + order[member[b]].slot;
+        const bool stands = entity_slot_frozen(slot) || slot->stopped;
+        SnapshotEntity *e = entity + member[b];
+        for (int i = 0; i < 3; i++) {
+            e->p_ecef[i] = m.p_ecef[i][b];
+            e->v_ecef_mps[i] = stands ? 0 : m.v_ecef_mps[i][b];
+            e->w_body_rps[i] = stands || !dead_reckoning_turns(algorithm) ? 0 : slot->reported.w_body_rps[i];
+        }
+        for (int i = 0; i < 9; i++) e->r_ecef_from_body[i] = m.r_ecef_from_body[i][b];
+        if (is_near_earth(e->p_ecef)) continue;
+        memcpy(e->p_ecef, slot->reported.p_ecef, sizeof e->p_ecef);
+        memset(e->v_ecef_mps, 0, sizeof e->v_ecef_mps);
+    }
+}
+
+static void reckon_all(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int count, double t_s)
+{
+    int member[10][block_count], members[10] = {0};
+
+    for (int e = 0; e < count; e++) {
+        const int a = table->slot[order[e].slot].reported.algorithm;
+        member[a][members[a]++] = e;
+        if (members[a] < block_count) continue;
+        reckon_block(entity, table, order, a, member[a], members[a], t_s);
+        members[a] = 0;
+    }
+    for (int a = 1; a < 10; a++)
+        if (members[a] > 0) reckon_block(entity, table, order, a, member[a], members[a], t_s);
+}
+
+/* ---- the rest of an entity ---------------------------------------------------------------- */
+
+/* From here on p is the model's origin, the centre of the base; z points down. */
+static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
+{
+    const double height_m = catalog_model(table->catalog, slot->model)->height_m;
+    if (slot->origin == ORIGIN_CENTRE)
+        for (int i = 0; i < 3; i++) e->p_ecef[i] += e->r_ecef_from_body[3 * i + 2] * 0.5 * height_m;
+}
+
+static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value, const EntityTable *table,
+                          const EntitySlot *slot, double t_s)
+{
+    const Model *model = catalog_model(table->catalog, slot->model);
+    const double dt_s = entity_slot_dt(slot, t_s);
+    const bool stands = entity_slot_frozen(slot) || slot->stopped;
+
+    e->id = slot->id;
+    e->type = slot->type;
+    e->force = slot->force;
+    memcpy(e->marking, slot->marking, sizeof e->marking);
+    e->appearance = slot->appearance;
+    e->model = slot->model;
+    e->age_s = fmax(t_s - slot->report_s, 0);
+    e->position_error_m = stands ? 0 : snapshot_position_error_m(e->age_s, slot->timeout_s / timeout_per_heartbeat,
+                                                                 slot->hold_s, v3_length(e->v_ecef_mps));
+    heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
+
+    const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
+                              .distance_m = slot->distance_m + (dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0)};
+    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s), slot->hold_s);
+    model_pose(pose, model, joint_value);
+
+    place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
+}
+
+Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
+{
+    Snapshot snapshot = {.t_s = t_s};
+    int most_nodes = 1;
+
+    if (!isfinite(t_s)) return STATUS_BAD_VALUE;
+    const size_t capacity = (size_t)table->count + 1;
+    Ordered *order = arena_alloc(arena, capacity, sizeof *order), *scratch = arena_alloc(arena, capacity, sizeof *scratch);
+    snapshot.entity = arena_alloc(arena, capacity, sizeof *snapshot.entity);
+    if (!order || !scratch || !snapshot.entity) return STATUS_NO_MEMORY;
+
+    for (int s = 0; s < table->slot_end; s++) {
+        const EntitySlot *slot = table->slot + s;
+        if (!entity_slot_lives(slot) || entity_slot_silent(slot, t_s)) continue;
+        order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
+    }
+    if (snapshot.count > 0) order = sort_by_id(order, scratch, snapshot.count);
+
+    for (int e = 0; e < snapshot.count; e++) {
+        const int nodes = catalog_model(table->catalog, table->slot[order[e].slot].model)->node_count;
+        if (nodes > INT_MAX - snapshot.node_count) return STATUS_NO_MEMORY;
+        snapshot.entity[e].first_node = snapshot.node_count;
+        snapshot.node_count += nodes;
+        if (nodes > most_nodes) most_nodes = nodes;
+    }
+    snapshot.node = arena_alloc(arena, (size_t)snapshot.node_count + 1, sizeof *snapshot.node);
+    double *joint_value = arena_alloc(arena, (size_t)most_nodes, sizeof *joint_value);
+    if (!snapshot.node || !joint_value) return STATUS_NO_MEMORY;
+
+    reckon_all(snapshot.entity, table, order, snapshot.count, t_s);
+    for (int e = 0; e < snapshot.count; e++) {
+        SnapshotEntity *entity = snapshot.entity + e;
+        finish_entity(entity, snapshot.node + entity->first_node, joint_value, table, table->slot + order[e].slot, t_s);
+    }
+    *out = snapshot;
+    return STATUS_OK;
+}
+
+bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s)
+{
+    if (!isfinite(t_s) || !entity_table_alive(table, handle)) return false;
+    const EntitySlot *slot = table->slot + handle.slot;
+    if (entity_slot_silent(slot, t_s)) return false;
+
+    SnapshotEntity e = {.id = slot->id, .type = slot->type, .force = slot->force, .appearance = slot->appearance,
+                        .model = slot->model, .age_s = fmax(t_s - slot->report_s, 0)};
+    const Ordered order = {entity_key(slot->id), (int)handle.slot};
+    const int     only = 0;
+    reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
+    place_origin(&e, table, slot);
+    *out = e;
+    return true;
+}

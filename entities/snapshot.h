@@ -1,0 +1,42 @@
+/* entities/snapshot.h: everybody at one instant, immutable and dense. What the renderer sees of the world's
+ * inhabitants; it never sees a PDU or the table. */
+#ifndef ENTITIES_SNAPSHOT_H
+#define ENTITIES_SNAPSHOT_H
+
+#include "dis/pdu.h"
+#include "entities/model.h"
+
+typedef struct SnapshotEntity {
+    DisEntityId   id;
+    DisEntityType type;
+    uint8_t       force;
+    char          marking[12];     /* terminated, raw bytes */
+    uint32_t      appearance;
+    int           model;           /* of the catalog */
+    double        p_ecef[3];       /* of the model's origin (base centre), whatever the sender's origin is */
+    double        v_ecef_mps[3];
+    double        w_body_rps[3];   /* of the attitude shown: 0 where the algorithm holds it, and when frozen */
+    double        r_ecef_from_body[9];
+    double        age_s;           /* since the report it was extrapolated from */
+    double        position_error_m;/* estimate: snapshot_position_error_m */
+    int           first_node;      /* into Snapshot.node */
+    float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks */
+} SnapshotEntity;
+
+typedef struct Snapshot {
+    double          t_s;
+    int             count, node_count;
+    SnapshotEntity *entity; /* sorted by id */
+    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1 */
+} Snapshot;
+
+/* How far from the truth an extrapolated position may be: nothing at its report, growing evenly to the standard's
+ * threshold of 1 m at the sender's heartbeat, and from there as an unreported acceleration of 1 m/s2 would carry
+ * it. Beyond hold_s the entity is held while it moves on at speed_mps. An estimate for error budgets, not a bound:
+ * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
+double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps);
+
+/* Index of an id, or -1. */
+int snapshot_find(const Snapshot *snapshot, DisEntityId id);
+
+#endif

@@ -1,0 +1,327 @@
+/* entities/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
+#include "entities/survey.h"
+#include "dis/simulation_management.h"
+#include "entities/dead_reckoning.h"
+#include "entities/entity_index.h"
+#include "entities/survey_shots.h"
+
+#include <stdlib.h>
+
+enum {
+    most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
+    most_tracks = 1 << 20,
+    most_warfare = 4000000,
+    last_known_type = 72,
+    frozen_bit = 21,
+    deactivated_bit = 23,
+};
+
+static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
+static const double year_1990_s = 631152000, year_2100_s = 4102444800;
+static const double invented_epoch_s = 1e9; /* captures made out of logs without dates start here */
+
+typedef struct TrackBuild {
+    int     capacity;
+    uint8_t algorithm; /* of the last Entity State: it says in which axes an update's velocity is */
+} TrackBuild;
+
+typedef struct Building {
+    Survey        *survey;
+    ExerciseClock *clock;
+    EntityIndex    index;
+    int            track_capacity, indexed;
+    TrackBuild    *build; /* beside survey->track */
+    WarfareEvent  *warfare;
+    int            warfare_count, warfare_capacity;
+    uint64_t       points;
+    bool           date_is_credible;
+} Building;
+
+/* ---- tracks ------------------------------------------------------------------------------- */
+
+static Status grow(void **array, int *capacity, size_t size, int at_least)
+{
+    if (at_least <= *capacity) return STATUS_OK;
+    const int larger = *capacity < 8 ? 16 : *capacity * 2;
+    void *moved = realloc(*array, (size_t)larger * size);
+    if (!moved) return STATUS_NO_MEMORY;
+    *array = moved;
+    *capacity = larger;
+    return STATUS_OK;
+}
+
+/* Index of the track of an id, -1 when there is none and none may be made. */
+static Status find_or_add_track(int *out, Building *b, DisEntityId id, bool add)
+{
+    Survey *survey = b->survey;
+    *out = entity_index_find(&b->index, entity_key(id));
+    if (*out >= 0 || !add || survey->track_count == most_tracks) return STATUS_OK;
+
+    int build_capacity = b->track_capacity;
+    Status status = grow((void **)&b->build, &build_capacity, sizeof *b->build, survey->track_count + 1);
+    if (status == STATUS_OK)
+        status = grow((void **)&survey->track, &b->track_capacity, sizeof *survey->track, survey->track_count + 1);
+    if (status == STATUS_OK && 2 * ((uint32_t)survey->track_count + 1) > b->index.mask) status = entity_index_grow(&b->index);
+    if (status != STATUS_OK) return status;
+    *out = survey->track_count++;
+    survey->track[*out] = (Track){.id = id};
+    b->build[*out] = (TrackBuild){0};
+    entity_index_insert(&b->index, entity_key(id), *out);
+    return STATUS_OK;
+}
+
+static Status add_point(Building *b, int t, const double p_ecef[3], const float v_mps[3], const float euler_rad[3],
+                        uint32_t appearance, double t_s)
+{
+    Track *track = b->survey->track + t;
+    if (track->count > 0 && t_s < track->point[track->count - 1].t_s) {
+        b->survey->late++;
+        return STATUS_OK;
+    }
+    if (b->points == most_points) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    const Status status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
+    if (status != STATUS_OK) return status;
+
+    TrackPoint *point = track->point + track->count++;
+    const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
+    b->points++;
+    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> frozen_bit & 1, .deactivated = appearance >> deactivated_bit & 1};
+    memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
+    r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
+    if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;
+    if (dead_reckoning_in_body_axes(b->build[t].algorithm)) m3_mul_v3(point->v_ecef_mps, point->r_ecef_from_body, v);
+    else memcpy(point->v_ecef_mps, v, sizeof v);
+    return STATUS_OK;
+}
+
+static Status hear_entity_state(Building *b, const DisEntityState *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    DisDrop why;
+    int t;
+
+    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    const Status status = find_or_add_track(&t, b, pdu->id, true);
+    if (status != STATUS_OK) return status;
+    if (t < 0) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    Track *track = b->survey->track + t;
+    b->build[t].algorithm = pdu->dead_reckoning;
+    track->type = pdu->type;
+    track->force = pdu->force;
+    memcpy(track->marking, pdu->marking, sizeof pdu->marking);
+    return add_point(b, t, pdu->p_ecef, pdu->velocity_mps, euler_rad, pdu->appearance, t_s);
+}
+
+static Status hear_entity_state_update(Building *b, const DisEntityStateUpdate *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    DisDrop why;
+    int t;
+
+    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    const Status status = find_or_add_track(&t, b, pdu->id, false);
+    if (status != STATUS_OK || t < 0) return status;
+    return add_point(b, t, pdu->p_ecef, pdu->velocity_mps, euler_rad, pdu->appearance, t_s);
+}
+
+/* ---- events and clocks -------------------------------------------------------------------- */
+
+static Status add_warfare(Building *b, const WarfareEvent *event)
+{
+    if (b->warfare_count == most_warfare) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    const Status status = grow((void **)&b->warfare, &b->warfare_capacity, sizeof *b->warfare, b->warfare_count + 1);
+    if (status == STATUS_OK) b->warfare[b->warfare_count++] = *event;
+    return status;
+}
+
+/* A burst must be somewhere: the ground is fitted through it. */
+static Status hear_detonation(Building *b, const DisDetonation *pdu, double t_s)
+{
+    const DisEntityId anybody = {1, 1, 1};
+    const float euler_rad[3] = {0, 0, 0};
+    DisDrop why;
+
+    if (!dis_entity_is_usable(&why, anybody, pdu->p_ecef, euler_rad, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    WarfareEvent event = {.t_s = t_s, .firing = pdu->firing, .target = pdu->target, .munition = pdu->munition,
+                          .event = pdu->event, .result = pdu->result, .is_detonation = true};
+    memcpy(event.p_ecef, pdu->p_ecef, sizeof event.p_ecef);
+    return add_warfare(b, &event);
+}
+
+/* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, says nothing. */
+static void hear_start(Building *b, const DisStartResume *pdu, double t_s)
+{
+    const double unix_s = pdu->simulation.hour * 3600.0 + dis_timestamp_seconds(pdu->simulation.past_hour);
+    if (pdu->simulation.hour == 0 || !(unix_s < year_2100_s) || !isnan(b->survey->clock_start_unix_s)) return;
+    b->survey->clock_start_unix_s = unix_s - t_s;
+}
+
+/* An absolute stamp gives the second of the hour; the capture date gives the hour. */
+static void hear_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
+{
+    if (!dis_timestamp_is_absolute(timestamp) || !b->date_is_credible || !isnan(b->survey->absolute_unix_s)) return;
+    if (!(capture_s >= year_1990_s && capture_s < year_2100_s)) return;
+    const double past_s = dis_timestamp_seconds(timestamp);
+    b->survey->absolute_unix_s = past_s + 3600 * round((capture_s - past_s) / 3600) - t_s;
+}
+
+/* ---- the pass ----------------------------------------------------------------------------- */
+
+/* Every type of the standard names its sender's site and application right after the header. */
+static double time_of(Building *b, const DisHeader *header, const uint8_t *pdu, double capture_s)
+{
+    const bool names_sender = header->type >= 1 && header->type <= last_known_type && header->length >= 16;
+    const uint16_t site = names_sender ? (uint16_t)(pdu[12] << 8 | pdu[13]) : 0;
+    const uint16_t application = names_sender ? (uint16_t)(pdu[14] << 8 | pdu[15]) : 0;
+    return exercise_clock_time(b->clock, site, application, header->timestamp, capture_s);
+}
+
+static Status hear(Building *b, const DisHeader *header, const uint8_t *octets, double t_s)
+{
+    Status decoded = STATUS_OK, kept = STATUS_OK;
+    union {
+        DisEntityState       state;
+        DisEntityStateUpdate update;
+        DisFire              fire;
+        DisDetonation        detonation;
+        DisStartResume       start;
+    } pdu;
+
+    switch (header->type) {
+    case dis_pdu_entity_state:
+        decoded = dis_decode_entity_state(&pdu.state, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_entity_state(b, &pdu.state, t_s);
+        break;
+    case dis_pdu_entity_state_update:
+        decoded = dis_decode_entity_state_update(&pdu.update, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_entity_state_update(b, &pdu.update, t_s);
+        break;
+    case dis_pdu_fire:
+        decoded = dis_decode_fire(&pdu.fire, octets, header->length);
+        if (decoded != STATUS_OK) break;
+        kept = add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu.fire.firing, .target = pdu.fire.target,
+                                              .munition = pdu.fire.munition, .event = pdu.fire.event});
+        break;
+    case dis_pdu_detonation:
+        decoded = dis_decode_detonation(&pdu.detonation, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_detonation(b, &pdu.detonation, t_s);
+        break;
+    case dis_pdu_start_resume:
+        decoded = dis_decode_start_resume(&pdu.start, octets, header->length);
+        if (decoded == STATUS_OK) hear_start(b, &pdu.start, t_s);
+        break;
+    default: break;
+    }
+    if (decoded == STATUS_BAD_VALUE) b->survey->counters.dropped[DIS_DROP_BAD_COUNT]++;
+    else if (decoded != STATUS_OK) b->survey->counters.dropped[DIS_DROP_TRUNCATED]++;
+    return kept;
+}
+
+static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
+{
+    Survey *survey = b->survey;
+    const uint8_t *at = datagram->bytes, *pdu;
+    DisHeader header;
+
+    survey->counters.datagrams++;
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &survey->counters)) {
+        if (exercise >= 0 && header.exercise != exercise) {
+            survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
+            continue;
+        }
+        const double t_s = time_of(b, &header, pdu, datagram->capture_s);
+        if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
+        if (!(survey->first_s <= t_s)) survey->first_s = t_s;
+        if (!(survey->last_s >= t_s)) survey->last_s = t_s;
+        hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
+        const Status status = hear(b, &header, pdu, t_s);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+static int track_order(const void *a, const void *b)
+{
+    return dis_entity_id_compare(((const Track *)a)->id, ((const Track *)b)->id);
+}
+
+/* A track whose every report was refused for memory has no point; it is not a track. */
+static void drop_empty_tracks(Survey *survey)
+{
+    int kept = 0;
+    for (int t = 0; t < survey->track_count; t++)
+        if (survey->track[t].count > 0) survey->track[kept++] = survey->track[t];
+    survey->track_count = kept;
+}
+
+Status survey_log(Survey *out, const DisLog *log, int exercise)
+{
+    Survey survey = {.first_s = NAN, .last_s = NAN, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
+    Building b = {.survey = &survey};
+    b.date_is_credible = log->count > 0 && !(fabs(log->datagram[0].capture_s - invented_epoch_s) <= 1);
+
+    Status status = exercise_clock_create(&b.clock);
+    if (status == STATUS_OK) status = entity_index_create(&b.index, 512);
+    survey.datagram_s = calloc((size_t)log->count + 1, sizeof *survey.datagram_s);
+    if (!survey.datagram_s) status = STATUS_NO_MEMORY;
+
+    for (int d = 0; d < log->count && status == STATUS_OK; d++) {
+        survey.datagram_s[d] = NAN;
+        status = hear_datagram(&b, d, log->datagram + d, exercise);
+    }
+    if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
+    if (status == STATUS_OK) {
+        drop_empty_tracks(&survey);
+        if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);
+        *out = survey;
+    } else {
+        log_error("survey: cannot keep the log's tracks: reason=%s tracks=%d points=%llu", status_name(status),
+                  survey.track_count, (unsigned long long)b.points);
+        survey_destroy(&survey);
+    }
+    exercise_clock_destroy(b.clock);
+    entity_index_destroy(&b.index);
+    free(b.build);
+    free(b.warfare);
+    return status;
+}
+
+void survey_destroy(Survey *survey)
+{
+    for (int t = 0; t < survey->track_count; t++) free(survey->track[t].point);
+    free(survey->track);
+    free(survey->shot);
+    free(survey->datagram_s);
+    memset(survey, 0, sizeof *survey);
+}
+
+const Track *survey_track(const Survey *survey, DisEntityId id)
+{
+    int low = 0, high = survey->track_count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const int order = dis_entity_id_compare(survey->track[middle].id, id);
+        if (order == 0) return survey->track + middle;
+        if (order < 0) low = middle + 1;
+        else high = middle;
+    }
+    return NULL;
+}

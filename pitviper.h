@@ -1,0 +1,211 @@
+/* pitviper.h: the few words everyone shares.
+ *
+ * Status and log, memory that lives one frame, one pool of threads, counter-based random numbers,
+ * text tables, and small vectors. Knows nothing of DIS, Earth or light. */
+#ifndef PITVIPER_H
+#define PITVIPER_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" {
+#define PV_RESTRICT
+#else
+#define PV_RESTRICT restrict
+#endif
+
+/* ---- status ------------------------------------------------------------------------------- */
+
+typedef enum Status {
+    STATUS_OK = 0,
+    STATUS_TRUNCATED,   /* the bytes ended before the record did */
+    STATUS_BAD_VALUE,   /* a field is outside its documented range */
+    STATUS_UNSUPPORTED, /* well-formed, but not something this node handles */
+    STATUS_IO,          /* the operating system said no */
+    STATUS_NO_MEMORY,
+} Status;
+
+const char *status_name(Status status);
+
+/* ---- log ---------------------------------------------------------------------------------- */
+
+typedef enum LogLevel { LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
+typedef void LogSink(void *user, LogLevel level, const char *line);
+
+/* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
+ * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. */
+void log_set_sink(LogSink *sink, void *user);
+void log_set_level(LogLevel lowest);
+void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* ---- arena: memory that lives one frame --------------------------------------------------- */
+
+/* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at
+ * first. Not thread-safe: one arena, one thread. */
+typedef struct Arena Arena;
+
+Arena *arena_create(void);
+void   arena_destroy(Arena *arena);
+void   arena_reset(Arena *arena);
+/* 64-byte aligned, zeroed; NULL when memory is out or count * size overflows. */
+void  *arena_alloc(Arena *arena, size_t count, size_t size);
+size_t arena_bytes(const Arena *arena);
+
+/* ---- threads: one pool -------------------------------------------------------------------- */
+
+typedef struct Pool Pool;
+/* worker: 0 .. pool_threads - 1, for scratch; task: 0 .. count - 1. */
+typedef void PoolTask(void *user, int worker, int task);
+
+/* threads >= 1, the caller counts as one of them. Workers set FTZ/DAZ. */
+Status pool_create(Pool **out, int threads);
+void   pool_destroy(Pool *pool);
+int    pool_threads(const Pool *pool);
+/* Runs task(user, worker, i) once for each i, in any order, and returns when all are done. */
+void   pool_run(Pool *pool, int count, PoolTask *task, void *user);
+/* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
+void   thread_flush_denormals(void);
+
+/* ---- random: a pure function of counters -------------------------------------------------- */
+
+/* Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011). Same inputs, same bits, in any order. */
+void random_u32x4(uint32_t out[4], const uint32_t counter[4], const uint32_t key[2]);
+/* One uniform in [0, 1) and one standard normal for (seed, stream, frame, index). */
+double random_uniform(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
+double random_normal(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
+
+/* ---- text --------------------------------------------------------------------------------- */
+
+/* A CSV file: `#` comment lines and blank lines skipped, first row the header, every row as wide as it. */
+typedef struct Table {
+    char  *path;
+    int    columns, rows;
+    char **cell; /* [rows + 1][columns], row 0 is the header; trimmed */
+    int   *line; /* line number in the file of each row [rows + 1] */
+    char  *text;
+} Table;
+
+/* On failure logs file, line and reason. */
+Status table_open(Table *out, const char *path);
+void   table_close(Table *table);
+int    table_column(const Table *table, const char *name); /* -1: none */
+const char *table_text(const Table *table, int row, int column); /* row 0 .. rows - 1 */
+/* Finite numbers in [low, high] only; logs file, line, column, value and range otherwise. */
+Status table_number(double *out, const Table *table, int row, int column, double low, double high);
+
+/* Whole string as a finite double / integer; false otherwise (`1,5`, `3x`, empty, out of range). */
+bool text_to_double(double *out, const char *text);
+bool text_to_long(long long *out, const char *text);
+/* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
+void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
+
+/* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
+bool etc_path(char *out, size_t out_size, const char *name);
+
+/* ---- small vectors ------------------------------------------------------------------------ */
+/* Matrices are row by row: r_a_from_b[3 * row + column]. */
+
+static const double pi_rad = 3.14159265358979323846;
+static const double rad_per_deg = 0.017453292519943295769;
+
+static inline double v3_dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static inline double v3_length(const double a[3]) { return sqrt(v3_dot(a, a)); }
+
+static inline void v3_sub(double out[3], const double a[3], const double b[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = a[i] - b[i];
+}
+
+static inline void v3_add(double out[3], const double a[3], const double b[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = a[i] + b[i];
+}
+
+/* a + s b */
+static inline void v3_add_scaled(double out[3], const double a[3], double s, const double b[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = a[i] + s * b[i];
+}
+
+static inline void v3_scale(double out[3], double s, const double a[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = s * a[i];
+}
+
+/* out must not alias a or b. */
+static inline void v3_cross(double out[3], const double a[3], const double b[3])
+{
+    out[0] = a[1] * b[2] - a[2] * b[1];
+    out[1] = a[2] * b[0] - a[0] * b[2];
+    out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* False, and out untouched, when a is zero or not finite. May alias. */
+static inline bool v3_normalize(double out[3], const double a[3])
+{
+    const double n = v3_length(a);
+    if (!(n > 0) || !isfinite(n)) return false;
+    v3_scale(out, 1 / n, a);
+    return true;
+}
+
+static inline bool v3_is_finite(const double a[3])
+{
+    return isfinite(a[0]) && isfinite(a[1]) && isfinite(a[2]);
+}
+
+/* out = m a; out must not alias a. */
+static inline void m3_mul_v3(double out[3], const double m[9], const double a[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = m[3 * i] * a[0] + m[3 * i + 1] * a[1] + m[3 * i + 2] * a[2];
+}
+
+/* out = transpose(m) a, the inverse for a rotation; out must not alias a. */
+static inline void m3_tmul_v3(double out[3], const double m[9], const double a[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = m[i] * a[0] + m[3 + i] * a[1] + m[6 + i] * a[2];
+}
+
+/* out = a b; out must not alias. */
+static inline void m3_mul(double out[9], const double a[9], const double b[9])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+}
+
+/* out = transpose(a) b; out must not alias. */
+static inline void m3_tmul(double out[9], const double a[9], const double b[9])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
+}
+
+static inline void m3_transpose(double out[9], const double a[9])
+{
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) out[3 * i + j] = a[3 * j + i];
+}
+
+static inline void m3_identity(double out[9])
+{
+    for (int i = 0; i < 9; i++) out[i] = i % 4 == 0;
+}
+
+static inline double clamp(double x, double low, double high) { return x < low ? low : x > high ? high : x; }
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,82 @@
+/* pitviper_arena.c: memory that lives one frame, in blocks that outlive it. */
+#include "pitviper.h"
+
+#include <stdlib.h>
+
+enum { arena_alignment = 64, arena_block_octets = 1 << 20 };
+
+typedef struct ArenaBlock {
+    struct ArenaBlock *next;
+    size_t             size, used; /* of data */
+    unsigned char     *data;       /* aligned */
+} ArenaBlock;
+
+struct Arena {
+    ArenaBlock *first, *current;
+};
+
+Arena *arena_create(void) { return calloc(1, sizeof(Arena)); }
+
+void arena_destroy(Arena *arena)
+{
+    if (!arena) return;
+    for (ArenaBlock *block = arena->first, *next; block; block = next) {
+        next = block->next;
+        free(block->data);
+        free(block);
+    }
+    free(arena);
+}
+
+void arena_reset(Arena *arena)
+{
+    for (ArenaBlock *block = arena->first; block; block = block->next) block->used = 0;
+    arena->current = arena->first;
+}
+
+static ArenaBlock *add_block(Arena *arena, size_t octets)
+{
+    ArenaBlock *block = calloc(1, sizeof *block);
+    if (!block) return NULL;
+    block->size = octets > arena_block_octets ? octets : arena_block_octets;
+    block->data = aligned_alloc(arena_alignment, block->size);
+    if (!block->data) {
+        free(block);
+        return NULL;
+    }
+    /* after the current one: what lies behind it is still empty and will be reached in turn */
+    if (arena->current) {
+        block->next          = arena->current->next;
+        arena->current->next = block;
+    } else {
+        arena->first = block;
+    }
+    return block;
+}
+
+void *arena_alloc(Arena *arena, size_t count, size_t size)
+{
+    size_t octets;
+    if (__builtin_mul_overflow(count, size, &octets) || octets > SIZE_MAX - arena_alignment) return NULL;
+    octets = (octets + arena_alignment - 1) & ~(size_t)(arena_alignment - 1);
+    if (octets == 0) octets = arena_alignment;
+
+    while (arena->current && arena->current->size - arena->current->used < octets && arena->current->next)
+        arena->current = arena->current->next;
+    if (!arena->current || arena->current->size - arena->current->used < octets) {
+        ArenaBlock *block = add_block(arena, octets);
+        if (!block) return NULL;
+        arena->current = block;
+    }
+    void *memory = arena->current->data + arena->current->used;
+    arena->current->used += octets;
+    memset(memory, 0, octets);
+    return memory;
+}
+
+size_t arena_bytes(const Arena *arena)
+{
+    size_t octets = 0;
+    for (const ArenaBlock *block = arena->first; block; block = block->next) octets += block->size;
+    return octets;
+}

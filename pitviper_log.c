@@ -1,0 +1,77 @@
+/* pitviper_log.c: status names, and one line a message. */
+#include "pitviper.h"
+
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+
+static pthread_mutex_t log_lock = PTHREAD_MUTEX_INITIALIZER;
+static LogSink        *log_sink;
+static void           *log_user;
+static LogLevel        log_lowest = LOG_INFO;
+
+const char *status_name(Status status)
+{
+    switch (status) {
+    case STATUS_OK: return "ok";
+    case STATUS_TRUNCATED: return "truncated";
+    case STATUS_BAD_VALUE: return "bad value";
+    case STATUS_UNSUPPORTED: return "unsupported";
+    case STATUS_IO: return "input/output error";
+    case STATUS_NO_MEMORY: return "out of memory";
+    }
+    return "unknown status";
+}
+
+void log_set_sink(LogSink *sink, void *user)
+{
+    pthread_mutex_lock(&log_lock);
+    log_sink = sink;
+    log_user = user;
+    pthread_mutex_unlock(&log_lock);
+}
+
+void log_set_level(LogLevel lowest)
+{
+    pthread_mutex_lock(&log_lock);
+    log_lowest = lowest;
+    pthread_mutex_unlock(&log_lock);
+}
+
+static void log_line(LogLevel level, const char *format, va_list arguments)
+{
+    char line[1024];
+    vsnprintf(line, sizeof line, format, arguments);
+    pthread_mutex_lock(&log_lock);
+    if (level >= log_lowest) {
+        if (log_sink)
+            log_sink(log_user, level, line);
+        else
+            fprintf(stderr, "%s%s\n", level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line);
+    }
+    pthread_mutex_unlock(&log_lock);
+}
+
+void log_info(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    log_line(LOG_INFO, format, arguments);
+    va_end(arguments);
+}
+
+void log_warn(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    log_line(LOG_WARN, format, arguments);
+    va_end(arguments);
+}
+
+void log_error(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    log_line(LOG_ERROR, format, arguments);
+    va_end(arguments);
+}

@@ -1,0 +1,247 @@
+/* pitviper_text.c: tables of text, numbers out of text, foreign bytes made harmless. */
+#include "pitviper.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { table_max_octets = 1 << 26 };
+
+bool text_to_double(double *out, const char *text)
+{
+    if (!*text || strchr(" \t\n\v\f\r", *text) || strpbrk(text, "xX")) return false;
+    char *end;
+    errno          = 0;
+    const double v = strtod(text, &end);
+    if (end == text || *end || !isfinite(v)) return false;
+    *out = v;
+    return true;
+}
+
+bool text_to_long(long long *out, const char *text)
+{
+    if (!*text || strchr(" \t\n\v\f\r", *text)) return false;
+    char *end;
+    errno             = 0;
+    const long long v = strtoll(text, &end, 10);
+    if (end == text || *end || errno == ERANGE) return false;
+    *out = v;
+    return true;
+}
+
+void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
+{
+    static const char digits[] = "0123456789abcdef";
+    size_t            n        = 0;
+    for (size_t i = 0; i < count; i++) {
+        const unsigned char c     = (unsigned char)bytes[i];
+        const bool          plain = c >= 0x20 && c < 0x7f && c != '\\';
+        if (n + (plain ? 1 : 4) + 1 > out_size) break;
+        if (plain) {
+            out[n++] = (char)c;
+        } else {
+            out[n++] = '\\';
+            out[n++] = 'x';
+            out[n++] = digits[c >> 4];
+            out[n++] = digits[c & 15];
+        }
+    }
+    if (out_size) out[n] = 0;
+}
+
+bool etc_path(char *out, size_t out_size, const char *name)
+{
+    const char *from_environment = getenv("PITVIPER_ETC");
+    int         length;
+    if (from_environment) {
+        length = snprintf(out, out_size, "%s/%s", from_environment, name);
+    } else {
+        length = snprintf(out, out_size, "%s/%s", PITVIPER_ETC_DIR, name);
+        if (length < 0 || (size_t)length >= out_size || access(out, R_OK) != 0)
+            length = snprintf(out, out_size, "%s/%s", PITVIPER_ETC_INSTALLED, name);
+    }
+    return length >= 0 && (size_t)length < out_size;
+}
+
+/* ---- tables ------------------------------------------------------------------------------- */
+
+static Status read_whole(char **out, const char *path)
+{
+    Status status = STATUS_IO;
+    char  *text   = NULL;
+    FILE  *file   = fopen(path, "rb");
+    if (!file) {
+        log_error("text: cannot open %s: %s", path, strerror(errno));
+        return STATUS_IO;
+    }
+    size_t size = 0, capacity = 1 << 16;
+    text = malloc(capacity);
+    while (text) {
+        size += fread(text + size, 1, capacity - size - 1, file);
+        if (size < capacity - 1) break;
+        if (capacity >= table_max_octets) {
+            log_error("text: %s: larger than %d octets", path, table_max_octets);
+            status = STATUS_BAD_VALUE;
+            goto fail;
+        }
+        char *larger = realloc(text, capacity *= 2);
+        if (!larger) {
+            status = STATUS_NO_MEMORY;
+            goto fail;
+        }
+        text = larger;
+    }
+    if (!text) {
+        status = STATUS_NO_MEMORY;
+        goto fail;
+    }
+    if (ferror(file)) {
+        log_error("text: cannot read %s: %s", path, strerror(errno));
+        goto fail;
+    }
+    text[size] = 0;
+    if (strlen(text) != size) {
+        log_error("text: %s: holds a NUL octet; is it a text file?", path);
+        status = STATUS_BAD_VALUE;
+        goto fail;
+    }
+    fclose(file);
+    *out = text;
+    return STATUS_OK;
+
+fail:
+    fclose(file);
+    free(text);
+    return status;
+}
+
+static char *trim(char *text)
+{
+    while (*text == ' ' || *text == '\t') text++;
+    char *end = text + strlen(text);
+    while (end > text && strchr(" \t\r", end[-1])) *--end = 0;
+    return text;
+}
+
+/* Splits one line in place; quotes keep commas, a doubled quote is one. -1: an open quote. */
+static int split(char **cell, int capacity, char *line)
+{
+    int   count = 0;
+    char *at    = line;
+    for (;;) {
+        while (*at == ' ' || *at == '\t') at++;
+        char *start = at, *end;
+        if (*at == '"') {
+            char *to = start = ++at;
+            while (*at && !(at[0] == '"' && at[1] != '"')) {
+                if (*at == '"') at++;
+                *to++ = *at++;
+            }
+            if (!*at) return -1;
+            at++;
+            end = to;
+            while (*at && *at != ',') at++;
+        } else {
+            while (*at && *at != ',') at++;
+            end = at;
+        }
+        const bool more = *at == ',';
+        *end            = 0;
+        if (count < capacity) cell[count] = trim(start);
+        count++;
+        if (!more) return count;
+        at++;
+    }
+}
+
+Status table_open(Table *out, const char *path)
+{
+    Table  table  = {0};
+    Status status = read_whole(&table.text, path);
+    if (status != STATUS_OK) return status;
+
+    status     = STATUS_NO_MEMORY;
+    table.path = strdup(path);
+    if (!table.path) goto fail;
+
+    int lines = 1;
+    for (const char *c = table.text; *c; c++) lines += *c == '\n';
+    table.line = calloc((size_t)lines, sizeof *table.line);
+    if (!table.line) goto fail;
+
+    int number = 0;
+    table.rows = -1; /* the header is row -1 while counting */
+    for (char *next = table.text, *line; next && *next;) {
+        line = next;
+        next = strchr(line, '\n');
+        if (next) *next++ = 0;
+        number++;
+        line = trim(line);
+        if (!*line || *line == '#') continue;
+        if (table.rows < 0) {
+            int columns = 1;
+            for (const char *c = line; *c; c++) columns += *c == ',';
+            table.cell = calloc((size_t)columns * (size_t)lines, sizeof *table.cell);
+            if (!table.cell) goto fail;
+            table.columns = columns;
+        }
+        char    **row   = table.cell + (size_t)(table.rows + 1) * (size_t)table.columns;
+        const int cells = split(row, table.columns, line);
+        if (table.rows < 0 && cells > 0) table.columns = cells;
+        if (cells != table.columns) {
+            if (cells < 0)
+                log_error("text: %s:%d: a quote is not closed", path, number);
+            else
+                log_error("text: %s:%d: %d columns where the header has %d", path, number, cells, table.columns);
+            status = STATUS_BAD_VALUE;
+            goto fail;
+        }
+        table.line[++table.rows] = number;
+    }
+    if (table.rows < 0) {
+        log_error("text: %s: no header line", path);
+        status = STATUS_BAD_VALUE;
+        goto fail;
+    }
+    *out = table;
+    return STATUS_OK;
+
+fail:
+    table_close(&table);
+    return status;
+}
+
+void table_close(Table *table)
+{
+    free(table->path);
+    free(table->cell);
+    free(table->line);
+    free(table->text);
+    memset(table, 0, sizeof *table);
+}
+
+int table_column(const Table *table, const char *name)
+{
+    for (int i = 0; i < table->columns; i++)
+        if (strcmp(table->cell[i], name) == 0) return i;
+    return -1;
+}
+
+const char *table_text(const Table *table, int row, int column)
+{
+    return table->cell[(size_t)(row + 1) * (size_t)table->columns + (size_t)column];
+}
+
+Status table_number(double *out, const Table *table, int row, int column, double low, double high)
+{
+    const char *text = table_text(table, row, column);
+    double      value;
+    if (!text_to_double(&value, text) || !(value >= low && value <= high)) {
+        log_error("text: %s:%d: column %s: '%s' is not a number in %g .. %g", table->path, table->line[row + 1],
+                  table->cell[column], text, low, high);
+        return STATUS_BAD_VALUE;
+    }
+    *out = value;
+    return STATUS_OK;
+}

@@ -1,0 +1,125 @@
+/* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on who ran what. */
+#include "pitviper.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <xmmintrin.h>
+
+typedef struct Worker {
+    Pool     *pool;
+    pthread_t thread;
+    int       index;
+} Worker;
+
+struct Pool {
+    int             threads;
+    Worker         *worker;    /* [threads - 1]; the caller is worker 0 */
+    pthread_mutex_t lock;
+    pthread_cond_t  work, done;
+    uint64_t        round;     /* counts pool_run calls */
+    int             busy;      /* workers still in the round */
+    bool            stop;
+    PoolTask       *task;
+    void           *user;
+    int             count, next;
+};
+
+void thread_flush_denormals(void)
+{
+    _mm_setcsr(_mm_getcsr() | 0x8040); /* FTZ and DAZ */
+}
+
+static void run_tasks(Pool *pool, int worker)
+{
+    for (;;) {
+        const int task = __atomic_fetch_add(&pool->next, 1, __ATOMIC_RELAXED);
+        if (task >= pool->count) return;
+        pool->task(pool->user, worker, task);
+    }
+}
+
+static void *worker_main(void *argument)
+{
+    Worker  *self = argument;
+    Pool    *pool = self->pool;
+    uint64_t seen = 0;
+
+    thread_flush_denormals();
+    pthread_mutex_lock(&pool->lock);
+    for (;;) {
+        while (pool->round == seen && !pool->stop) pthread_cond_wait(&pool->work, &pool->lock);
+        if (pool->stop) break;
+        seen = pool->round;
+        pthread_mutex_unlock(&pool->lock);
+        run_tasks(pool, self->index);
+        pthread_mutex_lock(&pool->lock);
+        if (--pool->busy == 0) pthread_cond_signal(&pool->done);
+    }
+    pthread_mutex_unlock(&pool->lock);
+    return NULL;
+}
+
+Status pool_create(Pool **out, int threads)
+{
+    if (threads < 1 || threads > 1024) return STATUS_BAD_VALUE;
+    Pool *pool = calloc(1, sizeof *pool);
+    if (!pool) return STATUS_NO_MEMORY;
+    pthread_mutex_init(&pool->lock, NULL);
+    pthread_cond_init(&pool->work, NULL);
+    pthread_cond_init(&pool->done, NULL);
+    pool->threads = 1;
+    pool->worker  = calloc((size_t)threads, sizeof *pool->worker);
+    if (!pool->worker) {
+        pool_destroy(pool);
+        return STATUS_NO_MEMORY;
+    }
+    for (int i = 1; i < threads; i++) {
+        Worker *worker = &pool->worker[i - 1];
+        worker->pool   = pool;
+        worker->index  = i;
+        if (pthread_create(&worker->thread, NULL, worker_main, worker) != 0) {
+            pool_destroy(pool);
+            return STATUS_NO_MEMORY;
+        }
+        pool->threads = i + 1;
+    }
+    *out = pool;
+    return STATUS_OK;
+}
+
+void pool_destroy(Pool *pool)
+{
+    if (!pool) return;
+    pthread_mutex_lock(&pool->lock);
+    pool->stop = true;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->lock);
+    for (int i = 1; i < pool->threads; i++) pthread_join(pool->worker[i - 1].thread, NULL);
+    pthread_cond_destroy(&pool->done);
+    pthread_cond_destroy(&pool->work);
+    pthread_mutex_destroy(&pool->lock);
+    free(pool->worker);
+    free(pool);
+}
+
+int pool_threads(const Pool *pool) { return pool->threads; }
+
+void pool_run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (count <= 0) return;
+    pthread_mutex_lock(&pool->lock);
+    pool->task  = task;
+    pool->user  = user;
+    pool->count = count;
+    pool->next  = 0;
+    pool->busy  = pool->threads - 1;
+    pool->round++;
+    pthread_cond_broadcast(&pool->work);
+    pthread_mutex_unlock(&pool->lock);
+
+    run_tasks(pool, 0);
+
+    pthread_mutex_lock(&pool->lock);
+    while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
+    pthread_mutex_unlock(&pool->lock);
+}

@@ -1,0 +1,136 @@
+/* render/ground_private.h: the arithmetic that the scalar and the eight-wide ground tracer share.
+ *
+ * A ray in one level's units is u0 + t du, v0 + t dv (cells), w0 + t dw (posts), t in metres. It meets the
+ * line of posts u = e at t = (e - u0) / du: a computation that knows nothing of the way there and never
+ * decreases in the order of the lines, not even by rounding. So "the cell at t" is a matter of counting the
+ * lines met at or before t, a cell's own interval is the same from whichever side it is reached, and the
+ * height w0 + t dw inside it lies between those at the ends of any interval that contains it. Skipping a
+ * node whose highest post is below the ray's lower end is then exact, not merely safe. */
+#ifndef RENDER_GROUND_PRIVATE_H
+#define RENDER_GROUND_PRIVATE_H
+
+#include "render/ground.h"
+
+/* Above a post by this much: clear of it, whatever rounding did to an interpolated height (65535 posts times
+ * a few roundings is 3e-11 post). */
+static const double ground_clear_posts = 1e-6;
+
+typedef struct LevelRay {
+    double u0, v0, w0, du, dv, dw;
+    double per_du, per_dv, per_duv; /* 1 / du, 1 / dv, 1 / (dv - du); never infinite */
+    double first_m, last_m;         /* the piece of the ray over this level */
+} LevelRay;
+
+/* Finite even for 0 and -0: a line that is never met is then met at 1e30 m or so, which needs no other care. */
+static inline double ground_inverse(double d) { return fabs(d) < 1e-30 ? copysign(1e30, d) : 1 / d; }
+
+static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const double o_enu[3], const double d_enu[3])
+{
+    r->u0 = (o_enu[0] - g->x0_m) * g->cells_per_m;
+    r->v0 = (o_enu[1] - g->y0_m) * g->cells_per_m;
+    r->w0 = (o_enu[2] - g->z0_m) * g->posts_per_m;
+    r->du = d_enu[0] * g->cells_per_m;
+    r->dv = d_enu[1] * g->cells_per_m;
+    r->dw = d_enu[2] * g->posts_per_m;
+    r->per_du  = ground_inverse(r->du);
+    r->per_dv  = ground_inverse(r->dv);
+    r->per_duv = ground_inverse(r->dv - r->du);
+}
+
+/* A ray over all the levels: its pieces in the order it meets them, inwards and out again. */
+enum { ground_max_pieces = 2 * elevation_max_levels - 1 };
+
+typedef struct GroundRay {
+    int      piece_count, piece; /* 0 for a ray that misses the ground or is not usable; the present one */
+    int      level[ground_max_pieces];
+    double   first_m[ground_max_pieces], last_m[ground_max_pieces];
+    LevelRay of_level[elevation_max_levels];
+} GroundRay;
+
+void ground_ray(GroundRay *out, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m);
+
+/* Where to start and stop walking a piece: not before the ray has come down to the level's highest post, not
+ * after it has left it upwards. Never part of a hit's arithmetic. */
+static inline void ground_walk(double *start_m, double *stop_m, const GroundLevel *g, const LevelRay *r, double far_m)
+{
+    *start_m = r->first_m;
+    *stop_m  = r->last_m < far_m ? r->last_m : far_m;
+    const double top_m = (g->highest + 1e-3 - r->w0) * ground_inverse(r->dw);
+    if (!(r->w0 + top_m * r->dw > g->highest + ground_clear_posts)) return; /* from too far away to tell */
+    if (r->dw < 0) *start_m = *start_m > top_m ? *start_m : top_m;
+    else *stop_m = *stop_m < top_m ? *stop_m : top_m;
+}
+
+/* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The
+ * estimate is off by at most one; the lines decide. */
+static inline int ground_cell_at(double p0, double dp, double per_dp, double t, int cells)
+{
+    const double last = cells - 1;
+    double       e    = floor(p0 + t * dp);
+    e = e > 0 ? e : 0;
+    e = e < last ? e : last;
+    const double at_low = (e - p0) * per_dp, at_high = (e + 1 - p0) * per_dp;
+    if (per_dp > 0) {
+        if (at_high <= t) e += 1;
+        else if (at_low > t) e -= 1;
+    } else {
+        if (at_low <= t) e -= 1;
+        else if (at_high > t) e += 1;
+    }
+    e = e > 0 ? e : 0;
+    e = e < last ? e : last;
+    return (int)e;
+}
+
+static inline double ground_unit(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
+
+/* Height of the ray over the surface of cell (i, j) at t, posts. */
+static inline double ground_clearance(const LevelRay *r, const double z[4], double i, double j, double t)
+{
+    const double a = ground_unit(r->u0 + t * r->du - i), b = ground_unit(r->v0 + t * r->dv - j);
+    const double sw = z[0], se = z[1], nw = z[2], ne = z[3];
+    const double surface = a >= b ? sw + a * (se - sw) + b * (ne - se) : sw + a * (ne - nw) + b * (nw - sw);
+    return r->w0 + t * r->dw - surface;
+}
+
+/* First place in cell (i, j) where the ray is not above it; INFINITY for none. */
+static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, int ci, int cj, bool *north_west)
+{
+    const uint16_t *post = g->post + (size_t)cj * (size_t)g->nx + (size_t)ci;
+    const double    z[4] = {post[0], post[1], post[g->nx], post[g->nx + 1]};
+    const double    i = ci, j = cj;
+    const double    u_low = (i - r->u0) * r->per_du, u_high = (i + 1 - r->u0) * r->per_du;
+    const double    v_low = (j - r->v0) * r->per_dv, v_high = (j + 1 - r->v0) * r->per_dv;
+    const double    u_in = r->per_du > 0 ? u_low : u_high, u_out = r->per_du > 0 ? u_high : u_low;
+    const double    v_in = r->per_dv > 0 ? v_low : v_high, v_out = r->per_dv > 0 ? v_high : v_low;
+    double          in  = u_in > v_in ? u_in : v_in;
+    double          out = u_out < v_out ? u_out : v_out;
+    in  = in > r->first_m ? in : r->first_m;
+    out = out < r->last_m ? out : r->last_m;
+
+    double clear_in = ground_clearance(r, z, i, j, in);
+    if (!(clear_in > 0)) {
+        *north_west = r->u0 + in * r->du - i < r->v0 + in * r->dv - j;
+        return in;
+    }
+    double diagonal  = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
+    bool   crosses   = diagonal > in && diagonal < out;
+    bool   west_side = r->per_duv < 0; /* of the diagonal, before it is crossed */
+    if (crosses) {
+        const double s     = ground_unit(r->u0 + diagonal * r->du - i);
+        const double clear = r->w0 + diagonal * r->dw - (z[0] + s * (z[3] - z[0]));
+        if (!(clear > 0)) {
+            *north_west = west_side;
+            return in + (diagonal - in) * (clear_in / (clear_in - clear));
+        }
+        clear_in = clear;
+        in       = diagonal;
+    }
+    const double clear_out = ground_clearance(r, z, i, j, out);
+    if (clear_out > 0) return INFINITY;
+    const double t = in + (out - in) * (clear_in / (clear_in - clear_out));
+    *north_west = crosses ? !west_side : r->u0 + t * r->du - i < r->v0 + t * r->dv - j;
+    return t;
+}
+
+#endif

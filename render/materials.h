@@ -1,0 +1,49 @@
+/* render/materials.h: optics of every material, from etc/materials.csv (source a row).
+ *
+ * Reflectances are hemispherical band averages; emissivity = 1 - reflectance (Kirchhoff, opaque). */
+#ifndef RENDER_MATERIALS_H
+#define RENDER_MATERIALS_H
+
+#include "entities/catalog.h"
+#include "terrain/surface.h"
+
+enum { optical_channel_b, optical_channel_g, optical_channel_r, optical_channel_pan, optical_channel_count };
+
+typedef struct Material {
+    char  name[32];
+    float rho[optical_channel_count]; /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7 um */
+    float rho_mwir, rho_lwir;         /* 3.4-4.8, 8-12 um */
+    float solar_absorptance;
+    float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1 */
+    float roughness;                  /* width of that lobe, rad rms slope */
+    float metal;                      /* 1: mirrors radar; 0: does not */
+    float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
+} Material;
+
+typedef struct Materials {
+    int       count;
+    Material *material;              /* [0] is "none", black */
+    int       surface[SURFACE_COUNT];/* material of each surface class */
+    int     **part;                  /* [model][part] */
+    int       model_count;
+    /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that
+     * a horizontal plane loses to the sky (etc/ground_heat.csv). 0: at air temperature. */
+    float     ground_rise_k[SURFACE_COUNT], ground_fall_k[SURFACE_COUNT];
+    float     ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
+} Materials;
+
+/* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
+ * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
+Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
+void   materials_close(Materials *materials);
+int    materials_find(const Materials *materials, const char *name); /* -1: none */
+
+/* The lobe of a glossy surface lit by the sun. material_fresnel: share reflected by it at an angle of this
+ * cosine, from gloss_rho (reflectance times gloss) at normal incidence upwards; 0 for gloss_rho = 0.
+ * material_lobe: radiance over irradiance facing the sun, 1/sr, for a reflectance of 1: Beckmann's slopes of
+ * rms roughness_rad with Smith's masking; its whole over all directions is at most the cosine n_sun.
+ * All vectors are unit; n and towards_eye must be on the same side. 0 when the sun is behind. */
+double material_fresnel(double gloss_rho, double roughness_rad, double cosine);
+double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3]);
+
+#endif

@@ -1,0 +1,60 @@
+/* render/parts.h: rays against the moving parts, through Embree.
+ *
+ * One committed Embree scene for each node of each model, in the node's own axes, shared by every entity of
+ * that model. A ray is taken to the node in double, advanced to the node's bounding sphere, narrowed once, and
+ * asked only *which* triangle it meets; distance and normals are then found in double on that triangle. So a
+ * joint that turns costs a transform and no commit, nothing here changes between frames, and any number of
+ * frames and threads may trace at once. */
+#ifndef RENDER_PARTS_H
+#define RENDER_PARTS_H
+
+#include "entities/model.h"
+#include "render/visibility.h"
+
+/* As tracer_create, with the models given directly; they must outlive the tracer. */
+Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);
+int    tracer_model_count(const Tracer *tracer);
+const Model *tracer_model(const Tracer *tracer, int model);
+
+typedef struct NodeMesh NodeMesh;
+
+/* A node that has triangles, where it is now. */
+typedef struct PosedNode {
+    const NodeMesh *mesh;
+    double p_enu[3];
+    double r_enu_from_node[9];
+} PosedNode;
+
+/* An entity where it is now. The sphere holds all of its nodes as they are posed, whatever the model says. */
+typedef struct PosedEntity {
+    int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
+    int          node_count; /* those with triangles */
+    PosedNode   *node;
+    double       centre_enu[3], radius_m;
+} PosedEntity;
+
+typedef struct PartHit {
+    int      node;     /* of PosedEntity.node */
+    uint32_t triangle; /* of the model */
+} PartHit;
+
+/* The triangles of a posed node, as indices into the model's. */
+const uint32_t *parts_node_triangles(const PosedNode *node, int *count);
+
+/* The most nodes that posing an entity of this model needs room for. */
+int parts_node_count(const Tracer *tracer, int model);
+/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. */
+void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
+                const double r_enu_from_body[9]);
+
+/* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is
+ * asked even where a node's sphere is missed, which must not change the answer. */
+double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],
+                       double far_m, bool ask_all);
+/* Whether any triangle is ahead. */
+bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
+/* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
+void parts_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedEntity *entity, const PartHit *hit,
+                   const double o_enu[3], const double d_enu[3], double range_m);
+
+#endif

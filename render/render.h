@@ -1,0 +1,66 @@
+/* render/render.h: a picture is a pure function of (world, snapshot, request). */
+#ifndef RENDER_RENDER_H
+#define RENDER_RENDER_H
+
+#include "render/air.h"
+#include "render/radar_image.h"
+#include "render/thermal.h"
+#include "render/visibility.h"
+
+/* What does not change between frames. */
+typedef struct World {
+    const Catalog   *catalog;
+    const Landscape *landscape;      /* NULL: no ground */
+    LocalFrame       frame;          /* whose ENU the views are in */
+    Tracer          *tracer;
+    Materials        materials;
+    PlanckTable     *planck_mwir, *planck_lwir;
+    RadarConfig      radar;
+} World;
+
+/* What a target gave in this view, in units of pixels (samples / samples^2). */
+typedef struct TargetPixels {
+    double visible, amodal;
+    int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
+    bool   projected;             /* in front of the eye and its bounding sphere meets the image */
+    double projected_box[4];      /* of all its vertices, px, not clipped to the image; where `projected` */
+    double occluded_ground;       /* pixels that the ground hides, and other entities */
+    double occluded_entity;
+    int    occluder;              /* snapshot index of the entity that hides most; -1 */
+} TargetPixels;
+
+typedef struct RenderCounters {
+    VisibilityCounters visibility;
+    uint64_t rays_primary, rays_radar, tiles, tiles_without_entities;
+} RenderCounters;
+
+typedef struct RenderTimes {
+    double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads but prepare */
+} RenderTimes;
+
+/* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena. */
+typedef struct Picture {
+    int       width, height;
+    float    *optical[3];           /* R G B, or [0] alone: W/(m2 sr) */
+    float    *mwir, *lwir;          /* W/(m2 sr) */
+    float    *radar;                /* relative */
+    float    *radar_bounce[radar_bounces];
+    double   *profile;              /* [profile_bins][radar_bounces], relative power */
+    float    *range_m;              /* +inf: sky */
+    uint32_t *entity;               /* snapshot index + 1; 0: none */
+    uint32_t *part, *material;      /* + 1; 0: none */
+    float    *temp_k;               /* NaN: sky */
+    float    *normal[3];            /* ENU of the terrain origin */
+    TargetPixels *target;           /* [snapshot count]; NULL without truth */
+    RenderCounters counters;
+    RenderTimes    times;
+} Picture;
+
+/* frame: the landscape's, or any where there is none. */
+Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame, const char *isa);
+void   world_close(World *world);
+
+Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
+              const Air *air, Pool *pool, Arena *arena);
+
+#endif

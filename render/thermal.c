@@ -1,0 +1,120 @@
+/* render/thermal.c: how warm things are, and what of it arrives.
+ *
+ * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get
+ * unobstructed. That is the first model; layered conduction with a history of shadow comes after it.
+ *
+ * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings, then the veil. In a closed isothermal cavity
+ * everything reads Planck(T), whatever the material (tests/render/test_thermal.c). */
+#include "render/thermal.h"
+
+static const double sigma_w_m2_k4 = 5.670374419184429e-8;
+
+/* ---- temperature -------------------------------------------------------------------------- */
+
+/* Film coefficient of a surface in wind, W/(m2 K): McAdams, Heat Transmission, 1954, for plates below 5 m/s. */
+static double film_w_m2_k(double wind_mps)
+{
+    return 5.7 + 3.8 * wind_mps;
+}
+
+/* A part without a heat source of its own. Steel conducts and holds heat for an hour, so every face shares in what
+ * the whole gets: 0.3 of the sun on level ground for a face turned down, 0.7 for one turned up (a guess, that puts
+ * a green tank at 10 .. 20 K above the air at noon and keeps a turning vehicle from flipping its temperatures). */
+static double passive_part_k(const Air *air, const Material *material, double n_up, double sun_level_w_m2,
+                             double film)
+{
+    const double emissivity = 1 - material->rho_lwir, air_temp_k = air->weather.air_temp_k;
+    const double up = 0.5 * (1 + n_up);
+    const double gain_w_m2 = material->solar_absorptance * sun_level_w_m2 * (0.3 + 0.4 * up) -
+                             emissivity * air->longwave_loss_w_m2 * up;
+    return air_temp_k + gain_w_m2 / (film + 4 * emissivity * sigma_w_m2_k4 * air_temp_k * air_temp_k * air_temp_k);
+}
+
+/* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
+ * relative brightness into relative warmth (a guess; bright patches are also dry ones). */
+static double ground_k(const Air *air, const Materials *materials, int surface, const double n_enu[3], double texture)
+{
+    const double slope_w_m2 = air->solar_direct_w_m2 * fmax(v3_dot(n_enu, air->sun_d_enu), 0) +
+                              air->solar_diffuse_w_m2 * 0.5 * (1 + n_enu[2]);
+    return air->weather.air_temp_k + materials->ground_rise_k[surface] * 1e-3 * slope_w_m2 * (1.5 - 0.5 * texture) -
+           materials->ground_fall_k[surface] * 1e-2 * air->longwave_loss_w_m2;
+}
+
+void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture)
+{
+    const double sun_level_w_m2 = air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2;
+    const double film = film_w_m2_k(air->weather.wind_mps);
+
+    for (int i = 0; i < hits->count; i++) {
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        if (!(hits->range_m[i] < INFINITY)) {
+            temp_k[i] = NAN;
+        } else if (hits->entity[i] == 0) {
+            temp_k[i] = (float)ground_k(air, materials, hits->surface[i], n_enu, texture[i]);
+        } else {
+            const HeatRole role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
+            const double above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
+            const Material *m = &materials->material[material[i]];
+            temp_k[i] = (float)(passive_part_k(air, m, n_enu[2], sun_level_w_m2, film) + above_k);
+        }
+    }
+}
+
+/* ---- radiance ----------------------------------------------------------------------------- */
+
+/* What a band needs to know, so that the loop asks once. */
+typedef struct BandAir {
+    const PlanckTable *planck;
+    double (*sky)(const Air *, double);
+    Veil (*veil)(const Air *, double);
+    double sky_mean_w_m2_sr, ground_w_m2_sr, sun_w_m2;
+} BandAir;
+
+void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow)
+{
+    const bool mwir = band == BAND_MWIR;
+    /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
+    const BandAir b = mwir ? (BandAir){air->planck_mwir, air_sky_mwir, air_veil_mwir, air->sky_mean_mwir_w_m2_sr,
+                                       air->ground_mwir_w_m2_sr, air->sun_mwir_w_m2}
+                           : (BandAir){air->planck_lwir, air_sky_lwir, air_veil_lwir, air->sky_mean_lwir_w_m2_sr,
+                                       air->ground_lwir_w_m2_sr, 0};
+
+    for (int i = 0; i < hits->count; i++) {
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        if (!(hits->range_m[i] < INFINITY)) {
+            out[i] = (float)(b.sky(air, d_enu[2]) + b.sun_w_m2 * air_sun_disc(air, d_enu));
+            continue;
+        }
+        const Material *m = &materials->material[material[i]];
+        const double rho = mwir ? m->rho_mwir : m->rho_lwir;
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+
+        /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
+        const double faces_sky = 0.5 * (1 + n_enu[2]);
+        double around = faces_sky * b.sky_mean_w_m2_sr + (1 - faces_sky) * b.ground_w_m2_sr;
+        if (m->gloss > 0) {
+            const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
+            const double mirror_up = d_enu[2] + 2 * n_eye * n_enu[2];
+            const double sees_sky = clamp(0.5 + 0.5 * mirror_up / fmax(m->roughness, 0.01), 0, 1);
+            const double mirrored = sees_sky * b.sky(air, mirror_up) + (1 - sees_sky) * b.ground_w_m2_sr;
+            around += m->gloss * (mirrored - around);
+        }
+        double radiance = (1 - rho) * planck_table_radiance(b.planck, temp_k[i]) + rho * around;
+
+        if (b.sun_w_m2 > 0 && !shadow[i]) {
+            const double n_sun = v3_dot(n_enu, air->sun_d_enu);
+            if (n_sun > 0) {
+                double lobe = (1 - m->gloss) * n_sun / pi_rad;
+                if (m->gloss > 0) {
+                    const double eye_enu[3] = {-d_enu[0], -d_enu[1], -d_enu[2]};
+                    lobe += m->gloss * material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
+                }
+                radiance += rho * lobe * b.sun_w_m2;
+            }
+        }
+        const Veil veil = b.veil(air, hits->range_m[i]);
+        out[i] = (float)(radiance * veil.transmittance + veil.added_w_m2_sr);
+    }
+}

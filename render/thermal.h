@@ -1,0 +1,19 @@
+/* render/thermal.h: temperatures of what is seen, and emitted + reflected radiance at the aperture. */
+#ifndef RENDER_THERMAL_H
+#define RENDER_THERMAL_H
+
+#include "entities/snapshot.h"
+#include "render/air.h"
+#include "render/hits.h"
+#include "render/view.h"
+
+/* Temperature of each hit, K: parts from the snapshot's heat by role over a passive temperature, ground by
+ * class, slope and texture. No present sun ray enters: no instant thermal shadows. Sky: NaN. */
+void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture);
+
+/* band: BAND_MWIR or BAND_LWIR. shadow: used in MWIR's reflected sun only. out: W/(m2 sr). */
+void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow);
+
+#endif

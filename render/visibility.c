@@ -1,0 +1,335 @@
+#include "render/visibility.h"
+
+#include "render/ground.h"
+#include "render/parts.h"
+
+struct Visibility {
+    const Tracer    *tracer;
+    const Landscape *landscape;
+    Ground           ground;
+    bool             no_skip;
+    int              count;
+    PosedEntity     *entity; /* [count], as in the snapshot */
+};
+
+Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
+                         const Snapshot *snapshot, bool no_skip, Arena *arena)
+{
+    const int   count = snapshot->count;
+    Visibility *v = arena_alloc(arena, 1, sizeof *v);
+    if (!v) return STATUS_NO_MEMORY;
+    *v = (Visibility){.tracer = tracer, .landscape = ground, .no_skip = no_skip, .count = count};
+    ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
+    v->entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->entity);
+    if (!v->entity) return STATUS_NO_MEMORY;
+
+    for (int k = 0; k < count; k++) {
+        const SnapshotEntity *e = &snapshot->entity[k];
+        PosedEntity          *posed = &v->entity[k];
+        double                p_enu[3], r_enu_from_body[9];
+        posed->model = -1;
+        if (e->model < 0 || e->model >= tracer_model_count(tracer)) continue;
+        posed->node = arena_alloc(arena, (size_t)parts_node_count(tracer, e->model) + 1, sizeof *posed->node);
+        if (!posed->node) return STATUS_NO_MEMORY;
+        enu_from_ecef(p_enu, frame, e->p_ecef);
+        m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
+        parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body);
+    }
+    *out = v;
+    return STATUS_OK;
+}
+
+/* ---- which entities a block may see ------------------------------------------------------- */
+
+int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
+                              double column1_px, double row1_px, int hidden)
+{
+    /* tangents of the block's four sides, and what turns an offset from a side into a distance */
+    const double left = (column0_px - 0.5 * view->width) / view->focal_px;
+    const double right = (column1_px - 0.5 * view->width) / view->focal_px;
+    const double top = (row0_px - 0.5 * view->height) / view->focal_px;
+    const double bottom = (row1_px - 0.5 * view->height) / view->focal_px;
+    const double per_left = 1 / sqrt(1 + left * left), per_right = 1 / sqrt(1 + right * right);
+    const double per_top = 1 / sqrt(1 + top * top), per_bottom = 1 / sqrt(1 + bottom * bottom);
+    int          count = 0;
+    for (int k = 0; k < v->count; k++) {
+        if (k == hidden || v->entity[k].model < 0) continue;
+        if (!v->no_skip) {
+            double from_eye[3], c_cam[3];
+            v3_sub(from_eye, v->entity[k].centre_enu, view->p_enu);
+            m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
+            /* room for rounding, a thousand times what it can be */
+            const double r = v->entity[k].radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
+            if (c_cam[2] < -r || (c_cam[0] - left * c_cam[2]) * per_left < -r ||
+                (right * c_cam[2] - c_cam[0]) * per_right < -r || (c_cam[1] - top * c_cam[2]) * per_top < -r ||
+                (bottom * c_cam[2] - c_cam[1]) * per_bottom < -r)
+                continue;
+        }
+        list[count++] = k;
+    }
+    return count;
+}
+
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
+ * out: nothing here to branch on. */
+static void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+                             const double *limit_m, const double centre[3], double radius_m)
+{
+    const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
+    for (int i = 0; i < count; i++) {
+        const double mx = centre[0] - ox[i], my = centre[1] - oy[i], mz = centre[2] - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i];
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        const double half = sqrt(left > 0 ? left : 0);
+        meets[i] = (left > 0) & (along + half > 0) & (along - half < limit_m[i]);
+    }
+}
+
+/* The shading normal leans with the curved surface that the facets stand for; where it leans away from the
+ * ray it is brought back to edge-on. */
+static void store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
+{
+    double       n[3] = {n_enu[0], n_enu[1], n_enu[2]};
+    const double away = v3_dot(n, d_enu);
+    if (away > 0) {
+        v3_add_scaled(n, n, -away, d_enu);
+        if (!v3_normalize(n, n)) v3_scale(n, 1, n_geo);
+    }
+    for (int c = 0; c < 3; c++) {
+        hits->n_geo[c][i] = (float)n_geo[c];
+        hits->n_enu[c][i] = (float)n[c];
+    }
+}
+
+static void clear_hit(Hits *hits, int i)
+{
+    for (int c = 0; c < 3; c++) {
+        hits->p_enu[c][i] = 0;
+        hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
+    }
+    hits->entity[i]  = 0;
+    hits->part[i]    = 0;
+    hits->model[i]   = 0;
+    hits->surface[i] = 0;
+}
+
+static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const GroundHit *hit, const double d[3])
+{
+    const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
+    double       n_geo[3], n_enu[3];
+    ground_normals(n_geo, n_enu, &v->ground, hit, x_m, y_m);
+    if (v3_dot(n_geo, d) > 0) { /* stopped inside the solid ground */
+        v3_scale(n_geo, -1, n_geo);
+        v3_scale(n_enu, -1, n_enu);
+    }
+    store_normals(hits, i, n_geo, n_enu, d);
+    hits->surface[i] = (uint8_t)landscape_surface(v->landscape, x_m, y_m);
+}
+
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, const double o[3],
+                              const double d[3])
+{
+    const PosedEntity *posed = &v->entity[entity];
+    const Model       *model = tracer_model(v->tracer, posed->model);
+    double             n_geo[3], n_enu[3];
+    parts_normals(n_geo, n_enu, model, posed, hit, o, d, hits->range_m[i]);
+    store_normals(hits, i, n_geo, n_enu, d);
+    hits->entity[i] = (uint32_t)entity + 1;
+    hits->model[i]  = (uint16_t)posed->model;
+    hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+}
+
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                          VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const int           count = rays->count;
+    GroundHit           ground_hit[hits_capacity];
+    PartHit             part_hit[hits_capacity];
+    double              limit_m[hits_capacity]; /* of what may still be nearer */
+    uint8_t             ask[hits_capacity];
+
+    hits->count = count;
+    ground_first_hits(hits->range_m, ground_hit, &v->ground, count, o, d, rays->far_m);
+    for (int i = 0; i < count; i++) {
+        hits->entity[i] = 0;
+        limit_m[i] = fmin(hits->range_m[i], rays->far_m[i]);
+    }
+    const int asked_count = list_count < 0 ? v->count : list_count;
+    uint64_t  asked = 0, drawable = 0;
+    for (int k = 0; k < v->count; k++) drawable += k != hidden && v->entity[k].model >= 0;
+    for (int k = 0; k < asked_count; k++) {
+        const int          index = list_count < 0 ? k : list[k];
+        const PosedEntity *entity = &v->entity[index];
+        if (index == hidden || entity->model < 0) continue;
+        if (v->no_skip) memset(ask, 1, sizeof ask);
+        else rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        for (int i = 0; i < count; i++) {
+            if (!ask[i]) continue;
+            const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+            const double range_m = parts_first_hit(&part_hit[i], entity, o_enu, d_enu, limit_m[i], v->no_skip);
+            asked++;
+            if (!(range_m < INFINITY)) continue;
+            hits->range_m[i] = limit_m[i] = range_m;
+            hits->entity[i]  = (uint32_t)index + 1;
+        }
+    }
+    counters->rays_ground += (uint64_t)count;
+    counters->rays_parts += asked;
+    counters->skipped_parts += drawable * (uint64_t)count - asked;
+
+    for (int i = 0; i < count; i++) {
+        const uint32_t entity = hits->entity[i];
+        clear_hit(hits, i);
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+        for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o_enu[c] + hits->range_m[i] * d_enu[c];
+        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], o_enu, d_enu);
+        else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
+    }
+}
+
+/* ---- shadows ------------------------------------------------------------------------------ */
+
+/* A sphere round the origins of a block's sun rays. */
+static double bound_points(double centre[3], int count, const double *const p[3])
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            low  = p[c][i] < low ? p[c][i] : low;
+            high = p[c][i] > high ? p[c][i] : high;
+        }
+        centre[c] = 0.5 * (low + high);
+        square += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(square) * (1 + 1e-9) + 1e-6;
+}
+
+/* Whether a ray along d from within a sphere can meet another. */
+static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3], double radius_m, const double d[3])
+{
+    double       m[3], across[3];
+    const double reach_m = radius_m + entity->radius_m;
+    v3_sub(m, entity->centre_enu, centre);
+    const double along = v3_dot(m, d);
+    v3_add_scaled(across, m, -along, d);
+    return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
+                       VisibilityCounters *counters)
+{
+    static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
+    double  start[3][hits_capacity], towards[3][hits_capacity], far_m[hits_capacity], range_m[hits_capacity];
+    int     hit_of[hits_capacity], count = 0;
+    uint8_t dark[hits_capacity], ask[hits_capacity];
+
+    /* the lit candidates, close together: neither sky nor turned away */
+    for (int i = 0; i < hits->count; i++) {
+        shadow[i] = 0;
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+        if (!(v3_dot(n, d_enu) > 0)) {
+            shadow[i] = 1;
+            continue;
+        }
+        for (int c = 0; c < 3; c++) {
+            start[c][count]   = hits->p_enu[c][i] + offset_m * n[c];
+            towards[c][count] = d_enu[c];
+        }
+        far_m[count]    = INFINITY;
+        dark[count]     = 0;
+        hit_of[count++] = i;
+    }
+    if (count == 0) return;
+
+    const double *o[3] = {start[0], start[1], start[2]}, *d[3] = {towards[0], towards[1], towards[2]};
+    double        centre[3];
+    const double  radius_m = bound_points(centre, count, o);
+    uint64_t      asked = 0, drawable = 0;
+    for (int k = 0; k < v->count; k++) {
+        const PosedEntity *entity = &v->entity[k];
+        if (entity->model < 0) continue;
+        drawable++;
+        if (v->no_skip) memset(ask, 1, sizeof ask);
+        else if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
+        else rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
+        for (int i = 0; i < count; i++) {
+            if (!ask[i] || (dark[i] && !v->no_skip)) continue;
+            const double o_enu[3] = {o[0][i], o[1][i], o[2][i]};
+            dark[i] |= parts_occluded(entity, o_enu, d_enu, v->no_skip);
+            asked++;
+        }
+    }
+    counters->rays_sun_parts += asked;
+    counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
+
+    /* the ground is asked only for what the parts left lit */
+    int left = 0;
+    for (int i = 0; i < count; i++) {
+        shadow[hit_of[i]] = dark[i];
+        if (dark[i] && !v->no_skip) continue;
+        for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
+        hit_of[left++] = hit_of[i];
+    }
+    ground_first_hits(range_m, NULL, &v->ground, left, o, d, far_m);
+    for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
+    counters->rays_sun_ground += (uint64_t)left;
+}
+
+/* ---- one entity alone --------------------------------------------------------------------- */
+
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = &v->entity[index];
+    if (entity->model < 0) {
+        memset(meets, 0, (size_t)rays->count);
+        return;
+    }
+    if (v->no_skip) memset(meets, 1, (size_t)rays->count);
+    else rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    for (int i = 0; i < rays->count; i++) {
+        if (!meets[i]) continue;
+        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+        PartHit      hit;
+        meets[i] = parts_first_hit(&hit, entity, o_enu, d_enu, rays->far_m[i], v->no_skip) < INFINITY;
+    }
+}
+
+bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
+{
+    const PosedEntity *entity = &v->entity[index];
+    double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    if (entity->model < 0) return false;
+    const Model *model = tracer_model(v->tracer, entity->model);
+    for (int k = 0; k < entity->node_count; k++) {
+        const PosedNode *node = &entity->node[k];
+        int              triangle_count;
+        const uint32_t  *triangle = parts_node_triangles(node, &triangle_count);
+        double           r_cam_from_node[9], from_eye[3], p_cam[3];
+        m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
+        v3_sub(from_eye, node->p_enu, view->p_enu);
+        m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
+        for (int t = 0; t < triangle_count; t++)
+            for (int c = 0; c < 3; c++) {
+                double at[3];
+                m3_mul_v3(at, r_cam_from_node, model->vertex[model->triangle[triangle[t]][c]]);
+                v3_add(at, at, p_cam);
+                if (!(at[2] > 0)) return false;
+                const double column = 0.5 * view->width + view->focal_px * at[0] / at[2];
+                const double row    = 0.5 * view->height + view->focal_px * at[1] / at[2];
+                box[0] = fmin(box[0], column);
+                box[1] = fmin(box[1], row);
+                box[2] = fmax(box[2], column);
+                box[3] = fmax(box[3], row);
+            }
+    }
+    memcpy(box_px, box, sizeof box);
+    return true;
+}

@@ -1,0 +1,60 @@
+/* render/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
+ * parts; nobody else knows how they are traced.
+ *
+ * The ground is our own height field, in double, scalar and eight wide with the same bits. Each entity is
+ * traced in its own body frame: the ray is taken there in double, advanced to the model's bounding sphere,
+ * narrowed once, and given to Embree, which answers only *which* triangle; range and normal are refined in
+ * double on that triangle. Equal distances go to the lower id (ground before entity 1 before entity 2). */
+#ifndef RENDER_VISIBILITY_H
+#define RENDER_VISIBILITY_H
+
+#include "entities/catalog.h"
+#include "entities/snapshot.h"
+#include "render/hits.h"
+#include "render/view.h"
+#include "terrain/elevation.h"
+#include "terrain/landscape.h"
+#include "terrain/local_frame.h"
+
+/* Lives across frames: the Embree device, the geometry of every model. */
+typedef struct Tracer Tracer;
+
+/* isa: NULL or "" leaves the choice to Embree; else "avx512", "avx2", "sse4.2" (passed as its isa setting). */
+Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
+void   tracer_destroy(Tracer *tracer);
+
+/* One frame's world, posed. Scenes of entities whose joints did not move since the last frame are reused. */
+typedef struct Visibility Visibility;
+
+typedef struct VisibilityCounters {
+    uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* asked of each tracer */
+    uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
+} VisibilityCounters;
+
+/* ground may be NULL (none). The arena owns what the frame needs. no_skip: ask everybody for every ray. */
+Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
+                         const Snapshot *snapshot, bool no_skip, Arena *arena);
+
+/* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
+ * with no_skip). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
+int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
+                              double column1_px, double row1_px, int hidden);
+
+/* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
+ * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                          VisibilityCounters *counters);
+
+/* 1 where something (anybody, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
+ * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
+void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
+                       VisibilityCounters *counters);
+
+/* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index);
+
+/* Bounding box of an entity's vertices on the image, clipped to nothing: x0, y0, x1, y1 in px. False when any
+ * of its box is behind the eye. */
+bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index);
+
+#endif

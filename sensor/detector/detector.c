@@ -1,0 +1,228 @@
+#include "sensor/detector/detector.h"
+
+/* ---- configuration ------------------------------------------------------------------------ */
+
+DetectorConfig detector_default_config(void)
+{
+    return (DetectorConfig){.gain = 1, .bits = 8, .auto_level = true, .percentile_low = 0.01,
+                            .percentile_high = 0.99, .margin = 0.05, .level_low = 0, .level_high = 1};
+}
+
+static bool in_range(const char *field, double value, double low, double high)
+{
+    if (value >= low && value <= high) return true;
+    log_error("detector: bad value: %s=%g (%g .. %g)", field, value, low, high);
+    return false;
+}
+
+Status detector_check_config(const DetectorConfig *c)
+{
+    static const double most = 1e30;
+    bool ok = in_range("gain", c->gain, 1e-6, 1e6) & in_range("offset", c->offset, -10, 10) &
+              in_range("noise_sigma", c->noise_sigma, 0, most) & in_range("percentile_low", c->percentile_low, 0, 1) &
+              in_range("percentile_high", c->percentile_high, c->percentile_low, 1) &
+              in_range("margin", c->margin, 0, 10) & in_range("min_span", c->min_span, 0, most) &
+              in_range("level_low", c->level_low, -most, most);
+    if (c->bits != 8 && c->bits != 16) {
+        log_error("detector: bad value: bits=%d (8 or 16)", c->bits);
+        ok = false;
+    }
+    if (!c->auto_level && !(c->level_high > c->level_low && c->level_high <= most)) {
+        log_error("detector: bad value: level_high=%g (above level_low=%g, to %g)", c->level_high, c->level_low, most);
+        ok = false;
+    }
+    return ok ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+/* ---- noise -------------------------------------------------------------------------------- */
+
+void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma, uint64_t seed,
+                    uint32_t stream, uint32_t frame)
+{
+    if (!(noise_sigma > 0)) {
+        if (out != in) memmove(out, in, count * sizeof *out);
+        return;
+    }
+    for (size_t i = 0; i < count; i++)
+        out[i] = (float)(in[i] + noise_sigma * random_normal(seed, stream, frame, first + i));
+}
+
+/* ---- gain and level ----------------------------------------------------------------------- */
+
+static uint32_t float_bits(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+/* Unsigned numbers in the order of the floats they come from: the usual trick of flipping the sign bit, or
+ * every bit of a negative. */
+static inline uint32_t ordered(uint32_t bits) { return bits & 0x80000000u ? ~bits : bits | 0x80000000u; }
+
+static float from_ordered(uint32_t key)
+{
+    const uint32_t bits = key & 0x80000000u ? key & 0x7fffffffu : ~key;
+    float          x;
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline bool finite_bits(uint32_t bits) { return (bits & 0x7f800000u) != 0x7f800000u; }
+
+enum { digit_bits = 11, digits = 1 << digit_bits };
+
+/* How many finite values have each digit (key >> shift) & (digits - 1) among those whose higher bits are
+ * those of `prefix`. */
+static void count_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count,
+                         uint32_t prefix, uint32_t prefix_mask, int shift)
+{
+    memset(histogram, 0, digits * sizeof *histogram);
+    for (int p = 0; p < plane_count; p++) {
+        for (size_t i = 0; i < count; i++) {
+            const uint32_t bits = float_bits(plane[p][i]), key = ordered(bits);
+            if (finite_bits(bits) && (key & prefix_mask) == prefix) histogram[key >> shift & (digits - 1)]++;
+        }
+    }
+}
+
+/* The value of rank `rank` (0: least) of the finite ones: digit by digit from the top, 11 + 11 + 10 bits.
+ * Exact, O(count), no copy of the plane, and NaN cannot upset it as it would a sort. top: histogram of the
+ * first digit, which both percentiles share. */
+static float order_statistic(const uint32_t top[digits], const float *const *plane, int plane_count, size_t count,
+                             uint64_t rank)
+{
+    static const int shifts[3] = {21, 10, 0};
+    uint32_t         histogram[digits], prefix = 0, mask = 0;
+    memcpy(histogram, top, sizeof histogram);
+    for (int pass = 0; pass < 3; pass++) {
+        const int shift = shifts[pass];
+        if (pass > 0) count_digits(histogram, plane, plane_count, count, prefix, mask, shift);
+        /* the last digit has 10 bits, and its eleventh belongs to the prefix already */
+        uint32_t digit = pass == 2 ? prefix >> shift & (digits - 1) : 0;
+        while (rank >= histogram[digit]) rank -= histogram[digit++];
+        prefix |= digit << shift;
+        mask |= (uint32_t)(digits - 1) << shift;
+    }
+    return from_ordered(prefix);
+}
+
+DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count)
+{
+    /* A span below this part of the level is rounding of a constant, not a picture: 80 steps of a float. */
+    static const double relative_floor = 1e-5, absolute_floor = 1e-30;
+
+    DetectorLevel level = {config->level_low, config->level_high};
+    if (config->auto_level) {
+        uint32_t top[digits];
+        count_digits(top, plane, plane_count, count, 0, 0, 21);
+        uint64_t n = 0;
+        for (int i = 0; i < digits; i++) n += top[i];
+        if (n == 0) return (DetectorLevel){0, 1};
+
+        const double last = (double)(n - 1);
+        level.low = order_statistic(top, plane, plane_count, count, (uint64_t)(config->percentile_low * last + 0.5));
+        level.high = order_statistic(top, plane, plane_count, count, (uint64_t)(config->percentile_high * last + 0.5));
+
+        const double middle = 0.5 * (level.low + level.high);
+        double       span = (level.high - level.low) * (1 + 2 * config->margin);
+        span = fmax(fmax(span, config->min_span), fmax(relative_floor * fabs(middle), absolute_floor));
+        level.low = middle - 0.5 * span;
+        level.high = middle + 0.5 * span;
+    }
+    return level;
+}
+
+/* ---- display ------------------------------------------------------------------------------ */
+
+/* Linear light 0 .. 1 -> sRGB code value 0 .. 1, IEC 61966-2-1. */
+static double srgb_encode(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+/* The curve as a table of 4096 intervals, linear between: within 1.2e-4 of the curve, a thirtieth of an 8-bit
+ * step; monotone, since the curve is. */
+enum { curve_intervals = 4096 };
+
+/* Gain, level and curve of one display, folded: code = curve(in * scale + shift) * full. */
+typedef struct Display {
+    double scale, shift, full;
+    bool   gamma;
+    float  curve[curve_intervals + 2];
+} Display;
+
+static void display_prepare(Display *d, const DetectorConfig *config, DetectorLevel level)
+{
+    const double span = level.high - level.low, middle = 0.5 * (level.low + level.high);
+    d->scale = config->gain / span;
+    d->shift = 0.5 - middle * d->scale + config->offset;
+    d->full = config->bits == 16 ? 65535 : 255;
+    d->gamma = config->display_gamma;
+    for (int i = 0; d->gamma && i <= curve_intervals; i++)
+        d->curve[i] = (float)srgb_encode((double)i / curve_intervals);
+    d->curve[curve_intervals + 1] = 1; /* so that the very end needs no branch */
+}
+
+static inline double display_code(const Display *d, float in)
+{
+    /* written so that NaN falls to 0 at the first comparison */
+    double x = in * d->scale + d->shift;
+    x = x > 0 ? x : 0;
+    x = x < 1 ? x : 1;
+    if (d->gamma) {
+        const double at = x * curve_intervals;
+        const int    i = (int)at;
+        x = d->curve[i] + (at - i) * ((double)d->curve[i + 1] - d->curve[i]);
+    }
+    return x * d->full + 0.5;
+}
+
+static void display_channel(void *out, int stride, int channel, const float *in, size_t count, const Display *d)
+{
+    if (d->full > 255) {
+        uint16_t *code = (uint16_t *)out + channel;
+        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint16_t)display_code(d, in[i]);
+    } else {
+        uint8_t *code = (uint8_t *)out + channel;
+        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint8_t)display_code(d, in[i]);
+    }
+}
+
+void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level)
+{
+    Display d;
+    display_prepare(&d, config, level);
+    display_channel(out, 1, 0, in, count, &d);
+}
+
+void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
+                          DetectorLevel level)
+{
+    Display d;
+    display_prepare(&d, config, level);
+    for (int c = 0; c < 3; c++) display_channel(out, 3, c, in[c], count, &d);
+}
+
+void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits)
+{
+    float brightest = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(power[i]) && power[i] > brightest) brightest = power[i];
+
+    /* brightest 0: nothing shows, and the division below is never used */
+    const double full = bits == 16 ? 65535 : 255;
+    const double per_max = brightest > 0 ? 1.0 / brightest : 0;
+    const double least = brightest * pow(10, -0.1 * dynamic_range_db);
+    for (size_t i = 0; i < count; i++) {
+        double x = 0;
+        if (isinf(power[i]) && power[i] > 0)
+            x = 1;
+        else if (power[i] > least && power[i] > 0) /* false for NaN; spares the logarithm of the dark ones */
+            x = clamp(1 + 10 * log10(power[i] * per_max) / dynamic_range_db, 0, 1);
+        if (bits == 16)
+            ((uint16_t *)out)[i] = (uint16_t)(x * full + 0.5);
+        else
+            ((uint8_t *)out)[i] = (uint8_t)(x * full + 0.5);
+    }
+}

@@ -1,0 +1,43 @@
+/* sensor/node/choices.h: what replay picks when nobody said: host, aim, time of day, ground. Each choice is
+ * one line with the key that changes it. */
+#ifndef SENSOR_NODE_CHOICES_H
+#define SENSOR_NODE_CHOICES_H
+
+#include "entities/catalog.h"
+#include "entities/survey.h"
+#include "sensor/node/config.h"
+#include "terrain/landscape.h"
+
+enum { choices_capacity = 32, choice_text_size = 200 };
+
+typedef struct Choices {
+    int  count;
+    char line[choices_capacity][choice_text_size];
+} Choices;
+
+void choice_add(Choices *choices, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* Who carries the sensor, over which span of exercise time, and what it looks at. */
+typedef struct HostPlan {
+    DisEntityId host;      /* 0:0:0: the stand-off observer */
+    DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the place below */
+    double      start_s, end_s;
+    double      p_aim_ecef[3]; /* where to look when there is no aim entity; valid for an observer */
+    bool        munition;
+} HostPlan;
+
+/* The munition whose Detonation says entity impact, longest flight first; else the longest flight; else an
+ * observer circling the vehicle that went farthest; else an observer of the middle of whatever was heard. */
+Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
+/* For a host that was asked for by name. STATUS_BAD_VALUE and a message when the log does not hold it. */
+Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
+
+/* Unix time of exercise time 0. */
+Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
+/* The local frame amid the action. */
+Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
+/* The invented landscape, fitted to the log. */
+Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, const Config *config,
+                     const LocalFrame *frame, const Catalog *catalog);
+
+#endif

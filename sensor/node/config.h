@@ -1,0 +1,71 @@
+/* sensor/node/config.h: everything a user may set, one table: key, unit, range, default, help.
+ *
+ * A configuration file is YAML, sections of keys. What is absent keeps its default; what is unknown, given
+ * twice, or out of range stops the program with file, line, key, value and the accepted range. */
+#ifndef SENSOR_NODE_CONFIG_H
+#define SENSOR_NODE_CONFIG_H
+
+#include "pitviper.h"
+
+typedef struct Config {
+    struct {
+        int    width_px, height_px;
+        double hfov_deg;
+        double rate_hz;            /* 0: chosen by what the host is */
+        int    samples;            /* a side of a pixel */
+        char   bands[64];          /* comma separated */
+        char   optical[8];         /* rgb or pan */
+        double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
+    } sensor;
+    struct {
+        int    bits;
+        char   level[8];           /* auto or manual */
+        double gain, offset;
+        double noise_optical;      /* share of the mean */
+        double netd_mwir_k, netd_lwir_k;
+        double lwir_low_k, lwir_high_k, mwir_low_k, mwir_high_k; /* manual levels, apparent temperature */
+        double optical_high_w_m2_sr;
+    } detector;
+    struct {
+        double bin_m;
+        int    bins;
+        double lobe_deg;
+    } radar;
+    struct {
+        int    port, exercise;     /* exercise -1: all */
+        char   utc[32];            /* of the first PDU; empty: chosen */
+        char   host[24];           /* empty: chosen */
+        char   aim[24];            /* empty: chosen */
+        double from_s, to_s;       /* exercise time; NaN: whole */
+    } exercise;
+    struct {
+        double visibility_m, air_temp_k, relative_humidity, pressure_mbar, wind_mps;
+    } weather;
+    struct {
+        double relief_m, spacing_m;
+    } terrain;
+    struct {
+        double range_m, height_m, rate_dps; /* the stand-off observer */
+    } observer;
+    struct {
+        double sag_m;
+    } models;
+    struct {
+        double timeout_s, timeout_land_v7_s, extrapolation_limit_s;
+        int    capacity;
+    } entities;
+    long long seed;
+    bool      causal;
+} Config;
+
+Config config_default(void);
+/* Fills over what is there. On failure logs and leaves the configuration as it was. */
+Status config_read(Config *config, const char *path);
+/* One key, as the command line gives it: `sensor.width_px`, `720`. source names where it came from. */
+Status config_set(Config *config, const char *key, const char *value, const char *source);
+/* Ranges that involve several keys. */
+Status config_check(const Config *config);
+/* The canonical text: every key and value, in table order. What config_sha256 hashes. */
+void   config_text(char *out, size_t out_size, const Config *config);
+
+#endif

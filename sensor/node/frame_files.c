@@ -1,0 +1,328 @@
+#include "sensor/node/frame_files.h"
+
+#include "sensor/detector/detector.h"
+#include "sensor/publish/image_file.h"
+#include "sensor/publish/truth_preview.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { path_size = 4096, max_planes = 24, max_jobs = 16 };
+
+/* ---- folders -------------------------------------------------------------------------------- */
+
+static Status make_folders(const char *path)
+{
+    char part[path_size];
+    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return STATUS_BAD_VALUE;
+    for (char *at = part + 1;; at++) {
+        if (*at != '/' && *at) continue;
+        const char kept = *at;
+        *at             = 0;
+        if (mkdir(part, 0777) != 0 && errno != EEXIST) {
+            log_error("replay: cannot make the folder %s: %s; choose another place with --out", part, strerror(errno));
+            return STATUS_IO;
+        }
+        *at = kept;
+        if (!kept) break;
+    }
+    if (access(path, W_OK | X_OK) != 0) {
+        log_error("replay: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
+/* NNNNNN.exr, .png, .csv: what frame_files_write makes and nothing else. */
+static bool is_frame_name(const char *name)
+{
+    for (int i = 0; i < 6; i++)
+        if (name[i] < '0' || name[i] > '9') return false;
+    return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".png") == 0 || strcmp(name + 6, ".csv") == 0;
+}
+
+static void clear_folder(const char *folder)
+{
+    DIR *directory = opendir(folder);
+    if (!directory) return;
+    char path[path_size + 300];
+    for (struct dirent *entry; (entry = readdir(directory));)
+        if (is_frame_name(entry->d_name)) {
+            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+            unlink(path);
+        }
+    closedir(directory);
+}
+
+Status frame_files_prepare(const char *out, unsigned bands)
+{
+    char   path[path_size];
+    Status status = make_folders(out);
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%s/run.json", out);
+    const bool earlier = access(path, F_OK) == 0;
+    if (earlier) unlink(path);
+    for (int b = 0; b <= BAND_COUNT + 1; b++) {
+        snprintf(path, sizeof path, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
+                 b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
+        const bool wanted = b == BAND_COUNT || (b < BAND_COUNT ? bands >> b & 1 : bands >> BAND_RADAR & 1);
+        if (earlier) clear_folder(path);
+        if (wanted && (status = make_folders(path)) != STATUS_OK) return status;
+        if (!wanted) rmdir(path); /* an empty one that an earlier run left */
+    }
+    return STATUS_OK;
+}
+
+/* ---- one frame ------------------------------------------------------------------------------ */
+
+typedef struct FileJob {
+    Status (*write)(const FrameFiles *frame, int band);
+    int    band; /* BAND_COUNT: truth */
+    Status status;
+} FileJob;
+
+typedef struct FileJobs {
+    const FrameFiles *frame;
+    int               count;
+    FileJob           job[max_jobs];
+} FileJobs;
+
+static void frame_path(char path[path_size], const FrameFiles *frame, const char *folder, const char *name,
+                       const char *ending)
+{
+    snprintf(path, path_size, "%s/%s/%s/%06d.%s", frame->out, folder, name, frame->frame, ending);
+}
+
+/* The planes of one band, with the names of their channels. */
+static int band_planes(Plane plane[max_planes], const Picture *p, int band)
+{
+    static const char *const rgb[3] = {"R", "G", "B"}, *const normal[3] = {"nx", "ny", "nz"};
+    const int w = p->width, h = p->height;
+    int       n = 0;
+    switch (band) {
+    case BAND_OPTICAL:
+        for (int c = 0; c < 3 && p->optical[c]; c++) plane[n++] = plane_f32(p->optical[1] ? rgb[c] : "Y", w, h, p->optical[c]);
+        break;
+    case BAND_MWIR: plane[n++] = plane_f32("Y", w, h, p->mwir); break;
+    case BAND_LWIR: plane[n++] = plane_f32("Y", w, h, p->lwir); break;
+    case BAND_RADAR: plane[n++] = plane_f32("Y", w, h, p->radar); break;
+    default:
+        plane[n++] = plane_f32("range_m", w, h, p->range_m);
+        plane[n++] = plane_u32("entity", w, h, p->entity);
+        plane[n++] = plane_u32("part", w, h, p->part);
+        plane[n++] = plane_u32("material", w, h, p->material);
+        plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
+        for (int k = 0; k < 3; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
+    }
+    return n;
+}
+
+static void date_time(char out[32], double unix_s)
+{
+    const time_t whole = (time_t)floor(unix_s);
+    struct tm    date;
+    if (!gmtime_r(&whole, &date) || strftime(out, 32, "%Y:%m:%d %H:%M:%S", &date) == 0) strcpy(out, "1970:01:01 00:00:00");
+}
+
+/* Ids of the frame's table in order, so that value k of the entity plane is the k-th. */
+static char *entity_ids(const Snapshot *snapshot)
+{
+    const size_t size = (size_t)snapshot->count * dis_id_text_size + 1;
+    char        *text = calloc(size, 1), id[dis_id_text_size];
+    if (!text) return NULL;
+    for (int i = 0, n = 0; i < snapshot->count; i++) {
+        dis_entity_id_text(id, snapshot->entity[i].id);
+        n += snprintf(text + n, size - (size_t)n, "%s%s", i ? "," : "", id);
+    }
+    return text;
+}
+
+static char *material_names(const Materials *materials)
+{
+    const size_t size = (size_t)materials->count * sizeof materials->material->name + 1;
+    char        *text = calloc(size, 1);
+    for (int i = 0, n = 0; text && i < materials->count; i++)
+        n += snprintf(text + n, size - (size_t)n, "%s%s", i ? "," : "", materials->material[i].name);
+    return text;
+}
+
+static Status write_exr(const FrameFiles *frame, int band)
+{
+    char           path[path_size], date[32];
+    Plane          plane[max_planes];
+    ImageAttribute attribute[16];
+    char          *ids = NULL, *names = NULL;
+    int            n   = 0;
+    const int      planes = band_planes(plane, frame->picture, band);
+
+    attribute[n++] = image_string("band", band < BAND_COUNT ? band_name((Band)band) : "truth");
+    if (band < BAND_COUNT) attribute[n++] = image_string("unit", band == BAND_RADAR ? "relative" : "W/(m2 sr)");
+    if (band == BAND_RADAR) attribute[n++] = image_string("model", "pseudo-radar");
+    attribute[n++] = image_int("frame", frame->frame);
+    attribute[n++] = image_double("time_s", frame->time_s);
+    attribute[n++] = image_string("host", frame->host);
+    attribute[n++] = image_int("seed", (int)frame->config->seed);
+    attribute[n++] = image_string("config_sha256", frame->config_sha256);
+    if (band == BAND_COUNT) {
+        ids            = entity_ids(frame->snapshot);
+        names          = material_names(&frame->world->materials);
+        attribute[n++] = image_string("entity_ids", ids ? ids : "");
+        attribute[n++] = image_string("material_names", names ? names : "");
+    }
+    date_time(date, frame->unix_s);
+    frame_path(path, frame, "frames", band < BAND_COUNT ? band_name((Band)band) : "truth", "exr");
+    const Status status = image_write_exr(path, plane, planes, date, attribute, n);
+    free(ids);
+    free(names);
+    return status;
+}
+
+static double mean_of(const float *const *plane, int planes, size_t count)
+{
+    double sum = 0;
+    for (int c = 0; c < planes; c++)
+        for (size_t i = 0; i < count; i++) sum += plane[c][i];
+    return sum / ((double)count * planes);
+}
+
+/* What the detector of one band shows: noise, gain and level, quantisation. */
+static DetectorConfig detector_of(const FrameFiles *frame, int band, const float *const *plane, int planes, size_t count)
+{
+    const Config  *c = frame->config;
+    DetectorConfig d = detector_default_config();
+    d.bits           = c->detector.bits;
+    d.gain           = c->detector.gain;
+    d.offset         = c->detector.offset;
+    d.auto_level     = strcmp(c->detector.level, "auto") == 0;
+    if (band == BAND_OPTICAL) {
+        d.display_gamma = true;
+        d.noise_sigma   = c->detector.noise_optical * fmax(0, mean_of(plane, planes, count));
+        d.level_low     = 0;
+        d.level_high    = c->detector.optical_high_w_m2_sr;
+    } else {
+        const bool   mwir  = band == BAND_MWIR;
+        const double low_m = mwir ? 3.4e-6 : 8e-6, high_m = mwir ? 4.8e-6 : 12e-6;
+        double       slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
+        planck_band(low_m, high_m, 300, &slope);
+        d.noise_sigma = slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
+        d.min_span    = 2 * slope; /* never stretch less than 2 K over the screen */
+        d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
+        d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
+    }
+    return d;
+}
+
+static Status write_png(const FrameFiles *frame, int band)
+{
+    char           path[path_size];
+    const Picture *p     = frame->picture;
+    const size_t   count = (size_t)p->width * (size_t)p->height;
+    const int      bits  = band == BAND_COUNT ? 8 : frame->config->detector.bits;
+    const bool     rgb   = band == BAND_COUNT || (band == BAND_OPTICAL && p->optical[1]);
+    uint8_t       *shown = malloc(count * 6);
+    float         *noisy = malloc(count * 3 * sizeof *noisy);
+    Status         status = STATUS_NO_MEMORY;
+    if (!shown || !noisy) goto done;
+
+    if (band == BAND_COUNT) {
+        truth_preview(shown, p->range_m, p->entity, p->normal[2], count, frame->snapshot);
+    } else if (band == BAND_RADAR) {
+        detector_display_db(shown, p->radar, count, detector_radar_range_db, bits);
+    } else {
+        const float *in[3] = {NULL, NULL, NULL};
+        const float *out[3] = {noisy, noisy + count, noisy + 2 * count};
+        const int    planes = rgb ? 3 : 1;
+        for (int c = 0; c < planes; c++) in[c] = band == BAND_OPTICAL ? p->optical[c] : band == BAND_MWIR ? p->mwir : p->lwir;
+        const DetectorConfig detector = detector_of(frame, band, in, planes, count);
+        for (int c = 0; c < planes; c++)
+            detector_noise(noisy + (size_t)c * count, in[c], 0, count, detector.noise_sigma, (uint64_t)frame->config->seed,
+                           (uint32_t)(3 * band + c), (uint32_t)frame->frame);
+        const DetectorLevel level = detector_level(&detector, out, planes, count);
+        if (rgb)
+            detector_display_rgb(shown, out, count, &detector, level);
+        else
+            detector_display(shown, noisy, count, &detector, level);
+    }
+    frame_path(path, frame, "frames", band < BAND_COUNT ? band_name((Band)band) : "truth", "png");
+    status = image_write_png(path, shown, p->width, p->height, rgb ? 3 : 1, bits);
+
+done:
+    free(shown);
+    free(noisy);
+    return status;
+}
+
+static Status write_profile(const FrameFiles *frame, int band)
+{
+    char path[path_size];
+    (void)band;
+    frame_path(path, frame, "profiles", "radar", "csv");
+    FILE *file = fopen(path, "w");
+    if (!file) {
+        log_error("replay: cannot write %s: %s", path, strerror(errno));
+        return STATUS_IO;
+    }
+    fprintf(file, "# range profile, unit relative, model pseudo-radar; a bin is %.9g m, its middle is given\n"
+                  "range_m,bounce_1,bounce_2,bounce_3\n", frame->request->profile_bin_m);
+    for (int i = 0; i < frame->request->profile_bins; i++) {
+        const double *bin = frame->picture->profile + (size_t)i * radar_bounces;
+        fprintf(file, "%.3f,%.6g,%.6g,%.6g\n", frame->request->profile_near_m + (i + 0.5) * frame->request->profile_bin_m,
+                bin[0], bin[1], bin[2]);
+    }
+    const bool ok = !ferror(file);
+    if (fclose(file) == 0 && ok) return STATUS_OK;
+    log_error("replay: cannot write %s: %s", path, strerror(errno));
+    return STATUS_IO;
+}
+
+static void run_job(void *user, int worker, int task)
+{
+    FileJobs *jobs = user;
+    FileJob  *job  = &jobs->job[task];
+    (void)worker;
+    job->status = job->write(jobs->frame, job->band);
+}
+
+static void add_job(FileJobs *jobs, Status (*write)(const FrameFiles *, int), int band)
+{
+    jobs->job[jobs->count++] = (FileJob){write, band, STATUS_OK};
+}
+
+Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool)
+{
+    FileJobs jobs = {.frame = frame};
+    Plane    plane[max_planes];
+    char     name[max_planes][32];
+    int      planes = 0;
+
+    add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
+    for (int b = 0; b <= BAND_COUNT; b++)
+        if (frame->png && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+    if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
+    pool_run(pool, jobs.count, run_job, &jobs);
+    for (int i = 0; i < jobs.count; i++)
+        if (jobs.job[i].status != STATUS_OK) return jobs.job[i].status;
+
+    for (int b = 0; b <= BAND_COUNT; b++) {
+        if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
+        const int added = band_planes(plane + planes, frame->picture, b);
+        for (int i = planes; i < planes + added; i++) {
+            snprintf(name[i], sizeof name[i], "%s/%s", b < BAND_COUNT ? band_name((Band)b) : "truth", plane[i].name);
+            plane[i].name = name[i];
+        }
+        planes += added;
+    }
+    if (frame->picture->profile) {
+        strcpy(name[planes], "radar/profile");
+        plane[planes] = plane_f64(name[planes], radar_bounces, frame->request->profile_bins, frame->picture->profile);
+        planes++;
+    }
+    return plane_hash(hash, plane, planes);
+}

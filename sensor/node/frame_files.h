@@ -1,0 +1,28 @@
+/* sensor/node/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png. */
+#ifndef SENSOR_NODE_FRAME_FILES_H
+#define SENSOR_NODE_FRAME_FILES_H
+
+#include "render/render.h"
+#include "sensor/node/config.h"
+#include "sensor/publish/plane_hash.h"
+
+typedef struct FrameFiles {
+    const char     *out;            /* folder of this host; exists, with its subfolders */
+    const Config   *config;
+    const World    *world;
+    const Picture  *picture;
+    const Snapshot *snapshot;
+    const RenderRequest *request;
+    const char     *host, *config_sha256;
+    int             frame;
+    double          time_s, unix_s;
+    bool            png;
+} FrameFiles;
+
+/* Makes OUT and the folders below it for these bands; takes away the frames of an earlier run in OUT (known
+ * by its run.json). A clear message when the place cannot be written. */
+Status frame_files_prepare(const char *out, unsigned bands);
+/* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
+Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
+
+#endif

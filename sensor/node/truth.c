@@ -1,0 +1,213 @@
+#include "sensor/node/truth.h"
+
+#include "terrain/geodesy.h"
+
+/* Earth's rate, rad/s. Source: IERS Conventions 2010, table 1.2 (nominal mean angular velocity). */
+static const double earth_rate_rps = 7.292115e-5;
+
+/* ---- geometry ------------------------------------------------------------------------------- */
+
+static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *model, const EyeState *eye)
+{
+    double centre_body[3] = {0, 0, -0.5 * model->height_m}, lever_ecef[3], p_ecef[3], r_ecef[3], u_ecef[3];
+    m3_mul_v3(lever_ecef, entity->r_ecef_from_body, centre_body);
+    v3_add(p_ecef, entity->p_ecef, lever_ecef);
+    v3_sub(r_ecef, p_ecef, eye->p_ecef);
+    t->range_m = v3_length(r_ecef);
+    if (!v3_normalize(u_ecef, r_ecef)) return;
+
+    /* velocity of the centre: of the origin, and the body's turning */
+    double turn_body[3], turn_ecef[3], v_ecef[3];
+    v3_cross(turn_body, entity->w_body_rps, centre_body);
+    m3_mul_v3(turn_ecef, entity->r_ecef_from_body, turn_body);
+    v3_add(v_ecef, entity->v_ecef_mps, turn_ecef);
+    v3_sub(v_ecef, v_ecef, eye->v_ecef_mps);
+    t->closing_mps = -v3_dot(v_ecef, u_ecef);
+
+    /* inertial: the rotating frame adds Earth's rate x the relative position */
+    v_ecef[0] -= earth_rate_rps * r_ecef[1];
+    v_ecef[1] += earth_rate_rps * r_ecef[0];
+    double rate_ecef[3], rate_cam[3], u_cam[3];
+    for (int k = 0; k < 3; k++) rate_ecef[k] = (v_ecef[k] - v3_dot(v_ecef, u_ecef) * u_ecef[k]) / t->range_m;
+    m3_tmul_v3(rate_cam, eye->r_ecef_from_cam, rate_ecef);
+    m3_tmul_v3(u_cam, eye->r_ecef_from_cam, u_ecef);
+    t->los_rate_rps[0]        = rate_cam[0];
+    t->los_rate_rps[1]        = -rate_cam[1];
+    t->boresight_error_rad[0] = atan2(u_cam[0], u_cam[2]);
+    t->boresight_error_rad[1] = atan2(-u_cam[1], u_cam[2]);
+
+    Geodetic place;
+    double   origin_ecef[3], r_ecef_from_enu[9], u_enu[3];
+    if (geodetic_from_ecef(&place, eye->p_ecef) == STATUS_OK &&
+        ecef_from_geodetic(origin_ecef, r_ecef_from_enu, &place) == STATUS_OK) {
+        m3_tmul_v3(u_enu, r_ecef_from_enu, u_ecef);
+        t->los_az_rad     = atan2(u_enu[0], u_enu[1]);
+        t->los_el_rad     = asin(clamp(u_enu[2], -1, 1));
+        t->depression_rad = -t->los_el_rad;
+        if (t->los_az_rad < 0) t->los_az_rad += 2 * pi_rad;
+    }
+    /* nose-on 0: where the eye is, seen from the target, clockwise from above = towards its right */
+    double back_body[3], back_ecef[3];
+    v3_scale(back_ecef, -1, u_ecef);
+    m3_tmul_v3(back_body, entity->r_ecef_from_body, back_ecef);
+    t->aspect_rad = atan2(back_body[1], back_body[0]);
+    if (t->aspect_rad < 0) t->aspect_rad += 2 * pi_rad;
+}
+
+/* ---- radiometry ----------------------------------------------------------------------------- */
+
+typedef struct Moments {
+    double n, sum, sum_2;
+} Moments;
+
+static void moments_add(Moments *m, double x)
+{
+    m->n++;
+    m->sum += x;
+    m->sum_2 += x * x;
+}
+
+static double moments_mean(const Moments *m) { return m->sum / m->n; }
+static double moments_variance(const Moments *m)
+{
+    const double mean = moments_mean(m);
+    return fmax(0, m->sum_2 / m->n - mean * mean);
+}
+
+/* Box about the target that holds at least as many other pixels as the target has, grown evenly; clipped. */
+static void ring_box(int ring[4], const Target *t, const Picture *picture)
+{
+    const double pixels = fmax(t->pixels, 1);
+    for (int grow = 1;; grow++) {
+        ring[0] = t->box[0] - grow > 0 ? t->box[0] - grow : 0;
+        ring[1] = t->box[1] - grow > 0 ? t->box[1] - grow : 0;
+        ring[2] = t->box[2] + grow < picture->width ? t->box[2] + grow : picture->width;
+        ring[3] = t->box[3] + grow < picture->height ? t->box[3] + grow : picture->height;
+        const double area = (double)(ring[2] - ring[0]) * (ring[3] - ring[1]);
+        const bool   whole = ring[0] == 0 && ring[1] == 0 && ring[2] == picture->width && ring[3] == picture->height;
+        if (area >= 2 * pixels || whole) return;
+    }
+}
+
+/* value(user, px): what is compared. Ring: pixels in the box that show neither this target nor another. */
+typedef double PixelValue(const void *user, size_t px);
+
+static void two_moments(Moments *target, Moments *ring, const Target *t, const Picture *picture, PixelValue *value,
+                        const void *user)
+{
+    int box[4];
+    ring_box(box, t, picture);
+    memset(target, 0, sizeof *target);
+    memset(ring, 0, sizeof *ring);
+    for (int y = box[1]; y < box[3]; y++)
+        for (int x = box[0]; x < box[2]; x++) {
+            const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
+            if (picture->entity[px] == (uint32_t)t->index + 1)
+                moments_add(target, value(user, px));
+            else if (picture->entity[px] == 0)
+                moments_add(ring, value(user, px));
+        }
+}
+
+typedef struct ThermalPlane {
+    const float       *plane;
+    const PlanckTable *planck;
+} ThermalPlane;
+
+static double apparent_temp(const void *user, size_t px)
+{
+    const ThermalPlane *p = user;
+    return planck_table_temp(p->planck, p->plane[px]);
+}
+
+static double plain_value(const void *user, size_t px) { return ((const float *)user)[px]; }
+
+static double luminance(const void *user, size_t px)
+{
+    const Picture *p = user;
+    return p->optical[1] ? (p->optical[0][px] + p->optical[1][px] + p->optical[2][px]) / 3.0 : p->optical[0][px];
+}
+
+/* Sum of radiance x solid angle x range^2 over the pixels that show the target. */
+static double intensity(const Target *t, const Picture *picture, const View *view, PixelValue *radiance, const void *user)
+{
+    double sum = 0;
+    for (int y = t->box[1]; y < t->box[3]; y++)
+        for (int x = t->box[0]; x < t->box[2]; x++) {
+            const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
+            if (picture->entity[px] != (uint32_t)t->index + 1) continue;
+            const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
+            const double v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
+            const double c = 1 / sqrt(1 + u * u + v * v); /* cosine off the axis: a pixel is c^3 / f^2 steradians */
+            sum += radiance(user, px) * c * c * c / (view->focal_px * view->focal_px);
+        }
+    return sum * t->range_m * t->range_m;
+}
+
+static void thermal_band(TargetBand *out, const Target *t, const Picture *picture, const View *view,
+                         const float *plane, const PlanckTable *planck, double netd_k)
+{
+    const ThermalPlane user = {plane, planck};
+    Moments            target, ring;
+    two_moments(&target, &ring, t, picture, apparent_temp, &user);
+    if (!(target.n > 0)) return;
+    out->intensity_w_sr = intensity(t, picture, view, plain_value, plane);
+    if (!(ring.n > 0)) return;
+    out->contrast_k    = moments_mean(&target) - moments_mean(&ring);
+    out->dt_rss_k      = sqrt(out->contrast_k * out->contrast_k + moments_variance(&target));
+    const double sigma = sqrt(moments_variance(&ring) + netd_k * netd_k);
+    if (sigma > 0) out->snr = out->contrast_k / sigma;
+}
+
+static void plain_band(TargetBand *out, const Target *t, const Picture *picture, PixelValue *value, const void *user,
+                       double noise_share)
+{
+    Moments target, ring;
+    two_moments(&target, &ring, t, picture, value, user);
+    if (!(target.n > 0) || !(ring.n > 0)) return;
+    const double mean = moments_mean(&ring), difference = moments_mean(&target) - mean;
+    const double sigma = sqrt(moments_variance(&ring) + noise_share * noise_share * mean * mean);
+    if (mean > 0) out->contrast = difference / mean;
+    if (sigma > 0) out->snr = difference / sigma;
+}
+
+static void radiometry(Target *t, const Picture *picture, const World *world, const RenderRequest *request,
+                       const TruthNoise *noise)
+{
+    if (t->box[2] == 0) return;
+    if (picture->optical[0]) {
+        plain_band(&t->band[BAND_OPTICAL], t, picture, luminance, picture, noise->optical_share);
+        t->band[BAND_OPTICAL].intensity_w_sr = intensity(t, picture, &request->view, luminance, picture);
+        if (picture->optical[1]) t->band[BAND_OPTICAL].intensity_w_sr *= 3; /* the channels together: 0.4-0.7 um */
+    }
+    if (picture->mwir)
+        thermal_band(&t->band[BAND_MWIR], t, picture, &request->view, picture->mwir, world->planck_mwir, noise->netd_mwir_k);
+    if (picture->lwir)
+        thermal_band(&t->band[BAND_LWIR], t, picture, &request->view, picture->lwir, world->planck_lwir, noise->netd_lwir_k);
+    if (picture->radar) plain_band(&t->band[BAND_RADAR], t, picture, plain_value, picture->radar, 0);
+}
+
+int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
+                  const RenderRequest *request, const EyeState *eye, const TruthNoise *noise)
+{
+    int count = 0;
+    for (int i = 0; i < snapshot->count; i++) {
+        const TargetPixels *px = &picture->target[i];
+        if (i == eye->host_index || !(px->projected || px->amodal > 0)) continue;
+        Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .occluder_index = -1};
+        t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
+        for (int b = 0; b < BAND_COUNT; b++)
+            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN};
+        line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
+        if (px->amodal > 0) t.visible_fraction = px->visible / px->amodal;
+        memcpy(t.box, px->box, sizeof t.box);
+        for (int k = 0; k < 4; k++) t.amodal_box[k] = px->projected ? px->projected_box[k] : px->amodal_box[k];
+        if (px->occluded_ground > 0 || px->occluded_entity > 0) {
+            t.occluder       = px->occluded_ground >= px->occluded_entity ? "ground" : "entity";
+            t.occluder_index = px->occluded_ground >= px->occluded_entity ? -1 : px->occluder;
+        }
+        radiometry(&t, picture, world, request, noise);
+        out[count++] = t;
+    }
+    return count;
+}

@@ -1,0 +1,49 @@
+/* sensor/node/truth.h: what an automatic target recogniser is trained and judged by: per target and frame.
+ *
+ * A value that was not computed is NaN here and absent in the files. */
+#ifndef SENSOR_NODE_TRUTH_H
+#define SENSOR_NODE_TRUTH_H
+
+#include "render/render.h"
+
+typedef struct TargetBand {
+    double contrast_k;      /* mean of the target's pixels less mean of a ring of its own area, apparent K */
+    double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
+    double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
+    double snr;             /* contrast over the ring's sigma and the detector's noise together */
+    double intensity_w_sr;  /* in-band, at the aperture: sum of radiance x the pixel's area at the target's range */
+} TargetBand;
+
+typedef struct Target {
+    int    index;                           /* of the snapshot */
+    double range_m, closing_mps, aspect_rad, depression_rad;
+    double los_az_rad, los_el_rad;          /* from the host, in its own ENU */
+    double los_rate_rps[2];                 /* inertial; camera right and up */
+    double boresight_error_rad[2];          /* camera right and up */
+    double pixels, visible_fraction;        /* visible_fraction NaN: no sample of it, hidden or not */
+    int    box[4];                          /* visible pixels; empty: all 0 */
+    double amodal_box[4];                   /* of its vertices, not clipped to the image */
+    const char *occluder;                   /* "ground", "entity" with occluder_index >= 0, or NULL */
+    int    occluder_index;
+    TargetBand band[BAND_COUNT];
+} Target;
+
+/* What noise the bands have, for snr: sigma in the plane's unit for optical and radar (0: none), K for the
+ * thermal ones. */
+typedef struct TruthNoise {
+    double optical_share, netd_mwir_k, netd_lwir_k;
+} TruthNoise;
+
+/* The eye, as line of sight and its rate need it. */
+typedef struct EyeState {
+    double p_ecef[3], v_ecef_mps[3];
+    double r_ecef_from_cam[9];
+    int    host_index; /* never a target; -1 */
+} EyeState;
+
+/* Targets in the field of view, by snapshot index. out: capacity snapshot->count. Returns the count.
+ * The picture must hold truth planes. */
+int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
+                  const RenderRequest *request, const EyeState *eye, const TruthNoise *noise);
+
+#endif

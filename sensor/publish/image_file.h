@@ -1,0 +1,90 @@
+/* sensor/publish/image_file.h: pictures as files, through OpenImageIO (the only file that knows it:
+ * image_file.cpp).
+ *
+ * A file appears whole or not at all: it is encoded in memory, written to `PATH.part` and renamed. Every
+ * failure is one log line with path and reason, and a Status; nothing of a failed file is left behind.
+ * Thread-safe for different paths. Each call allocates and frees its own memory. */
+#ifndef SENSOR_PUBLISH_IMAGE_FILE_H
+#define SENSOR_PUBLISH_IMAGE_FILE_H
+
+#include "sensor/publish/plane.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum ImageAttributeType { IMAGE_STRING, IMAGE_INT, IMAGE_FLOAT, IMAGE_DOUBLE } ImageAttributeType;
+
+/* One piece of metadata. EXR has int (32 bits), float and string; IMAGE_DOUBLE is stored as EXR's double. */
+typedef struct ImageAttribute {
+    const char        *name;
+    ImageAttributeType type;
+    const char        *text;   /* IMAGE_STRING */
+    int                integer;/* IMAGE_INT */
+    double             number; /* IMAGE_FLOAT, IMAGE_DOUBLE */
+} ImageAttribute;
+
+static inline ImageAttribute image_string(const char *name, const char *text)
+{
+    return (ImageAttribute){name, IMAGE_STRING, text, 0, 0};
+}
+
+static inline ImageAttribute image_int(const char *name, int integer)
+{
+    return (ImageAttribute){name, IMAGE_INT, NULL, integer, 0};
+}
+
+static inline ImageAttribute image_float(const char *name, double number)
+{
+    return (ImageAttribute){name, IMAGE_FLOAT, NULL, 0, number};
+}
+
+static inline ImageAttribute image_double(const char *name, double number)
+{
+    return (ImageAttribute){name, IMAGE_DOUBLE, NULL, 0, number};
+}
+
+enum { image_max_planes = 64, image_max_size_px = 32768 };
+
+/* EXR, one channel a plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float).
+ * date_time: `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock
+ * there; NULL: 1970:01:01 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64,
+ * a name that is empty or used twice. STATUS_IO: the disk or the library refused. */
+Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
+                       const ImageAttribute *attribute, int attribute_count);
+
+/* The same with a named compression (`none`, `rle`, `zips`, `zip:1`, `piz`, ...). image_write_exr takes
+ * zip:1; its measured reasons stand in image_file.cpp. */
+Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
+                          const char *date_time, const ImageAttribute *attribute, int attribute_count);
+
+/* PNG, channels 1 (grey) or 3 (RGB interleaved), bits 8 (uint8_t) or 16 (uint16_t, machine order), rows
+ * top down. Values are written as they are: display encoding is the caller's. */
+Status image_write_png(const char *path, const void *values, int width, int height, int channels, int bits);
+
+/* ---- reading, for tests and for tools ------------------------------------------------------- */
+
+enum { image_name_size = 64 };
+
+typedef struct ImageInfo {
+    int       width, height, channels;
+    char      name[image_max_planes][image_name_size];
+    PlaneType type[image_max_planes]; /* PLANE_F32 for any other format */
+    int       bits;                   /* of the first channel */
+} ImageInfo;
+
+Status image_info(ImageInfo *out, const char *path);
+/* One channel by name, [height][width] as image_info says. The type must be the one in the file: no
+ * conversion, hence no loss. STATUS_BAD_VALUE: no such channel, or of another type. */
+Status image_read_f32(float *out, const char *path, const char *channel);
+Status image_read_u32(uint32_t *out, const char *path, const char *channel);
+/* All channels interleaved, 8 or 16 bits as in the file. */
+Status image_read_png(void *out, const char *path);
+/* False when absent or of another kind. */
+bool image_read_string(char *out, size_t out_size, const char *path, const char *attribute);
+bool image_read_number(double *out, const char *path, const char *attribute);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

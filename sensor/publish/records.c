@@ -1,0 +1,243 @@
+#include "sensor/publish/records.h"
+
+#include <errno.h>
+#include <jansson.h>
+#include <unistd.h>
+
+/* JSON has no NaN: what was not computed is absent. */
+static void set_number(json_t *object, const char *key, double value)
+{
+    if (isfinite(value)) json_object_set_new(object, key, json_real(value));
+}
+
+static void set_text(json_t *object, const char *key, const char *bytes, size_t count)
+{
+    char text[256];
+    text_escape(text, sizeof text, bytes, count);
+    json_object_set_new(object, key, json_string(text));
+}
+
+static json_t *numbers(const double *value, int count)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < count; i++) json_array_append_new(array, json_real(value[i]));
+    return array;
+}
+
+static json_t *pair_deg(const double value_rad[2])
+{
+    const double deg[2] = {value_rad[0] / rad_per_deg, value_rad[1] / rad_per_deg};
+    return numbers(deg, 2);
+}
+
+static void set_id(json_t *object, const char *key, DisEntityId id)
+{
+    char text[dis_id_text_size];
+    dis_entity_id_text(text, id);
+    json_object_set_new(object, key, json_string(text));
+}
+
+static json_t *host_json(const FrameRecord *r)
+{
+    json_t  *host = json_object();
+    Geodetic place;
+    if (r->host) {
+        set_id(host, "entity", r->host->id);
+        set_text(host, "marking", r->host->marking, strnlen(r->host->marking, 11));
+    } else {
+        json_object_set_new(host, "entity", json_string("observer"));
+    }
+    json_object_set_new(host, "ecef_m", numbers(r->p_eye_ecef, 3));
+    if (geodetic_from_ecef(&place, r->p_eye_ecef) == STATUS_OK) {
+        set_number(host, "lat_deg", place.lat_rad / rad_per_deg);
+        set_number(host, "lon_deg", place.lon_rad / rad_per_deg);
+        set_number(host, "height_m", place.h_m);
+    }
+    double psi_rad, theta_rad, phi_rad;
+    euler_from_r_ecef_from_body(&psi_rad, &theta_rad, &phi_rad, r->r_ecef_from_body);
+    set_number(host, "psi_deg", psi_rad / rad_per_deg);
+    set_number(host, "theta_deg", theta_rad / rad_per_deg);
+    set_number(host, "phi_deg", phi_rad / rad_per_deg);
+    set_number(host, "speed_mps", v3_length(r->v_eye_mps));
+    return host;
+}
+
+static json_t *sensor_json(const FrameRecord *r)
+{
+    json_t     *sensor = json_object(), *bands = json_array();
+    const View *view = &r->request->view;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (r->request->bands >> b & 1) json_array_append_new(bands, json_string(band_name((Band)b)));
+    json_object_set_new(sensor, "name", json_string("seeker"));
+    json_object_set_new(sensor, "bands", bands);
+    json_object_set_new(sensor, "width_px", json_integer(view->width));
+    json_object_set_new(sensor, "height_px", json_integer(view->height));
+    set_number(sensor, "hfov_deg", r->hfov_rad / rad_per_deg);
+    set_number(sensor, "vfov_deg", 2 * atan(0.5 * view->height / view->focal_px) / rad_per_deg);
+    json_object_set_new(sensor, "ecef_from_cam", numbers(r->r_ecef_from_cam, 9));
+    json_object_set_new(sensor, "gimbal_at_limit", json_boolean(r->gimbal_at_limit));
+    return sensor;
+}
+
+static json_t *bands_json(const Target *t)
+{
+    json_t *bands = json_object();
+    for (int b = 0; b < BAND_COUNT; b++) {
+        json_t           *band = json_object();
+        const TargetBand *v    = &t->band[b];
+        set_number(band, "contrast_k", v->contrast_k);
+        set_number(band, "dt_rss_k", v->dt_rss_k);
+        set_number(band, "contrast", v->contrast);
+        set_number(band, "snr", v->snr);
+        set_number(band, "intensity_w_sr", v->intensity_w_sr);
+        if (json_object_size(band) > 0)
+            json_object_set_new(bands, band_name((Band)b), band);
+        else
+            json_decref(band);
+    }
+    return bands;
+}
+
+static json_t *target_json(const FrameRecord *r, const Target *t)
+{
+    const SnapshotEntity *entity = &r->snapshot->entity[t->index];
+    json_t               *target = json_object();
+    char                  type[dis_type_text_size];
+
+    set_id(target, "entity", entity->id);
+    set_text(target, "marking", entity->marking, strnlen(entity->marking, 11));
+    dis_entity_type_text(type, entity->type);
+    json_object_set_new(target, "type", json_string(type));
+    json_object_set_new(target, "model", json_string(catalog_model(r->catalog, entity->model)->name));
+    set_number(target, "range_m", t->range_m);
+    set_number(target, "closing_mps", t->closing_mps);
+    set_number(target, "aspect_deg", t->aspect_rad / rad_per_deg);
+    set_number(target, "depression_deg", t->depression_rad / rad_per_deg);
+    set_number(target, "los_az_deg", t->los_az_rad / rad_per_deg);
+    set_number(target, "los_el_deg", t->los_el_rad / rad_per_deg);
+    json_object_set_new(target, "los_rate_dps", pair_deg(t->los_rate_rps));
+    json_object_set_new(target, "boresight_error_deg", pair_deg(t->boresight_error_rad));
+    set_number(target, "pixels", t->pixels);
+    set_number(target, "visible_fraction", t->visible_fraction);
+    if (t->box[2] > 0) {
+        json_t *box = json_array();
+        for (int k = 0; k < 4; k++) json_array_append_new(box, json_integer(t->box[k]));
+        json_object_set_new(target, "box_px", box);
+    }
+    json_object_set_new(target, "amodal_box_px", numbers(t->amodal_box, 4));
+    if (t->occluder && t->occluder_index >= 0)
+        set_id(target, "occluded_by", r->snapshot->entity[t->occluder_index].id);
+    else if (t->occluder)
+        json_object_set_new(target, "occluded_by", json_string(t->occluder));
+    set_number(target, "age_s", entity->age_s);
+    set_number(target, "position_error_m", entity->position_error_m);
+    json_object_set_new(target, "bands", bands_json(t));
+    return target;
+}
+
+Status record_write_frame(FILE *file, const FrameRecord *r)
+{
+    json_t *line = json_object(), *sun = json_object(), *sensors = json_array(), *targets = json_array();
+    json_object_set_new(line, "frame", json_integer(r->frame));
+    set_number(line, "time_s", r->time_s);
+    json_object_set_new(line, "host", host_json(r));
+    set_number(sun, "azimuth_deg", r->sun->azimuth_rad / rad_per_deg);
+    set_number(sun, "elevation_deg", r->sun->elevation_rad / rad_per_deg);
+    json_object_set_new(line, "sun", sun);
+    json_array_append_new(sensors, sensor_json(r));
+    json_object_set_new(line, "sensors", sensors);
+    for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(r, &r->target[i]));
+    json_object_set_new(line, "targets", targets);
+
+    char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
+    json_decref(line);
+    if (!text) return STATUS_NO_MEMORY;
+    const bool ok = fprintf(file, "%s\n", text) > 0 && fflush(file) == 0;
+    free(text);
+    if (!ok) log_error("records: cannot write truth.jsonl: %s", strerror(errno));
+    return ok ? STATUS_OK : STATUS_IO;
+}
+
+/* ---- run.json ------------------------------------------------------------------------------- */
+
+static json_t *texts(const char *const *text, int count)
+{
+    json_t *array = json_array();
+    for (int i = 0; i < count; i++) json_array_append_new(array, json_string(text[i]));
+    return array;
+}
+
+static void set_count(json_t *object, const char *key, uint64_t count)
+{
+    json_object_set_new(object, key, json_integer((json_int_t)count));
+}
+
+static json_t *counters_json(const RunRecord *r)
+{
+    json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
+    json_t *entities = json_object();
+    char    type[8];
+    const VisibilityCounters *v = &r->render.visibility;
+
+    set_count(counters, "datagrams", r->dis->datagrams);
+    for (int i = 0; i < 256; i++)
+        if (r->dis->pdus[i]) {
+            snprintf(type, sizeof type, "%d", i);
+            set_count(pdus, type, r->dis->pdus[i]);
+        }
+    json_object_set_new(counters, "pdus", pdus);
+    for (int i = 0; i < DIS_DROP_COUNT; i++) set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
+    json_object_set_new(counters, "dropped", dropped);
+    set_count(counters, "packets_without_datagram", r->link_dropped);
+    set_count(entities, "created", r->entities_created);
+    set_count(entities, "timed_out", r->entities_timed_out);
+    set_count(entities, "deactivated", r->entities_deactivated);
+    set_count(entities, "removed", r->entities_removed);
+    json_object_set_new(counters, "entities", entities);
+    set_count(counters, "rays_primary", r->render.rays_primary);
+    set_count(counters, "rays_ground", v->rays_ground);
+    set_count(counters, "rays_parts", v->rays_parts);
+    set_count(counters, "rays_sun_ground", v->rays_sun_ground);
+    set_count(counters, "rays_sun_parts", v->rays_sun_parts);
+    set_count(skipped, "ray_entity_pairs", v->skipped_parts);
+    set_count(skipped, "sun_ray_entity_pairs", v->skipped_sun_parts);
+    set_count(skipped, "tiles_without_entities", r->render.tiles_without_entities);
+    json_object_set_new(counters, "skipped", skipped);
+    return counters;
+}
+
+Status record_write_run(const char *path, const RunRecord *r)
+{
+    json_t *run = json_object(), *timings = json_object();
+    char    part[4096];
+
+    json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
+    json_object_set_new(run, "config_sha256", json_string(r->config_sha256));
+    set_text(run, "log", r->log_name, strlen(r->log_name));
+    json_object_set_new(run, "log_sha256", json_string(r->log_sha256));
+    json_object_set_new(run, "seed", json_integer(r->seed));
+    json_object_set_new(run, "threads", json_integer(r->threads));
+    json_object_set_new(run, "isa", json_string(r->isa));
+    json_object_set_new(run, "hosts", texts(r->host, r->host_count));
+    json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
+    json_object_set_new(run, "frames", json_integer(r->frames));
+    json_object_set_new(run, "frame_sha256", texts(r->frame_sha256, r->frames));
+    json_object_set_new(run, "counters", counters_json(r));
+    for (int i = 0; i < r->stage_count; i++) {
+        json_t *stage = json_object();
+        set_number(stage, "median", r->stage_ms[i][0]);
+        set_number(stage, "p95", r->stage_ms[i][1]);
+        set_number(stage, "max", r->stage_ms[i][2]);
+        json_object_set_new(timings, r->stage[i], stage);
+    }
+    json_object_set_new(run, "timings_ms", timings);
+
+    snprintf(part, sizeof part, "%s.part", path);
+    const bool ok = json_dump_file(run, part, JSON_INDENT(1)) == 0 && rename(part, path) == 0;
+    json_decref(run);
+    if (!ok) {
+        log_error("records: cannot write %s: %s", path, strerror(errno));
+        unlink(part);
+    }
+    return ok ? STATUS_OK : STATUS_IO;
+}

@@ -1,0 +1,50 @@
+/* sensor/publish/records.h: truth.jsonl and run.json: the names that outside tools read (see README, Products). */
+#ifndef SENSOR_PUBLISH_RECORDS_H
+#define SENSOR_PUBLISH_RECORDS_H
+
+#include "entities/dead_reckoning.h"
+#include "sensor/node/truth.h"
+#include "terrain/sun.h"
+
+#include <stdio.h>
+
+typedef struct FrameRecord {
+    int                   frame;
+    double                time_s;
+    const Snapshot       *snapshot;
+    const Catalog        *catalog;
+    const SnapshotEntity *host;       /* NULL: an observer that is no entity */
+    double                p_eye_ecef[3], v_eye_mps[3];
+    double                r_ecef_from_body[9]; /* of the host; of the camera for an observer */
+    double                r_ecef_from_cam[9];
+    const RenderRequest  *request;
+    double                hfov_rad;
+    bool                  gimbal_at_limit;
+    const Sun            *sun;
+    const Target         *target;
+    int                   target_count;
+} FrameRecord;
+
+/* One line, flushed. STATUS_IO when the file does not take it. */
+Status record_write_frame(FILE *file, const FrameRecord *record);
+
+typedef struct RunRecord {
+    const char *config_sha256, *log_name, *log_sha256, *isa;
+    long long   seed;
+    int         threads, host_count, choice_count, frames;
+    const char *const *host;          /* ids as text */
+    const char *const *choice;
+    const char *const *frame_sha256;
+    const DisCounters *dis;
+    uint64_t    link_dropped;         /* packets of the capture that gave no datagram */
+    uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
+    RenderCounters render;
+    int         stage_count;          /* timings */
+    const char *const *stage;
+    double (*stage_ms)[3];            /* median, p95, max */
+} RunRecord;
+
+/* Whole file, atomically. */
+Status record_write_run(const char *path, const RunRecord *record);
+
+#endif

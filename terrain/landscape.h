@@ -1,0 +1,59 @@
+/* terrain/landscape.h: the ground when nobody gave any: an invented landscape fitted to what the exercise
+ * says of it.
+ *
+ * It passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
+ * paths, and the sight lines of shots that hit), has relief, fields, tracks and at least five surface
+ * classes, and reaches the horizon without edge or hole. A pure function of its inputs. */
+#ifndef TERRAIN_LANDSCAPE_H
+#define TERRAIN_LANDSCAPE_H
+
+#include "terrain/elevation.h"
+#include "terrain/local_frame.h"
+#include "terrain/surface.h"
+
+/* Somewhere the ground is known. */
+typedef struct GroundFix {
+    double p_enu[3];
+} GroundFix;
+
+/* A straight line that the ground must leave clear, from a to b, by 2 m where there is room and 0.15 m under any
+ * circumstances. An end within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at
+ * 4 m posts) the line claims nothing, so a shot may end on the ground it hits. Elsewhere lines win: a fix above
+ * one is dropped. Give the places of gun, seeker and burst, not the point between a vehicle's tracks: a line from
+ * base to base along flat ground drops every fix beside it. */
+typedef struct ClearLine {
+    double a_enu[3], b_enu[3];
+} ClearLine;
+
+typedef struct LandscapeConfig {
+    uint64_t seed;
+    double   relief_m;       /* rms height of the invented hills far from any fix, 0 .. 200 */
+    double   spacing_m;      /* of level 0, 1 .. 30 */
+    double   half_width_m;   /* of level 0 */
+    double   horizon_m;      /* half width of the outermost level */
+} LandscapeConfig;
+
+typedef struct Landscape {
+    LocalFrame      frame;
+    Elevation       elevation;
+    LandscapeConfig config;
+    double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
+    int             fixes_dropped;/* contradicted by their neighbours, above a clear line, or not on this ground */
+    void           *cover;        /* private */
+} Landscape;
+
+LandscapeConfig landscape_default_config(void);
+Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                        const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
+void   landscape_destroy(Landscape *landscape);
+
+/* How far a line leaves the ground alone about an end that has come down to a fix. */
+double landscape_taper_m(const LandscapeConfig *config);
+
+/* Surface class at a place, anchored to the ground. Thread-safe. */
+SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
+/* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
+ * footprint_m and larger so that it neither aliases nor shimmers. */
+double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
+
+#endif

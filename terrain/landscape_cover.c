@@ -1,0 +1,177 @@
+/* terrain/landscape_cover.c: what grows and lies on the invented ground: irregular fields, tracks and hedges
+ * between some of them, scrub and rock where it is steep or nobody ploughs. Pure functions of the place. */
+#include "terrain/landscape_private.h"
+
+/* ---- noise -------------------------------------------------------------------------------- */
+
+/* Smooth value noise of one wavelength, -1 .. 1, mean 0. */
+static double noise_at(uint64_t seed, double x_m, double y_m, double wavelength_m)
+{
+    const double  fx = x_m / wavelength_m, fy = y_m / wavelength_m, cx = floor(fx), cy = floor(fy);
+    const int64_t i = (int64_t)cx, j = (int64_t)cy;
+    double        u = fx - cx, v = fy - cy;
+    u = u * u * (3 - 2 * u);
+    v = v * v * (3 - 2 * v);
+    const double a = unit_from_hash(landscape_hash(seed, i, j)), b = unit_from_hash(landscape_hash(seed, i + 1, j));
+    const double c = unit_from_hash(landscape_hash(seed, i, j + 1));
+    const double d = unit_from_hash(landscape_hash(seed, i + 1, j + 1));
+    return 2 * (a + u * (b - a) + v * (c - a) + u * v * (a - b - c + d)) - 1;
+}
+
+/* ---- fields ------------------------------------------------------------------------------- */
+
+typedef struct Plot {
+    uint64_t id;          /* of the field */
+    double   x_m, y_m;    /* a place that belongs to the field as a whole */
+    uint64_t border;      /* of the pair of fields at the nearest border */
+    double   border_m;    /* distance to it */
+} Plot;
+
+static const double plot_m = 160;
+
+/* Fields are the cells of a jittered grid, some joined in twos and fours. */
+static uint64_t field_of_site(uint64_t seed, int64_t i, int64_t j)
+{
+    const double four = unit_from_hash(landscape_hash(seed + 1, i >> 1, j >> 1));
+    if (four < 0.25) return landscape_hash(seed + 2, i >> 1, j >> 1);
+    if (four < 0.45) return landscape_hash(seed + 3, i >> 1, j);
+    if (four < 0.60) return landscape_hash(seed + 4, i, j >> 1);
+    return landscape_hash(seed + 5, i, j);
+}
+
+static Plot plot_at(uint64_t seed, double x_m, double y_m)
+{
+    static const double jitter = 0.8;
+    double              site_x[9], site_y[9], near[9];
+    int64_t             site_i[9], site_j[9];
+    const int64_t       ci = (int64_t)floor(x_m / plot_m), cj = (int64_t)floor(y_m / plot_m);
+    int                 best = 0;
+    for (int n = 0; n < 9; n++) {
+        site_i[n] = ci + n % 3 - 1;
+        site_j[n] = cj + n / 3 - 1;
+        const uint64_t h = landscape_hash(seed, site_i[n], site_j[n]);
+        const double   ux = (double)(h & 0xffffffffu) * 0x1p-32 - 0.5, uy = (double)(h >> 32) * 0x1p-32 - 0.5;
+        site_x[n] = ((double)site_i[n] + 0.5 + jitter * ux) * plot_m;
+        site_y[n] = ((double)site_j[n] + 0.5 + jitter * uy) * plot_m;
+        near[n] = (site_x[n] - x_m) * (site_x[n] - x_m) + (site_y[n] - y_m) * (site_y[n] - y_m);
+        if (near[n] < near[best]) best = n;
+    }
+
+    Plot plot = {.id = field_of_site(seed, site_i[best], site_j[best]),
+                 .x_m = (double)(site_i[best] >> 1) * 2 * plot_m,
+                 .y_m = (double)(site_j[best] >> 1) * 2 * plot_m,
+                 .border_m = INFINITY};
+    for (int n = 0; n < 9; n++) {
+        if (n == best) continue;
+        /* distance to the perpendicular bisector; cheap test first, the hash only for a new best */
+        const double apart_m = hypot(site_x[n] - site_x[best], site_y[n] - site_y[best]);
+        const double border_m = 0.5 * (near[n] - near[best]) / fmax(apart_m, 1e-3);
+        if (border_m >= plot.border_m) continue;
+        const uint64_t other = field_of_site(seed, site_i[n], site_j[n]);
+        if (other == plot.id) continue;
+        plot.border_m = border_m;
+        plot.border = landscape_hash(seed + 6, (int64_t)(other ^ plot.id), 0);
+    }
+    return plot;
+}
+
+static SurfaceClass crop_of_field(uint64_t id, bool arable)
+{
+    static const struct {
+        double       arable, pasture; /* up to this share */
+        SurfaceClass surface;
+    } share[] = {
+        {0.38, 0.10, SURFACE_CROP},      {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
+        {0.88, 0.62, SURFACE_GRASS},     {1.00, 0.90, SURFACE_DRY_GRASS}, {1.00, 1.00, SURFACE_SCRUB},
+    };
+    const double u = unit_from_hash(landscape_hash(id, 7, 0));
+    for (size_t n = 0; n < sizeof share / sizeof share[0]; n++)
+        if (u < (arable ? share[n].arable : share[n].pasture)) return share[n].surface;
+    return SURFACE_GRASS;
+}
+
+SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
+{
+    static const double track_half_m = 2, hedge_half_m = 1.5;
+    const Cover        *cover = landscape->cover;
+    double              normal[3];
+    if (!cover || !isfinite(elevation_height(&landscape->elevation, x_m, y_m, normal))) return SURFACE_NONE;
+    const uint64_t seed = cover->seed;
+    const double   steep = sqrt(normal[0] * normal[0] + normal[1] * normal[1]) / normal[2];
+
+    /* beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there */
+    const double far_lean = sqrt(x_m * x_m + y_m * y_m) / 6371e3;
+    const double slope = fmax(steep - far_lean, 0);
+
+    /* wild patches, wider where it is steep; rock shows through in their hearts */
+    const double wild = noise_at(seed + 10, x_m, y_m, 310) + 0.5 * noise_at(seed + 11, x_m, y_m, 83) +
+                        0.2 * noise_at(seed + 12, x_m, y_m, 17) + 4 * slope;
+    if (wild > 1.12 + (slope > 0.2 ? 0 : 0.12)) return SURFACE_ROCK;
+
+    const Plot plot = plot_at(seed, x_m, y_m);
+    if (plot.border_m < track_half_m && unit_from_hash(plot.border) < 0.24) return SURFACE_TRACK;
+    if (wild > 0.88) return SURFACE_SCRUB;
+    if (plot.border_m < hedge_half_m && unit_from_hash(plot.border) > 0.66) return SURFACE_SCRUB;
+    if (wild > 0.78) return SURFACE_DRY_GRASS;
+    return crop_of_field(plot.id, noise_at(seed + 13, plot.x_m, plot.y_m, 1900) > -0.15);
+}
+
+/* ---- texture ------------------------------------------------------------------------------ */
+
+static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
+enum { octave_count = sizeof octave_m / sizeof octave_m[0] };
+
+/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The
+ * rows are invented, to look right. */
+static const float amplitude[SURFACE_COUNT][octave_count] = {
+    [SURFACE_NONE] = {0},
+    [SURFACE_GRASS] = {.07f, .06f, .05f, .05f, .05f, .05f, .05f},
+    [SURFACE_DRY_GRASS] = {.08f, .08f, .07f, .06f, .05f, .04f, .05f},
+    [SURFACE_CROP] = {.07f, .05f, .03f, .03f, .03f, .04f, .05f},
+    [SURFACE_BARE_SOIL] = {.06f, .06f, .05f, .04f, .04f, .05f, .06f},
+    [SURFACE_PLOUGHED] = {.09f, .07f, .04f, .03f, .03f, .04f, .05f},
+    [SURFACE_TRACK] = {.06f, .07f, .06f, .06f, .04f, .03f, .02f},
+    [SURFACE_ROCK] = {.08f, .09f, .09f, .08f, .06f, .04f, .02f},
+    [SURFACE_SCRUB] = {.09f, .10f, .11f, .09f, .05f, .03f, .02f},
+    [SURFACE_WATER] = {.01f, .01f, .01f, .01f, .01f, .01f, .01f},
+};
+
+/* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
+static double fade(double wavelength_m, double footprint_m)
+{
+    return 1 - smooth_step(0.25, 0.5, footprint_m / wavelength_m);
+}
+
+/* Rows of a field, along a direction of its own; a smooth wave of mean 0. */
+static double rows_at(uint64_t seed, double x_m, double y_m, double apart_m)
+{
+    const uint64_t h = landscape_hash(plot_at(seed, x_m, y_m).id, 8, 0);
+    double         dx = unit_from_hash(h) - 0.5, dy = unit_from_hash(landscape_hash(h, 9, 0)) - 0.5;
+    const double   length = fmax(sqrt(dx * dx + dy * dy), 1e-3);
+    dx /= length;
+    dy /= length;
+    const double f = (x_m * dx + y_m * dy) / apart_m, t = fabs(2 * (f - floor(f)) - 1); /* 1 .. 0 .. 1 */
+    return 2 * t * t * (3 - 2 * t) - 1;
+}
+
+double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m)
+{
+    static const double crop_rows_m = 0.75, furrows_m = 1.1;
+    const Cover        *cover = landscape->cover;
+    if (!cover || !isfinite(x_m) || !isfinite(y_m) || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return 1;
+
+    const uint64_t seed = cover->seed + 20;
+    footprint_m = footprint_m > 0 ? footprint_m : 0;
+    double sum = 1;
+    for (int n = octave_count - 1; n >= 0; n--) {
+        const double share = fade(octave_m[n], footprint_m);
+        if (!(share > 0)) break; /* the shorter ones are gone too */
+        sum += share * amplitude[surface][n] * noise_at(seed + (uint64_t)n, x_m, y_m, octave_m[n]);
+    }
+    const double row_m = surface == SURFACE_CROP ? crop_rows_m : surface == SURFACE_PLOUGHED ? furrows_m : 0;
+    if (row_m > 0) {
+        const double share = fade(row_m, footprint_m);
+        if (share > 0) sum += 0.08 * share * rows_at(cover->seed, x_m, y_m, row_m);
+    }
+    return clamp(sum, 0.6, 1.4);
+}

@@ -1,0 +1,17 @@
+/* terrain/surface.h: what covers the ground. One small class a place; etc/surfaces.csv says what each is
+ * made of. */
+#ifndef TERRAIN_SURFACE_H
+#define TERRAIN_SURFACE_H
+
+#include "pitviper.h"
+
+typedef enum SurfaceClass {
+    SURFACE_NONE = 0,
+    SURFACE_GRASS, SURFACE_DRY_GRASS, SURFACE_CROP, SURFACE_BARE_SOIL, SURFACE_PLOUGHED, SURFACE_TRACK,
+    SURFACE_ROCK, SURFACE_SCRUB, SURFACE_WATER,
+    SURFACE_COUNT
+} SurfaceClass;
+
+const char *surface_name(SurfaceClass surface);
+
+#endif

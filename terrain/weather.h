@@ -1,0 +1,21 @@
+/* terrain/weather.h: the weather as state: a few numbers that light and heat depend on. */
+#ifndef TERRAIN_WEATHER_H
+#define TERRAIN_WEATHER_H
+
+#include "pitviper.h"
+
+typedef struct Weather {
+    double visibility_m;      /* meteorological range, 2 % contrast, 100 .. 300 000 */
+    double air_temp_k;        /* at the ground, 220 .. 330 */
+    double relative_humidity; /* 0 .. 1 */
+    double pressure_mbar;
+    double wind_mps;
+} Weather;
+
+static inline Weather weather_default(void)
+{
+    return (Weather){.visibility_m = 23000, .air_temp_k = 288.15, .relative_humidity = 0.5,
+                     .pressure_mbar = 1013.25, .wind_mps = 3};
+}
+
+#endif

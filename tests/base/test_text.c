@@ -1,0 +1,102 @@
+/* Tables, numbers and foreign bytes. */
+#include "tests/check.h"
+
+#include <unistd.h>
+
+static char last_line[1024];
+static void keep_line(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    (void)level;
+    snprintf(last_line, sizeof last_line, "%s", line);
+}
+
+static Status open_text(Table *table, const char *text)
+{
+    char      path[] = "/tmp/pitviper-text-XXXXXX";
+    const int file   = mkstemp(path);
+    CHECK(file >= 0);
+    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    last_line[0] = 0;
+    log_set_sink(keep_line, NULL);
+    const Status status = table_open(table, path);
+    unlink(path);
+    return status;
+}
+
+static void a_table_reads_comments_quotes_and_numbers(void **state)
+{
+    (void)state;
+    Table table = {0};
+    assert_int_equal(open_text(&table, "# about\n\nname, value ,\"a, b\"\r\n x ,1.5, \"say \"\"hi\"\", ok\" \ny,-2e3,\n"),
+                     STATUS_OK);
+    assert_int_equal(table.columns, 3);
+    assert_int_equal(table.rows, 2);
+    assert_int_equal(table_column(&table, "value"), 1);
+    assert_int_equal(table_column(&table, "a, b"), 2);
+    assert_int_equal(table_column(&table, "absent"), -1);
+    assert_string_equal(table_text(&table, 0, 0), "x");
+    assert_string_equal(table_text(&table, 0, 2), "say \"hi\", ok");
+    assert_string_equal(table_text(&table, 1, 2), "");
+    double value = 0;
+    assert_int_equal(table_number(&value, &table, 1, 1, -1e4, 0), STATUS_OK);
+    CHECK_NEAR(value, -2000, 0);
+    assert_int_equal(table_number(&value, &table, 0, 1, 2, 3), STATUS_BAD_VALUE);
+    CHECK(strstr(last_line, ":4: column value: '1.5' is not a number in 2 .. 3"));
+    assert_int_equal(table_number(&value, &table, 0, 0, 0, 9), STATUS_BAD_VALUE);
+    table_close(&table);
+}
+
+static void malformed_tables_are_refused_with_the_line(void **state)
+{
+    (void)state;
+    Table table = {0};
+    assert_int_equal(open_text(&table, "a,b\n1,2\n3\n"), STATUS_BAD_VALUE);
+    CHECK(strstr(last_line, ":3: 1 columns where the header has 2"));
+    assert_int_equal(open_text(&table, "a,b\n1,2,3\n"), STATUS_BAD_VALUE);
+    assert_int_equal(open_text(&table, "a,b\n\"open,2\n"), STATUS_BAD_VALUE);
+    CHECK(strstr(last_line, "quote"));
+    assert_int_equal(open_text(&table, "# nothing\n"), STATUS_BAD_VALUE);
+    assert_int_equal(open_text(&table, ""), STATUS_BAD_VALUE);
+    assert_int_equal(table_open(&table, "/nonexistent/table.csv"), STATUS_IO);
+    assert_null(table.cell);
+}
+
+static void numbers_are_whole_strings(void **state)
+{
+    (void)state;
+    double    d = 42;
+    long long n = 42;
+    CHECK(text_to_double(&d, "1e-3") && d == 1e-3);
+    CHECK(text_to_double(&d, "-0") && d == 0);
+    static const char *const bad[] = {"", " 1", "1 ", "1,5", "3x", "nan", "inf", "1e999", "0x10", "--1"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        CHECK(!text_to_double(&d, bad[i]));
+        CHECK(!text_to_long(&n, bad[i]));
+    }
+    CHECK(text_to_long(&n, "-9223372036854775808") && n == INT64_MIN);
+    CHECK(!text_to_long(&n, "9223372036854775808"));
+    CHECK(!text_to_long(&n, "1.0"));
+}
+
+static void foreign_bytes_are_escaped(void **state)
+{
+    (void)state;
+    char out[32];
+    text_escape(out, sizeof out, "A\x1b[2J\\\xff", 7);
+    assert_string_equal(out, "A\\x1b[2J\\x5c\\xff");
+    text_escape(out, 6, "ab\x01zz", 5); /* an escape is never cut in two */
+    assert_string_equal(out, "ab");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_table_reads_comments_quotes_and_numbers),
+        cmocka_unit_test(malformed_tables_are_refused_with_the_line),
+        cmocka_unit_test(numbers_are_whole_strings),
+        cmocka_unit_test(foreign_bytes_are_escaped),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

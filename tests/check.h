@@ -1,0 +1,43 @@
+/* tests/check.h: the checks every test uses on top of cmocka, and where the reference data is. */
+#ifndef TESTS_CHECK_H
+#define TESTS_CHECK_H
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <cmocka.h>
+
+#include "pitviper.h"
+
+/* Written as !(error <= tolerance) so that a NaN fails. */
+#define CHECK_NEAR(got, want, tolerance)                                                              \
+    do {                                                                                              \
+        const double got_ = (got), want_ = (want), tolerance_ = (tolerance);                          \
+        if (!(fabs(got_ - want_) <= tolerance_))                                                      \
+            fail_msg("%s:%d: %s = %.17g, want %.17g +- %g", __FILE__, __LINE__, #got, got_, want_, tolerance_); \
+    } while (0)
+
+#define CHECK(condition)                                                             \
+    do {                                                                             \
+        if (!(condition)) fail_msg("%s:%d: %s", __FILE__, __LINE__, #condition);     \
+    } while (0)
+
+/* Reference data outside the repository: $PITVIPER_DATA, default ../shared/data. False, and one line said,
+ * when the file is absent: the test then calls skip(). */
+static inline bool reference_path(char out[512], const char *name)
+{
+    const char *root = getenv("PITVIPER_DATA");
+    snprintf(out, 512, "%s/%s", root ? root : "../shared/data", name);
+    FILE *file = fopen(out, "rb");
+    if (!file) {
+        printf("skipped: no reference data at %s (set PITVIPER_DATA)\n", out);
+        return false;
+    }
+    fclose(file);
+    return true;
+}
+
+#endif

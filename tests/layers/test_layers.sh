@@ -1,0 +1,124 @@
+#!/usr/bin/env bash
+# Who may include whom. A link alone does not prove it: an object that is already pulled in satisfies a call
+# backwards. labels: small
+set -u
+cd "$(dirname "$0")/../.."
+
+# room_of FILE: base, dis, terrain, entities, render, sensor or top (main.c and programs under etc/)
+room_of() {
+    local path=${1#tests/}
+    case $path in
+        dis/*|terrain/*|entities/*|render/*|sensor/*|base/*|fuzz/*|analytic/*) echo "${path%%/*}" ;;
+        pitviper*) echo base ;;
+        *) echo top ;;
+    esac
+}
+
+# allowed ROOM HEADER
+allowed() {
+    case $2 in
+        pitviper.h) return 0 ;;
+        tests/*) return 0 ;; # only tests have reason to, see below
+    esac
+    case $1:$2 in
+        base:*) return 1 ;;
+        dis:dis/*) ;;
+        terrain:terrain/*) ;;
+        entities:entities/*|entities:dis/*|entities:terrain/*) ;;
+        # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
+        render:render/*|render:terrain/*) ;;
+        render:entities/model.h|render:entities/catalog.h|render:entities/snapshot.h|render:dis/pdu.h) ;;
+        sensor:dis/*|sensor:terrain/*|sensor:entities/*|sensor:render/*|sensor:sensor/*) ;;
+        top:*|fuzz:*|analytic:*) ;;
+        *) return 1 ;;
+    esac
+}
+
+# Libraries that one file, or one folder, knows: header pattern, place.
+wrapped() {
+    case $1 in
+        GeographicLib/*) echo 'terrain/*.cpp' ;;
+        erfa.h) echo 'terrain/*' ;;
+        OpenImageIO/*) echo 'sensor/publish/*.cpp' ;;
+        embree*) echo 'render/*' ;;
+        pcap*) echo 'dis/*' ;;
+        jansson.h) echo 'sensor/publish/*' ;;
+        *) echo '*' ;;
+    esac
+}
+
+# check ROOT: a line for each include that is not allowed
+check() (
+    cd "$1" || exit
+    find . -path ./build -prune -o -path './build-*' -prune -o -path ./.git -prune -o \
+        -type f \( -name '*.c' -o -name '*.h' -o -name '*.cpp' \) -print | sed 's#^\./##' | sort |
+    while read -r file; do
+        room=$(room_of "$file")
+        sed -nE 's/^[[:space:]]*#[[:space:]]*include[[:space:]]*([<"])([^>"]+)[>"].*/\1 \2/p' "$file" |
+        while read -r kind header; do
+            if [ "$kind" = '<' ]; then
+                case $file in tests/*) continue ;; esac
+                place=$(wrapped "$header")
+                # shellcheck disable=SC2254
+                case $file in $place) ;; *) echo "$file: <$header> belongs to $place alone" ;; esac
+                continue
+            fi
+            if [[ $header == tests/* && $file != tests/* ]]; then
+                echo "$file: product code includes $header"
+            elif ! allowed "$room" "$header"; then
+                echo "$file: $room may not include $header"
+            elif [[ $header == *_private.h && ${header%/*} != "${file%/*}" ]]; then
+                echo "$file: $header is private to ${header%/*}/"
+            fi
+        done
+    done
+)
+
+# The twin: each planted include must be caught, each good one passed.
+twin() {
+    local tree wrong=0 file header
+    tree=$(mktemp -d) || exit 1
+    plant() { mkdir -p "$tree/$(dirname "$1")" && printf '#include %s\n' "$2" >"$tree/$1"; }
+    while read -r verdict file header; do
+        rm -rf "${tree:?}"/*
+        plant "$file" "$header"
+        found=$(check "$tree")
+        if [ "$verdict" = bad ] && [ -z "$found" ]; then echo "twin: not caught: $header in $file"; wrong=1; fi
+        if [ "$verdict" = good ] && [ -n "$found" ]; then echo "twin: wrongly caught: $found"; wrong=1; fi
+    done <<'PLANTED'
+bad pitviper_log.c "dis/pdu.h"
+bad dis/pdu.c "terrain/geodesy.h"
+bad dis/pdu.c "entities/model.h"
+bad terrain/sun.c "dis/pdu.h"
+bad entities/model.c "render/render.h"
+bad render/render.c "entities/entity_table.h"
+bad render/render.c "dis/entity_state.h"
+bad render/render.c "sensor/detector/detector.h"
+bad tests/dis/test_pdu.c "entities/model.h"
+bad tests/render/test_render.c "sensor/publish/plane.h"
+bad sensor/node/loop.c "render/parts_private.h"
+bad sensor/node/loop.c "loop.h"
+bad dis/pdu.c "tests/check.h"
+bad entities/model.c <GeographicLib/Geocentric.hpp>
+bad sensor/node/truth.c <jansson.h>
+good dis/pdu.c "pitviper.h"
+good dis/pdu.c "dis/reader_private.h"
+good entities/entity_table.c "dis/entity_state.h"
+good render/render.c "entities/snapshot.h"
+good sensor/node/loop.c "dis/log.h"
+good sensor/publish/truth.c <jansson.h>
+good tests/dis/test_pdu.c "tests/check.h"
+good main.c "sensor/node/replay.h"
+PLANTED
+    rm -rf "$tree"
+    return $wrong
+}
+
+twin || exit 1
+violations=$(check .)
+if [ -n "$violations" ]; then
+    echo "$violations"
+    echo "layers: $(echo "$violations" | wc -l) includes against the table in tests/layers/test_layers.sh"
+    exit 1
+fi
+echo "layers: $(find dis terrain entities render sensor -name '*.[ch]*' | wc -l) files keep to their rooms"

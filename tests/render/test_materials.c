@@ -1,0 +1,213 @@
+/* The table of materials: what it must hold, what it must refuse, and a lobe that makes no light. */
+#include "tests/check.h"
+#include "render/materials.h"
+
+#include <unistd.h>
+
+static char last_error[512];
+
+static void keep_error(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    if (level == LOG_ERROR) snprintf(last_error, sizeof last_error, "%s", line);
+}
+
+static int listen(void **state)
+{
+    (void)state;
+    last_error[0] = 0;
+    log_set_sink(keep_error, NULL);
+    return 0;
+}
+
+static int stop_listening(void **state)
+{
+    (void)state;
+    log_set_sink(NULL, NULL);
+    return 0;
+}
+
+static void write_file(char path[64], const char *text)
+{
+    strcpy(path, "/tmp/pitviper_materials_XXXXXX");
+    const int file = mkstemp(path);
+    CHECK(file >= 0);
+    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+}
+
+static const char header[] = "name,rho_b,rho_g,rho_r,rho_pan,rho_mwir,rho_lwir,solar_absorptance,gloss,"
+                             "roughness_rad,metal,radar_gamma,source\n";
+static const char rows[] = "turf,0.04,0.09,0.06,0.0625,0.015,0.019,0.73,0,1,0,0.1,test\n"
+                           "steel,0.2,0.2,0.3,0.25,0.3,0.2,0.8,0.5,0.2,1,0.02,test\n";
+static const char surfaces[] = "surface,material\ngrass,turf\ndry_grass,turf\ncrop,turf\nbare_soil,turf\n"
+                               "ploughed,turf\ntrack,turf\nrock,turf\nscrub,turf\nwater,steel\n";
+
+static Status open_texts(Materials *out, const char *table, const char *surface_table)
+{
+    char a[64], b[64];
+    write_file(a, table);
+    write_file(b, surface_table);
+    const Status status = materials_open(out, a, b, NULL);
+    unlink(a);
+    unlink(b);
+    return status;
+}
+
+static void reads_what_is_written(void **state)
+{
+    (void)state;
+    char text[2048];
+    snprintf(text, sizeof text, "# a comment\n%s%s", header, rows);
+    Materials m;
+    CHECK(open_texts(&m, text, surfaces) == STATUS_OK);
+    CHECK(m.count == 3 && materials_find(&m, "none") == 0 && materials_find(&m, "turf") == 1);
+    CHECK(materials_find(&m, "steel") == 2 && materials_find(&m, "Steel") == -1 && materials_find(&m, "") == -1);
+    const Material *steel = &m.material[2];
+    CHECK_NEAR(steel->rho[optical_channel_b], 0.2, 1e-7);
+    CHECK_NEAR(steel->rho[optical_channel_r], 0.3, 1e-7);
+    CHECK_NEAR(steel->rho[optical_channel_pan], 0.25, 1e-7);
+    CHECK_NEAR(steel->rho_mwir, 0.3, 1e-7);
+    CHECK_NEAR(steel->rho_lwir, 0.2, 1e-7);
+    CHECK_NEAR(steel->gloss, 0.5, 1e-7);
+    CHECK_NEAR(steel->roughness, 0.2, 1e-7);
+    CHECK_NEAR(steel->radar_gamma, 0.02, 1e-7);
+    CHECK(steel->metal == 1 && m.material[0].rho[0] == 0 && m.material[0].metal == 0);
+    CHECK(m.surface[SURFACE_NONE] == 0 && m.surface[SURFACE_GRASS] == 1 && m.surface[SURFACE_WATER] == 2);
+    CHECK_NEAR(m.ground_rho[optical_channel_pan], 0.0625, 1e-7); /* water is not ground */
+    CHECK(m.ground_rise_k[SURFACE_ROCK] > m.ground_rise_k[SURFACE_WATER] && m.ground_rise_k[SURFACE_NONE] == 0);
+    materials_close(&m);
+    CHECK(m.material == NULL && m.count == 0);
+    materials_close(&m);
+    materials_close(NULL);
+}
+
+static void refuses_and_says_why(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *rows, *surfaces, *said;
+    } bad[] = {
+        {"turf,0.04,0.09,0.06,1.06,0.015,0.019,0.73,0,1,0,0.1,t\n", surfaces, "rho_pan"},       /* more than all */
+        {"turf,0.04,0.09,0.06,nan,0.015,0.019,0.73,0,1,0,0.1,t\n", surfaces, "rho_pan"},
+        {"turf,0.04,0.09,0.06,,0.015,0.019,0.73,0,1,0,0.1,t\n", surfaces, "rho_pan"},
+        {"turf,0.04,0.09\n", surfaces, ""},                                                    /* narrow row */
+        {"none,0,0,0,0,0,0,0,0,0,0,0,t\n", surfaces, "none"},                                  /* row 0 is taken */
+        {"turf,0,0,0,0,0,0,0,0,0,0,0,t\nturf,0,0,0,0,0,0,0,0,0,0,0,t\n", surfaces, "turf"},
+        {"a_name_of_more_than_thirty_one_bytes,0,0,0,0,0,0,0,0,0,0,0,t\n", surfaces, "thirty"},
+        {rows, "surface,material\ngrass,moss\n", "moss"},
+        {rows, "surface,material\nlawn,turf\n", "lawn"},
+        {rows, "surface,material\ngrass,turf\ngrass,turf\n", "grass"},
+        {rows, "surface,material\ngrass,turf\n", "dry_grass"},                                 /* a class left out */
+        {rows, "surface,cover\ngrass,turf\n", "material"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        char text[2048];
+        snprintf(text, sizeof text, "%s%s", header, bad[i].rows);
+        Materials m = {.count = -7};
+        last_error[0] = 0;
+        const Status status = open_texts(&m, text, bad[i].surfaces);
+        if (status == STATUS_OK || !strstr(last_error, bad[i].said) || !last_error[0])
+            fail_msg("case %zu: status %s, said \"%s\", want \"%s\"", i, status_name(status), last_error, bad[i].said);
+        CHECK(m.count == -7); /* untouched */
+    }
+    Materials m;
+    CHECK(open_texts(&m, "name,rho_b\nturf,0.1\n", surfaces) == STATUS_BAD_VALUE);
+    CHECK(materials_open(&m, "/nonexistent/materials.csv", "/nonexistent/surfaces.csv", NULL) == STATUS_IO);
+}
+
+/* The product's own files: everything a built-in model or a surface names exists. */
+static void the_house_is_in_order(void **state)
+{
+    (void)state;
+    char table[512], surface_table[512], catalog_path[512];
+    CHECK(etc_path(table, sizeof table, "materials.csv"));
+    CHECK(etc_path(surface_table, sizeof surface_table, "surfaces.csv"));
+    CHECK(etc_path(catalog_path, sizeof catalog_path, "catalog.csv"));
+    Catalog *catalog = NULL;
+    CHECK(catalog_open(&catalog, catalog_path, 0.02) == STATUS_OK);
+    Materials m;
+    CHECK(materials_open(&m, table, surface_table, catalog) == STATUS_OK);
+    CHECK(m.model_count == catalog_model_count(catalog) && m.model_count >= 5);
+    for (int i = 0; i < m.model_count; i++)
+        for (int p = 0; p < catalog_model(catalog, i)->part_count; p++) {
+            const int row = m.part[i][p];
+            CHECK(row > 0 && row < m.count);
+            CHECK(strcmp(m.material[row].name, catalog_model(catalog, i)->part[p].material) == 0);
+        }
+    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) CHECK(m.surface[s] > 0 && m.surface[s] < m.count);
+    materials_close(&m);
+    catalog_close(catalog);
+}
+
+/* Power that a lobe sends out for a unit of power sent in, by midpoints over the hemisphere. */
+static double lobe_albedo(double roughness_rad, double sun_zenith_rad)
+{
+    const double n[3] = {0, 0, 1}, sun[3] = {sin(sun_zenith_rad), 0, cos(sun_zenith_rad)};
+    const int heights = 700, azimuths = 700;
+    double sum = 0;
+    for (int h = 0; h < heights; h++) {
+        const double zenith = (h + 0.5) / heights * pi_rad / 2;
+        for (int a = 0; a < azimuths; a++) {
+            const double azimuth = (a + 0.5) / azimuths * pi_rad; /* half: symmetric */
+            const double eye[3] = {sin(zenith) * cos(azimuth), sin(zenith) * sin(azimuth), cos(zenith)};
+            sum += material_lobe(roughness_rad, n, eye, sun) * eye[2] * sin(zenith);
+        }
+    }
+    return sum * 2 * pi_rad / azimuths * pi_rad / 2 / heights / sun[2];
+}
+
+static void the_lobe_makes_no_light(void **state)
+{
+    (void)state;
+    static const double roughness[] = {0.05, 0.2, 0.6}, zenith_deg[] = {10, 45, 75};
+    for (int r = 0; r < 3; r++)
+        for (int z = 0; z < 3; z++) {
+            const double albedo = lobe_albedo(roughness[r], zenith_deg[z] * rad_per_deg);
+            CHECK(albedo < 1.005 && albedo > 0.6); /* what masking hides is lost, not bounced again */
+            if (r == 0 && z < 2) CHECK_NEAR(albedo, 1, 0.01);
+        }
+}
+
+static void the_lobe_is_reciprocal_and_peaks_at_the_mirror(void **state)
+{
+    (void)state;
+    const double n[3] = {0, 0, 1};
+    const double a[3] = {sin(0.5), 0, cos(0.5)}, b[3] = {-sin(0.7) * cos(0.2), sin(0.7) * sin(0.2), cos(0.7)};
+    /* radiance a irradiance facing the source: Helmholtz holds after division by the source's cosine */
+    CHECK_NEAR(material_lobe(0.2, n, a, b) * a[2] / (material_lobe(0.2, n, b, a) * b[2]), 1, 1e-12);
+    const double mirror[3] = {-a[0], 0, a[2]}, beside[3] = {-sin(0.55), 0, cos(0.55)}, below[3] = {0.6, 0, -0.8};
+    CHECK(material_lobe(0.05, n, mirror, a) > 3 * material_lobe(0.05, n, (double[3]){-sin(0.62), 0, cos(0.62)}, a));
+    CHECK(material_lobe(0.05, n, mirror, a) > material_lobe(0.05, n, beside, a));
+    CHECK(material_lobe(0.05, n, mirror, below) == 0);
+    CHECK(isfinite(material_lobe(0, n, mirror, a)) && material_lobe(0, n, n, n) > 0);
+}
+
+static void reflectance_stays_between_its_ends(void **state)
+{
+    (void)state;
+    CHECK(material_fresnel(0, 0.1, 0) == 0 && material_fresnel(0, 0.1, 1) == 0);
+    for (double rho = 0.001; rho <= 1; rho *= 1.4)
+        for (double roughness = 0; roughness <= 1.5; roughness += 0.25) {
+            CHECK_NEAR(material_fresnel(rho, roughness, 1), rho, 1e-15);
+            double last = rho;
+            for (double c = 1; c >= 0; c -= 0.05) {
+                const double f = material_fresnel(rho, roughness, c);
+                CHECK(f >= last - 1e-12 && f <= 1 + 1e-12);
+                last = f;
+            }
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(reads_what_is_written, listen, stop_listening),
+        cmocka_unit_test_setup_teardown(refuses_and_says_why, listen, stop_listening),
+        cmocka_unit_test(the_house_is_in_order),
+        cmocka_unit_test(the_lobe_makes_no_light),
+        cmocka_unit_test(the_lobe_is_reciprocal_and_peaks_at_the_mirror),
+        cmocka_unit_test(reflectance_stays_between_its_ends),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,359 @@
+/* Heat seen: the isothermal cavity, Kirchhoff, and temperatures that a thermometer could have read. */
+#include "tests/check.h"
+#include "render/thermal.h"
+
+static PlanckTable *mwir, *lwir;
+
+typedef struct Scene {
+    Hits      hits;
+    Rays      rays;
+    uint16_t  material[hits_capacity];
+    float     texture[hits_capacity], temp_k[hits_capacity], out[hits_capacity];
+    uint8_t   shadow[hits_capacity];
+    Material  rows[64];
+    Materials materials;
+} Scene;
+static Scene scene;
+
+static int open_scene(void **state)
+{
+    (void)state;
+    return planck_table_create(&mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
+           planck_table_create(&lwir, 8e-6, 12e-6) != STATUS_OK;
+}
+
+static int close_scene(void **state)
+{
+    (void)state;
+    planck_table_destroy(mwir);
+    planck_table_destroy(lwir);
+    return 0;
+}
+
+static void clear(void)
+{
+    memset(&scene, 0, sizeof scene);
+    scene.materials = (Materials){.count = 64, .material = scene.rows};
+}
+
+static int add(const double d_enu[3], const double n_enu[3], double range_m, int material, double temp_k)
+{
+    const int i = scene.hits.count++;
+    CHECK(scene.hits.count <= hits_capacity);
+    scene.rays.count = scene.hits.count;
+    double d[3] = {0}, n[3] = {0};
+    CHECK(v3_normalize(d, d_enu));
+    CHECK(v3_normalize(n, n_enu));
+    for (int k = 0; k < 3; k++) {
+        scene.rays.d_enu[k][i] = d[k];
+        scene.hits.n_enu[k][i] = scene.hits.n_geo[k][i] = (float)n[k];
+    }
+    scene.hits.range_m[i] = range_m;
+    scene.hits.surface[i] = SURFACE_GRASS;
+    scene.material[i]     = (uint16_t)material;
+    scene.texture[i]      = 1;
+    scene.temp_k[i]       = (float)temp_k;
+    return i;
+}
+
+static void shade(const Air *air, Band band)
+{
+    thermal_shade(scene.out, band, air, &scene.materials, &scene.hits, &scene.rays, scene.material, scene.temp_k,
+                  scene.shadow);
+}
+
+static Air air_when(const Weather *weather, double elevation_deg)
+{
+    const double e = elevation_deg * rad_per_deg;
+    const Sun sun = {.elevation_rad = e, .azimuth_rad = pi_rad, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
+    Air air;
+    air_at(&air, weather, &sun, mwir, lwir);
+    return air;
+}
+
+/* Sky, ground, air and walls at one temperature, no sun: every pixel of every material, at any distance and angle,
+ * glossy or not, reads Planck(T). */
+static void isothermal_cavity(void **state)
+{
+    (void)state;
+    static const double temps_k[] = {210, 288.15, 400, 900};
+    for (int t = 0; t < 4; t++) {
+        const double temp_k = (float)temps_k[t];
+        Weather weather = weather_default();
+        Air air = air_when(&weather, -20);
+        const double want_mwir = planck_table_radiance(mwir, temp_k), want_lwir = planck_table_radiance(lwir, temp_k);
+        air.air_mwir_w_m2_sr = air.ground_mwir_w_m2_sr = air.sky_mean_mwir_w_m2_sr = want_mwir;
+        air.air_lwir_w_m2_sr = air.ground_lwir_w_m2_sr = air.sky_mean_lwir_w_m2_sr = want_lwir;
+        for (int i = 0; i <= air_sky_steps; i++) {
+            air.sky_mwir_w_m2_sr[i] = want_mwir;
+            air.sky_lwir_w_m2_sr[i] = want_lwir;
+        }
+        clear();
+        for (int m = 0; m < 64; m++) {
+            scene.rows[m] = (Material){.rho_mwir = (float)(m % 4) / 3, .rho_lwir = (float)(m / 4 % 4) / 3,
+                                       .gloss = (float)(m / 16) / 3, .roughness = 0.05f * (float)(m % 7)};
+            for (int a = 0; a < 12; a++) {
+                const double n_tilt = a * 0.26, view = 1.5 * sin(a * 2.1 + m);
+                const double n[3] = {sin(n_tilt), 0, cos(n_tilt)};
+                const double d[3] = {-sin(n_tilt + view), 0, -cos(n_tilt + view)};
+                add(d, n, pow(10, a * 0.4), m, temp_k);
+            }
+        }
+        for (int a = 0; a < 8; a++) add((double[3]){1, 0, a * 0.3 - 0.7}, (double[3]){0, 0, 1}, INFINITY, 0, NAN);
+        shade(&air, BAND_MWIR);
+        for (int i = 0; i < scene.hits.count; i++) CHECK_NEAR(scene.out[i] / want_mwir, 1, 1e-6);
+        shade(&air, BAND_LWIR);
+        for (int i = 0; i < scene.hits.count; i++) CHECK_NEAR(scene.out[i] / want_lwir, 1, 1e-6);
+    }
+}
+
+/* The cavity's twin: one thing a kelvin off and it shows, by its emissivity. */
+static void a_warm_wall_shows_by_its_emissivity(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    const Air air = air_when(&weather, -20);
+    clear();
+    for (int m = 0; m < 3; m++) scene.rows[m] = (Material){.rho_mwir = 0.5f * (float)m, .rho_lwir = 0.5f * (float)m};
+    for (int m = 0; m < 3; m++)
+        for (int warm = 0; warm < 2; warm++)
+            add((double[3]){0, 1, -1}, (double[3]){0, 0, 1}, 0, m, 300 + warm);
+    shade(&air, BAND_LWIR);
+    const double step = planck_table_radiance(lwir, 301) - planck_table_radiance(lwir, 300);
+    for (int m = 0; m < 3; m++)
+        CHECK_NEAR((scene.out[2 * m + 1] - scene.out[2 * m]) / step, 1 - 0.5 * m, 1e-4); /* float out of 38 W */
+    /* a black one reads its temperature, a mirror the mean sky */
+    CHECK_NEAR(planck_table_temp(lwir, scene.out[0]), 300, 1e-3);
+    CHECK_NEAR(scene.out[4] / air.sky_mean_lwir_w_m2_sr, 1, 1e-6);
+}
+
+static void mirrors_show_cold_zenith_and_warm_ground(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    const Air air = air_when(&weather, -20);
+    clear();
+    scene.rows[1] = (Material){.rho_mwir = 1, .rho_lwir = 1, .gloss = 1, .roughness = 0.02f};
+    const int up = add((double[3]){0, 0, -1}, (double[3]){0, 0, 1}, 0, 1, 300);
+    const int side = add((double[3]){0, 0.5, -0.05}, (double[3]){0, 0, 1}, 0, 1, 300);
+    const int down = add((double[3]){0, 1, -1}, (double[3]){0, -1, 0}, 0, 1, 300); /* a wall, seen from above */
+    shade(&air, BAND_LWIR);
+    CHECK_NEAR(scene.out[up] / air_sky_lwir(&air, 1), 1, 1e-6);
+    CHECK(scene.out[side] > 2.5 * scene.out[up]);
+    CHECK_NEAR(scene.out[down] / air.ground_lwir_w_m2_sr, 1, 1e-6);
+}
+
+static void sun_shows_in_mwir_only_and_not_in_shadow(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    const Air air = air_when(&weather, 50);
+    clear();
+    scene.rows[1] = (Material){.rho_mwir = 0.15f, .rho_lwir = 0.05f};
+    scene.rows[2] = (Material){.rho_mwir = 0.15f, .rho_lwir = 0.05f, .gloss = 1, .roughness = 0.1f};
+    const double e = 50 * rad_per_deg, glint[3] = {0, -cos(e), -sin(e)}, n[3] = {0, 0, 1};
+    const int lit = add((double[3]){1, 0, -1}, n, 0, 1, 300), dark = add((double[3]){1, 0, -1}, n, 0, 1, 300);
+    const int away = add(glint, n, 0, 2, 300), toward = add((double[3]){0, -cos(e), -sin(e)}, n, 0, 2, 300);
+    const int facing = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
+    scene.shadow[dark] = scene.shadow[away] = 1;
+    shade(&air, BAND_MWIR);
+    CHECK_NEAR(scene.out[lit] - scene.out[dark], 0.15 / pi_rad * air.sun_mwir_w_m2 * sin(e), 1e-6);
+    /* the eye looks towards -y, where the sun stands: glint; towards +y: none */
+    CHECK(scene.out[toward] - scene.out[away] > 10 * (scene.out[lit] - scene.out[dark]));
+    CHECK_NEAR(scene.out[facing], scene.out[away], 0.02 * scene.out[away]);
+    shade(&air, BAND_LWIR);
+    CHECK(scene.out[lit] == scene.out[dark]);
+}
+
+static void the_veil_is_the_airs(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    const Air air = air_when(&weather, 30);
+    clear();
+    add((double[3]){0, 1, -0.1}, (double[3]){0, 0, 1}, 4000, 0, 330);
+    for (Band band = BAND_MWIR; band <= BAND_LWIR; band++) {
+        const bool mid = band == BAND_MWIR;
+        shade(&air, band);
+        const Veil veil = mid ? air_veil_mwir(&air, 4000) : air_veil_lwir(&air, 4000);
+        const double bare = planck_table_radiance(mid ? mwir : lwir, 330);
+        CHECK_NEAR(scene.out[0] / (bare * veil.transmittance + veil.added_w_m2_sr), 1, 1e-6);
+    }
+}
+
+/* ---- temperatures ---- */
+
+/* A catalog of the product's own, for its roles. */
+static Catalog *open_catalog(void)
+{
+    char path[512];
+    Catalog *catalog = NULL;
+    CHECK(etc_path(path, sizeof path, "catalog.csv"));
+    CHECK(catalog_open(&catalog, path, 0.05) == STATUS_OK);
+    return catalog;
+}
+
+static Materials open_materials(const Catalog *catalog)
+{
+    char path[512], surfaces[512];
+    Materials m;
+    CHECK(etc_path(path, sizeof path, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv"));
+    CHECK(materials_open(&m, path, surfaces, catalog) == STATUS_OK);
+    return m;
+}
+
+static int add_ground(const Materials *m, SurfaceClass surface, const double n[3], double texture)
+{
+    const int i = add((double[3]){0, 1, -1}, n, 500, m->surface[surface], 0);
+    scene.hits.surface[i] = (uint8_t)surface;
+    scene.texture[i] = (float)texture;
+    return i;
+}
+
+static int add_part(const Materials *m, int model, int part, const double n[3])
+{
+    const int i = add((double[3]){0, 1, -1}, n, 500, m->part[model][part], 0);
+    scene.hits.surface[i] = 0;
+    scene.hits.entity[i] = 1;
+    scene.hits.model[i] = (uint16_t)model;
+    scene.hits.part[i] = (uint16_t)(part + 1);
+    return i;
+}
+
+static void temperatures_are_those_of_a_day(void **state)
+{
+    (void)state;
+    Catalog *catalog = open_catalog();
+    Materials m = open_materials(catalog);
+    const int tank = catalog_find(catalog, (DisEntityType){1, 1, 225, 1, 1, 1, 0}, NULL, NULL);
+    const Model *model = catalog_model(catalog, tank);
+    int hull = 0, hot = -1;
+    for (int p = 0; p < model->part_count; p++) {
+        if (model->part[p].role == HEAT_HULL) hull = p;
+        if (model->part[p].role == HEAT_EXHAUST) hot = p;
+    }
+    CHECK(hot >= 0);
+    SnapshotEntity entity[2] = {{.model = tank}, {.model = tank}}; /* one with its engine warm, one cold */
+    entity[0].heat[HEAT_EXHAUST] = 120;
+    const Snapshot snapshot = {.count = 2, .entity = entity};
+    const Weather weather = weather_default(); /* 288.15 K, 3 m/s */
+    const double up[3] = {0, 0, 1}, side[3] = {1, 0, 0}, down[3] = {0, 0, -1};
+
+    for (int night = 0; night < 2; night++) {
+        const Air air = air_when(&weather, night ? -30 : 60);
+        clear();
+        const int sky = add((double[3]){0, 0, 1}, up, INFINITY, 0, 0);
+        int ground[SURFACE_COUNT] = {0};
+        for (int s = 1; s < SURFACE_COUNT; s++) ground[s] = add_ground(&m, (SurfaceClass)s, up, 1);
+        const int bright = add_ground(&m, SURFACE_BARE_SOIL, up, 1.3);
+        const int dark = add_ground(&m, SURFACE_BARE_SOIL, up, 0.7);
+        const int south = add_ground(&m, SURFACE_BARE_SOIL, (double[3]){0, -0.3, 1}, 1);
+        const int north = add_ground(&m, SURFACE_BARE_SOIL, (double[3]){0, 0.3, 1}, 1);
+        const int roof = add_part(&m, tank, hull, up), wall = add_part(&m, tank, hull, side);
+        const int belly = add_part(&m, tank, hull, down), exhaust = add_part(&m, tank, hot, side);
+        const int cold = add_part(&m, tank, hot, side);
+        scene.hits.entity[cold] = 2;
+        scene.shadow[roof] = 1; /* no instant thermal shadows: nobody asks */
+        thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
+        const float *t = scene.temp_k;
+        CHECK(isnan(t[sky]));
+        print_message("%s: grass %.1f crop %.1f soil %.1f track %.1f water %.1f; hull top %.1f side %.1f belly %.1f, "
+                      "exhaust %.1f K\n", night ? "night" : "noon", t[ground[SURFACE_GRASS]], t[ground[SURFACE_CROP]],
+                      t[ground[SURFACE_BARE_SOIL]], t[ground[SURFACE_TRACK]], t[ground[SURFACE_WATER]], t[roof],
+                      t[wall], t[belly], t[exhaust]);
+        CHECK_NEAR(t[exhaust] - t[cold], 120, 1e-4);
+        CHECK_NEAR(t[ground[SURFACE_WATER]], 288.15, 1.5);
+        if (night) {
+            for (int s = 1; s < SURFACE_COUNT; s++) CHECK(t[ground[s]] < 288.15 && t[ground[s]] > 282);
+            CHECK(t[roof] < 288.15 && t[roof] > 281 && fabs(t[belly] - 288.15) < 0.01);
+            CHECK_NEAR(t[bright], t[dark], 1e-3);
+        } else {
+            CHECK(t[ground[SURFACE_GRASS]] > 295 && t[ground[SURFACE_GRASS]] < 305);
+            CHECK(t[ground[SURFACE_CROP]] < t[ground[SURFACE_GRASS]]);
+            CHECK(t[ground[SURFACE_BARE_SOIL]] < t[ground[SURFACE_TRACK]] && t[ground[SURFACE_TRACK]] < 315);
+            CHECK(t[south] > t[north] + 2 && t[dark] > t[bright] + 2);
+            CHECK(t[roof] > 295 && t[roof] < 310 && t[wall] > 293 && t[wall] < t[roof] && t[belly] < t[wall]);
+        }
+    }
+    materials_close(&m);
+    catalog_close(catalog);
+}
+
+/* The ground's two figures were taken from measured days; the formula must give those days back. */
+static void measured_ground(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!reference_path(path, "thermal/bondville1998_doy131_145.csv")) skip();
+    FILE *file = fopen(path, "r");
+    CHECK(file != NULL);
+    char line[1024];
+    CHECK(fgets(line, sizeof line, file) != NULL);
+    double day = 0, day_weight = 0, night = 0, night_weight = 0, air_mean = 0;
+    int n = 0;
+    while (fgets(line, sizeof line, file)) {
+        double v[23];
+        char *at = line;
+        int columns = 0;
+        for (; columns < 23; columns++) {
+            char *end;
+            v[columns] = strtod(at, &end);
+            if (end == at) break; /* empty: missing */
+            at = *end == ',' ? end + 1 : end;
+        }
+        if (columns < 20) continue;
+        const double air_k = v[2] + 273.15, loss = 5.670374419184429e-8 * pow(air_k, 4) - v[19];
+        if (v[5] > 500 && v[1] >= 1000 && v[1] <= 1400) {
+            const double rise = v[9] - v[2] + 3.5 * loss / 100; /* what the sun did */
+            day += rise * v[5], day_weight += v[5] * v[5];
+        }
+        if (v[5] < 1 && loss > 60) night += (v[2] - v[9]) * loss, night_weight += loss * loss;
+        air_mean += air_k, n++;
+    }
+    fclose(file);
+    const double rise_k = 1000 * day / day_weight, fall_k = 100 * night / night_weight;
+    print_message("Bondville, moist soil: rise %.1f K, fall %.1f K over %d half hours\n", rise_k, fall_k, n);
+    /* the table's own note: moist 11, nights 3.6 */
+    CHECK_NEAR(rise_k, 11, 1.5);
+    CHECK_NEAR(fall_k, 3.6, 0.4);
+    Materials m = open_materials(NULL);
+    CHECK(m.ground_rise_k[SURFACE_BARE_SOIL] > rise_k); /* ours is drier */
+    CHECK_NEAR(m.ground_fall_k[SURFACE_BARE_SOIL], fall_k, 0.5);
+    materials_close(&m);
+}
+
+/* A vehicle turning on the spot keeps its temperatures: they know up, not the compass. */
+static void turning_changes_nothing(void **state)
+{
+    (void)state;
+    Catalog *catalog = open_catalog();
+    Materials m = open_materials(catalog);
+    SnapshotEntity entity = {0};
+    const Snapshot snapshot = {.count = 1, .entity = &entity};
+    const Weather weather = weather_default();
+    const Air air = air_when(&weather, 35);
+    clear();
+    for (int k = 0; k < 36; k++) {
+        const double a = k * 10 * rad_per_deg;
+        add_part(&m, 0, 0, (double[3]){cos(a), sin(a), 0.3});
+    }
+    thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
+    for (int i = 1; i < scene.hits.count; i++) CHECK_NEAR(scene.temp_k[i], scene.temp_k[0], 1e-4);
+    materials_close(&m);
+    catalog_close(catalog);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(isothermal_cavity),
+        cmocka_unit_test(a_warm_wall_shows_by_its_emissivity),
+        cmocka_unit_test(mirrors_show_cold_zenith_and_warm_ground),
+        cmocka_unit_test(sun_shows_in_mwir_only_and_not_in_shadow),
+        cmocka_unit_test(the_veil_is_the_airs),
+        cmocka_unit_test(temperatures_are_those_of_a_day),
+        cmocka_unit_test(measured_ground),
+        cmocka_unit_test(turning_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, open_scene, close_scene);
+}

@@ -1,0 +1,298 @@
+/* The first detector: noise by its statistics, levels by exact order statistics, display by its invariants. */
+#include "tests/check.h"
+
+#include "sensor/detector/detector.h"
+
+enum { pixels = 96 * 64, frames = 40 };
+
+static float plane[pixels], noisy[pixels];
+
+static int by_value(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* (n - 1) s^2 / sigma^2 is chi-square with n - 1 degrees of freedom; for n = 245760 that is normal with a
+ * relative deviation of sqrt(2 / n) in variance. Five deviations: one false alarm in 1.7 million. */
+static void noise_has_the_sigma_asked_for(void **state)
+{
+    (void)state;
+    const double sigmas[] = {1e-3, 0.25, 40};
+    for (int k = 0; k < 3; k++) {
+        double sum = 0, sum2 = 0, lag = 0, between = 0, last = 0;
+        static float before[pixels];
+        for (uint32_t frame = 0; frame < frames; frame++) {
+            memset(plane, 0, sizeof plane);
+            detector_noise(noisy, plane, 0, pixels, sigmas[k], 7, 3, frame);
+            for (int i = 0; i < pixels; i++) {
+                const double x = noisy[i] / sigmas[k];
+                sum += x;
+                sum2 += x * x;
+                lag += x * last;
+                if (frame > 0) between += x * before[i] / sigmas[k];
+                last = x;
+            }
+            memcpy(before, noisy, sizeof before);
+        }
+        const double n = (double)pixels * frames, deviation = sqrt(2 / n);
+        CHECK_NEAR(sum / n, 0, 5 / sqrt(n));
+        CHECK_NEAR((sum2 - sum * sum / n) / (n - 1), 1, 5 * deviation);
+        CHECK_NEAR(lag / n, 0, 5 / sqrt(n));      /* neighbours know nothing of each other */
+        CHECK_NEAR(between / n, 0, 5 / sqrt(n));  /* nor do frames */
+    }
+}
+
+/* In pieces or whole, in place or not: the same bits. Another seed, stream or frame: other bits. */
+static void noise_is_a_function_of_its_counters(void **state)
+{
+    (void)state;
+    for (int i = 0; i < pixels; i++) plane[i] = (float)i * 0.01f;
+    plane[5] = NAN;
+    plane[6] = INFINITY;
+    detector_noise(noisy, plane, 0, pixels, 0.5, 1, 2, 3);
+    assert_memory_equal(&noisy[5], &plane[5], 2 * sizeof(float));
+
+    static float pieces[pixels];
+    memcpy(pieces, plane, sizeof pieces);
+    for (size_t first = 0; first < pixels; first += 777) {
+        const size_t count = pixels - first < 777 ? pixels - first : 777;
+        detector_noise(pieces + first, pieces + first, first, count, 0.5, 1, 2, 3);
+    }
+    assert_memory_equal(pieces, noisy, sizeof noisy);
+
+    const uint32_t others[3][3] = {{2, 2, 3}, {1, 3, 3}, {1, 2, 4}};
+    for (int k = 0; k < 3; k++) {
+        int same = 0;
+        detector_noise(pieces, plane, 0, pixels, 0.5, others[k][0], others[k][1], others[k][2]);
+        for (int i = 0; i < pixels; i++) same += pieces[i] == noisy[i];
+        CHECK(same < pixels / 1000);
+    }
+
+    detector_noise(pieces, plane, 0, pixels, 0, 1, 2, 3); /* no noise: the plane itself */
+    assert_memory_equal(pieces, plane, sizeof plane);
+}
+
+/* Against a sort, with both signs, wide exponents, ties, and non-finite values strewn in. */
+static void percentiles_are_exact_order_statistics(void **state)
+{
+    (void)state;
+    static float finite[pixels];
+    DetectorConfig config = detector_default_config();
+    config.margin = 0;
+    for (uint32_t trial = 0; trial < 12; trial++) {
+        int n = 0;
+        for (int i = 0; i < pixels; i++) {
+            const double u = random_uniform(1, trial, 0, (uint64_t)i), v = random_normal(1, trial, 1, (uint64_t)i);
+            plane[i] = (float)(trial % 3 == 0 ? v * pow(10, 20 * u - 10) : trial % 3 == 1 ? floor(4 * v) : 300 + v);
+            if (u < 0.01) plane[i] = u < 0.003 ? NAN : u < 0.006 ? INFINITY : -INFINITY;
+            if (isfinite(plane[i])) finite[n++] = plane[i];
+        }
+        qsort(finite, (size_t)n, sizeof *finite, by_value);
+        config.percentile_low = trial == 11 ? 0 : 0.02 * trial;
+        config.percentile_high = trial == 11 ? 1 : 1 - 0.013 * trial;
+
+        const float        *planes[1] = {plane};
+        const DetectorLevel level = detector_level(&config, planes, 1, pixels);
+        const double        low = finite[(int)(config.percentile_low * (n - 1) + 0.5)];
+        const double        high = finite[(int)(config.percentile_high * (n - 1) + 0.5)];
+        /* middle and span are sums of two: two roundings each */
+        CHECK_NEAR(level.low, low, 4e-16 * (fabs(low) + fabs(high)));
+        CHECK_NEAR(level.high, high, 4e-16 * (fabs(low) + fabs(high)));
+
+        /* cut in three planes, the same */
+        const float *thirds[3] = {plane, plane + pixels / 3, plane + 2 * (pixels / 3)};
+        const DetectorLevel together = detector_level(&config, thirds, 3, pixels / 3);
+        CHECK(together.low == level.low && together.high == level.high);
+    }
+}
+
+static void a_constant_plane_is_steady_mid_grey(void **state)
+{
+    (void)state;
+    static uint8_t  code[pixels];
+    static uint16_t code16[pixels];
+    const float    *planes[1] = {plane};
+    DetectorConfig  config = detector_default_config();
+    const float     constants[] = {38.5f, 0, -7, 1e-20f, 1e20f};
+    for (int k = 0; k < 5; k++) {
+        for (int i = 0; i < pixels; i++) plane[i] = constants[k];
+        plane[17] = nextafterf(plane[17], INFINITY); /* rounding must not become a picture */
+        config.bits = 8;
+        const DetectorLevel level = detector_level(&config, planes, 1, pixels);
+        CHECK(level.high > level.low);
+        detector_display(code, plane, pixels, &config, level);
+        for (int i = 0; i < pixels; i++) CHECK(code[i] >= 127 && code[i] <= 131);
+        config.bits = 16;
+        detector_display(code16, plane, pixels, &config, level);
+        CHECK(code16[0] == 32768);
+    }
+    for (int i = 0; i < pixels; i++) plane[i] = i % 2 ? NAN : INFINITY; /* nothing finite at all */
+    const DetectorLevel none = detector_level(&config, planes, 1, pixels);
+    CHECK(none.low == 0 && none.high == 1);
+    detector_display(code16, plane, pixels, &config, none);
+    CHECK(code16[0] == 65535 && code16[1] == 0);
+}
+
+/* min_span keeps noise from being stretched over the whole scale. */
+static void min_span_bounds_the_gain(void **state)
+{
+    (void)state;
+    DetectorConfig config = detector_default_config();
+    config.min_span = 2;
+    for (int i = 0; i < pixels; i++) plane[i] = 300 + 0.01f * (float)(i % 3);
+    const float        *planes[1] = {plane};
+    const DetectorLevel level = detector_level(&config, planes, 1, pixels);
+    CHECK_NEAR(level.high - level.low, 2, 1e-12);
+    CHECK_NEAR(level.high + level.low, 600.02, 1e-4);
+}
+
+/* Ends, middle, outside, NaN; gain about the middle; offset. Answers from paper. */
+static void quantisation_by_hand(void **state)
+{
+    (void)state;
+    DetectorConfig config = detector_default_config();
+    const DetectorLevel level = {10, 20};
+    const float in[] = {10, 20, 15, 9, -1e30f, 21, 1e30f, NAN, INFINITY, -INFINITY, 12.5f};
+    const uint8_t want[] = {0, 255, 128, 0, 0, 255, 255, 0, 255, 0, 64};
+    uint8_t  got[11];
+    uint16_t got16[11];
+    detector_display(got, in, 11, &config, level);
+    assert_memory_equal(got, want, sizeof want);
+    config.bits = 16;
+    detector_display(got16, in, 11, &config, level);
+    CHECK(got16[0] == 0 && got16[1] == 65535 && got16[2] == 32768 && got16[10] == 16384 && got16[7] == 0);
+
+    config.bits = 8;
+    config.gain = 2; /* 12.5 .. 17.5 fills the scale */
+    detector_display(got, in, 11, &config, level);
+    CHECK(got[10] == 0 && got[2] == 128 && got[0] == 0 && got[1] == 255);
+    config.gain = 1;
+    config.offset = 0.25;
+    detector_display(got, in, 11, &config, level);
+    CHECK(got[0] == 64 && got[2] == 191 && got[1] == 255);
+}
+
+/* More radiance is never darker, at any depth, with any curve; and the curve is sRGB's. */
+static void display_is_monotone(void **state)
+{
+    (void)state;
+    static float    ramp[200000];
+    static uint16_t code16[200000];
+    static uint8_t  code[200000];
+    for (int i = 0; i < 200000; i++) ramp[i] = (float)(-0.1 + 1.2 * i / 199999);
+    for (int gamma = 0; gamma < 2; gamma++) {
+        DetectorConfig config = detector_default_config();
+        config.display_gamma = gamma;
+        const DetectorLevel level = {0, 1};
+        detector_display(code, ramp, 200000, &config, level);
+        config.bits = 16;
+        detector_display(code16, ramp, 200000, &config, level);
+        for (int i = 1; i < 200000; i++) CHECK(code[i] >= code[i - 1] && code16[i] >= code16[i - 1]);
+        CHECK(code[0] == 0 && code[199999] == 255 && code16[199999] == 65535);
+    }
+    /* IEC 61966-2-1: linear 0.214041 is code 0.5, 0.0031308 is 0.04045 */
+    DetectorConfig config = detector_default_config();
+    config.display_gamma = true;
+    const float in[] = {0.2140411f, 0.0031308f, 1};
+    detector_display(code, in, 3, &config, (DetectorLevel){0, 1});
+    CHECK(code[0] >= 127 && code[0] <= 128 && code[1] == 10 && code[2] == 255);
+}
+
+/* One gain for all three: grey stays grey, and ratios stay. */
+static void rgb_has_one_gain(void **state)
+{
+    (void)state;
+    static float   r[pixels], g[pixels], b[pixels];
+    static uint8_t rgb[3 * pixels], grey[pixels];
+    for (int i = 0; i < pixels; i++) {
+        r[i] = g[i] = b[i] = (float)i;
+        if (i % 10 == 0) b[i] = 0.5f * (float)i;
+    }
+    const float   *in[3] = {r, g, b};
+    DetectorConfig config = detector_default_config();
+    const DetectorLevel level = detector_level(&config, in, 3, pixels);
+    detector_display_rgb(rgb, in, pixels, &config, level);
+    detector_display(grey, g, pixels, &config, level);
+    for (int i = 0; i < pixels; i++) {
+        CHECK(rgb[3 * i] == grey[i] && rgb[3 * i + 1] == grey[i]);
+        if (i % 10) CHECK(rgb[3 * i + 2] == grey[i]);
+    }
+    const int i = 4000;
+    CHECK(rgb[3 * i + 2] < rgb[3 * i]);
+}
+
+/* 10 dB is a tenth: with 60 dB over 255 codes, 42.5 codes down. */
+static void radar_decibels_by_hand(void **state)
+{
+    (void)state;
+    const float   power[] = {1e-3f, 1e-4f, 1e-6f, 1e-9f, 9e-10f, 0, -1, NAN, INFINITY, 5e-4f};
+    const uint8_t want[] = {255, 213, 128, 0, 0, 0, 0, 0, 255, 242};
+    uint8_t       got[10];
+    detector_display_db(got, power, 10, 60, 8);
+    for (int i = 0; i < 10; i++)
+        if (abs(got[i] - want[i]) > (i == 1 || i == 2)) fail_msg("pixel %d: %d, want %d", i, got[i], want[i]);
+
+    /* the scale is relative: a thousand times the power, the same picture */
+    float   more[10];
+    uint8_t again[10];
+    for (int i = 0; i < 10; i++) more[i] = power[i] * 1024;
+    detector_display_db(again, more, 10, 60, 8);
+    assert_memory_equal(again, got, sizeof got);
+
+    const float dark[3] = {0, 0, NAN};
+    detector_display_db(got, dark, 3, 60, 8);
+    CHECK(got[0] == 0 && got[1] == 0 && got[2] == 0);
+    uint16_t wide[10];
+    detector_display_db(wide, power, 10, 60, 16);
+    CHECK(wide[0] == 65535 && abs(wide[2] - 32768) <= 1);
+}
+
+static int  lines;
+static void count_lines(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    lines += level == LOG_ERROR && strstr(line, "detector: bad value") == line;
+}
+
+static void bad_configurations_are_named(void **state)
+{
+    (void)state;
+    DetectorConfig bad[8];
+    for (int i = 0; i < 8; i++) bad[i] = detector_default_config();
+    bad[0].gain = 0;
+    bad[1].gain = NAN;
+    bad[2].noise_sigma = -1;
+    bad[3].bits = 12;
+    bad[4].percentile_high = 0;
+    bad[5].auto_level = false, bad[5].level_high = bad[5].level_low;
+    bad[6].margin = INFINITY;
+    bad[7].percentile_low = -0.1;
+    lines = 0;
+    log_set_sink(count_lines, NULL);
+    for (int i = 0; i < 8; i++) {
+        assert_int_equal(detector_check_config(&bad[i]), STATUS_BAD_VALUE);
+        assert_int_equal(lines, i + 1);
+    }
+    log_set_sink(NULL, NULL);
+    const DetectorConfig good = detector_default_config();
+    assert_int_equal(detector_check_config(&good), STATUS_OK);
+}
+
+int main(void)
+{
+    thread_flush_denormals();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(noise_has_the_sigma_asked_for),
+        cmocka_unit_test(noise_is_a_function_of_its_counters),
+        cmocka_unit_test(percentiles_are_exact_order_statistics),
+        cmocka_unit_test(a_constant_plane_is_steady_mid_grey),
+        cmocka_unit_test(min_span_bounds_the_gain),
+        cmocka_unit_test(quantisation_by_hand),
+        cmocka_unit_test(display_is_monotone),
+        cmocka_unit_test(rgb_has_one_gain),
+        cmocka_unit_test(radar_decibels_by_hand),
+        cmocka_unit_test(bad_configurations_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
