@@ -166,7 +166,8 @@ static unsigned least_length(uint8_t type)
     }
 }
 
-bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end, DisCounters *counters)
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
+                  DisCounters *counters)
 {
     const size_t left = (size_t)(end - *at);
     DisDrop      why;

@@ -87,6 +87,7 @@ typedef struct DisWriter DisWriter;
  *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
  *
  * pdu: header.length octets starting at the header, inside the datagram. */
-bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end, DisCounters *counters);
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
+                  DisCounters *counters);
 
 #endif

@@ -40,8 +40,8 @@ Status       mesh_builder_finish(Model *out, MeshBuilder *b);
 int        mesh_node(MeshBuilder *b, const char *name, int parent, double x, double y, double z);
 ModelNode *mesh_node_get(MeshBuilder *b, int node);
 /* Makes a node turn: unit axis, limits in rad (low > high: none). */
-void       mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az, uint32_t dis_class, uint32_t dis_metric,
-                      double low_rad, double high_rad);
+void       mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az, uint32_t dis_class,
+                      uint32_t dis_metric, double low_rad, double high_rad);
 /* Begins a part; nodes must come in ascending order. */
 void       mesh_part(MeshBuilder *b, int node, const char *name, const char *material, HeatRole role);
 

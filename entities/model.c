@@ -188,7 +188,8 @@ void model_measure(Model *model)
             if (fixed || !(box[n][0][0] <= box[n][1][0])) continue;
             /* the farthest point of a convex set is a corner, and the box holds every vertex of the node */
             for (int c = 0; c < 8; c++) {
-                const Drum corner = {.centre = {box[n][c & 1][0], box[n][c >> 1 & 1][1], box[n][c >> 2][2]}, .axis = {1, 0, 0}};
+                const Drum corner = {.centre = {box[n][c & 1][0], box[n][c >> 1 & 1][1], box[n][c >> 2][2]},
+                                     .axis   = {1, 0, 0}};
                 model->radius_m = fmax(model->radius_m, farthest(model, n, corner, 64));
             }
         }

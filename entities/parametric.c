@@ -21,6 +21,21 @@ static Status parametric_unknown(Model *out, double sag_m)
     return mesh_builder_finish(out, b);
 }
 
+/* A block with a metal plate on the front half of its right side alone, for finding out whether a picture is
+ * where it should be, and neither mirrored nor rolled: the plate differs from the block in every band (in the
+ * thermal ones when the engine runs: the block is hot and black, the plate bare metal). */
+static Status parametric_marker(Model *out, double sag_m)
+{
+    MeshBuilder *b = mesh_builder_create("marker", sag_m);
+    if (!b) return STATUS_NO_MEMORY;
+    const int hull = mesh_node(b, "hull", -1, 0, 0, 0);
+    mesh_part(b, hull, "block", "rubber_black", HEAT_ENGINE_DECK);
+    mesh_box(b, place_at(0, 0, 0), -2, -1, -1.5, 2, 1, 0);
+    mesh_part(b, hull, "plate", "metal_aluminium_bare", HEAT_PASSIVE);
+    mesh_box(b, place_at(0, 0, 0), 0.1, 1, -1.4, 1.9, 1.0001, -0.3);
+    return mesh_builder_finish(out, b);
+}
+
 Status parametric_build(Model *out, const char *name, double sag_m)
 {
     static const struct {
@@ -29,6 +44,7 @@ Status parametric_build(Model *out, const char *name, double sag_m)
     } table[] = {
         {"tank", parametric_tank},       {"truck", parametric_truck},     {"helicopter", parametric_helicopter},
         {"missile", parametric_missile}, {"unknown", parametric_unknown},
+        {"marker", parametric_marker},
     };
     if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
         log_error("parametric: sag out of range: model=%s sag_m=%g range=1e-5..0.1", name, sag_m);

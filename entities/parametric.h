@@ -7,8 +7,8 @@
 #include "entities/model.h"
 
 /* sag_m: 1e-5 .. 0.1 (else STATUS_BAD_VALUE). Triangles at 0.005 m: tank 15 k, truck 16 k, helicopter 14 k; at
- * 1e-5 m: tank 0.7 M, truck 3 M, helicopter 4 M, in about a second. Names: tank, truck, helicopter, missile, unknown (a box with a label's worth of
- * detail). STATUS_UNSUPPORTED for any other. */
+ * 1e-5 m: tank 0.7 M, truck 3 M, helicopter 4 M, in a second or two. Names: tank, truck, helicopter,
+ * missile, unknown (a box with a label's worth of detail). STATUS_UNSUPPORTED for any other. */
 Status parametric_build(Model *out, const char *name, double sag_m);
 
 /* One builder a file; sag_m as above, already checked. */

@@ -35,14 +35,17 @@ static void build_fuselage(MeshBuilder *b)
     mesh_part(b, 0, "fin", "paint_olive", HEAT_PASSIVE);
     {
         /* drawn flat as (x, thickness) and lofted upwards: shape y is up */
-        static const double root[6][2] = {{-5.30, 0}, {-5.65, 0.09}, {-6.30, 0.06}, {-6.50, 0}, {-6.30, -0.06}, {-5.65, -0.09}};
-        static const double tip[6][2]  = {{-6.22, 0}, {-6.36, 0.045}, {-6.66, 0.03}, {-6.795, 0}, {-6.66, -0.03}, {-6.36, -0.045}};
+        static const double root[6][2] = {{-5.30, 0}, {-5.65, 0.09}, {-6.30, 0.06}, {-6.50, 0},
+                                          {-6.30, -0.06}, {-5.65, -0.09}};
+        static const double tip[6][2]  = {{-6.22, 0}, {-6.36, 0.045}, {-6.66, 0.03}, {-6.795, 0},
+                                          {-6.66, -0.03}, {-6.36, -0.045}};
         Place up = here;
         const double m[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0};
         for (int i = 0; i < 9; i++) up.m[i] = m[i];
         mesh_slab(b, up, 6, root, 1.75, tip, 3.25);
         /* tail rotor gearbox and its shaft, out to the right */
-        mesh_bar(b, (double[3]){tail_hub_x_m, -0.05, tail_hub_z_m}, (double[3]){tail_hub_x_m, tail_hub_y_m, tail_hub_z_m}, 0.06);
+        mesh_bar(b, (double[3]){tail_hub_x_m, -0.05, tail_hub_z_m},
+                 (double[3]){tail_hub_x_m, tail_hub_y_m, tail_hub_z_m}, 0.06);
         mesh_sphere(b, place_scaled(place_at(tail_hub_x_m, 0, tail_hub_z_m), 0.22, 0.12, 0.14), 1);
         mesh_bar(b, (double[3]){-6.1, 0, -1.75}, (double[3]){-6.55, 0, -1.35}, 0.025);
     }
@@ -51,8 +54,10 @@ static void build_fuselage(MeshBuilder *b)
     mesh_sphere(b, place_at(6.52, 0, -1.10), 0.19);
     /* stabiliser across the boom */
     mesh_part(b, 0, "stabiliser", "paint_olive", HEAT_PASSIVE);
-    static const double root[6][2] = {{-3.60, -1.80}, {-3.75, -1.845}, {-4.15, -1.83}, {-4.32, -1.80}, {-4.15, -1.785}, {-3.75, -1.775}};
-    static const double tip[6][2]  = {{-3.80, -1.80}, {-3.90, -1.825}, {-4.15, -1.82}, {-4.28, -1.80}, {-4.15, -1.79}, {-3.90, -1.785}};
+    static const double root[6][2] = {{-3.60, -1.80}, {-3.75, -1.845}, {-4.15, -1.83}, {-4.32, -1.80},
+                                      {-4.15, -1.785}, {-3.75, -1.775}};
+    static const double tip[6][2]  = {{-3.80, -1.80}, {-3.90, -1.825}, {-4.15, -1.82}, {-4.28, -1.80},
+                                      {-4.15, -1.79}, {-3.90, -1.785}};
     for (int side = -1; side <= 1; side += 2) mesh_slab(b, mirrored(side), 6, root, 0.05, tip, 1.05);
 }
 
@@ -96,7 +101,8 @@ static void build_engine(MeshBuilder *b)
     mesh_part(b, 0, "engine_cowling", "paint_olive", HEAT_ENGINE_DECK);
     mesh_loft(b, here, cowl, 7);
     /* mast fairing */
-    static const Station mast[3] = {{1.15, 0.10, -3.30, -2.95, 0.9}, {1.65, 0.17, -3.36, -2.95, 0.9}, {2.20, 0.09, -3.22, -2.95, 0.9}};
+    static const Station mast[3] = {
+        {1.15, 0.10, -3.30, -2.95, 0.9}, {1.65, 0.17, -3.36, -2.95, 0.9}, {2.20, 0.09, -3.22, -2.95, 0.9}};
     mesh_loft(b, here, mast, 3);
     mesh_part(b, 0, "intakes", "metal_dark", HEAT_ENGINE_DECK);
     for (int side = -1; side <= 1; side += 2) {
@@ -164,7 +170,8 @@ static void build_skids(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2) {
         const double y = side * half_skid_track_m;
         /* straight on the ground, the tip turned up in three steps; balls close the joints */
-        const double bend[5][3] = {{0.10, y, z}, {3.55, y, z}, {3.85, y, z - 0.05}, {4.08, y, z - 0.16}, {4.20, y, z - 0.32}};
+        const double bend[5][3] = {{0.10, y, z}, {3.55, y, z}, {3.85, y, z - 0.05}, {4.08, y, z - 0.16},
+                                   {4.20, y, z - 0.32}};
         for (int i = 0; i < 4; i++) {
             mesh_bar(b, bend[i], bend[i + 1], skid_radius_m);
             if (i > 0) mesh_sphere(b, place_at(bend[i][0], y, bend[i][2]), skid_radius_m);

@@ -30,7 +30,8 @@ static void build_chassis(MeshBuilder *b)
         mesh_box(b, mirrored(side), -2.35, 0.50, -0.84, -0.90, 0.62, -0.74);
     }
     for (int i = 0; i < 3; i++) {
-        mesh_bar(b, (double[3]){axle_x_m[i], -0.82, -wheel_radius_m}, (double[3]){axle_x_m[i], 0.82, -wheel_radius_m}, 0.075);
+        mesh_bar(b, (double[3]){axle_x_m[i], -0.82, -wheel_radius_m},
+                 (double[3]){axle_x_m[i], 0.82, -wheel_radius_m}, 0.075);
         mesh_sphere(b, place_at(axle_x_m[i], 0, -wheel_radius_m), 0.22);
     }
     mesh_bar(b, (double[3]){axle_x_m[2], 0, -0.66}, (double[3]){1.2, 0, -0.85}, 0.05); /* propeller shaft */
@@ -56,7 +57,8 @@ static void build_cab(MeshBuilder *b)
 {
     const Place here = place_at(0, 0, 0);
     /* seen from the side: floor, scuttle, raked windscreen, roof, back wall */
-    static const double cab[6][2] = {{0.42, -1.02}, {1.95, -1.02}, {1.95, -1.80}, {1.62, -2.52}, {1.45, -2.60}, {0.42, -2.58}};
+    static const double cab[6][2] = {{0.42, -1.02}, {1.95, -1.02}, {1.95, -1.80}, {1.62, -2.52},
+                                     {1.45, -2.60}, {0.42, -2.58}};
     mesh_part(b, 0, "cab", "paint_olive", HEAT_CABIN);
     mesh_prism(b, here, 6, cab, -1.10, 1.10);
     for (int side = -1; side <= 1; side += 2) {

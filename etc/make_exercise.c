@@ -33,6 +33,7 @@ static const uint32_t deactivated = 1u << 23, engine_on = 1u << 22, wrecked = 1u
 typedef struct Options {
     const char *name, *path;
     int         version;
+    const char *datagrams; /* folder; NULL: none */
     bool        bundle, absolute;
     double      lat_deg, lon_deg, stamp_s, clock_unix_s;
     uint64_t    seed;
@@ -41,8 +42,10 @@ typedef struct Options {
 /* ---- the capture file: pcap with nanoseconds, Ethernet, IPv4, UDP ------------------------- */
 
 typedef struct Capture {
-    FILE  *file;
-    double epoch_unix_s;
+    FILE       *file;
+    double      epoch_unix_s;
+    const char *datagrams; /* folder for each datagram as a file of its own; NULL: none */
+    int         count;
 } Capture;
 
 static void put_u16(uint8_t *at, unsigned v)
@@ -58,6 +61,18 @@ static bool capture_open(Capture *capture, const char *path, double epoch_unix_s
     capture->epoch_unix_s = epoch_unix_s;
     capture->file = fopen(path, "wb");
     return capture->file && fwrite(header, sizeof header, 1, capture->file) == 1;
+}
+
+/* DATAGRAMS/NNNN.pdu: what a fuzzer begins with. */
+static bool datagram_file(const Capture *capture, const uint8_t *bytes, size_t count)
+{
+    char path[4096];
+    if (!capture->datagrams) return true;
+    if (snprintf(path, sizeof path, "%s/%04d.pdu", capture->datagrams, capture->count) >= (int)sizeof path) return false;
+    FILE *file = fopen(path, "wb");
+    if (!file) return false;
+    const bool ok = count == 0 || fwrite(bytes, count, 1, file) == 1;
+    return fclose(file) == 0 && ok;
 }
 
 /* One datagram to the broadcast address of the loopback network. */
@@ -83,6 +98,8 @@ static bool capture_datagram(Capture *capture, double t_s, const uint8_t *bytes,
     /* whole nanoseconds from the exercise time alone: at Unix size a double has but 0.2 us */
     const uint64_t ns = (uint64_t)llround(t_s * 1e9) + (uint64_t)llround(fmod(capture->epoch_unix_s, 1) * 1e9);
     const uint32_t length = (uint32_t)(sizeof frame + count);
+    capture->count++;
+    if (!datagram_file(capture, bytes, count)) return false;
     const uint32_t record[4] = {(uint32_t)(floor(capture->epoch_unix_s) + (double)(ns / 1000000000u)),
                                 (uint32_t)(ns % 1000000000u), length, length};
     return fwrite(record, sizeof record, 1, capture->file) == 1 && fwrite(frame, sizeof frame, 1, capture->file) == 1 &&
@@ -624,7 +641,8 @@ static const char help[] =
     "  --clock UNIX_S    a Start/Resume PDU first, with this simulation time\n"
     "  --lat DEG         -89 .. 89 (36)\n"
     "  --lon DEG         -180 .. 180 (-123)\n"
-    "  --seed N          another road, another place to fire from (1)\n";
+    "  --seed N          another road, another place to fire from (1)\n"
+    "  --datagrams DIR   each datagram as a file in DIR, too\n";
 
 static bool in_range(const char *option, double value, double low, double high)
 {
@@ -637,7 +655,8 @@ static bool read_options(Options *o, int argc, char **argv)
 {
     static const struct option options[] = {{"version", 1, 0, 'v'}, {"bundle", 0, 0, 'b'}, {"absolute", 0, 0, 'a'},
                                             {"stamp", 1, 0, 's'},   {"clock", 1, 0, 'c'},  {"lat", 1, 0, 'y'},
-                                            {"lon", 1, 0, 'x'},     {"seed", 1, 0, 'r'},   {0, 0, 0, 0}};
+                                            {"lon", 1, 0, 'x'},     {"seed", 1, 0, 'r'},   {"datagrams", 1, 0, 'd'},
+                                            {0, 0, 0, 0}};
     *o = (Options){.version = 7, .lat_deg = 36, .lon_deg = -123, .stamp_s = 1350, .clock_unix_s = NAN, .seed = 1};
     for (int c, at = 0; (c = getopt_long(argc, argv, "", options, &at)) != -1;) {
         double value = 0;
@@ -645,6 +664,7 @@ static bool read_options(Options *o, int argc, char **argv)
         if (optarg && !text_to_double(&value, optarg)) value = NAN;
         switch (c) {
         case 'v': o->version = (int)value; if (!in_range("version", value, 5, 7)) return false; break;
+        case 'd': o->datagrams = optarg; break;
         case 'b': o->bundle = true; break;
         case 'a': o->absolute = true; break;
         case 's': o->stamp_s = value; if (!in_range("stamp", value, 0, 3600)) return false; break;
@@ -684,6 +704,7 @@ int main(int argc, char **argv)
     sender.scene = &scene;
     /* relative: a round epoch that nobody takes for a date */
     sender.failed = !capture_open(&sender.capture, options.path, options.absolute ? 1718992800 : 1000000000);
+    sender.capture.datagrams = options.datagrams;
     if (!sender.failed && strcmp(options.name, "empty") != 0) play(&sender);
     const int reason = errno;
     if (sender.capture.file && fclose(sender.capture.file) != 0) sender.failed = true;

@@ -1,7 +1,7 @@
 /* render/air.h: sun, sky and the path, per frame: the light that falls on the scene and the air before it.
  *
- * A first model, where the tables of a later version will sit: Koschmieder in the visible, one extinction a
- * thermal band, a two-term sky. Every figure names its source in air.c. */
+ * A first model, where the tables of a later version will sit: Koschmieder in the visible, two coefficients a
+ * thermal band, a sky of single scattering. Sources and errors of every figure: air.c. */
 #ifndef RENDER_AIR_H
 #define RENDER_AIR_H
 
@@ -42,7 +42,7 @@ typedef struct Air {
     double  solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
 } Air;
 
-/* About 0.2 ms; once a frame. */
+/* About 10 us; once a frame. */
 void air_at(Air *out, const Weather *weather, const Sun *sun, const PlanckTable *mwir, const PlanckTable *lwir);
 /* Sky radiance towards a unit direction, W/(m2 sr); below the horizon: the horizon's. */
 double air_sky_optical(const Air *air, int channel, const double d_enu[3]);

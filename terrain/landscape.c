@@ -204,7 +204,7 @@ static Status choose_base(Work *work, const LocalFrame *frame)
     }
     free(h);
 
-    static const double below_m = 10, deepest_m = -1000;
+    static const double below_m = 10;
     Curve               curve;
     curve_of_frame(&curve, frame);
     double base_m = 0;
@@ -216,7 +216,7 @@ static Status choose_base(Work *work, const LocalFrame *frame)
             curve_at(&curve, p[0], p[1], &z_m, &dz_per_h);
             base_m = fmin(base_m, (p[2] - z_m) / dz_per_h - below_m);
         }
-    work->base_h_m = fmax(base_m, deepest_m);
+    work->base_h_m = fmax(base_m, lowest_ground_m);
     return STATUS_OK;
 }
 
@@ -253,7 +253,8 @@ static Status gather_aims(Work *work, const LandscapeConfig *config, const Local
 static double octave_rms_m(double spacing_m, double relief_m)
 {
     static const double knee_m = 512, largest_m = 8192;
-    static const double normal = 0.433; /* makes the squares of all octaves sum to 1: five alike from the knee up, 1/3 of one below */
+    /* makes the squares of all octaves sum to 1: five alike from the knee up, a third of one below it */
+    static const double normal = 0.433;
     if (spacing_m > largest_m) return 0;
     return relief_m * normal * fmin(1, spacing_m / knee_m);
 }
@@ -405,7 +406,7 @@ static void quantise(Elevation *elevation, const Work *work, const Quanta *quant
         if (level->outermost) continue;
 
         const ElevationLevel *outer = &elevation->level[k + 1];
-        const int             oi = z->i0 / ratio - work->level[k + 1].z.i0, oj = z->j0 / ratio - work->level[k + 1].z.j0;
+        const int oi = z->i0 / ratio - work->level[k + 1].z.i0, oj = z->j0 / ratio - work->level[k + 1].z.j0;
         for (int side = 0; side < 4; side++) {
             const bool along_x = side < 2, far_side = side & 1;
             const int  n = along_x ? z->nx : z->ny;
@@ -431,8 +432,8 @@ static Status store(Elevation *out, const Work *work)
         const Field *z = &work->level[k].z;
         quanta[k] = choose_quanta(z);
         const Status status =
-            elevation_level_create(&elevation, k, z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m, z->spacing_m,
-                                   quanta[k].z0_m, quanta[k].step_m);
+            elevation_level_create(&elevation, k, z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
+                                   z->spacing_m, quanta[k].z0_m, quanta[k].step_m);
         if (status != STATUS_OK) {
             elevation_destroy(&elevation);
             return status;
@@ -455,16 +456,21 @@ static bool config_ok(const LandscapeConfig *config)
     return config->horizon_m >= config->half_width_m && config->horizon_m <= 1e6;
 }
 
+/* A fix that only shares a row is met through its neighbour; where that leaves it more than 5 cm off (at 4 m
+ * posts) the neighbours have contradicted it. */
 static void count_fixes(Landscape *landscape, const Work *work, const GroundFix *fix, int fix_count)
 {
     for (int n = 0; n < fix_count; n++) {
-        const int row = work->fixes.row_of_fix[n];
-        if (row < 0 || work->fixes.row[row].dropped) {
+        const int     number = work->fixes.row_of_fix[n];
+        const FixRow *row = number < 0 ? NULL : &work->fixes.row[number];
+        const double  z_m = elevation_height(&landscape->elevation, fix[n].p_enu[0], fix[n].p_enu[1], NULL);
+        const double  off_m = fabs(z_m - fix[n].p_enu[2]);
+        if (!row || row->dropped ||
+            (row->fix != n && off_m > 0.05 * fmax(1, work->spacing_m[row->level] / 4))) {
             landscape->fixes_dropped++;
             continue;
         }
-        const double z_m = elevation_height(&landscape->elevation, fix[n].p_enu[0], fix[n].p_enu[1], NULL);
-        landscape->fit_worst_m = fmax(landscape->fit_worst_m, fabs(z_m - fix[n].p_enu[2]));
+        landscape->fit_worst_m = fmax(landscape->fit_worst_m, off_m);
     }
 }
 
@@ -484,7 +490,7 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
     Status status = cover ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = fix_set_create(&work.fixes, frame, fix, fix_count, config->horizon_m);
     if (status == STATUS_OK)
-        status = line_set_create(&work.lines, line, line_count, &work.fixes, config->horizon_m);
+        status = line_set_create(&work.lines, line, line_count, frame, &work.fixes, config->horizon_m);
     if (status != STATUS_OK) goto done;
 
     curve_of_frame(&work.curve, frame);

@@ -18,9 +18,9 @@ typedef struct GroundFix {
 
 /* A straight line that the ground must leave clear, from a to b, by 2 m where there is room and 0.15 m under any
  * circumstances. An end within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at
- * 4 m posts) the line claims nothing, so a shot may end on the ground it hits. Elsewhere lines win: a fix above
- * one is dropped. Give the places of gun, seeker and burst, not the point between a vehicle's tracks: a line from
- * base to base along flat ground drops every fix beside it. */
+ * 4 m posts; in proportion on the coarser levels) the line claims nothing, so a shot may end on the ground it hits.
+ * Elsewhere lines win: a fix above one is dropped. Give the places of gun, seeker and burst, not the point between
+ * a vehicle's tracks: a line from base to base along flat ground drops every fix beside it. */
 typedef struct ClearLine {
     double a_enu[3], b_enu[3];
 } ClearLine;
@@ -39,10 +39,14 @@ typedef struct Landscape {
     LandscapeConfig config;
     double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
     int             fixes_dropped;/* contradicted by their neighbours, above a clear line, or not on this ground */
-    void           *cover;        /* private */
+    void           *cover;        /* private; surface and texture need it */
 } Landscape;
 
 LandscapeConfig landscape_default_config(void);
+/* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
+ * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
+ * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one. With neither fixes nor
+ * low lines the country lies at ellipsoid height 0. fix, line may be NULL when their count is 0. */
 Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
 void   landscape_destroy(Landscape *landscape);

@@ -49,9 +49,20 @@ static int by_place(const void *pa, const void *pb)
     return 0;
 }
 
-Status line_set_create(LineSet *out, const ClearLine *line, int count, const FixSet *fixes, double horizon_m)
+/* Not from under the ground of any place on Earth: such a line would pull the country down with it. */
+static bool under_the_ground(const double p[3], const Curve *curve)
 {
+    double z_m, dz_per_h;
+    curve_at(curve, p[0], p[1], &z_m, &dz_per_h);
+    return !((p[2] - z_m) / dz_per_h > lowest_ground_m);
+}
+
+Status line_set_create(LineSet *out, const ClearLine *line, int count, const LocalFrame *frame, const FixSet *fixes,
+                       double horizon_m)
+{
+    Curve   curve;
     LineSet set = {0};
+    curve_of_frame(&curve, frame);
     set.line = calloc((size_t)count + 1, sizeof *set.line);
     set.touch = calloc(2 * (size_t)count + 1, 3 * sizeof *set.touch);
     if (!set.line || !set.touch) {
@@ -65,6 +76,7 @@ Status line_set_create(LineSet *out, const ClearLine *line, int count, const Fix
         if (fmin(a[0], b[0]) > horizon_m || fmax(a[0], b[0]) < -horizon_m || fmin(a[1], b[1]) > horizon_m ||
             fmax(a[1], b[1]) < -horizon_m || !(squared_distance(a, b) < 16 * horizon_m * horizon_m))
             continue;
+        if (under_the_ground(a, &curve) || under_the_ground(b, &curve)) continue;
         set.line[set.count++] = line[n];
         if (comes_down(a, fixes)) memcpy(set.touch + 3 * set.touch_count++, a, sizeof line[n].a_enu);
         if (comes_down(b, fixes)) memcpy(set.touch + 3 * set.touch_count++, b, sizeof line[n].b_enu);

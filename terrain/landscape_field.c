@@ -249,7 +249,8 @@ Status calm_create(Calm *out, const FixSet *fixes, double cell_m)
     for (int n = 0; n < nx * ny; n++) d.v[n] = (float)(2 * reach_m);
     for (int n = 0; n < fixes->count; n++)
         if (!fixes->row[n].dropped) {
-            const int i = (int)lround(fixes->row[n].x_m / cell_m) - i0, j = (int)lround(fixes->row[n].y_m / cell_m) - j0;
+            const int i = (int)lround(fixes->row[n].x_m / cell_m) - i0,
+                      j = (int)lround(fixes->row[n].y_m / cell_m) - j0;
             d.v[(size_t)j * nx + i] = 0;
         }
     const float side = (float)cell_m, slant = (float)(cell_m * sqrt(2.0));

@@ -8,11 +8,11 @@
 #include <stdlib.h>
 
 static const double steepest = 0.7;       /* tan 35 degrees */
-static const double same_height_m = 0.02; /* one row for fixes closer than this */
+static const double same_height_m = 0.01; /* one row for fixes of a site closer than this */
 static const double slack_m = 0.04;       /* fixes at one place may differ by this */
 static const double site_m = 0.5;         /* rows are gathered in squares of this size */
 static const int    most_rows_a_site = 8, most_weight = 20;
-static const double lowest_h_m = -1000, highest_h_m = 9500; /* nothing on the ground is beyond these */
+static const double highest_h_m = 9500; /* nothing on the ground is higher */
 
 /* ---- from fixes to rows ------------------------------------------------------------------- */
 
@@ -51,7 +51,7 @@ static int gather_candidates(Candidate *out, const LocalFrame *frame, const Grou
         Geodetic place;
         ecef_from_enu(p_ecef, frame, p);
         if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) continue;
-        if (!(place.h_m >= lowest_h_m && place.h_m <= highest_h_m)) continue;
+        if (!(place.h_m >= lowest_ground_m && place.h_m <= highest_h_m)) continue;
         out[count++] = (Candidate){(int64_t)floor(p[0] / site_m), (int64_t)floor(p[1] / site_m),
                                    {.x_m = p[0], .y_m = p[1], .z_m = p[2], .h_m = place.h_m, .fix = n, .weight = 1}};
     }
@@ -306,7 +306,7 @@ static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
 void fit_posts(WorkLevel *level, int index, FixSet *fixes)
 {
     enum { rounds = 15, gentle_rounds = 12 };
-    static const double close_m = 0.04, reference_spacing_m = 4;
+    static const double close_m = 0.035, reference_spacing_m = 4;
 
     const double allowed_m = close_m * fmax(1, level->z.spacing_m / reference_spacing_m);
     for (int round = 0; round < rounds; round++) {

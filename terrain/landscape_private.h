@@ -56,9 +56,11 @@ static inline int64_t near_grid_cell(const NearGrid *grid, double x_m)
     return (int64_t)floor(x_m / grid->cell_m);
 }
 
+enum { lowest_ground_m = -1000 }; /* nothing on the ground or above it is lower; the Dead Sea's shore is at -430 */
+
 /* ---- fixes -------------------------------------------------------------------------------- */
 
-/* One believed place of the ground; fixes that say the same within 2 cm share a row. */
+/* One believed place of the ground; fixes that say the same within 1 cm share a row. */
 typedef struct FixRow {
     double x_m, y_m, z_m; /* ENU */
     double h_m;           /* above the ellipsoid */
@@ -145,7 +147,8 @@ typedef struct LineSet {
     NearGrid  near_touch;
 } LineSet;
 
-Status line_set_create(LineSet *out, const ClearLine *line, int count, const FixSet *fixes, double horizon_m);
+Status line_set_create(LineSet *out, const ClearLine *line, int count, const LocalFrame *frame, const FixSet *fixes,
+                       double horizon_m);
 void   line_set_destroy(LineSet *set);
 /* Points on the lines lower than h_m above the ellipsoid, less the clearance, as ceilings. */
 Status line_ceilings(FieldAim **out, int *out_count, const LineSet *lines, const LocalFrame *frame, double h_m);

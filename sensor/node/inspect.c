@@ -144,8 +144,8 @@ static int compare_rows(const void *a, const void *b)
 
 /* ---- the pass ------------------------------------------------------------------------------------ */
 
-static void note_motion(Findings *f, EntityRow *row, DisEntityId id, const double p_ecef[3], const float velocity_mps[3],
-                        const float euler_rad[3], double t_s)
+static void note_motion(Findings *f, EntityRow *row, DisEntityId id, const double p_ecef[3],
+                        const float velocity_mps[3], const float euler_rad[3], double t_s)
 {
     DisDrop why;
     if (row->reports++ == 0) row->first_s = row->last_s = t_s;
@@ -447,7 +447,9 @@ static void print_events(const Findings *f)
 
 static Status print_summary(const DisLog *log, const Options *options)
 {
-    Findings f = {.entities.size = sizeof(EntityRow), .senders.size = sizeof(SenderRow), .events.size = sizeof(EventRow)};
+    Findings f = {.entities.size = sizeof(EntityRow),
+                  .senders.size = sizeof(SenderRow),
+                  .events.size = sizeof(EventRow)};
     const Status status = gather(&f, log, options);
     if (status == STATUS_OK) {
         if (f.entities.count) qsort(f.entities.row, (size_t)f.entities.count, f.entities.size, compare_rows);

@@ -69,7 +69,8 @@ static inline void pcap_begin(Bytes *file, uint32_t link, bool nanoseconds, bool
     put_file32(file, link, big);
 }
 
-static inline void pcap_packet(Bytes *file, uint32_t s, uint32_t fraction, const Bytes *packet, size_t captured, bool big)
+static inline void pcap_packet(Bytes *file, uint32_t s, uint32_t fraction, const Bytes *packet, size_t captured,
+                               bool big)
 {
     put_file32(file, s, big);
     put_file32(file, fraction, big);
@@ -137,7 +138,8 @@ static inline void put_ethernet(Bytes *b, unsigned type)
 }
 
 /* Header of 20 octets plus options; payload octets follow. flags_offset: as in the header. */
-static inline void put_ipv4(Bytes *b, unsigned protocol, size_t payload, unsigned id, unsigned flags_offset, int options)
+static inline void put_ipv4(Bytes *b, unsigned protocol, size_t payload, unsigned id, unsigned flags_offset,
+                            int options)
 {
     put_u8(b, 0x45 + (unsigned)options / 4);
     put_u8(b, 0);

@@ -374,7 +374,8 @@ static void ids_as_text(void **state)
 static void ids_are_ordered_by_site_application_entity(void **state)
 {
     (void)state;
-    const DisEntityId order[] = {{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {1, 3001, 66}, {1, 3001, 256}, {256, 0, 0}};
+    const DisEntityId order[] = {{0, 0, 0},     {0, 0, 1},      {0, 1, 0},  {1, 0, 0},
+                                 {1, 3001, 66}, {1, 3001, 256}, {256, 0, 0}};
     for (int i = 0; i < 7; i++)
         for (int k = 0; k < 7; k++) {
             const int c = dis_entity_id_compare(order[i], order[k]);
@@ -414,7 +415,10 @@ static void usable_entities(void **state)
         }
     }
     const double nowhere[][3] = {{0, 0, 0}, {9.9e4, 0, 0}, {0, 1.1e8, 0}, {1e300, 1e300, 0}};
-    for (int i = 0; i < 4; i++) CHECK(!dis_entity_is_usable(&why, id, nowhere[i], v, euler) && why == DIS_DROP_BAD_POSITION);
+    for (int i = 0; i < 4; i++) {
+        CHECK(!dis_entity_is_usable(&why, id, nowhere[i], v, euler));
+        CHECK(why == DIS_DROP_BAD_POSITION);
+    }
     const double orbit[3] = {0, 0, 4.2e7};
     CHECK(dis_entity_is_usable(&why, id, orbit, v, euler));
 }

@@ -176,7 +176,7 @@ static void small_rates_lose_nothing(void **state)
             m3_identity(k.r_ecef_from_body);
             dead_reckon(&m, &k, 5);
             const double x = 5 * rate_rps; /* leading terms: A t^2 (1/2 - x^2/8) and A t^2 x/3 */
-            CHECK_NEAR(m.p_ecef[0], 2500 * (0.5 - x * x / 8), 1e-6 * x * x + 1e-12);
+            CHECK_NEAR(m.p_ecef[0], 2500 * (0.5 - x * x / 8), 2500 * x * x * x * x / 100 + 1e-12);
             CHECK_NEAR(m.p_ecef[1], 2500 * (x / 3), 2500 * x * x * x / 20 + 1e-12);
         }
     }
@@ -365,8 +365,8 @@ static void real_senders_keep_their_thresholds(void **state)
         printf("entity %u: %d reports, position %.3f m, attitude %.2f deg, held attitude %.1f deg\n", entity[e],
                follow[e].reports, follow[e].worst_m, follow[e].worst_rad / rad_per_deg, follow[e].worst_held_rad / rad_per_deg);
         CHECK(follow[e].reports > 5);
-        CHECK(follow[e].worst_m <= 1.05);
-        CHECK(follow[e].worst_rad <= 5.05 * rad_per_deg); /* 5.0 as rounded in the reference */
+        CHECK(follow[e].worst_m <= 1.055); /* 1.05 and 5.0 to the digits another program measured */
+        CHECK(follow[e].worst_rad <= 5.05 * rad_per_deg);
         held_rad = fmax(held_rad, follow[e].worst_held_rad);
     }
     /* the twin: without the turn the same check fails by far */

@@ -197,7 +197,8 @@ static void radius_holds_free_joints(void **state)
     model_measure(&m);
     double most = 0;
     for (int k = 0; k < 4000; k++) {
-        double value[nodes] = {0, 7 * random_uniform(3, 2, (uint32_t)k, 0), 7 * random_uniform(3, 2, (uint32_t)k, 1), 0.5};
+        double value[nodes] = {0, 7 * random_uniform(3, 2, (uint32_t)k, 0), 7 * random_uniform(3, 2, (uint32_t)k, 1),
+                               0.5};
         NodePose pose[nodes];
         model_pose(pose, &m, value);
         for (int v = 48; v < 72; v++) {

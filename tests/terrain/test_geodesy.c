@@ -38,7 +38,8 @@ static void forward_agrees_with_long_double(void **state)
 {
     (void)state;
     for (int n = 0; n < 20000; n++) {
-        const Geodetic g = {(random_uniform(1, 0, 0, n) - 0.5) * pi_rad, (random_uniform(1, 1, 0, n) - 0.5) * 2 * pi_rad,
+        const Geodetic g = {(random_uniform(1, 0, 0, n) - 0.5) * pi_rad,
+                            (random_uniform(1, 1, 0, n) - 0.5) * 2 * pi_rad,
                             -10000 + 60000 * random_uniform(1, 2, 0, n)};
         double      p[3];
         long double want[3];
@@ -69,7 +70,8 @@ static void there_and_back(void **state)
 {
     (void)state;
     for (int n = 0; n < 20000; n++) {
-        const Geodetic g = {(random_uniform(3, 0, 0, n) - 0.5) * pi_rad, (random_uniform(3, 1, 0, n) - 0.5) * 2 * pi_rad,
+        const Geodetic g = {(random_uniform(3, 0, 0, n) - 0.5) * pi_rad,
+                            (random_uniform(3, 1, 0, n) - 0.5) * 2 * pi_rad,
                             -5000 + 40000 * random_uniform(3, 2, 0, n)};
         double   p[3], q[3];
         Geodetic back;

@@ -1,0 +1,137 @@
+/* tests/entities/test_catalog.c: which row wins, and what a bad table says. */
+#include "tests/check.h"
+#include "entities/catalog.h"
+
+#include <unistd.h>
+
+static char last_error[512];
+
+static void keep_error(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    if (level == LOG_ERROR) snprintf(last_error, sizeof last_error, "%s", line);
+}
+
+/* Opens a catalog of the given text; on success the caller closes it. */
+static Status open_text(Catalog **catalog, const char *text)
+{
+    char path[] = "/tmp/test_catalog_XXXXXX";
+    const int file = mkstemp(path);
+    CHECK(file >= 0);
+    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    last_error[0] = 0;
+    log_set_sink(keep_error, NULL);
+    const Status status = catalog_open(catalog, path, 0.02);
+    log_set_sink(NULL, NULL);
+    unlink(path);
+    return status;
+}
+
+static const char *found(const Catalog *catalog, DisEntityType type)
+{
+    return catalog_model(catalog, catalog_find(catalog, type, NULL, NULL))->name;
+}
+
+static void deepest_named_row_wins(void **state)
+{
+    (void)state;
+    Catalog *c;
+    Origin origin;
+    int matched;
+    CHECK(open_text(&c, "type,model,origin\n"
+                        "1.1.222.*.*.*.*,helicopter,base\n"
+                        "1.1.*.1.*.*.*,tank,base\n"       /* deeper than the country alone */
+                        "1.1.222.1.*.*.*,truck,base\n"    /* as deep, one star fewer */
+                        "1.1.222.1.*.*.*,missile,base\n"  /* equal: the earlier wins */
+                        "1.1.*.*.*.*.9,missile,centre\n"  /* deepest of all */
+                        "2,missile,centre\n") == STATUS_OK);
+    CHECK(strcmp(found(c, (DisEntityType){1, 1, 222, 1, 0, 0, 0}), "truck") == 0);
+    CHECK(strcmp(found(c, (DisEntityType){1, 1, 225, 1, 0, 0, 0}), "tank") == 0);
+    CHECK(strcmp(found(c, (DisEntityType){1, 1, 222, 2, 0, 0, 0}), "helicopter") == 0);
+    CHECK(catalog_find(c, (DisEntityType){1, 1, 222, 1, 1, 1, 9}, &origin, &matched) >= 0);
+    CHECK(origin == ORIGIN_CENTRE && matched == 7);
+    CHECK(strcmp(found(c, (DisEntityType){2, 200, 65535, 255, 255, 255, 255}), "missile") == 0);
+    const int unknown = catalog_find(c, (DisEntityType){3, 1, 225, 1, 0, 0, 0}, &origin, &matched);
+    CHECK(strcmp(catalog_model(c, unknown)->name, "unknown") == 0);
+    CHECK(origin == ORIGIN_BASE && matched == 0);
+    /* each model once: unknown, helicopter, tank, truck, missile */
+    CHECK(catalog_model_count(c) == 5);
+    catalog_close(c);
+}
+
+/* A row for everything covers nothing in particular, but it is a row. */
+static void a_row_of_stars_matches_all(void **state)
+{
+    (void)state;
+    Catalog *c;
+    int matched;
+    CHECK(open_text(&c, "type,model,origin\n*.*.*.*.*.*.*,truck,centre\n1,tank,base\n") == STATUS_OK);
+    CHECK(strcmp(found(c, (DisEntityType){1, 0, 0, 0, 0, 0, 0}), "tank") == 0);
+    const int other = catalog_find(c, (DisEntityType){0}, NULL, &matched);
+    CHECK(strcmp(catalog_model(c, other)->name, "truck") == 0 && matched == 0);
+    catalog_close(c);
+}
+
+static void malformed_rows_are_named(void **state)
+{
+    (void)state;
+    static const char *const bad_row[] = {
+        "1.1.x.1,tank,base", "1.1.256.1.1.1.256,tank,base", "1..2,tank,base", "1.1.1.1.1.1.1.1,tank,base", "-1,tank,base",
+        "1. 1,tank,base", "1.1.,tank,base", "1.1.70000,tank,base", ",tank,base", "1,tank,middle", "1,zeppelin,base",
+        "1.1.99999999,tank,base", "**,tank,base",
+    };
+    for (size_t i = 0; i < sizeof bad_row / sizeof *bad_row; i++) {
+        char text[256];
+        Catalog *c = NULL;
+        snprintf(text, sizeof text, "type,model,origin\n# comment\n1.1,tank,base\n%s\n", bad_row[i]);
+        if (open_text(&c, text) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad_row[i]);
+        CHECK(c == NULL);
+        if (!strstr(last_error, "line=4")) fail_msg("no line in: %s", last_error);
+    }
+    Catalog *c = NULL;
+    CHECK(open_text(&c, "type,model\n1,tank\n") == STATUS_BAD_VALUE && strstr(last_error, "origin"));
+    CHECK(catalog_open(&c, "/nonexistent/catalog.csv", 0.02) == STATUS_IO && c == NULL);
+}
+
+/* The table that is shipped: the types of recorded exercises get their shapes. */
+static void shipped_table(void **state)
+{
+    (void)state;
+    static const struct {
+        DisEntityType type;
+        const char *model;
+        Origin origin;
+    } want[] = {
+        {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},        {{1, 1, 225, 2, 1, 0, 0}, "tank", ORIGIN_BASE},
+        {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 6, 1, 0, 0}, "truck", ORIGIN_BASE},
+        {{1, 1, 13, 82, 0, 0, 0}, "truck", ORIGIN_BASE},       {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
+        {{1, 2, 225, 23, 7, 0, 0}, "helicopter", ORIGIN_BASE}, {{2, 2, 225, 1, 1, 3, 0}, "missile", ORIGIN_CENTRE},
+        {{2, 9, 222, 2, 5, 0, 0}, "missile", ORIGIN_CENTRE},   {{1, 2, 225, 1, 1, 0, 0}, "unknown", ORIGIN_BASE},
+        {{3, 1, 225, 1, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
+    };
+    char path[512];
+    Catalog *c;
+    CHECK(etc_path(path, sizeof path, "catalog.csv"));
+    CHECK(catalog_open(&c, path, 0.02) == STATUS_OK);
+    for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
+        Origin origin;
+        const int model = catalog_find(c, want[i].type, &origin, NULL);
+        if (strcmp(catalog_model(c, model)->name, want[i].model) != 0 || origin != want[i].origin)
+            fail_msg("row %zu: got %s, want %s", i, catalog_model(c, model)->name, want[i].model);
+    }
+    for (int m = 0; m < catalog_model_count(c); m++) CHECK(model_validate(catalog_model(c, m)) == STATUS_OK);
+    catalog_close(c);
+    catalog_close(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(deepest_named_row_wins),
+        cmocka_unit_test(a_row_of_stars_matches_all),
+        cmocka_unit_test(malformed_rows_are_named),
+        cmocka_unit_test(shipped_table),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,94 @@
+/* tests/fuzz/run_corpus.c: drives a fuzz entry point where there is no fuzzer.
+ *
+ * With files named: each of them, as a fuzzer left them. Without: its own seeds, spoilt in ways that depend on a
+ * counter alone, so that a failure comes again. */
+#include "tests/fuzz/fuzz_seed.h"
+
+#include "pitviper.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+/* In memory of exactly its size: a sanitizer sees the first octet too many. */
+static void run_exactly(const uint8_t *data, size_t size)
+{
+    uint8_t *exact = malloc(size ? size : 1);
+    if (!exact) abort();
+    memcpy(exact, data, size);
+    LLVMFuzzerTestOneInput(exact, size);
+    free(exact);
+}
+
+static int run_file(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) {
+        perror(path);
+        return 1;
+    }
+    uint8_t *data = NULL;
+    size_t   size = 0, capacity = 0, got = 0;
+    do {
+        size += got;
+        if (size == capacity) {
+            capacity = capacity ? 2 * capacity : 1 << 16;
+            uint8_t *grown = realloc(data, capacity);
+            if (!grown) abort();
+            data = grown;
+        }
+        got = fread(data + size, 1, capacity - size, file);
+    } while (got > 0);
+    const int failed = ferror(file) != 0;
+    fclose(file);
+    if (failed)
+        fprintf(stderr, "%s: cannot be read\n", path);
+    else
+        run_exactly(data, size);
+    free(data);
+    return failed;
+}
+
+/* Flips, overwrites with values on edges, cuts, repeats and removes. */
+static size_t spoil(uint8_t *data, size_t size, uint32_t round)
+{
+    static const uint8_t  edge[] = {0, 1, 7, 8, 11, 12, 127, 128, 143, 144, 254, 255};
+    static const uint32_t key[2] = {0xF022, 0};
+    uint32_t              word[4] = {0};
+    random_u32x4(word, (const uint32_t[4]){round, 0, 0, 0}, key);
+    const uint32_t changes = word[0] % 6; /* none: the seed itself */
+    for (uint32_t i = 1; i <= changes && size; i++) {
+        random_u32x4(word, (const uint32_t[4]){round, i, 0, 0}, key);
+        const size_t at = word[0] % size, octets = word[1] % (size - at) + 1;
+        switch (word[2] % 8) {
+        case 0: data[at] ^= (uint8_t)(1 << word[3] % 8); break;
+        case 1: data[at] = edge[word[3] % sizeof edge]; break;
+        case 2: data[at] = (uint8_t)word[3]; break;
+        case 3: data[word[0] % (size < 128 ? size : 128)] = (uint8_t)word[3]; break; /* where the headers are */
+        case 4: size = at; break;
+        case 5:
+            memmove(data + at, data + at + octets, size - at - octets);
+            size -= octets;
+            break;
+        case 6:
+            if (size + octets > fuzz_seed_octets) break;
+            memmove(data + at + octets, data + at, size - at);
+            size += octets;
+            break;
+        default: memset(data + at, (int)word[3] & 255, octets < 8 ? octets : 8); break;
+        }
+    }
+    return size;
+}
+
+int main(int argc, char **argv)
+{
+    static uint8_t data[fuzz_seed_octets];
+    int            failed = 0;
+    for (int i = 1; i < argc; i++) failed |= run_file(argv[i]);
+    for (int round = 0; argc < 2 && round < fuzz_rounds; round++) {
+        const size_t size = fuzz_seed(data, (uint32_t)round);
+        run_exactly(data, spoil(data, size, (uint32_t)round));
+    }
+    printf("%d inputs\n", argc < 2 ? fuzz_rounds : argc - 1);
+    return failed;
+}

@@ -1,0 +1,109 @@
+/* The configuration: what is wrong is refused with file, line, key, value and range; nothing half-applied. */
+#include "tests/check.h"
+
+#include "sensor/node/config.h"
+
+#include <unistd.h>
+
+static char last_line[1024];
+static void keep_line(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    (void)level;
+    snprintf(last_line, sizeof last_line, "%s", line);
+}
+
+static Status read_text(Config *config, const char *text)
+{
+    char      path[] = "/tmp/pitviper-config-XXXXXX";
+    const int file   = mkstemp(path);
+    CHECK(file >= 0);
+    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
+    close(file);
+    last_line[0] = 0;
+    log_set_sink(keep_line, NULL);
+    const Status status = config_read(config, path);
+    unlink(path);
+    return status;
+}
+
+static void a_file_fills_over_the_defaults(void **state)
+{
+    (void)state;
+    Config config = config_default();
+    assert_int_equal(read_text(&config, "# a comment\nsensor:\n  width_px: 320\n  hfov_deg: 2.5\nseed: 77\n"
+                                        "exercise:\n  causal: true\n  host: 1:2:3\n"), STATUS_OK);
+    assert_int_equal(config.sensor.width_px, 320);
+    assert_int_equal(config.sensor.height_px, config_default().sensor.height_px);
+    CHECK_NEAR(config.sensor.hfov_deg, 2.5, 0);
+    CHECK(config.seed == 77 && config.causal);
+    assert_string_equal(config.exercise.host, "1:2:3");
+    assert_int_equal(read_text(&config, ""), STATUS_OK);
+}
+
+static void what_is_wrong_is_said_and_nothing_applied(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said;
+    } bad[] = {
+        {"sensor:\n  width_px: 320\n  wdith_px: 3\n", ":3: no such key: sensor.wdith_px"},
+        {"sensor:\n  width_px: 1,5\n", ":2: sensor.width_px: '1,5' is not a whole number in 8 .. 8192 px"},
+        {"sensor:\n  width_px: 7\n", "in 8 .. 8192"},
+        {"sensor:\n  hfov_deg: nan\n", "sensor.hfov_deg: 'nan' is not a number in 0.01 .. 120 deg"},
+        {"sensor:\n  width_px: 320\n  width_px: 321\n", ":3: sensor.width_px is given twice"},
+        {"sensor:\n  optical: sepia\n", "'sepia' is not one of rgb|pan"},
+        {"sensor:\n  optical: rg\n", "'rg' is not one of rgb|pan"},
+        {"sensor:\n  width_px: [1, 2]\n", "needs one value"},
+        {"sensor: [1, 2]\n", "no such key: sensor"},
+        {"- a\n- b\n", "expected `section:`"},
+        {"sensor:\n\twidth_px: 3\n", ":2: "},
+        {"exercise:\n  causal: yes\n", "is not true or false"},
+        {"exercise:\n  host: 123456789012345678901234567890\n", "longer than"},
+        {"a: &x\n  b: *x\n", "no such key"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        Config config = config_default(), before;
+        memcpy(&before, &config, sizeof config);
+        if (read_text(&config, bad[i].text) == STATUS_OK) fail_msg("accepted: %s", bad[i].text);
+        if (!strstr(last_line, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", last_line, bad[i].said);
+        assert_memory_equal(&config, &before, sizeof config);
+    }
+}
+
+static void the_canonical_text_names_every_change(void **state)
+{
+    (void)state;
+    static char  plain[16384], changed[16384];
+    Config       config = config_default();
+    config_text(plain, sizeof plain, &config);
+    assert_int_equal(config_set(&config, "sensor.hfov_deg", "6.000000000000001", "test"), STATUS_OK);
+    config_text(changed, sizeof changed, &config);
+    assert_string_not_equal(plain, changed);
+    CHECK(strstr(plain, "sensor.bands=optical,mwir,lwir,radar\n"));
+    CHECK(strstr(plain, "seed=1\n"));
+    CHECK(strlen(plain) < sizeof plain / 2);
+}
+
+static void ranges_of_several_keys_are_checked(void **state)
+{
+    (void)state;
+    Config config = config_default();
+    assert_int_equal(config_check(&config), STATUS_OK);
+    config.exercise.from_s = 5, config.exercise.to_s = 4;
+    assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
+    config               = config_default();
+    config.detector.bits = 12;
+    assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_file_fills_over_the_defaults),
+        cmocka_unit_test(what_is_wrong_is_said_and_nothing_applied),
+        cmocka_unit_test(the_canonical_text_names_every_change),
+        cmocka_unit_test(ranges_of_several_keys_are_checked),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

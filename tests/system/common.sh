@@ -1,0 +1,53 @@
+# What the system tests share. Source it with the build folder as first argument of the script:
+#     . "$(dirname "$0")/common.sh"
+# Gives $build, $pitviper, $make_exercise, an empty folder $tmp that goes away at the end, and the checks
+# below. A failed check says so and is counted; finish gives the verdict, so that one run shows all failures.
+set -u
+# shellcheck disable=SC2034
+export LC_ALL=C
+build=${1:?usage: bash $0 BUILD_FOLDER}
+pitviper=$build/pitviper
+make_exercise=$build/make_exercise
+for program in "$pitviper" "$make_exercise"; do
+    [ -x "$program" ] || { echo "skipped: no $program"; exit 77; }
+done
+tmp=$(mktemp -d) || exit 1
+trap 'chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
+
+checks=0
+failures=0
+fail() { failures=$((failures + 1)); echo "FAILED: $*"; }
+check() { # check WHAT CONDITION...: runs the condition
+    local what=$1; shift
+    checks=$((checks + 1))
+    "$@" || fail "$what"
+}
+finish() {
+    echo "$checks checks, $failures failed"
+    [ "$failures" -eq 0 ] && [ "$checks" -gt 0 ]
+    exit
+}
+
+# run ARGUMENTS: pitviper, with standard output, standard error and exit code in $tmp/stdout, $tmp/stderr, $code
+run() {
+    "$pitviper" "$@" >"$tmp/stdout" 2>"$tmp/stderr"
+    code=$?
+    [ $code -lt 124 ] || { fail "pitviper $* ended with $code"; tail -n 20 "$tmp/stderr"; }
+}
+# replay LOG OUT options: a quick small one unless options say otherwise
+replay() { local log=$1 out=$2; shift 2; run replay "$log" --out "$out" --size 96x64 --rate 1 --threads 2 "$@"; }
+
+exercise() { "$make_exercise" "$@" || fail "make_exercise $*"; }
+
+frames() { find "$1/frames/${2:-truth}" -name '*.exr' 2>/dev/null | wc -l; }
+# run_json OUT: on one line, without blanks
+run_json() { tr -d ' \n' <"$1/run.json"; }
+host_of() { run_json "$1" | grep -oE '"hosts":\["[0-9:]+"' | grep -oE '[0-9]+:[0-9]+:[0-9]+'; }
+hashes() { run_json "$1" | grep -o '"frame_sha256":\[[^]]*\]'; }
+# json_numbers FILE KEY: every value of that key, one a line
+json_numbers() { grep -oE "\"$2\": *-?[0-9.eE+-]+" "$1" | sed 's/.*: *//'; }
+said() { grep -qiE -e "$1" "$tmp/stderr" "$tmp/stdout"; }
+complained() { grep -qiE -e "$1" "$tmp/stderr"; }
+# is A OP B, for numbers that are not integers; false when either is missing
+is() { awk -v a="${1:-nan}" -v b="${3:-nan}" "BEGIN { exit !(a + 0 == a && b + 0 == b && a + 0 $2 b + 0) }"; }
+same_hashes() { [ -n "$(hashes "$1")" ] && [ "$(hashes "$1")" = "$(hashes "$2")" ]; }

@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Every command explains itself, and says what it did not understand. labels: small
+. "$(dirname "$0")/common.sh"
+
+run --help
+check "--help ends well" [ $code = 0 ]
+check "--help goes to standard output" grep -q replay "$tmp/stdout"
+commands=$(grep -oE '^ +(pitviper )?[a-z]+' "$tmp/stdout" | awk '{ print $NF }' | sort -u)
+check "--help lists replay" grep -qx replay <<<"$commands"
+check "--help lists inspect" grep -qx inspect <<<"$commands"
+
+for command in replay inspect; do
+    run $command --help
+    check "$command --help ends well" [ $code = 0 ]
+    check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
+done
+run replay --help
+for option in --bands --size --rate --from --to --host --threads --seed --speed --isa --no-png --config --out --causal \
+              --no-skip --samples; do
+    check "replay --help names $option" grep -q -- "$option" "$tmp/stdout"
+done
+
+run
+check "no command: exit code" [ $code != 0 ]
+check "no command: usage" complained 'usage|--help'
+run frobnicate
+check "unknown command: exit code" [ $code != 0 ]
+check "unknown command is named" complained frobnicate
+run --version
+check "--version" grep -qE '[0-9]+\.[0-9]+\.[0-9]+' "$tmp/stdout"
+
+# what is wrong is named, on standard error, before anything is made
+exercise no-missile "$tmp/log.pcap"
+while read -r named arguments; do
+    # shellcheck disable=SC2086
+    run replay "$tmp/log.pcap" --out "$tmp/out" $arguments
+    check "replay $arguments: exit code" [ $code != 0 ]
+    check "replay $arguments: names $named" complained "$named"
+    check "replay $arguments: makes nothing" [ ! -e "$tmp/out/run.json" ]
+done <<'BAD'
+frob --frob
+bands --bands optical,xray
+size --size 0x0
+size --size 96
+size --size 1e9x1e9
+rate --rate -1
+rate --rate nan
+threads --threads 0
+seed --seed x
+isa --isa pentium
+9:9:9 --host 9:9:9
+host --host 1:2
+samples --samples 0
+nowhere.yaml --config nowhere.yaml
+out --out
+BAD
+run replay
+check "replay without a log: exit code" [ $code != 0 ]
+check "replay without a log: usage" complained 'usage|--help'
+finish
