@@ -7,6 +7,11 @@ enum { kind_platform = 1, kind_munition = 2, domain_air = 2, domain_space = 5, c
 
 static const uint16_t all_ids = 0xFFFF;
 
+/* No launcher uses an id again so soon. */
+static const double after_detonation_s = 1;
+
+enum { damage_shift = 3, damage_destroyed = 3 }; /* of the appearance: two bits */
+
 /* Faster than anything that leaves the Earth (11.2 km/s), and harder than a gun-launched round once it flies. */
 static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
 
@@ -95,7 +100,8 @@ static EntitySlot *new_slot(EntityTable *table, DisEntityId id)
 
 static void remove_slot(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter)
 {
-    table->grave[table->grave_next++ % entity_grave_count] = (EntityGrave){entity_key(slot->id) + 1, t_s};
+    table->grave[table->grave_next++ % entity_grave_count] =
+        (EntityGrave){entity_key(slot->id) + 1, t_s, counter == &table->counters.detonated};
     entity_index_remove(&table->index, entity_key(slot->id));
     slot->generation++;
     table->free_slot[table->free_count++] = (int)(slot - table->slot);
@@ -103,12 +109,19 @@ static void remove_slot(EntityTable *table, EntitySlot *slot, double t_s, uint64
     ++*counter;
 }
 
-/* Whether this id ended after t_s. Only asked when an entity would be created. */
-static bool is_ghost(const EntityTable *table, DisEntityId id, double t_s)
+/* Whether a report speaks of one who is gone: it is older than the end; or the end was a Detonation, and it comes
+ * right after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates).
+ * Only asked when an entity would be created. */
+static bool is_ghost(const EntityTable *table, const DisEntityState *pdu, double t_s)
 {
-    const uint64_t key = entity_key(id) + 1;
-    for (int g = 0; g < entity_grave_count; g++)
-        if (table->grave[g].key == key && t_s < table->grave[g].end_s) return true;
+    const uint64_t key = entity_key(pdu->id) + 1;
+    const bool destroyed = (pdu->appearance >> damage_shift & 3) == damage_destroyed;
+    for (int g = 0; g < entity_grave_count; g++) {
+        const EntityGrave *grave = table->grave + g;
+        if (grave->key_plus_1 != key) continue;
+        const double after_s = !grave->detonated ? 0 : destroyed ? table->config.timeout_s : after_detonation_s;
+        if (t_s < grave->end_s + after_s) return true;
+    }
     return false;
 }
 
@@ -246,7 +259,7 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
     }
     const bool is_first = !slot;
     if (is_first) {
-        if (is_ghost(table, pdu->id, t_s)) {
+        if (is_ghost(table, pdu, t_s)) {
             table->counters.late++;
             return STATUS_OK;
         }

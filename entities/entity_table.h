@@ -32,7 +32,8 @@ typedef struct EntityTableConfig {
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
     uint64_t detonated;      /* munitions ended by their Detonation */
-    uint64_t late;           /* reports older than the one we have, or than the entity's end */
+    uint64_t late;           /* reports older than the one we have or than the entity's end, or of a munition after
+                              * its Detonation */
     uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
 } EntityCounters;

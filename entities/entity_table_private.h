@@ -34,8 +34,9 @@ typedef struct EntitySlot {
 /* Who went lately: a late report must not bring them back. */
 enum { entity_grave_count = 256 };
 typedef struct EntityGrave {
-    uint64_t key;
+    uint64_t key_plus_1; /* 0: nobody */
     double   end_s;
+    bool     detonated;
 } EntityGrave;
 
 struct EntityTable {

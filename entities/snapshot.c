@@ -1,6 +1,7 @@
 /* entities/snapshot.c: the table at one instant: everybody extrapolated, in the order of ids.
  *
- * Entities of one algorithm go through dead_reckon_arrays together, in blocks small enough for the nearest cache. */
+ * Entities go through in chunks whose slots stay in cache; those of one algorithm in a chunk go through
+ * dead_reckon_arrays together. */
 #include "entities/entity_table_private.h"
 
 #include <limits.h>
@@ -59,7 +60,7 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 
 /* ---- motion ------------------------------------------------------------------------------- */
 
-enum { block_count = 128 };
+enum { block_count = 128 }; /* entities in a chunk, and so at most in a block of one algorithm */
 
 /* Arrays of one block: 22 in, 15 out, 37 KB. */
 typedef struct MotionBlock {
@@ -131,16 +132,15 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
     }
 }
 
-static void reckon_all(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int count, double t_s)
+/* Entities first .. end - 1, by algorithm. */
+static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int first, int end,
+                         double t_s)
 {
     int member[10][block_count], members[10] = {0};
 
-    for (int e = 0; e < count; e++) {
+    for (int e = first; e < end; e++) {
         const int a = table->slot[order[e].slot].reported.algorithm;
         member[a][members[a]++] = e;
-        if (members[a] < block_count) continue;
-        reckon_block(entity, table, order, a, member[a], members[a], t_s);
-        members[a] = 0;
     }
     for (int a = 1; a < 10; a++)
         if (members[a] > 0) reckon_block(entity, table, order, a, member[a], members[a], t_s);
@@ -211,10 +211,13 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     double *joint_value = arena_alloc(arena, (size_t)most_nodes, sizeof *joint_value);
     if (!snapshot.node || !joint_value) return STATUS_NO_MEMORY;
 
-    reckon_all(snapshot.entity, table, order, snapshot.count, t_s);
-    for (int e = 0; e < snapshot.count; e++) {
-        SnapshotEntity *entity = snapshot.entity + e;
-        finish_entity(entity, snapshot.node + entity->first_node, joint_value, table, table->slot + order[e].slot, t_s);
+    for (int first = 0; first < snapshot.count; first += block_count) {
+        const int end = snapshot.count - first < block_count ? snapshot.count : first + block_count;
+        reckon_chunk(snapshot.entity, table, order, first, end, t_s);
+        for (int e = first; e < end; e++) {
+            SnapshotEntity *entity = snapshot.entity + e;
+            finish_entity(entity, snapshot.node + entity->first_node, joint_value, table, table->slot + order[e].slot, t_s);
+        }
     }
     *out = snapshot;
     return STATUS_OK;

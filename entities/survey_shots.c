@@ -66,46 +66,43 @@ typedef struct Joining {
     int                *partner; /* of each event: index of the other, -1 none, -2 a repeat */
 } Joining;
 
-/* The latest fire of the key that nothing has ended. repeat: this detonation was heard before. */
-static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int detonation, bool any_munition, bool *repeat)
+static bool contradicts(DisEntityId a, DisEntityId b)
+{
+    return !dis_entity_id_is_none(a) && !dis_entity_id_is_none(b) && dis_entity_id_compare(a, b) != 0;
+}
+
+/* The latest fire of the key up to slack_s after the detonation that nothing has ended yet, and that contradicts
+ * neither its munition nor who fired; of the same event id if same_number. -1: none; -2: that fire was ended by this
+ * very detonation, heard before. */
+static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int detonation, bool same_number, double slack_s)
 {
     const WarfareEvent *d = j->event + detonation;
-    const int end = keys_end(list, j->fires, key, d->t_s + clock_slack_s);
+    const int end = keys_end(list, j->fires, key, d->t_s + slack_s);
 
     for (int i = end - 1; i >= 0 && i >= end - most_tries && list[i].key == key; i--) {
         const WarfareEvent *f = j->event + list[i].fire;
         const int partner = j->partner[list[i].fire];
-        if (partner >= 0 && same_event(j->event + partner, d)) {
-            *repeat = true;
-            return -1;
-        }
-        if (partner != -1) continue;
-        /* an event id joins only what does not contradict it */
-        if (any_munition && !dis_entity_id_is_none(f->munition) && !dis_entity_id_is_none(d->munition) &&
-            munition_key(f) != munition_key(d)) continue;
-        if (!dis_entity_id_is_none(f->firing) && !dis_entity_id_is_none(d->firing) &&
-            dis_entity_id_compare(f->firing, d->firing) != 0) continue;
-        return list[i].fire;
+        if (contradicts(f->munition, d->munition) || contradicts(f->firing, d->firing)) continue;
+        if (same_number && event_key(f) != event_key(d)) continue;
+        if (partner >= 0 && same_event(j->event + partner, d)) return -2;
+        if (partner == -1) return list[i].fire;
     }
     return -1;
 }
 
+/* The surest first: both ids, then the munition's, each before the detonation; then by a clock that is behind. */
 static void join_detonation(Joining *j, int detonation)
 {
     const WarfareEvent *d = j->event + detonation;
-    bool repeat = false;
+    const bool has_munition = !dis_entity_id_is_none(d->munition), has_number = event_key(d) != 0;
     int fire = -1;
 
-    if (!dis_entity_id_is_none(d->munition))
-        fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, &repeat);
-    if (fire < 0 && !repeat && event_key(d) != 0)
-        fire = open_fire(j, j->by_event, event_key(d), detonation, true, &repeat);
-    if (fire >= 0) {
-        j->partner[fire] = detonation;
-        j->partner[detonation] = fire;
-    } else if (repeat) {
-        j->partner[detonation] = -2;
-    }
+    if (has_munition && has_number) fire = open_fire(j, j->by_munition, munition_key(d), detonation, true, clock_slack_s);
+    if (has_munition && fire == -1) fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, 0);
+    if (has_munition && fire == -1) fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, clock_slack_s);
+    if (has_number && fire == -1) fire = open_fire(j, j->by_event, event_key(d), detonation, true, clock_slack_s);
+    j->partner[detonation] = fire;
+    if (fire >= 0) j->partner[fire] = detonation;
 }
 
 static Shot shot_of(const Joining *j, int e)

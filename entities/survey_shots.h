@@ -14,9 +14,9 @@ typedef struct WarfareEvent {
     bool        is_detonation;
 } WarfareEvent;
 
-/* A Detonation belongs to the latest Fire before it of the same munition id that has none yet (ids are used again),
- * else to that of the same event id. A repeated one (same munition, event, within half a second) is the same.
- * events is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
+/* A Detonation belongs to the latest Fire before it of the same munition id that has none yet (ids are used again; the
+ * event id decides where it can), else to that of the same event id. One heard twice within half a second is one.
+ * event is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
 Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int count);
 
 #endif

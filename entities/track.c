@@ -54,6 +54,10 @@ static void interpolate_rotation(double out[9], const double r0[9], const double
     rotation_from_quaternion(out, q);
 }
 
+/* Under any even acceleration the chord is no faster than the faster end; a third above that, and above a vehicle's
+ * start from rest, it is no motion. */
+static const double step_speeds = 1.3, step_floor_mps = 5;
+
 /* ---- position ----------------------------------------------------------------------------- */
 
 /* The reported velocity as a tangent of the cubic, made safe: not backwards along the chord, and at most three
@@ -113,9 +117,13 @@ void track_at(TrackPose *out, const Track *track, double t_s)
     v3_scale(chord_mps, 1 / h_s, d);
     safe_tangent(va, a->v_ecef_mps, chord_mps);
     safe_tangent(vb, b->v_ecef_mps, chord_mps);
+    /* A sender that stamps late moves an entity metres within a millisecond: a step, not a speed. */
+    const double reported_mps = fmax(v3_length(a->v_ecef_mps), v3_length(b->v_ecef_mps));
+    const bool step = v3_length(chord_mps) > step_speeds * reported_mps + step_floor_mps;
     for (int i = 0; i < 3; i++) {
         out->p_ecef[i] = a->p_ecef[i] + u * u * (3 - 2 * u) * d[i] + h_s * u * w * (w * va[i] - u * vb[i]);
-        out->v_ecef_mps[i] = 6 * u * w * chord_mps[i] + w * (1 - 3 * u) * va[i] + u * (3 * u - 2) * vb[i];
+        out->v_ecef_mps[i] = step ? w * a->v_ecef_mps[i] + u * b->v_ecef_mps[i]
+                                  : 6 * u * w * chord_mps[i] + w * (1 - 3 * u) * va[i] + u * (3 * u - 2) * vb[i];
     }
     interpolate_rotation(out->r_ecef_from_body, a->r_ecef_from_body, b->r_ecef_from_body, u);
 }

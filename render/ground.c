@@ -30,9 +30,13 @@ static bool level_interval(LevelRay *r, const GroundLevel *g)
     return r->first_m < r->last_m;
 }
 
+/* Farther along a ray than this is no ground: from 1e9 m out, either the track would be past it, or the ray is
+ * so steep that it comes over the level's rectangle far under or over the Earth. */
+static const double farthest_m = 1e10;
+
 static void add_piece(GroundRay *out, int level, double first_m, double last_m)
 {
-    if (!(first_m < last_m)) return;
+    if (!(first_m < last_m && first_m < farthest_m)) return;
     out->level[out->piece_count]   = level;
     out->first_m[out->piece_count] = first_m;
     out->last_m[out->piece_count]  = last_m;
@@ -66,7 +70,7 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
     double t, stop;
     ground_walk(&t, &stop, g, r, far_m);
     const bool east = r->per_du > 0, north = r->per_dv > 0;
-    int        k = g->top, i = 0, j = 0;
+    int        k = ground_start_level(g), i = 0, j = 0;
     if (!(t < stop)) return INFINITY;
     i = ground_cell_at(r->u0, r->du, r->per_du, t, g->cells_x);
     j = ground_cell_at(r->v0, r->dv, r->per_dv, t, g->cells_y);
@@ -86,7 +90,7 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
             bool         north_west;
             const double range_m = ground_cell_hit(g, r, i, j, &north_west);
             if (range_m < INFINITY) {
-                if (range_m > far_m) return INFINITY;
+                if (!(range_m < far_m)) return INFINITY;
                 if (hit) *hit = (GroundHit){.i = i, .j = j, .north_west = north_west};
                 return range_m;
             }

@@ -39,7 +39,7 @@ typedef struct GroundHit {
 /* elevation NULL or without levels: a ground that nothing meets. */
 void ground_prepare(Ground *out, const Elevation *elevation);
 
-/* Distance to the first hit at or before far_m along the unit direction d; INFINITY when there is none (or
+/* Distance to the first hit nearer than far_m along the unit direction d; INFINITY when there is none (or
  * the ray is not finite, or starts more than 1e9 m out). hit may be NULL; written only with a hit. */
 double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m);
 

@@ -127,7 +127,7 @@ static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, d
     w->t_m[l] = start_m;
     w->i[l] = ground_cell_at(r->u0, r->du, r->per_du, start_m, g->cells_x);
     w->j[l] = ground_cell_at(r->v0, r->dv, r->per_dv, start_m, g->cells_y);
-    w->k[l] = g->top, w->size[l] = 1 << g->top, w->per_size[l] = 1 / w->size[l];
+    w->k[l] = ground_start_level(g), w->size[l] = 1 << ground_start_level(g), w->per_size[l] = 1 / w->size[l];
 }
 
 /* Gives the lane its ray's next piece over a level, or the next ray; false when there are no more. */
@@ -167,7 +167,7 @@ static bool meets_cell(Stream *stream, const Walk *w, int l)
     const double range_m = ground_cell_hit(stream->level[l], &ray->of_level[level], i, j, &north_west);
     if (!(range_m < INFINITY)) return false;
     ray->piece = ray->piece_count;
-    if (range_m > stream->far_m[n]) return true;
+    if (!(range_m < stream->far_m[n])) return true;
     stream->range_m[n] = range_m;
     if (stream->hit) stream->hit[n] = (GroundHit){.level = level, .i = i, .j = j, .north_west = north_west};
     return true;

@@ -21,8 +21,15 @@ typedef struct LevelRay {
     double first_m, last_m;         /* the piece of the ray over this level */
 } LevelRay;
 
-/* Finite even for 0 and -0: a line that is never met is then met at 1e30 m or so, which needs no other care. */
+/* 1 / d, finite even for 0 and -0: a line that is never met is then met at 1e30 m or so, which needs no other
+ * care. */
 static inline double ground_inverse(double d) { return fabs(d) < 1e-30 ? copysign(1e30, d) : 1 / d; }
+
+/* The same for the way across p0's lines, 0 .. cells. A ray along the last line runs in the last cell. */
+static inline double ground_inverse_across(double d, double p0, double cells)
+{
+    return fabs(d) < 1e-30 ? p0 < cells ? 1e30 : -1e30 : 1 / d;
+}
 
 static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const double o_enu[3], const double d_enu[3])
 {
@@ -32,8 +39,8 @@ static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const dou
     r->du = d_enu[0] * g->cells_per_m;
     r->dv = d_enu[1] * g->cells_per_m;
     r->dw = d_enu[2] * g->posts_per_m;
-    r->per_du  = ground_inverse(r->du);
-    r->per_dv  = ground_inverse(r->dv);
+    r->per_du  = ground_inverse_across(r->du, r->u0, g->cells_x);
+    r->per_dv  = ground_inverse_across(r->dv, r->v0, g->cells_y);
     r->per_duv = ground_inverse(r->dv - r->du);
 }
 
@@ -60,6 +67,11 @@ static inline void ground_walk(double *start_m, double *stop_m, const GroundLeve
     if (r->dw < 0) *start_m = *start_m > top_m ? *start_m : top_m;
     else *stop_m = *stop_m < top_m ? *stop_m : top_m;
 }
+
+/* The level of the pyramid to begin at. A ray that has come down to the highest post nearly always goes on
+ * down from the coarsest nodes, so they are left out: 1.1 times faster over 801 x 801 posts, no difference
+ * over 6001 x 6001. */
+static inline int ground_start_level(const GroundLevel *g) { return g->top > 6 ? g->top - 6 : 0; }
 
 /* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The
  * estimate is off by at most one; the lines decide. */

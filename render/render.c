@@ -101,8 +101,11 @@ static void resolve_materials(Scratch *s, const Job *job)
         } else if (s->hits.surface[i]) {
             const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
             s->material[i]             = (uint16_t)world->materials.surface[surface];
-            s->texture[i] = (float)landscape_texture(world->landscape, surface, s->hits.p_enu[0][i],
-                                                     s->hits.p_enu[1][i], s->hits.range_m[i] / px_per_m);
+            /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
+            double graze = 0;
+            for (int k = 0; k < 3; k++) graze -= s->hits.n_geo[k][i] * s->rays.d_enu[k][i];
+            s->texture[i] = (float)landscape_texture(world->landscape, surface, s->hits.p_enu[0][i], s->hits.p_enu[1][i],
+                                                     s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01)));
         }
     }
 }

@@ -90,14 +90,23 @@ static SurfaceClass crop_of_field(uint64_t id, bool arable)
     return SURFACE_GRASS;
 }
 
+/* Slope over some 20 m, so that what grows does not follow the edges of single triangles. 0 at the very rim. */
+static double slope_about(const Elevation *elevation, double x_m, double y_m)
+{
+    static const double arm_m = 10;
+    const double dx = elevation_height(elevation, x_m + arm_m, y_m, NULL) - elevation_height(elevation, x_m - arm_m, y_m, NULL);
+    const double dy = elevation_height(elevation, x_m, y_m + arm_m, NULL) - elevation_height(elevation, x_m, y_m - arm_m, NULL);
+    const double slope = sqrt(dx * dx + dy * dy) / (2 * arm_m);
+    return isfinite(slope) ? slope : 0;
+}
+
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
 {
     static const double track_half_m = 2, hedge_half_m = 1.5;
     const Cover        *cover = landscape->cover;
-    double              normal[3];
-    if (!cover || !isfinite(elevation_height(&landscape->elevation, x_m, y_m, normal))) return SURFACE_NONE;
+    if (!cover || !isfinite(elevation_height(&landscape->elevation, x_m, y_m, NULL))) return SURFACE_NONE;
     const uint64_t seed = cover->seed;
-    const double   steep = sqrt(normal[0] * normal[0] + normal[1] * normal[1]) / normal[2];
+    const double   steep = slope_about(&landscape->elevation, x_m, y_m);
 
     /* beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there */
     const double far_lean = sqrt(x_m * x_m + y_m * y_m) / 6371e3;
@@ -106,7 +115,7 @@ SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_
     /* wild patches, wider where it is steep; rock shows through in their hearts */
     const double wild = noise_at(seed + 10, x_m, y_m, 310) + 0.5 * noise_at(seed + 11, x_m, y_m, 83) +
                         0.2 * noise_at(seed + 12, x_m, y_m, 17) + 4 * slope;
-    if (wild > 1.12 + (slope > 0.2 ? 0 : 0.12)) return SURFACE_ROCK;
+    if (wild > 1.24 - 0.12 * clamp(slope / 0.2, 0, 1)) return SURFACE_ROCK;
 
     const Plot plot = plot_at(seed, x_m, y_m);
     if (plot.border_m < track_half_m && unit_from_hash(plot.border) < 0.24) return SURFACE_TRACK;

@@ -22,7 +22,7 @@ static const Key keys[] = {
     {"sensor.width_px", KEY_INT, AT(sensor.width_px), 8, 8192, NULL, "px", "columns of the picture"},
     {"sensor.height_px", KEY_INT, AT(sensor.height_px), 8, 8192, NULL, "px", "rows of the picture"},
     {"sensor.hfov_deg", KEY_DOUBLE, AT(sensor.hfov_deg), 0.01, 120, NULL, "deg", "horizontal field of view"},
-    {"sensor.rate_hz", KEY_DOUBLE, AT(sensor.rate_hz), 0, 1000, NULL, "Hz", "frames a second; 0: 10 for a munition, 1 for an observer"},
+    {"sensor.rate_hz", KEY_DOUBLE, AT(sensor.rate_hz), 0, 1000, NULL, "Hz", "frames a second; 0: 5 for a munition, 1 for an observer"},
     {"sensor.samples", KEY_INT, AT(sensor.samples), 1, 16, NULL, "", "rays a side of a pixel"},
     {"sensor.bands", KEY_TEXT, AT(sensor.bands), 0, 0, NULL, "", "any of optical,mwir,lwir,radar"},
     {"sensor.optical", KEY_TEXT, AT(sensor.optical), 0, 0, "rgb|pan", "", "three channels or one"},
@@ -111,7 +111,7 @@ Config config_default(void)
     c.observer.range_m              = 600;
     c.observer.height_m             = 250;
     c.observer.rate_dps             = 2;
-    c.models.sag_m                  = 0.005;
+    c.models.sag_m                  = 0.002;
     c.entities.timeout_s            = 12;
     c.entities.timeout_land_v7_s    = 132;
     c.entities.extrapolation_limit_s = 12;

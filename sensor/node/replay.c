@@ -31,7 +31,7 @@ static const char help[] =
     "  --out DIR          where the products go (default: out)\n"
     "  --bands LIST       any of optical,mwir,lwir,radar (default: all)\n"
     "  --size WxH         picture size in pixels (default: 720x486)\n"
-    "  --rate HZ          frames a second of exercise time (default: 10 for a munition, 1 for an observer)\n"
+    "  --rate HZ          frames a second of exercise time (default: 5 for a munition, 1 for an observer)\n"
     "  --from S, --to S   only this span of exercise time, in seconds as `pitviper inspect` shows them\n"
     "  --host ID          site:application:entity that carries the sensor; may be given several times\n"
     "  --samples N        N x N rays a pixel (default: 1)\n"
@@ -290,7 +290,7 @@ static Status run_host(Run *run, const char *host_text)
     if (status != STATUS_OK) goto done;
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     if (!(o->config.sensor.rate_hz > 0))
-        choice_add(&choices, "rate: %d frames a second (sensor.rate_hz)", plan.munition ? 10 : 1);
+        choice_add(&choices, "rate: %d frames a second (sensor.rate_hz)", plan.munition ? 5 : 1);
     for (int i = 0; i < choices.count; i++) printf("%s\n", choices.line[i]);
     fflush(stdout);
 

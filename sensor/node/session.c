@@ -353,7 +353,7 @@ static Status open_session(Session *s)
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s};
-    s->rate_hz = shared->config->sensor.rate_hz > 0 ? shared->config->sensor.rate_hz : s->plan->munition ? 10 : 1;
+    s->rate_hz = shared->config->sensor.rate_hz > 0 ? shared->config->sensor.rate_hz : s->plan->munition ? 5 : 1;
     s->tick    = (int64_t)ceil(s->plan->start_s / seeker_tick_s);
     if (dis_entity_id_is_none(s->plan->host))
         strcpy(s->host_text, "observer");

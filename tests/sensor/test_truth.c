@@ -1,0 +1,214 @@
+/* Truth per target, against geometry worked out another way and radiance made to order. */
+#include "tests/check.h"
+
+#include "sensor/node/truth.h"
+
+#include <unistd.h>
+
+enum { width = 60, height = 40 };
+
+typedef struct Fixture {
+    Catalog       *catalog;
+    World          world;
+    Snapshot       snapshot;
+    SnapshotEntity entity[2];
+    RenderRequest  request;
+    EyeState       eye;
+    Picture        picture;
+    TargetPixels   pixels[2];
+    uint32_t       id[width * height];
+    float          lwir[width * height];
+} Fixture;
+
+static Fixture f;
+
+static int open_fixture(void **state)
+{
+    (void)state;
+    char        path[] = "/tmp/pitviper-catalog-XXXXXX";
+    const char *text   = "type,model,origin\n*.*.*.*.*.*.*,marker,base\n";
+    const int   file   = mkstemp(path);
+    if (file < 0 || write(file, text, strlen(text)) != (ssize_t)strlen(text)) return -1;
+    close(file);
+    const Status status = catalog_open(&f.catalog, path, 0.01);
+    unlink(path);
+    f.world.catalog = f.catalog;
+    return status == STATUS_OK && planck_table_create(&f.world.planck_lwir, 8e-6, 12e-6) == STATUS_OK ? 0 : -1;
+}
+
+static int close_fixture(void **state)
+{
+    (void)state;
+    planck_table_destroy(f.world.planck_lwir);
+    catalog_close(f.catalog);
+    return 0;
+}
+
+/* A place on the Earth with its axes: forward north, right east, down. */
+static void pose(SnapshotEntity *e, double lat_deg, double lon_deg, double h_m)
+{
+    const Geodetic place = {lat_deg * rad_per_deg, lon_deg * rad_per_deg, h_m};
+    double         r[9];
+    CHECK(ecef_from_geodetic(e->p_ecef, r, &place) == STATUS_OK);
+    for (int i = 0; i < 3; i++) {
+        e->r_ecef_from_body[3 * i]     = r[3 * i + 1];
+        e->r_ecef_from_body[3 * i + 1] = r[3 * i];
+        e->r_ecef_from_body[3 * i + 2] = -r[3 * i + 2];
+    }
+}
+
+/* Eye at entity 0 looking at entity 1; both moving. */
+static void scene(void)
+{
+    memset(f.entity, 0, sizeof f.entity);
+    f.entity[1].model = catalog_find(f.catalog, f.entity[1].type, &(Origin){ORIGIN_BASE}, NULL);
+    pose(&f.entity[0], 36, -123, 500);
+    pose(&f.entity[1], 36.01, -122.99, 20);
+    static const double v0[3] = {120, -200, 80}, v1[3] = {-5, 7, 3};
+    memcpy(f.entity[0].v_ecef_mps, v0, sizeof v0);
+    memcpy(f.entity[1].v_ecef_mps, v1, sizeof v1);
+    f.snapshot = (Snapshot){.count = 2, .entity = f.entity};
+    memcpy(f.eye.p_ecef, f.entity[0].p_ecef, sizeof f.eye.p_ecef);
+    memcpy(f.eye.v_ecef_mps, v0, sizeof v0);
+    f.eye.host_index = 0;
+
+    /* camera: ahead towards a point somewhat beside the target, upright by the local down */
+    double ahead[3], right[3], down[3], down_0[3];
+    for (int k = 0; k < 3; k++) {
+        ahead[k]  = f.entity[1].p_ecef[k] + (k == 0 ? 30 : k == 1 ? -10 : 5) - f.eye.p_ecef[k];
+        down_0[k] = f.entity[0].r_ecef_from_body[3 * k + 2];
+    }
+    v3_normalize(ahead, ahead);
+    v3_cross(right, down_0, ahead);
+    v3_normalize(right, right);
+    v3_cross(down, ahead, right);
+    for (int k = 0; k < 3; k++) {
+        f.eye.r_ecef_from_cam[3 * k]     = right[k];
+        f.eye.r_ecef_from_cam[3 * k + 1] = down[k];
+        f.eye.r_ecef_from_cam[3 * k + 2] = ahead[k];
+    }
+    f.request = (RenderRequest){.view = {.width = width, .height = height, .focal_px = 500}, .bands = 1 << BAND_LWIR};
+    f.picture = (Picture){.width = width, .height = height, .entity = f.id, .lwir = f.lwir, .target = f.pixels};
+    memset(f.pixels, 0, sizeof f.pixels);
+    memset(f.id, 0, sizeof f.id);
+}
+
+/* Camera components (right, up) of the line of sight's direction at t, both carried on in an inertial frame
+ * in which the Earth turns; the camera is held where it was at 0. */
+static void sight_at(double right_up[2], double *range_m, double t_s)
+{
+    static const double earth_rate_rps = 7.292115e-5;
+    double              at[2][3], u[3], cam[3];
+    for (int i = 0; i < 2; i++) {
+        double p[3], centre[3] = {0, 0, i == 1 ? -0.75 : 0}, lever[3];
+        m3_mul_v3(lever, f.entity[i].r_ecef_from_body, centre);
+        for (int k = 0; k < 3; k++) p[k] = f.entity[i].p_ecef[k] + lever[k] + f.entity[i].v_ecef_mps[k] * t_s;
+        const double c = cos(earth_rate_rps * t_s), s = sin(earth_rate_rps * t_s);
+        at[i][0] = c * p[0] - s * p[1];
+        at[i][1] = s * p[0] + c * p[1];
+        at[i][2] = p[2];
+    }
+    v3_sub(u, at[1], at[0]);
+    *range_m = v3_length(u);
+    v3_normalize(u, u);
+    m3_tmul_v3(cam, f.eye.r_ecef_from_cam, u);
+    right_up[0] = cam[0];
+    right_up[1] = -cam[1];
+}
+
+static const TruthNoise noise = {0.01, 0.03, 0.05};
+
+static void line_of_sight_and_its_rate_agree_with_differences(void **state)
+{
+    (void)state;
+    Target t[2];
+    double before[2], now[2], after[2], range_before, range, range_after;
+    scene();
+    f.pixels[1].projected = true;
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    assert_int_equal(t[0].index, 1);
+    const double dt_s = 0.001;
+    sight_at(before, &range_before, -dt_s);
+    sight_at(now, &range, 0);
+    sight_at(after, &range_after, dt_s);
+    CHECK_NEAR(t[0].range_m, range, 1e-6);
+    /* third derivative x dt^2 / 6: some 7 m/s3, 1e-6 m/s; rounding of 1e-9 m of position over dt: the same */
+    CHECK_NEAR(t[0].closing_mps, (range_before - range_after) / (2 * dt_s), 1e-5);
+    /* the same two, over the range: below 1e-9 rad/s */
+    for (int k = 0; k < 2; k++) CHECK_NEAR(t[0].los_rate_rps[k], (after[k] - before[k]) / (2 * dt_s), 1e-8);
+    for (int k = 0; k < 2; k++) CHECK_NEAR(tan(t[0].boresight_error_rad[k]), now[k] / sqrt(1 - now[0] * now[0] - now[1] * now[1]), 1e-12);
+    CHECK(fabs(t[0].los_rate_rps[0]) > 1e-2); /* the case is not a trivial one */
+    CHECK(isnan(t[0].visible_fraction));
+}
+
+static void azimuth_elevation_and_aspect_have_the_stated_senses(void **state)
+{
+    (void)state;
+    static const struct { double dlat, dlon, az_deg, aspect_deg; } where[] = {
+        {0.01, 0, 0, 180}, {0, 0.01, 90, 270}, {-0.01, 0, 180, 0}, {0, -0.01, 270, 90}};
+    for (size_t i = 0; i < sizeof where / sizeof where[0]; i++) {
+        Target t[2];
+        scene();
+        pose(&f.entity[1], 36 + where[i].dlat, -123 + where[i].dlon, 20); /* its nose is north */
+        f.pixels[1].projected = true;
+        truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise);
+        CHECK_NEAR(remainder(t[0].los_az_rad / rad_per_deg - where[i].az_deg, 360), 0, 0.01);
+        CHECK_NEAR(remainder(t[0].aspect_rad / rad_per_deg - where[i].aspect_deg, 360), 0, 0.02);
+        CHECK(t[0].los_el_rad < -0.3 && t[0].los_el_rad > -0.6);
+        CHECK_NEAR(t[0].depression_rad, -t[0].los_el_rad, 0);
+    }
+}
+
+static void contrast_is_the_temperature_difference_that_was_painted(void **state)
+{
+    (void)state;
+    Target t[2];
+    scene();
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++) {
+            const bool on = x >= 20 && x < 30 && y >= 10 && y < 16;
+            f.id[y * width + x]   = on ? 2 : 0;
+            f.lwir[y * width + x] = (float)planck_band(8e-6, 12e-6, on ? (x < 25 ? 303 : 309) : 300 + (x + y) % 2, NULL);
+        }
+    f.pixels[1] = (TargetPixels){.visible = 60, .amodal = 80, .box = {20, 10, 30, 16}, .amodal_box = {20, 10, 30, 18},
+                                 .occluded_ground = 20, .occluder = -1};
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    CHECK_NEAR(t[0].visible_fraction, 0.75, 1e-12);
+    assert_string_equal(t[0].occluder, "ground");
+    const TargetBand *b = &t[0].band[BAND_LWIR];
+    /* float radiance: 1e-7 of 38 W/m2/sr over 0.63 W/m2/sr/K is some 1e-5 K */
+    CHECK_NEAR(b->contrast_k, 306 - 300.5, 1e-3);
+    CHECK_NEAR(b->dt_rss_k, sqrt(5.5 * 5.5 + 9), 1e-3);
+    CHECK_NEAR(b->snr, 5.5 / sqrt(0.25 + 0.05 * 0.05), 0.01);
+    /* 60 pixels of 1/500 rad at the range; corners of this narrow picture lose 1 % to the cosine cubed */
+    const double mean = 0.5 * (planck_band(8e-6, 12e-6, 303, NULL) + planck_band(8e-6, 12e-6, 309, NULL));
+    CHECK_NEAR(b->intensity_w_sr / (60 * mean * t[0].range_m * t[0].range_m / 250000), 1, 0.002);
+    CHECK(isnan(t[0].band[BAND_MWIR].contrast_k) && isnan(t[0].band[BAND_OPTICAL].snr)); /* not computed: absent */
+}
+
+static void hidden_targets_are_listed_and_the_host_never(void **state)
+{
+    (void)state;
+    Target t[2];
+    scene();
+    f.pixels[0] = (TargetPixels){.visible = 10, .amodal = 10, .projected = true};
+    f.pixels[1] = (TargetPixels){.amodal = 12, .projected = true, .projected_box = {1, 2, 3, 4}, .occluded_entity = 12,
+                                 .occluder = 0, .amodal_box = {1, 2, 3, 4}};
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    CHECK(t[0].index == 1 && t[0].pixels == 0 && t[0].visible_fraction == 0);
+    CHECK(t[0].occluder_index == 0);
+    CHECK(isnan(t[0].band[BAND_LWIR].contrast_k));
+    f.pixels[1] = (TargetPixels){.occluder = -1}; /* outside the picture */
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(line_of_sight_and_its_rate_agree_with_differences),
+        cmocka_unit_test(azimuth_elevation_and_aspect_have_the_stated_senses),
+        cmocka_unit_test(contrast_is_the_temperature_difference_that_was_painted),
+        cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),
+    };
+    return cmocka_run_group_tests(tests, open_fixture, close_fixture);
+}

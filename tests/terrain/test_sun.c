@@ -1,0 +1,140 @@
+/* The sun against NREL's published vector, and against a low-precision almanac that shares no code with ERFA. */
+#include "tests/check.h"
+
+#include "terrain/sun.h"
+
+/* Reda and Andreas, "Solar Position Algorithm for Solar Radiation Applications", NREL/TP-560-34302, appendix A.5:
+ * 2003-10-17 12:30:30, seven hours west of UTC. */
+static void nrel_vector(void **state)
+{
+    (void)state;
+    const Geodetic place = {39.742476 * rad_per_deg, -105.1786 * rad_per_deg, 1830.14};
+    const double   unix_s = 1066419030; /* 2003-10-17T19:30:30Z */
+    Sun            sun;
+    CHECK(sun_at(&sun, unix_s, &place, 820, 11, 67) == STATUS_OK);
+    CHECK_NEAR(90 - sun.elevation_rad / rad_per_deg, 50.11162, 0.0005);
+    CHECK_NEAR(sun.azimuth_rad / rad_per_deg, 194.340241, 0.0005);
+    CHECK_NEAR(sun.distance_au, 0.9965422974, 2e-7); /* two truncations of VSOP: some 20 km */
+    /* the same from ERFA by somebody else's program */
+    CHECK_NEAR(90 - sun.elevation_rad / rad_per_deg, 50.111607, 2e-6);
+    CHECK_NEAR(sun.azimuth_rad / rad_per_deg, 194.340197, 2e-6);
+    CHECK_NEAR(v3_length(sun.d_enu), 1, 1e-15);
+    CHECK_NEAR(atan2(sun.d_enu[0], sun.d_enu[1]) + 2 * pi_rad, sun.azimuth_rad, 1e-12);
+    CHECK_NEAR(asin(sun.d_enu[2]), sun.elevation_rad, 1e-12);
+
+    /* the built-in TT - UT1 is 64.184 s then: three seconds are 0.12 arcsecond */
+    Sun own;
+    CHECK(sun_at(&own, unix_s, &place, 820, 11, NAN) == STATUS_OK);
+    CHECK_NEAR(own.azimuth_rad, sun.azimuth_rad, 2e-6);
+    CHECK(own.azimuth_rad != sun.azimuth_rad);
+}
+
+/* "Low precision formulas for the Sun's coordinates", Astronomical Almanac, page C5: 0.01 degree, 1950 .. 2050; no
+ * parallax, no refraction. */
+static void almanac(double d_enu[3], double unix_s, const Geodetic *place)
+{
+    const double n = (unix_s - 946728000) / 86400; /* days from 2000-01-01T12 */
+    const double l = (280.460 + 0.9856474 * n) * rad_per_deg, g = (357.528 + 0.9856003 * n) * rad_per_deg;
+    const double lambda = l + (1.915 * sin(g) + 0.020 * sin(2 * g)) * rad_per_deg;
+    const double epsilon = (23.439 - 0.0000004 * n) * rad_per_deg;
+    const double alpha = atan2(cos(epsilon) * sin(lambda), cos(lambda)), delta = asin(sin(epsilon) * sin(lambda));
+    const double gmst = (280.46061837 + 360.98564736629 * n) * rad_per_deg; /* Meeus, Astronomical Algorithms, 12.4 */
+    const double hour = gmst + place->lon_rad - alpha, phi = place->lat_rad;
+    d_enu[0] = -cos(delta) * sin(hour);
+    d_enu[1] = cos(phi) * sin(delta) - sin(phi) * cos(delta) * cos(hour);
+    d_enu[2] = sin(phi) * sin(delta) + cos(phi) * cos(delta) * cos(hour);
+}
+
+/* 0.01 of the almanac, 0.005 of aberration of the moon and rounding of its constants, 0.0024 of parallax: 0.02. With
+ * no air there is no refraction. */
+static void agrees_with_the_almanac(void **state)
+{
+    (void)state;
+    double worst_deg = 0;
+    for (int n = 0; n < 3000; n++) {
+        const double   unix_s = 631152000 + (2524608000.0 - 631152000) * random_uniform(1, 0, 0, n); /* 1990 .. 2050 */
+        const Geodetic place = {asin(2 * random_uniform(1, 1, 0, n) - 1), (2 * random_uniform(1, 2, 0, n) - 1) * pi_rad,
+                                0};
+        Sun            sun;
+        double         want[3], cross[3];
+        CHECK(sun_at(&sun, unix_s, &place, 0, 15, NAN) == STATUS_OK);
+        almanac(want, unix_s, &place);
+        v3_cross(cross, want, sun.d_enu);
+        const double off_deg = atan2(v3_length(cross), v3_dot(want, sun.d_enu)) / rad_per_deg;
+        CHECK_NEAR(off_deg, 0, 0.02);
+        worst_deg = fmax(worst_deg, off_deg);
+    }
+    printf("worst against the almanac: %.4f degree\n", worst_deg);
+    CHECK(worst_deg > 1e-4); /* two programs this close would be one */
+}
+
+static void known_places_and_days(void **state)
+{
+    (void)state;
+    Sun sun;
+    /* 2024-06-20 solstice, 20:51 UTC: noon stands over longitude -132.3 within the equation of time; at the tropic
+     * it is overhead */
+    double best = 0;
+    for (int lon = -150; lon < -110; lon++) {
+        const Geodetic tropic = {23.436 * rad_per_deg, lon * rad_per_deg, 0};
+        CHECK(sun_at(&sun, 1718916660, &tropic, 1013, 15, NAN) == STATUS_OK);
+        best = fmax(best, sun.elevation_rad / rad_per_deg);
+    }
+    CHECK_NEAR(best, 90, 0.5);
+    /* and the north pole sees it 23.44 degrees up whatever the hour; refraction adds 0.04 */
+    for (int hour = 0; hour < 24; hour += 6) {
+        CHECK(sun_at(&sun, 1718916660 + 3600 * hour, &(Geodetic){pi_rad / 2, 0, 0}, 1013, 15, NAN) == STATUS_OK);
+        CHECK_NEAR(sun.elevation_rad / rad_per_deg, 23.436 + 0.037, 0.006);
+    }
+    /* morning is in the east, evening in the west, noon in the south of 48 N */
+    const Geodetic munich = {48.1 * rad_per_deg, 11.6 * rad_per_deg, 500};
+    CHECK(sun_at(&sun, 1711000800, &munich, 1013, 10, NAN) == STATUS_OK); /* 2024-03-21T06:00Z */
+    CHECK(sun.d_enu[0] > 0.9);
+    CHECK(sun_at(&sun, 1711000800 + 5.3 * 3600, &munich, 1013, 10, NAN) == STATUS_OK);
+    CHECK_NEAR(sun.azimuth_rad, pi_rad, 0.03);
+    CHECK(sun_at(&sun, 1711000800 + 10.6 * 3600, &munich, 1013, 10, NAN) == STATUS_OK);
+    CHECK(sun.d_enu[0] < -0.9);
+}
+
+/* Without a leap second table (before 1960, far ahead) the sun must not jump: along a day's edge at each year's
+ * turn it moves as smoothly as in between. */
+static void no_jump_at_the_ends_of_the_table(void **state)
+{
+    (void)state;
+    const Geodetic place = {0.6, 0, 0};
+    for (int year = 1900; year <= 2100; year++) {
+        const double turn_s = ((year - 1970) * 365.2425) * 86400;
+        Sun          a, b;
+        CHECK(sun_at(&a, turn_s - 0.5, &place, 0, 15, NAN) == STATUS_OK);
+        CHECK(sun_at(&b, turn_s + 0.5, &place, 0, 15, NAN) == STATUS_OK);
+        double d[3];
+        v3_sub(d, b.d_enu, a.d_enu);
+        CHECK_NEAR(v3_length(d), 7.27e-5 * cos(asin(0.4)), 8e-6); /* one second of the Earth's turn */
+    }
+}
+
+static void bad_input(void **state)
+{
+    (void)state;
+    const Geodetic place = {0.6, 0, 0};
+    Sun            sun = {.azimuth_rad = 42};
+    CHECK(sun_at(&sun, NAN, &place, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 1e12, &place, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, -1e12, &place, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &(Geodetic){NAN, 0, 0}, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &(Geodetic){2, 0, 0}, 1013, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, NAN, 15, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1013, -273, NAN) == STATUS_BAD_VALUE);
+    CHECK(sun_at(&sun, 0, &place, 1013, 15, INFINITY) == STATUS_BAD_VALUE);
+    CHECK(sun.azimuth_rad == 42);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nrel_vector),           cmocka_unit_test(agrees_with_the_almanac),
+        cmocka_unit_test(known_places_and_days), cmocka_unit_test(no_jump_at_the_ends_of_the_table),
+        cmocka_unit_test(bad_input),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
