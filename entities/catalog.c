@@ -79,7 +79,8 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
     if (strcmp(origin, "base") == 0) row->origin = ORIGIN_BASE;
     else if (strcmp(origin, "centre") == 0) row->origin = ORIGIN_CENTRE;
     else {
-        log_error("catalog: not an origin: file=%s line=%d origin=\"%s\" want=base or centre", table->path, line, origin);
+        log_error("catalog: not an origin: file=%s line=%d origin=\"%s\" want=base or centre", table->path, line,
+                  origin);
         return STATUS_BAD_VALUE;
     }
     const Status status = find_or_build(&row->model, catalog, model, sag_m);

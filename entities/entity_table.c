@@ -30,7 +30,8 @@ static bool config_is_usable(const EntityTableConfig *config)
     return config->capacity > 0 && config->capacity <= capacity_limit && config->ambient_s >= 0;
 }
 
-Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog, const char *heat_path)
+Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
+                           const char *heat_path)
 {
     if (!config_is_usable(config)) {
         log_error("entity_table: configuration out of range: capacity=%d of 1 .. %d, times and rates above 0 up to 1e6",
@@ -51,7 +52,8 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     if (status != STATUS_OK) goto fail;
     status = heat_table_open(&table->heat, heat_path);
     if (status != STATUS_OK) goto fail;
-    for (int m = 0; m < catalog_model_count(catalog); m++) table->model_roles[m] = heat_roles(catalog_model(catalog, m));
+    for (int m = 0; m < catalog_model_count(catalog); m++)
+        table->model_roles[m] = heat_roles(catalog_model(catalog, m), &table->heat);
 
     *out = table;
     return STATUS_OK;
@@ -148,8 +150,8 @@ const EntityCounters *entity_table_counters(const EntityTable *table) { return &
 static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
 {
     const double *v = slot->reported.v_mps;
-    const bool quick = slot->type.kind == kind_munition ||
-                       (slot->type.kind == kind_platform && (slot->type.domain == domain_air || slot->type.domain == domain_space));
+    const bool flies = slot->type.domain == domain_air || slot->type.domain == domain_space;
+    const bool quick = slot->type.kind == kind_munition || (slot->type.kind == kind_platform && flies);
     const bool stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != kind_munition;
     return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
 }
@@ -278,7 +280,8 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
 
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, is_first, t_s);
     slot->reported.algorithm = pdu->dead_reckoning >= 1 && pdu->dead_reckoning <= 9 ? pdu->dead_reckoning : 1;
-    if (!believe(slot->reported.a_mps2, pdu->acceleration_mps2, largest_acceleration_mps2)) table->counters.motion_refused++;
+    if (!believe(slot->reported.a_mps2, pdu->acceleration_mps2, largest_acceleration_mps2))
+        table->counters.motion_refused++;
     if (!believe(slot->reported.w_body_rps, pdu->angular_rate_rps, table->config.rate_limit_rps))
         table->counters.motion_refused++;
     take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, is_first, t_s);
@@ -351,7 +354,8 @@ void entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double 
     }
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
-        if (entity_slot_lives(slot) && id_matches(asked, slot->id)) remove_slot(table, slot, t_s, &table->counters.removed);
+        if (entity_slot_lives(slot) && id_matches(asked, slot->id))
+            remove_slot(table, slot, t_s, &table->counters.removed);
     }
 }
 
@@ -398,7 +402,8 @@ static void count_drop(DisCounters *counters, Status status)
     else if (status != STATUS_OK) counters->dropped[DIS_DROP_TRUNCATED]++;
 }
 
-static Status take_entity_state(EntityTable *table, const uint8_t *octets, size_t count, double t_s, DisCounters *counters)
+static Status take_entity_state(EntityTable *table, const uint8_t *octets, size_t count, double t_s,
+                                DisCounters *counters)
 {
     DisEntityState pdu;
     DisDrop why;
@@ -458,19 +463,21 @@ static Status take_management(EntityTable *table, uint8_t type, const uint8_t *o
     return status;
 }
 
-void entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s, DisCounters *counters)
+void entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s,
+                      DisCounters *counters)
 {
+    const size_t octets = header->length;
     Status status = STATUS_OK;
 
     if (!isfinite(t_s)) return;
     switch (header->type) {
-    case dis_pdu_entity_state: status = take_entity_state(table, pdu, header->length, t_s, counters); break;
-    case dis_pdu_entity_state_update: status = take_entity_state_update(table, pdu, header->length, t_s, counters); break;
+    case dis_pdu_entity_state: status = take_entity_state(table, pdu, octets, t_s, counters); break;
+    case dis_pdu_entity_state_update: status = take_entity_state_update(table, pdu, octets, t_s, counters); break;
     case dis_pdu_fire:
-    case dis_pdu_detonation: status = take_warfare(table, header->type, pdu, header->length, t_s); break;
+    case dis_pdu_detonation: status = take_warfare(table, header->type, pdu, octets, t_s); break;
     case dis_pdu_remove_entity:
     case dis_pdu_start_resume:
-    case dis_pdu_stop_freeze: status = take_management(table, header->type, pdu, header->length, t_s); break;
+    case dis_pdu_stop_freeze: status = take_management(table, header->type, pdu, octets, t_s); break;
     default: break;
     }
     count_drop(counters, status);

@@ -40,7 +40,8 @@ typedef struct EntityCounters {
 
 EntityTableConfig entity_table_default_config(void);
 /* The catalog must outlive the table. heat_path: etc/heat.csv. */
-Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog, const char *heat_path);
+Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
+                           const char *heat_path);
 void   entity_table_destroy(EntityTable *table);
 
 /* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) stands still, and so does one that
@@ -60,7 +61,8 @@ void   entity_table_expire(EntityTable *table, double t_s);
 
 /* Decodes one PDU by its type, checks it, and calls the right one of the above; types that the table does
  * not need are ignored. Every drop is counted. This is what replay and the node call. */
-void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s, DisCounters *counters);
+void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s,
+                        DisCounters *counters);
 
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);

@@ -21,7 +21,8 @@ static const double recovery = 0.85, cp_air_j_kg_k = 1005;
 
 static bool driver_by_name(HeatDriver *out, const char *name)
 {
-    static const char *const names[HEAT_DRIVER_COUNT] = {"none", "engine", "motion", "firing", "flight", "burn", "speed"};
+    static const char *const names[HEAT_DRIVER_COUNT] = {"none",   "engine", "motion", "firing",
+                                                         "flight", "burn",   "speed"};
     for (int d = 0; d < HEAT_DRIVER_COUNT; d++) {
         if (strcmp(names[d], name) == 0) {
             *out = (HeatDriver)d;
@@ -85,7 +86,8 @@ Status heat_table_open(HeatTable *out, const char *path)
             status = STATUS_BAD_VALUE;
         }
     }
-    for (int row = 0; row < table.rows && status == STATUS_OK; row++) status = read_row(&heat, seen, &table, row, column);
+    for (int row = 0; row < table.rows && status == STATUS_OK; row++)
+        status = read_row(&heat, seen, &table, row, column);
     for (int role = 0; role < HEAT_ROLE_COUNT && status == STATUS_OK; role++) {
         if (seen[role]) continue;
         log_error("heat: a role has no row: file=%s role=%s", path, heat_role_name((HeatRole)role));
@@ -101,7 +103,8 @@ Status heat_table_open(HeatTable *out, const char *path)
 /* Two bits, 3 = destroyed, in the same place for every platform domain. */
 static bool is_destroyed(const HeatEvidence *evidence)
 {
-    return evidence->type.kind == kind_platform && (evidence->appearance >> damage_shift & damage_mask) == damage_destroyed;
+    return evidence->type.kind == kind_platform &&
+           (evidence->appearance >> damage_shift & damage_mask) == damage_destroyed;
 }
 
 /* Sets every drive that a report speaks of; firing and burning go on by their own clocks. */
@@ -127,7 +130,8 @@ static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_
     drive[HEAT_DRIVER_MOTION] = (HeatDrive){state->moving && !air ? ground_drive : 0, INFINITY};
     drive[HEAT_DRIVER_FLIGHT] = (HeatDrive){air && alive, INFINITY};
     /* in kelvin here: each role's rise_k turns it into a level */
-    drive[HEAT_DRIVER_SPEED] = (HeatDrive){recovery * evidence->speed_mps * evidence->speed_mps / (2 * cp_air_j_kg_k), INFINITY};
+    const double recovery_k = recovery * evidence->speed_mps * evidence->speed_mps / (2 * cp_air_j_kg_k);
+    drive[HEAT_DRIVER_SPEED] = (HeatDrive){recovery_k, INFINITY};
 }
 
 static double drive_level(const HeatTable *table, int role, double value)
@@ -150,7 +154,8 @@ static double level_at(const HeatState *state, const HeatTable *table, int role,
 {
     const HeatDrive drive = state->drive[table->driver[role]];
     const double    value = drive_level(table, role, drive.value);
-    const double    end_s = fmin(t_s, fmax(drive.until_s, state->t_s));
+    const double    until_s = drive.until_s > state->t_s ? drive.until_s : state->t_s;
+    const double    end_s = until_s < t_s ? until_s : t_s;
 
     const double at_end = approach(state->level[role], value, end_s - state->t_s, table, role);
     return approach(at_end, 0, t_s - end_s, table, role);
@@ -199,14 +204,18 @@ void heat_launch(HeatState *state, const HeatTable *table, double t_s)
 
 void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTable *table, uint32_t roles, double t_s)
 {
-    for (int role = 0; role < HEAT_ROLE_COUNT; role++)
-        rise_k[role] = roles >> role & 1 ? (float)(table->rise_k[role] * level_at(state, table, role, fmax(t_s, state->t_s))) : 0;
+    const double at_s = t_s > state->t_s ? t_s : state->t_s;
+    for (int role = 0; role < HEAT_ROLE_COUNT; role++) {
+        rise_k[role] = 0;
+        if (roles >> role & 1) rise_k[role] = (float)(table->rise_k[role] * level_at(state, table, role, at_s));
+    }
 }
 
-uint32_t heat_roles(const Model *model)
+uint32_t heat_roles(const Model *model, const HeatTable *table)
 {
     uint32_t roles = 0;
-    for (int p = 0; p < model->part_count; p++) roles |= UINT32_C(1) << model->part[p].role;
+    for (int p = 0; p < model->part_count; p++)
+        if (table->driver[model->part[p].role] != HEAT_DRIVER_NONE) roles |= UINT32_C(1) << model->part[p].role;
     return roles;
 }
 

@@ -60,8 +60,8 @@ void heat_launch(HeatState *state, const HeatTable *table, double t_s);
 /* Temperature above a passive part at t_s (at or after the last report; earlier counts as that), K. Only roles of
  * the mask (1 << role) are computed; others are 0. */
 void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTable *table, uint32_t roles, double t_s);
-/* Roles that a model's parts have. */
-uint32_t heat_roles(const Model *model);
+/* Roles that a model's parts have and something drives. */
+uint32_t heat_roles(const Model *model, const HeatTable *table);
 
 /* Until when engine and rotors turn if nothing else is heard: power-plant bit, moving or moved lately, or an air
  * platform; never a destroyed one. -INFINITY: they stand; INFINITY: for as long as this is all we know. */

@@ -174,9 +174,11 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
                                                                  slot->hold_s, v3_length(e->v_ecef_mps));
     heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
 
+    const double forward_m = dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
     const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
-                              .distance_m = slot->distance_m + (dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0)};
-    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s), slot->hold_s);
+                              .distance_m = slot->distance_m + forward_m};
+    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
+                              slot->hold_s);
     model_pose(pose, model, joint_value);
 
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
@@ -189,7 +191,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     if (!isfinite(t_s)) return STATUS_BAD_VALUE;
     const size_t capacity = (size_t)table->count + 1;
-    Ordered *order = arena_alloc(arena, capacity, sizeof *order), *scratch = arena_alloc(arena, capacity, sizeof *scratch);
+    Ordered *order = arena_alloc(arena, capacity, sizeof *order);
+    Ordered *scratch = arena_alloc(arena, capacity, sizeof *scratch);
     snapshot.entity = arena_alloc(arena, capacity, sizeof *snapshot.entity);
     if (!order || !scratch || !snapshot.entity) return STATUS_NO_MEMORY;
 
@@ -216,7 +219,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
         reckon_chunk(snapshot.entity, table, order, first, end, t_s);
         for (int e = first; e < end; e++) {
             SnapshotEntity *entity = snapshot.entity + e;
-            finish_entity(entity, snapshot.node + entity->first_node, joint_value, table, table->slot + order[e].slot, t_s);
+            NodePose *pose = snapshot.node + entity->first_node;
+            finish_entity(entity, pose, joint_value, table, table->slot + order[e].slot, t_s);
         }
     }
     *out = snapshot;

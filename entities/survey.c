@@ -29,7 +29,7 @@ typedef struct Building {
     Survey        *survey;
     ExerciseClock *clock;
     EntityIndex    index;
-    int            track_capacity, indexed;
+    int            track_capacity;
     TrackBuild    *build; /* beside survey->track */
     WarfareEvent  *warfare;
     int            warfare_count, warfare_capacity;
@@ -61,7 +61,8 @@ static Status find_or_add_track(int *out, Building *b, DisEntityId id, bool add)
     Status status = grow((void **)&b->build, &build_capacity, sizeof *b->build, survey->track_count + 1);
     if (status == STATUS_OK)
         status = grow((void **)&survey->track, &b->track_capacity, sizeof *survey->track, survey->track_count + 1);
-    if (status == STATUS_OK && 2 * ((uint32_t)survey->track_count + 1) > b->index.mask) status = entity_index_grow(&b->index);
+    if (status == STATUS_OK && 2 * ((uint32_t)survey->track_count + 1) > b->index.mask)
+        status = entity_index_grow(&b->index);
     if (status != STATUS_OK) return status;
     *out = survey->track_count++;
     survey->track[*out] = (Track){.id = id};
@@ -88,7 +89,8 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     TrackPoint *point = track->point + track->count++;
     const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
     b->points++;
-    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> frozen_bit & 1, .deactivated = appearance >> deactivated_bit & 1};
+    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> frozen_bit & 1,
+                          .deactivated = appearance >> deactivated_bit & 1};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
     r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;

@@ -43,7 +43,7 @@ typedef struct Survey {
     double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
                                            * (1990 .. 2100, not 2001-09-09's round 1e9 s); NaN: none */
     DisCounters counters;                 /* everything heard and dropped, whole log */
-    double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN where it has none */
+    double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
     uint64_t  refused;                    /* track points dropped because they exceed the memory bound */
     uint64_t  late;                       /* reports older than the one before them, left out */
 } Survey;

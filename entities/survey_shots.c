@@ -74,7 +74,8 @@ static bool contradicts(DisEntityId a, DisEntityId b)
 /* The latest fire of the key up to slack_s after the detonation that nothing has ended yet, and that contradicts
  * neither its munition nor who fired; of the same event id if same_number. -1: none; -2: that fire was ended by this
  * very detonation, heard before. */
-static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int detonation, bool same_number, double slack_s)
+static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int detonation, bool same_number,
+                     double slack_s)
 {
     const WarfareEvent *d = j->event + detonation;
     const int end = keys_end(list, j->fires, key, d->t_s + slack_s);
@@ -97,10 +98,14 @@ static void join_detonation(Joining *j, int detonation)
     const bool has_munition = !dis_entity_id_is_none(d->munition), has_number = event_key(d) != 0;
     int fire = -1;
 
-    if (has_munition && has_number) fire = open_fire(j, j->by_munition, munition_key(d), detonation, true, clock_slack_s);
-    if (has_munition && fire == -1) fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, 0);
-    if (has_munition && fire == -1) fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, clock_slack_s);
-    if (has_number && fire == -1) fire = open_fire(j, j->by_event, event_key(d), detonation, true, clock_slack_s);
+    if (has_munition && has_number)
+        fire = open_fire(j, j->by_munition, munition_key(d), detonation, true, clock_slack_s);
+    if (has_munition && fire == -1)
+        fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, 0);
+    if (has_munition && fire == -1)
+        fire = open_fire(j, j->by_munition, munition_key(d), detonation, false, clock_slack_s);
+    if (has_number && fire == -1)
+        fire = open_fire(j, j->by_event, event_key(d), detonation, true, clock_slack_s);
     j->partner[detonation] = fire;
     if (fire >= 0) j->partner[fire] = detonation;
 }
@@ -134,7 +139,7 @@ Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int
     j.partner = calloc((size_t)count + 1, sizeof *j.partner);
     if (!shot || !j.by_munition || !j.by_event || !j.partner) goto done;
 
-    qsort(event, (size_t)count, sizeof *event, by_time);
+    if (count > 0) qsort(event, (size_t)count, sizeof *event, by_time); /* none: event may be NULL */
     for (int e = 0; e < count; e++) {
         j.partner[e] = -1;
         if (event[e].is_detonation) continue;

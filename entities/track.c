@@ -7,7 +7,8 @@
  * one (Shepperd 1978). */
 static void quaternion_from_rotation(double q[4], const double r[9])
 {
-    const double four[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8]};
+    const double four[4] = {1 + r[0] + r[4] + r[8], 1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8],
+                            1 - r[0] - r[4] + r[8]};
     int largest = 0;
     for (int i = 1; i < 4; i++)
         if (four[i] > four[largest]) largest = i;

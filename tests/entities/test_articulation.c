@@ -16,8 +16,9 @@ static double value_of(const Articulation *a, uint32_t dis_class, uint32_t metri
 static void order_does_not_matter(void **state)
 {
     (void)state;
-    const DisVariableParameter record[4] = {articulated(turret + azimuth, 0.5f), articulated(turret + azimuth_rate, 0.25f),
-                                            articulated(gun + elevation, 0.125f), articulated(gun + elevation_rate, -0.0625f)};
+    const DisVariableParameter record[4] = {
+        articulated(turret + azimuth, 0.5f), articulated(turret + azimuth_rate, 0.25f),
+        articulated(gun + elevation, 0.125f), articulated(gun + elevation_rate, -0.0625f)};
     int orders = 0;
     for (int code = 0; code < 256; code++) {
         const int at[4] = {code & 3, code >> 2 & 3, code >> 4 & 3, code >> 6};
@@ -40,9 +41,16 @@ static void foreign_records_are_ignored_and_counted(void **state)
     DisVariableParameter detached = {.record_type = dis_variable_attached, .change = 1};
     DisVariableParameter separation = {.record_type = 2, .parameter = turret + azimuth, .value = 3};
     const DisVariableParameter record[] = {
-        articulated(turret + azimuth, 1), articulated(turret + azimuth, NAN), articulated(turret + azimuth_rate, INFINITY),
-        articulated(131083, 2) /* 4107 with its class shifted twice */, articulated(11, 2) /* no class */,
-        articulated(turret, 2) /* no metric */, articulated(turret + 17, 2) /* no such metric */, attached, detached, separation,
+        articulated(turret + azimuth, 1),
+        articulated(turret + azimuth, NAN),
+        articulated(turret + azimuth_rate, INFINITY),
+        articulated(131083, 2) /* 4107 with its class shifted twice */,
+        articulated(11, 2) /* no class */,
+        articulated(turret, 2) /* no metric */,
+        articulated(turret + 17, 2) /* no such metric */,
+        attached,
+        detached,
+        separation,
     };
     Articulation a = {0};
     CHECK(articulation_report(&a, record, 10, 0, hold_s) == 4);
@@ -56,7 +64,8 @@ static void foreign_records_are_ignored_and_counted(void **state)
 static void rates_are_bounded(void **state)
 {
     (void)state;
-    const DisVariableParameter with_rate[] = {articulated(turret + azimuth, 0), articulated(turret + azimuth_rate, 0.125f)};
+    const DisVariableParameter with_rate[] = {articulated(turret + azimuth, 0),
+                                              articulated(turret + azimuth_rate, 0.125f)};
     const DisVariableParameter other[] = {articulated(gun + elevation, 0.1f)};
     const DisVariableParameter mad[] = {articulated(turret + azimuth, 0.5f), articulated(turret + azimuth_rate, 1e30f)};
     Articulation a = {0};
@@ -88,7 +97,8 @@ static void too_many_joints(void **state)
     (void)state;
     static DisVariableParameter record[255];
     Articulation a = {0};
-    for (int i = 0; i < 255; i++) record[i] = articulated((uint32_t)(1024 + 32 * ((i * 97) % 200) + 15), (float)i / 256);
+    for (int i = 0; i < 255; i++)
+        record[i] = articulated((uint32_t)(1024 + 32 * ((i * 97) % 200) + 15), (float)i / 256);
     const int ignored = articulation_report(&a, record, 255, 0, hold_s);
     CHECK(a.count == articulation_max_joints && ignored > 0);
     for (int i = 1; i < a.count; i++) CHECK(a.joint[i - 1].parameter < a.joint[i].parameter);

@@ -77,9 +77,13 @@ static void malformed_rows_are_named(void **state)
 {
     (void)state;
     static const char *const bad_row[] = {
-        "1.1.x.1,tank,base", "1.1.256.1.1.1.256,tank,base", "1..2,tank,base", "1.1.1.1.1.1.1.1,tank,base", "-1,tank,base",
-        "1. 1,tank,base", "1.1.,tank,base", "1.1.70000,tank,base", ",tank,base", "1,tank,middle", "1,zeppelin,base",
-        "1.1.99999999,tank,base", "**,tank,base",
+        "1.1.x.1,tank,base", "1.1.256.1.1.1.256,tank,base",
+        "1..2,tank,base",    "1.1.1.1.1.1.1.1,tank,base",
+        "-1,tank,base",      "1. 1,tank,base",
+        "1.1.,tank,base",    "1.1.70000,tank,base",
+        ",tank,base",        "1,tank,middle",
+        "1,zeppelin,base",   "1.1.99999999,tank,base",
+        "**,tank,base",
     };
     for (size_t i = 0; i < sizeof bad_row / sizeof *bad_row; i++) {
         char text[256];

@@ -48,7 +48,8 @@ static Reference integrate(const Kinematics *k, double dt_s)
         for (int n = 0; n <= 20; n++) {
             if (body) /* integral of s^n/n! (va + aa s): h/(n+1) and h^2/(n+2) of the term */
                 for (int i = 0; i < 3; i++)
-                    for (int j = 0; j < 3; j++) s.p[i] += term[3 * i + j] * (h / (n + 1) * va[j] + h * h / (n + 2) * aa[j]);
+                    for (int j = 0; j < 3; j++)
+                        s.p[i] += term[3 * i + j] * (h / (n + 1) * va[j] + h * h / (n + 2) * aa[j]);
             reference_mul(next, term, cross);
             for (int i = 0; i < 9; i++) {
                 term[i] = next[i] * h / (n + 1);
@@ -85,7 +86,8 @@ static Kinematics random_kinematics(uint64_t *index, int algorithm)
         axis[i] = uniform(index, -1, 1);
     }
     if (v3_normalize(axis, axis)) v3_scale(k.w_body_rps, rate_rps, axis);
-    r_ecef_from_body_euler(k.r_ecef_from_body, uniform(index, -3.2, 3.2), uniform(index, -1.57, 1.57), uniform(index, -3.2, 3.2));
+    const double psi_rad = uniform(index, -3.2, 3.2), theta_rad = uniform(index, -1.57, 1.57);
+    r_ecef_from_body_euler(k.r_ecef_from_body, psi_rad, theta_rad, uniform(index, -3.2, 3.2));
     return k;
 }
 
@@ -138,7 +140,8 @@ static void straight_up_and_down_are_ordinary(void **state)
     uint64_t index = 0;
     for (int n = 0; n < 200; n++) {
         Kinematics k = random_kinematics(&index, 8);
-        r_ecef_from_body_euler(k.r_ecef_from_body, uniform(&index, -3, 3), n % 2 ? pi_rad / 2 : -pi_rad / 2, uniform(&index, -3, 3));
+        const double psi_rad = uniform(&index, -3, 3), theta_rad = n % 2 ? pi_rad / 2 : -pi_rad / 2;
+        r_ecef_from_body_euler(k.r_ecef_from_body, psi_rad, theta_rad, uniform(&index, -3, 3));
         check_against_reference(&k, uniform(&index, -5, 5));
     }
 }
@@ -217,7 +220,8 @@ static void no_step_where_the_series_ends(void **state)
             dead_reckon(&above, &k, 5 * (1 + nudge));
             const double moves_m = 2 * nudge * 5 * (v3_length(k.v_mps) + 5 * v3_length(k.a_mps2));
             for (int i = 0; i < 3; i++) CHECK_NEAR(above.p_ecef[i], below.p_ecef[i], moves_m + 1e-11);
-            for (int i = 0; i < 9; i++) CHECK_NEAR(above.r_ecef_from_body[i], below.r_ecef_from_body[i], 2 * nudge + 1e-15);
+            for (int i = 0; i < 9; i++)
+                CHECK_NEAR(above.r_ecef_from_body[i], below.r_ecef_from_body[i], 2 * nudge + 1e-15);
         }
     }
 }
@@ -274,7 +278,8 @@ static void euler_is_the_product_of_three_turns(void **state)
     (void)state;
     uint64_t index = 0;
     for (int n = 0; n < 2000; n++) {
-        const double psi = uniform(&index, -4, 4), theta = n % 4 ? uniform(&index, -2, 2) : (n % 8 ? 1 : -1) * pi_rad / 2;
+        const double psi = uniform(&index, -4, 4),
+                     theta = n % 4 ? uniform(&index, -2, 2) : (n % 8 ? 1 : -1) * pi_rad / 2;
         const double phi = uniform(&index, -4, 4);
         const double z[9] = {cos(psi), sin(psi), 0, -sin(psi), cos(psi), 0, 0, 0, 1};
         const double y[9] = {cos(theta), 0, -sin(theta), 0, 1, 0, sin(theta), 0, cos(theta)};
@@ -352,7 +357,8 @@ static void real_senders_keep_their_thresholds(void **state)
                     v3_sub(miss, m.p_ecef, now.p_ecef);
                     f->worst_m = fmax(f->worst_m, v3_length(miss));
                     f->worst_rad = fmax(f->worst_rad, angle_between(m.r_ecef_from_body, now.r_ecef_from_body));
-                    f->worst_held_rad = fmax(f->worst_held_rad, angle_between(f->last.r_ecef_from_body, now.r_ecef_from_body));
+                    f->worst_held_rad =
+                        fmax(f->worst_held_rad, angle_between(f->last.r_ecef_from_body, now.r_ecef_from_body));
                 }
                 *f = (Follow){true, now, header.timestamp, f->worst_m, f->worst_rad, f->worst_held_rad, f->reports + 1};
             }
@@ -363,7 +369,8 @@ static void real_senders_keep_their_thresholds(void **state)
     double held_rad = 0;
     for (int e = 0; e < 7; e++) {
         printf("entity %u: %d reports, position %.3f m, attitude %.2f deg, held attitude %.1f deg\n", entity[e],
-               follow[e].reports, follow[e].worst_m, follow[e].worst_rad / rad_per_deg, follow[e].worst_held_rad / rad_per_deg);
+               follow[e].reports, follow[e].worst_m, follow[e].worst_rad / rad_per_deg,
+               follow[e].worst_held_rad / rad_per_deg);
         CHECK(follow[e].reports > 5);
         CHECK(follow[e].worst_m <= 1.055); /* 1.05 and 5.0 to the digits another program measured */
         CHECK(follow[e].worst_rad <= 5.05 * rad_per_deg);

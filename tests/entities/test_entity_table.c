@@ -84,7 +84,8 @@ static void silence_ends_it(void **state)
     /* a report after the silence is another life, expire or not */
     const EntityHandle before = entity_table_find(f.table, entity_id(7));
     hear(&f, &tank7, 200);
-    CHECK(!entity_table_alive(f.table, before) && entity_table_alive(f.table, entity_table_find(f.table, entity_id(7))));
+    CHECK(!entity_table_alive(f.table, before) &&
+          entity_table_alive(f.table, entity_table_find(f.table, entity_id(7))));
     CHECK(counted(&f)->timed_out == 3 && counted(&f)->created == 5);
     fixture_close(&f);
 }
@@ -277,7 +278,8 @@ static void frozen_stands_still(void **state)
     pdu.variable[1] = articulated(4108, 1);
     hear(&f, &pdu, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 5);
-    CHECK(e->p_ecef[1] == 0 && v3_length(e->v_ecef_mps) == 0 && v3_length(e->w_body_rps) == 0 && e->position_error_m == 0);
+    CHECK(e->p_ecef[1] == 0 && v3_length(e->v_ecef_mps) == 0 && v3_length(e->w_body_rps) == 0 &&
+          e->position_error_m == 0);
     Snapshot at_5 = f.snapshot;
     NodePose turret = f.snapshot.node[at_5.entity[0].first_node + 1];
     e = seen_at(&f, 1, 9);
@@ -486,7 +488,8 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     hear(&f, &pdu, 0);
     const SnapshotEntity *e = seen_at(&f, 1, 2);
     CHECK(counted(&f)->unknown_articulation == 1);
-    CHECK(e->heat[HEAT_TRACK] > 20 && e->heat[HEAT_ENGINE_DECK] > 20 && e->heat[HEAT_GUN] == 0 && e->heat[HEAT_MOTOR] == 0);
+    CHECK(e->heat[HEAT_TRACK] > 20 && e->heat[HEAT_ENGINE_DECK] > 20 && e->heat[HEAT_GUN] == 0 &&
+          e->heat[HEAT_MOTOR] == 0);
     const Model *tank = catalog_model(f.catalog, e->model);
     for (int n = 0; n < tank->node_count; n++)
         if (tank->node[n].dis_class == 4096)
@@ -541,6 +544,59 @@ static void octets_are_checked_and_counted(void **state)
     fixture_close(&f);
 }
 
+static uint32_t dice(uint64_t *index, uint32_t sides)
+{
+    return (uint32_t)(random_uniform(11, 5, 0, (*index)++) * sides);
+}
+
+/* Good reports with a few octets replaced by anything: whatever the table takes, a snapshot is of places near the
+ * Earth, rotations, and finite numbers. */
+static void mutated_octets_do_no_harm(void **state)
+{
+    (void)state;
+    EntityTableConfig config = entity_table_default_config();
+    config.capacity = 200;
+    Fixture f = fixture_open(&config);
+    uint64_t index = 0;
+    int seen = 0;
+    for (int n = 0; n < 20000; n++) {
+        static const uint8_t nasty[] = {0, 1, 0x7f, 0x80, 0xff};
+        uint8_t octets[512] = {0};
+        DisEntityState pdu = report(1 + n % 20, n % 3 ? tank_type : helicopter_type);
+        pdu.velocity_mps[1] = 10;
+        pdu.angular_rate_rps[2] = 0.1f;
+        pdu.dead_reckoning = (uint8_t)(n % 10);
+        pdu.variable_count = 4;
+        for (int v = 0; v < 4; v++) pdu.variable[v] = articulated((uint32_t)(4107 + v), 0.1f);
+        const size_t length = dis_encode_entity_state(octets, sizeof octets, &pdu);
+        for (uint32_t changes = dice(&index, 5); changes > 0; changes--) {
+            const uint32_t at = 12 + dice(&index, (uint32_t)length - 12); /* the header is dis_next_pdu's to check */
+            octets[at] = dice(&index, 2) ? nasty[dice(&index, sizeof nasty)] : (uint8_t)dice(&index, 256);
+        }
+        const DisHeader header = {.version = (uint8_t)(5 + n % 3), .type = n % 7 ? 1 : (uint8_t)(dice(&index, 68)),
+                                  .length = (uint16_t)length};
+        const double t_s = 0.01 * n;
+        entity_table_pdu(f.table, &header, octets, t_s, &f.counters);
+        if (n % 50) continue;
+        entity_table_expire(f.table, t_s);
+        seen_at(&f, 1, t_s + dice(&index, 20));
+        for (int e = 0; e < f.snapshot.count; e++) {
+            const SnapshotEntity *s = f.snapshot.entity + e;
+            double product[9];
+            CHECK(v3_length(s->p_ecef) >= 0.9e5 && v3_length(s->p_ecef) <= 1.1e8);
+            CHECK(v3_is_finite(s->v_ecef_mps) && v3_is_finite(s->w_body_rps) && isfinite(s->position_error_m));
+            m3_tmul(product, s->r_ecef_from_body, s->r_ecef_from_body);
+            for (int i = 0; i < 9; i++) CHECK_NEAR(product[i], i % 4 == 0, 1e-14);
+            for (int role = 0; role < HEAT_ROLE_COUNT; role++) CHECK(s->heat[role] >= 0 && s->heat[role] < 2000);
+            seen++;
+        }
+        for (int p = 0; p < f.snapshot.node_count; p++)
+            CHECK(v3_is_finite(f.snapshot.node[p].p_body) && isfinite(f.snapshot.node[p].r_body_from_node[0]));
+    }
+    CHECK(seen > 4000);
+    fixture_close(&f);
+}
+
 /* A whole recorded exercise through the table: everybody turns up, nothing is dropped, missiles end. */
 static void a_recorded_exercise(void **state)
 {
@@ -563,7 +619,8 @@ static void a_recorded_exercise(void **state)
     for (int drop = 0; drop < DIS_DROP_COUNT; drop++) CHECK(f.counters.dropped[drop] == 0);
     CHECK(f.counters.pdus[dis_pdu_entity_state] == 462);
     const EntityCounters *c = counted(&f);
-    printf("created %llu, deactivated %llu, detonated %llu, timed out %llu, late %llu, refused %llu, unknown joints %llu, most %d\n",
+    printf("created %llu, deactivated %llu, detonated %llu, timed out %llu, late %llu, refused %llu, unknown joints "
+           "%llu, most %d\n",
            (unsigned long long)c->created, (unsigned long long)c->deactivated, (unsigned long long)c->detonated,
            (unsigned long long)c->timed_out, (unsigned long long)c->late, (unsigned long long)c->motion_refused,
            (unsigned long long)c->unknown_articulation, most);
@@ -598,6 +655,7 @@ int main(void)
         cmocka_unit_test(rotors_spin_and_freeze),
         cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
         cmocka_unit_test(octets_are_checked_and_counted),
+        cmocka_unit_test(mutated_octets_do_no_harm),
         cmocka_unit_test(a_recorded_exercise),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -73,7 +73,8 @@ static void engine_is_inferred(void **state)
     (void)state;
     const HeatTable table = shipped();
     const HeatEvidence drives = {.type = truck_type, .speed_mps = 3}, stands = {.type = truck_type};
-    const HeatEvidence idles = {.type = truck_type, .appearance = power_plant_bit}, crawls = {.type = truck_type, .speed_mps = 0.1};
+    const HeatEvidence idles = {.type = truck_type, .appearance = power_plant_bit},
+                       crawls = {.type = truck_type, .speed_mps = 0.1};
     HeatState s;
 
     heat_begin(&s, &table, &stands, 0, forever_s);

@@ -56,7 +56,8 @@ static DisEntityId id_of(int entity) { return (DisEntityId){1, 2, (uint16_t)enti
 
 static DisEntityState state_of(int entity, double x_m)
 {
-    return (DisEntityState){.id = id_of(entity), .type = {2, 2, 225, 1, 0, 0, 0}, .dead_reckoning = 4, .p_ecef = {6.4e6 + x_m, 0, 0}};
+    return (DisEntityState){
+        .id = id_of(entity), .type = {2, 2, 225, 1, 0, 0, 0}, .dead_reckoning = 4, .p_ecef = {6.4e6 + x_m, 0, 0}};
 }
 
 static void say_state(MadeLog *m, double t_s, DisEntityState pdu)
@@ -78,8 +79,11 @@ static void say_fire(MadeLog *m, double t_s, int firing, int target, int munitio
 
 static void say_detonation(MadeLog *m, double t_s, int firing, int target, int munition, int event, double x_m)
 {
-    DisDetonation pdu = {.header = header(m, dis_pdu_detonation, t_s), .firing = id_of(firing), .event = {1, 2, (uint16_t)event},
-                         .p_ecef = {6.4e6 + x_m, 0, 0}, .result = target ? 1 : 3};
+    DisDetonation pdu = {.header = header(m, dis_pdu_detonation, t_s),
+                         .firing = id_of(firing),
+                         .event = {1, 2, (uint16_t)event},
+                         .p_ecef = {6.4e6 + x_m, 0, 0},
+                         .result = target ? 1 : 3};
     if (target) pdu.target = id_of(target);
     if (munition) pdu.munition = id_of(munition);
     filled(m, dis_encode_detonation(room(m, t_s), 150, &pdu));
@@ -108,8 +112,13 @@ static void tracks_are_sorted_and_in_world_axes(void **state)
     say_state(m, 10, body);
     say_state(m, 11, world);
     say_state(m, 12, body);
-    DisEntityStateUpdate update = {.header = header(m, dis_pdu_entity_state_update, 13), .id = id_of(9), .p_ecef = {6.4e6, 5, 0},
-                                   .velocity_mps = {7, 0, 0}, .psi_rad = 0.5f, .theta_rad = -1, .phi_rad = 2};
+    DisEntityStateUpdate update = {.header = header(m, dis_pdu_entity_state_update, 13),
+                                   .id = id_of(9),
+                                   .p_ecef = {6.4e6, 5, 0},
+                                   .velocity_mps = {7, 0, 0},
+                                   .psi_rad = 0.5f,
+                                   .theta_rad = -1,
+                                   .phi_rad = 2};
     filled(m, dis_encode_entity_state_update(room(m, 13), 150, &update));
     update.id = id_of(77); /* never introduced */
     filled(m, dis_encode_entity_state_update(room(m, 13.5), 150, &update));
@@ -187,8 +196,10 @@ static void shots_join_by_munition_then_event(void **state)
 
     Survey s = survey_of(m);
     CHECK(s.shot_count == 6);
-    static const double fire_s[6] = {10, 11, 12, 20, 30, NAN}, end_s[6] = {16, 15, 17, 25, NAN, 40}, x_m[6] = {70, 80, 30, 71, NAN, 99};
-    static const int munition[6] = {7, 8, 0, 7, 7, 99}, hit[6] = {50, 0, 51, 0, 0, 0}, target[6] = {50, 0, 0, 50, 50, 0};
+    static const double fire_s[6] = {10, 11, 12, 20, 30, NAN}, end_s[6] = {16, 15, 17, 25, NAN, 40},
+                        x_m[6] = {70, 80, 30, 71, NAN, 99};
+    static const int munition[6] = {7, 8, 0, 7, 7, 99}, hit[6] = {50, 0, 51, 0, 0, 0},
+                     target[6] = {50, 0, 0, 50, 50, 0};
     for (int i = 0; i < 6; i++) {
         const Shot *shot = s.shot + i;
         CHECK(shot->munition.entity == munition[i] && shot->hit.entity == hit[i] && shot->target.entity == target[i]);
@@ -234,7 +245,9 @@ static void clocks_tell_the_date(void **state)
     m->absolute = true;
     m->datagram[0].capture_s += 3; /* the capturing machine is three seconds fast */
     say_state(m, 2401, state_of(1, 0));
-    DisStartResume start = {.header = header(m, dis_pdu_start_resume, 2402), .originating = id_of(1), .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    DisStartResume start = {.header = header(m, dis_pdu_start_resume, 2402),
+                            .originating = id_of(1),
+                            .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
     filled(m, dis_encode_start_resume(room(m, 2402), 150, &start)); /* a clock of zero is none */
     start.simulation = (DisClockTime){300000, stamp(m, 1800)};
     filled(m, dis_encode_start_resume(room(m, 2402), 150, &start));
@@ -302,7 +315,8 @@ static void no_overshoot(void **state)
 static void ends_and_gaps_are_held(void **state)
 {
     (void)state;
-    TrackPoint point[5] = {point_at(1, 0, 5), point_at(2, 5, 5), point_at(2, 6, 5), point_at(3, 11, 5), point_at(9, 500, 5)};
+    TrackPoint point[5] = {point_at(1, 0, 5), point_at(2, 5, 5), point_at(2, 6, 5), point_at(3, 11, 5),
+                           point_at(9, 500, 5)};
     point[3].deactivated = true;
     const Track track = {.count = 5, .point = point};
     TrackPose pose;
@@ -328,7 +342,8 @@ static void attitude_turns_evenly(void **state)
     for (int n = 0; n < 500; n++) {
         const double angle = n < 10 ? pow(10, -n) : pi_rad * 0.9999 * random_uniform(5, 1, 0, (uint64_t)n);
         Kinematics k = {.algorithm = 4};
-        double axis[3] = {random_normal(5, 2, 0, (uint64_t)n), random_normal(5, 3, 0, (uint64_t)n), random_normal(5, 4, 0, (uint64_t)n)};
+        double axis[3] = {random_normal(5, 2, 0, (uint64_t)n), random_normal(5, 3, 0, (uint64_t)n),
+                          random_normal(5, 4, 0, (uint64_t)n)};
         CHECK(v3_normalize(axis, axis));
         v3_scale(k.w_body_rps, angle, axis);
         r_ecef_from_body_euler(k.r_ecef_from_body, 6 * axis[1], 3 * axis[2], 6 * axis[0]);
@@ -342,7 +357,8 @@ static void attitude_turns_evenly(void **state)
             TrackPose pose;
             track_at(&pose, &track, t_s);
             dead_reckon(&m, &k, t_s);
-            for (int i = 0; i < 9; i++) CHECK_NEAR(pose.r_ecef_from_body[i], m.r_ecef_from_body[i], 2e-12); /* 1e-4 from the half turn */
+            for (int i = 0; i < 9; i++)
+                CHECK_NEAR(pose.r_ecef_from_body[i], m.r_ecef_from_body[i], 2e-12); /* 1e-4 from the half turn */
         }
     }
 }
@@ -368,11 +384,13 @@ static void the_recorded_attack(void **state)
         hits += shot->result == dis_result_entity_impact;
         ground += shot->result == dis_result_ground_impact;
         flying += isnan(shot->detonation_s);
-        if (shot->result == dis_result_entity_impact) CHECK(shot->hit.entity == (shot->munition.entity == 82 ? 72 : 74));
+        if (shot->result == dis_result_entity_impact)
+            CHECK(shot->hit.entity == (shot->munition.entity == 82 ? 72 : 74));
     }
     CHECK(hits == 3 && ground == 10 && flying == 2);
 
-    const Track *missile = survey_track(&s, (DisEntityId){1, 3001, 82}), *tank = survey_track(&s, (DisEntityId){1, 3001, 70});
+    const Track *missile = survey_track(&s, (DisEntityId){1, 3001, 82}),
+                *tank = survey_track(&s, (DisEntityId){1, 3001, 70});
     CHECK(missile && tank);
     CHECK(missile->point[missile->count - 1].deactivated);
     double way_m = 0;
@@ -414,7 +432,8 @@ static void the_recorded_drives(void **state)
         const char *file;
         double      way_m, duration_s;
         int         reports;
-    } want[2] = {{"dis/vrf-dis7-gaz69-blocks.pcap", 2449, 355.874, 775}, {"dis/vrf-dis7-gaz69-straight.pcap", 570, 65.278, 116}};
+    } want[2] = {{"dis/vrf-dis7-gaz69-blocks.pcap", 2449, 355.874, 775},
+                 {"dis/vrf-dis7-gaz69-straight.pcap", 570, 65.278, 116}};
     for (int n = 0; n < 2; n++) {
         char path[512];
         DisLog log;
@@ -430,8 +449,8 @@ static void the_recorded_drives(void **state)
             v3_sub(d, truck->point[p].p_ecef, truck->point[p - 1].p_ecef);
             way_m += v3_length(d);
         }
-        printf("%s: %d reports, %llu late, way %.1f m, %.3f s\n", want[n].file, truck->count, (unsigned long long)s.late, way_m,
-               s.last_s - s.first_s);
+        printf("%s: %d reports, %llu late, way %.1f m, %.3f s\n", want[n].file, truck->count,
+               (unsigned long long)s.late, way_m, s.last_s - s.first_s);
         CHECK(truck->count + (int)s.late == want[n].reports);
         CHECK_NEAR(way_m, want[n].way_m, 1);
         CHECK_NEAR(s.last_s - s.first_s, want[n].duration_s, 1);
