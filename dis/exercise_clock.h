@@ -19,6 +19,15 @@ void   exercise_clock_destroy(ExerciseClock *clock);
 double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
                            double capture_s);
 
+/* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
+static inline double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
+                                             double capture_s)
+{
+    uint16_t sender[2];
+    if (!dis_pdu_sender(sender, header, pdu)) return NAN;
+    return exercise_clock_time(clock, sender[0], sender[1], header->timestamp, capture_s);
+}
+
 static inline double dis_timestamp_seconds(uint32_t timestamp) { return (timestamp >> 1) * (3600.0 / 2147483648.0); }
 static inline bool   dis_timestamp_is_absolute(uint32_t timestamp) { return timestamp & 1; }
 

@@ -90,4 +90,15 @@ typedef struct DisWriter DisWriter;
 bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
                   DisCounters *counters);
 
+/* Who sent a PDU: every type of the standard names its sender's site and application right after the header.
+ * False, and out untouched, for a type outside it or one too short. */
+static inline bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu)
+{
+    enum { last_type = 72 };
+    if (header->type < 1 || header->type > last_type || header->length < dis_header_octets + 4) return false;
+    site_application[0] = (uint16_t)(pdu[12] << 8 | pdu[13]);
+    site_application[1] = (uint16_t)(pdu[14] << 8 | pdu[15]);
+    return true;
+}
+
 #endif

@@ -11,7 +11,6 @@ enum {
     most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
     most_tracks = 1 << 20,
     most_warfare = 4000000,
-    last_known_type = 72,
     frozen_bit = 21,
     deactivated_bit = 23,
 };
@@ -187,15 +186,6 @@ static void hear_stamp(Building *b, uint32_t timestamp, double capture_s, double
 
 /* ---- the pass ----------------------------------------------------------------------------- */
 
-/* Every type of the standard names its sender's site and application right after the header. */
-static double time_of(Building *b, const DisHeader *header, const uint8_t *pdu, double capture_s)
-{
-    const bool names_sender = header->type >= 1 && header->type <= last_known_type && header->length >= 16;
-    const uint16_t site = names_sender ? (uint16_t)(pdu[12] << 8 | pdu[13]) : 0;
-    const uint16_t application = names_sender ? (uint16_t)(pdu[14] << 8 | pdu[15]) : 0;
-    return exercise_clock_time(b->clock, site, application, header->timestamp, capture_s);
-}
-
 static Status hear(Building *b, const DisHeader *header, const uint8_t *octets, double t_s)
 {
     Status decoded = STATUS_OK, kept = STATUS_OK;
@@ -249,7 +239,8 @@ static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int
             survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        const double t_s = time_of(b, &header, pdu, datagram->capture_s);
+        const double t_s = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
+        if (isnan(t_s)) continue; /* of no type that we know, and from nobody */
         if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;

@@ -68,7 +68,8 @@ static bool datagram_file(const Capture *capture, const uint8_t *bytes, size_t c
 {
     char path[4096];
     if (!capture->datagrams) return true;
-    if (snprintf(path, sizeof path, "%s/%04d.pdu", capture->datagrams, capture->count) >= (int)sizeof path) return false;
+    const int octets = snprintf(path, sizeof path, "%s/%04d.pdu", capture->datagrams, capture->count);
+    if (octets < 0 || octets >= (int)sizeof path) return false;
     FILE *file = fopen(path, "wb");
     if (!file) return false;
     const bool ok = count == 0 || fwrite(bytes, count, 1, file) == 1;
@@ -95,7 +96,7 @@ static bool capture_datagram(Capture *capture, double t_s, const uint8_t *bytes,
     put_u16(udp + 2, dis_port);
     put_u16(udp + 4, (unsigned)(8 + count)); /* checksum 0: none */
 
-    /* whole nanoseconds from the exercise time alone: at Unix size a double has but 0.2 us */
+    /* nanoseconds from the exercise time alone: at Unix size a double has but 0.2 us */
     const uint64_t ns = (uint64_t)llround(t_s * 1e9) + (uint64_t)llround(fmod(capture->epoch_unix_s, 1) * 1e9);
     const uint32_t length = (uint32_t)(sizeof frame + count);
     capture->count++;
@@ -363,9 +364,11 @@ static const struct {
     uint16_t             number;
     const char          *marking; /* 11 octets at most */
     const DisEntityType *type;
-} cast[entity_count] = {{11, "Tank 11", &tank_type},    {12, "Tank 12", &tank_type},    {13, "Tank 13", &tank_type},
-                        {21, "Truck 21", &truck_type},  {22, "Truck 22", &truck_type},  {31, "Heli 31", &helicopter_type},
-                        {41, "Missile 41", &missile_type}};
+} cast[entity_count] = {
+    {11, "Tank 11", &tank_type},   {12, "Tank 12", &tank_type},       {13, "Tank 13", &tank_type},
+    {21, "Truck 21", &truck_type}, {22, "Truck 22", &truck_type},     {31, "Heli 31", &helicopter_type},
+    {41, "Missile 41", &missile_type},
+};
 
 static DisEntityId id_of(int entity) { return (DisEntityId){site, application, cast[entity].number}; }
 

@@ -1,8 +1,8 @@
 /* render/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
  * parts; nobody else knows how they are traced.
  *
- * The ground is our own height field, in double, scalar and eight wide with the same bits. Each entity is
- * traced in its own body frame: the ray is taken there in double, advanced to the model's bounding sphere,
+ * The ground is our own height field, in double, scalar and eight wide with the same bits. Each moving part is
+ * traced in its own node's frame: the ray is taken there in double, advanced to the node's bounding sphere,
  * narrowed once, and given to Embree, which answers only *which* triangle; range and normal are refined in
  * double on that triangle. Equal distances go to the lower id (ground before entity 1 before entity 2). */
 #ifndef RENDER_VISIBILITY_H
@@ -23,7 +23,8 @@ typedef struct Tracer Tracer;
 Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
 void   tracer_destroy(Tracer *tracer);
 
-/* One frame's world, posed. Scenes of entities whose joints did not move since the last frame are reused. */
+/* One frame's world, posed. Posing costs transforms only; nothing is committed or kept between frames, so any
+ * number of them may be alive and traced at once. */
 typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {

@@ -243,14 +243,6 @@ static Status note_pdu(Findings *f, uint8_t type, const uint8_t *pdu, size_t oct
     return status;
 }
 
-/* Octets 12 .. 15 of every PDU of types 1 .. 72 are the site and application it speaks for. */
-static bool sender_of(DisEntityId *out, const DisHeader *header, const uint8_t *pdu)
-{
-    if (header->type < 1 || header->type > 72 || header->length < 16) return false;
-    *out = (DisEntityId){(uint16_t)(pdu[12] << 8 | pdu[13]), (uint16_t)(pdu[14] << 8 | pdu[15]), 0};
-    return true;
-}
-
 static Status gather(Findings *f, const DisLog *log, const Options *options)
 {
     ExerciseClock *clock = NULL;
@@ -269,9 +261,9 @@ static Status gather(Findings *f, const DisLog *log, const Options *options)
                 continue;
             }
             f->version[header.version]++;
-            DisEntityId sender;
-            if (!sender_of(&sender, &header, pdu)) continue;
-            SenderRow *row = row_of(&f->senders, sender);
+            uint16_t sender[2];
+            if (!dis_pdu_sender(sender, &header, pdu)) continue;
+            SenderRow *row = row_of(&f->senders, (DisEntityId){sender[0], sender[1], 0});
             if (!row) {
                 status = STATUS_NO_MEMORY;
                 break;
@@ -280,8 +272,7 @@ static Status gather(Findings *f, const DisLog *log, const Options *options)
             row->absolute += dis_timestamp_is_absolute(header.timestamp);
             row->unstamped += header.timestamp == 0;
             row->version[header.version] = true;
-            const double t_s = exercise_clock_time(clock, sender.site, sender.application, header.timestamp,
-                                                   d->capture_s);
+            const double t_s = exercise_clock_pdu_time(clock, &header, pdu, d->capture_s);
             f->first_s = fmin(f->first_s, t_s);
             f->last_s = fmax(f->last_s, t_s);
             status = note_pdu(f, header.type, pdu, header.length, t_s);

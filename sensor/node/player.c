@@ -55,12 +55,8 @@ Status player_create(Player **out, const DisLog *log, int exercise, bool causal)
         Event              event;
         while (dis_next_pdu(&event.header, &event.pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
             if (exercise >= 0 && event.header.exercise != exercise) continue;
-            /* every PDU of ours begins with the entity, firing entity or originator: site and application */
-            uint16_t sender[2] = {0, 0};
-            if (event.header.length >= 16)
-                for (int k = 0; k < 2; k++)
-                    sender[k] = (uint16_t)(event.pdu[12 + 2 * k] << 8 | event.pdu[13 + 2 * k]);
-            event.t_s = exercise_clock_time(clock, sender[0], sender[1], event.header.timestamp, datagram->capture_s);
+            event.t_s = exercise_clock_pdu_time(clock, &event.header, event.pdu, datagram->capture_s);
+            if (isnan(event.t_s)) continue;
             if (isnan(tie_s)) tie_s = event.t_s - datagram->capture_s;
             latest_s       = fmax(latest_s, datagram->capture_s + tie_s);
             event.counts_s = causal ? latest_s : event.t_s;

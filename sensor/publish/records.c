@@ -176,7 +176,7 @@ static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
     json_t *entities = json_object();
-    char    type[8];
+    char    type[16];
     const VisibilityCounters *v = &r->render.visibility;
 
     set_count(counters, "datagrams", r->dis->datagrams);

@@ -515,7 +515,7 @@ static void skipping_changes_no_bit(void **state)
             }
         }
     }
-    CHECK(seen > 1000 && shaded > 100);
+    CHECK(seen > 800 && shaded > 100);
     CHECK(stage.counters.skipped_parts > stage.counters.rays_parts);
 }
 

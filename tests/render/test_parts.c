@@ -1,0 +1,318 @@
+/* Rays against posed models: ranges from paper at any distance, closed solids that do not leak, and the same
+ * answer from every instruction set and with or without culling. */
+#include "tests/render/hand_models.h"
+
+#include <unistd.h>
+
+#include "render/parts.h"
+
+typedef struct Scene {
+    Tracer     *tracer;
+    PosedEntity entity;
+    PosedNode   node[4];
+} Scene;
+
+static void scene_open(Scene *s, const Model *model, const char *isa)
+{
+    assert_int_equal(tracer_create_models(&s->tracer, &model, 1, isa), STATUS_OK);
+    assert_int_equal(tracer_model_count(s->tracer), 1);
+    assert_ptr_equal(tracer_model(s->tracer, 0), model);
+    assert_true(parts_node_count(s->tracer, 0) <= 4);
+    s->entity.node = s->node;
+}
+
+static void scene_pose(Scene *s, const NodePose *pose, const double p_enu[3], const double r_enu_from_body[9])
+{
+    parts_pose(&s->entity, s->tracer, 0, pose, p_enu, r_enu_from_body);
+}
+
+static NodePose at_rest(void)
+{
+    NodePose pose = {{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    return pose;
+}
+
+static void to_enu(double p_enu[3], const double p_body[3], const double p[3], const double r[9])
+{
+    double turned[3];
+    m3_mul_v3(turned, r, p_body);
+    v3_add(p_enu, p, turned);
+}
+
+/* ---- from paper ------------------------------------------------------------------------------- */
+
+static void a_plate_is_as_far_as_paper_says(void **state)
+{
+    (void)state;
+    static const double away_m[4] = {0, 20000, 50000, 200000};
+    Model model;
+    Scene s;
+    hand_plate(&model, 1.5, 1);
+    scene_open(&s, &model, "avx2");
+    const NodePose pose = at_rest();
+    for (int n = 0; n < 20000; n++) {
+        double p[3], r[9], to_body[3] = {0, hand_uniform(-1.49, 1.49), hand_uniform(-1.99, -0.01)}, to[3], o[3], d[3];
+        hand_direction(p);
+        v3_scale(p, away_m[n % 4], p);
+        hand_rotation(r);
+        scene_pose(&s, &pose, p, r);
+        to_enu(to, to_body, p, r);
+        hand_direction(d);
+        const double normal[3] = {r[0], r[3], r[6]}, sine = fabs(v3_dot(normal, d));
+        if (sine < 0.01) continue;
+        const double far_m = exp(hand_uniform(log(3), log(10000)));
+        v3_add_scaled(o, to, -far_m, d);
+        PartHit hit;
+        double  between[3], n_geo[3], n_enu[3];
+        v3_sub(between, p, o);
+        const double want = v3_dot(between, normal) / v3_dot(d, normal);
+        const double got  = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
+        CHECK_NEAR(got / want, 1, 1e-9);
+        /* a few roundings at the size of the coordinates, over the sine of the angle of incidence */
+        CHECK_NEAR(got, want, 16 * 2.2e-16 * (away_m[n % 4] + far_m) / sine + 1e-14);
+        CHECK(parts_occluded(&s.entity, o, d, false));
+        parts_normals(n_geo, n_enu, &model, &s.entity, &hit, o, d, got);
+        const double side = v3_dot(normal, d) < 0 ? 1 : -1;
+        for (int c = 0; c < 3; c++) {
+            CHECK_NEAR(n_geo[c], side * normal[c], 1e-14);
+            CHECK_NEAR(n_enu[c], side * normal[c], 1e-7); /* kept as float in the model */
+        }
+        CHECK(isinf(parts_first_hit(&hit, &s.entity, o, d, got * 0.999, false)));
+    }
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
+/* Where a ray enters a box, by slabs; NAN when the way through is shorter than least_m. */
+static double box_entry(const double low[3], const double high[3], const double o[3], const double d[3], double least_m)
+{
+    double in = -INFINITY, out = INFINITY;
+    for (int c = 0; c < 3; c++) {
+        const double a = (low[c] - o[c]) / d[c], b = (high[c] - o[c]) / d[c];
+        in  = fmax(in, fmin(a, b));
+        out = fmin(out, fmax(a, b));
+    }
+    return out - in > least_m && in > 0 ? in : NAN;
+}
+
+/* Through corners, edges and the diagonals of faces: two or more triangles could each think it the other's. */
+static void a_closed_box_does_not_leak(void **state)
+{
+    (void)state;
+    static const double low[3] = {-3.2, -1.7, -2.4}, high[3] = {3.7, 1.6, 0};
+    Model model;
+    Scene s;
+    hand_box(&model, low, high);
+    scene_open(&s, &model, "avx2");
+    const NodePose pose = at_rest();
+    int tried = 0;
+    for (int n = 0; n < 200000; n++) {
+        double p[3], r[9], o_body[3], d_body[3], o[3], d[3], at[3];
+        if (n % 100 == 0) {
+            hand_direction(p);
+            v3_scale(p, hand_uniform(0, 20000), p);
+            hand_rotation(r);
+            scene_pose(&s, &pose, p, r);
+        }
+        const uint32_t *corner = model.triangle[n % 12];
+        const double    f = n % 3 ? hand_uniform(0, 1) : 0;
+        for (int c = 0; c < 3; c++)
+            at[c] = model.vertex[corner[n % 7 % 3]][c] * (1 - f) + model.vertex[corner[(n % 7 + 1) % 3]][c] * f;
+        hand_direction(d_body);
+        v3_add_scaled(o_body, at, -exp(hand_uniform(log(5), log(10000))), d_body);
+        const double want = box_entry(low, high, o_body, d_body, 1e-4);
+        if (isnan(want)) continue; /* comes out there, or only brushes it */
+        tried++;
+        m3_mul_v3(d, r, d_body);
+        to_enu(o, o_body, p, r);
+        PartHit      hit;
+        const double got = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
+        /* an edge may be given to the wrong one of its two faces, whose plane is then met a little off it:
+         * 1e-6 m of float, over the sine of the angle */
+        if (!(fabs(got - want) <= 1e-4)) fail_msg("leak: ray %d: %.17g, want %.17g", n, got, want);
+    }
+    CHECK(tried > 50000);
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
+static void a_sphere_has_its_radius_and_its_normals(void **state)
+{
+    (void)state;
+    const double radius_m = 2;
+    Model        model;
+    Scene        s;
+    const double inside_m = hand_sphere(&model, radius_m, 64);
+    scene_open(&s, &model, "avx2");
+    const NodePose pose = at_rest();
+    const double   p[3] = {3000, -4000, 100};
+    double         r[9];
+    hand_rotation(r);
+    scene_pose(&s, &pose, p, r);
+    for (int n = 0; n < 20000; n++) {
+        double out[3], d[3], o[3], n_geo[3], n_enu[3], at[3];
+        hand_direction(out);
+        do hand_direction(d);
+        while (!(v3_dot(out, d) < -0.3));
+        v3_add_scaled(at, p, radius_m, out);
+        v3_add_scaled(o, at, -hand_uniform(0.01, 5000), d);
+        PartHit      hit;
+        const double t = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
+        for (int c = 0; c < 3; c++) at[c] = o[c] + t * d[c] - p[c];
+        CHECK(v3_length(at) <= radius_m + 1e-6 && v3_length(at) >= inside_m - 1e-6);
+        parts_normals(n_geo, n_enu, &model, &s.entity, &hit, o, d, t);
+        CHECK_NEAR(v3_dot(n_geo, n_geo), 1, 1e-12);
+        v3_normalize(at, at);
+        CHECK_NEAR(v3_dot(n_enu, at), 1, 1e-5);                    /* interpolated: the sphere's own */
+        CHECK_NEAR(v3_dot(n_geo, at), 1, 1 - cos(2 * pi_rad / 64)); /* the facet's: within a facet's turn */
+        /* from inside the far wall shows its back */
+        if (n % 4) continue;
+        const double t_in = parts_first_hit(&hit, &s.entity, p, d, INFINITY, false);
+        CHECK(t_in <= radius_m + 1e-6 && t_in >= inside_m - 1e-6);
+        parts_normals(n_geo, n_enu, &model, &s.entity, &hit, p, d, t_in);
+        CHECK(v3_dot(n_geo, d) < -0.99 && v3_dot(n_enu, d) < -0.99);
+    }
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
+/* ---- joints ------------------------------------------------------------------------------------ */
+
+static void nodes_are_where_their_poses_put_them(void **state)
+{
+    (void)state;
+    static const double low[3] = {-3, -1, -1}, high[3] = {3, 1, 0}, gun_low[3] = {0, -0.1, -0.1}, gun_high[3] = {4, 0.1, 0.1};
+    Model model;
+    Scene s;
+    hand_model(&model, 2, 16, 24);
+    hand_box_into(&model, 0, low, high);
+    hand_box_into(&model, 1, gun_low, gun_high);
+    scene_open(&s, &model, "avx2");
+    const double p[3] = {100, 200, 300}, r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int step = 0; step < 64; step++) {
+        const double a = 2 * pi_rad * step / 64;
+        NodePose     pose[2] = {at_rest(), {{0.5, 0, -1.5}, {cos(a), -sin(a), 0, sin(a), cos(a), 0, 0, 0, 1}}};
+        scene_pose(&s, pose, p, r);
+        /* at the muzzle, along the gun: 4 m out from its pivot */
+        double muzzle[3] = {0.5 + 4 * cos(a), 4 * sin(a), -1.5}, d[3] = {-cos(a), -sin(a), 0}, o[3];
+        v3_add(muzzle, muzzle, p);
+        v3_add_scaled(o, muzzle, -50, d);
+        PartHit hit;
+        CHECK_NEAR(parts_first_hit(&hit, &s.entity, o, d, INFINITY, false), 50, 1e-12);
+        assert_int_equal(hit.node, 1);
+        assert_int_equal(model.triangle_part[hit.triangle], 1);
+        /* the sphere holds every corner as it is posed */
+        for (int v = 0; v < model.vertex_count; v++) {
+            const NodePose *of = &pose[v >= 8];
+            double          at[3], from[3];
+            m3_mul_v3(at, of->r_body_from_node, model.vertex[v]);
+            for (int c = 0; c < 3; c++) from[c] = at[c] + of->p_body[c] + p[c] - s.entity.centre_enu[c];
+            CHECK(v3_length(from) < s.entity.radius_m);
+        }
+    }
+    /* a node without a place is left out, an entity without one altogether */
+    NodePose bad[2] = {at_rest(), at_rest()};
+    bad[1].p_body[2] = NAN;
+    scene_pose(&s, bad, p, r);
+    assert_int_equal(s.entity.node_count, 1);
+    bad[0].r_body_from_node[4] = INFINITY;
+    scene_pose(&s, bad, p, r);
+    assert_int_equal(s.entity.model, -1);
+    scene_pose(&s, bad, (double[3]){NAN, 0, 0}, r);
+    assert_int_equal(s.entity.model, -1);
+    assert_int_equal(s.entity.node_count, 0);
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
+/* Seen edge-on a triangle's plane says nothing of range; its corners do. */
+static void edge_on_stays_between_the_corners(void **state)
+{
+    (void)state;
+    Model model;
+    Scene s;
+    hand_plate(&model, 1, 1);
+    scene_open(&s, &model, "avx2");
+    const NodePose pose = at_rest();
+    const double   p[3] = {0, 0, 0}, r[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    scene_pose(&s, &pose, p, r);
+    for (int n = 0; n < 20000; n++) {
+        const double lean = n % 2 ? 0 : exp(hand_uniform(-40, -8)) * (n % 4 ? 1 : -1);
+        const double o[3] = {n % 8 < 4 ? 0 : hand_uniform(-1e-7, 1e-7), -100, hand_uniform(-2, 0)};
+        double       d[3] = {lean, 1, 0};
+        v3_normalize(d, d);
+        PartHit      hit;
+        const double t = parts_first_hit(&hit, &s.entity, o, d, INFINITY, false);
+        CHECK(isinf(t) || (t >= 98.9 && t <= 101.1));
+    }
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
+/* ---- the same bits ------------------------------------------------------------------------------ */
+
+static void every_set_of_instructions_agrees(void **state)
+{
+    (void)state;
+    static const char *const isa[3] = {"avx2", "sse4.2", ""};
+    Model  model;
+    Scene  s[3];
+    double p[3], r[9];
+    hand_sphere(&model, 2, 24);
+    for (int k = 0; k < 3; k++) scene_open(&s[k], &model, isa[k]);
+    const NodePose pose = at_rest();
+    int hits = 0;
+    for (int n = 0; n < 100000; n++) {
+        double o[3], d[3], to[3];
+        if (n % 1000 == 0) {
+            hand_direction(p);
+            v3_scale(p, hand_uniform(0, 50000), p);
+            hand_rotation(r);
+            for (int k = 0; k < 3; k++) scene_pose(&s[k], &pose, p, r);
+        }
+        hand_direction(d);
+        for (int c = 0; c < 3; c++) to[c] = p[c] + hand_uniform(-2, 2);
+        v3_add_scaled(o, to, -exp(hand_uniform(0, 9)), d);
+        PartHit      hit[5] = {0};
+        const double want = parts_first_hit(&hit[0], &s[0].entity, o, d, INFINITY, false);
+        hits += want < INFINITY;
+        for (int k = 0; k < 3; k++)
+            for (int all = 0; all < 2; all++) {
+                const double t = parts_first_hit(&hit[1], &s[k].entity, o, d, INFINITY, all);
+                CHECK(t == want && hit[1].triangle == hit[0].triangle && hit[1].node == hit[0].node);
+                CHECK(parts_occluded(&s[k].entity, o, d, all) == (want < INFINITY));
+            }
+    }
+    CHECK(hits > 30000);
+    for (int k = 0; k < 3; k++) tracer_destroy(s[k].tracer);
+    hand_free(&model);
+}
+
+static void a_wrong_instruction_set_is_refused(void **state)
+{
+    (void)state;
+    Tracer *tracer = NULL;
+    log_set_level(LOG_ERROR + 1);
+    assert_int_equal(tracer_create_models(&tracer, NULL, 0, "avx9,verbose=3"), STATUS_BAD_VALUE);
+    log_set_level(LOG_INFO);
+    assert_null(tracer);
+    assert_int_equal(tracer_create_models(&tracer, NULL, 0, NULL), STATUS_OK);
+    tracer_destroy(tracer);
+    tracer_destroy(NULL);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_plate_is_as_far_as_paper_says),
+        cmocka_unit_test(a_closed_box_does_not_leak),
+        cmocka_unit_test(a_sphere_has_its_radius_and_its_normals),
+        cmocka_unit_test(nodes_are_where_their_poses_put_them),
+        cmocka_unit_test(edge_on_stays_between_the_corners),
+        cmocka_unit_test(every_set_of_instructions_agrees),
+        cmocka_unit_test(a_wrong_instruction_set_is_refused),
+    };
+    thread_flush_denormals();
+    alarm(120); /* a tracer that never returns is a failure, not a wait */
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
