@@ -16,6 +16,12 @@ for threads in 2 4; do
 done
 replay "$tmp/demo.pcap" "$tmp/again" "${few[@]}" --threads 2 --speed 10
 check "speed 10, same bits" same_hashes "$tmp/one" "$tmp/again"
+first=$(json_numbers <(head -n 1 "$tmp/one/truth.jsonl") time_s | head -n 1)
+span=(--from "$first" --to "$(awk -v t="$first" 'BEGIN { print t + 2 }')")
+replay "$tmp/demo.pcap" "$tmp/real" "${few[@]}" "${span[@]}" --speed 1
+replay "$tmp/demo.pcap" "$tmp/max" "${few[@]}" "${span[@]}" --speed max
+check "speed 1, same bits as max" same_hashes "$tmp/real" "$tmp/max"
+check "speed 1: all frames of 2 s" [ "$(frames "$tmp/real")" = 5 ]
 replay "$tmp/demo.pcap" "$tmp/noskip" "${few[@]}" --no-skip
 check "no skips, same bits" same_hashes "$tmp/one" "$tmp/noskip"
 

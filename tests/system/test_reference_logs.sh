@@ -73,6 +73,12 @@ END {
 echo "tow-vs-armor: target $verdict"
 check "tow-vs-armor: the target grows until impact" [ "${verdict%% *}" = grows ]
 
+for same in "--threads 1" "--threads 4" "--no-skip"; do
+    # shellcheck disable=SC2086
+    replay "$data/vrf-dis5-tow-vs-armor.pcap" "$tmp/same" --rate 2 --size 192x128 --no-png $same
+    check "tow-vs-armor: $same, same bits" same_hashes "$tmp/tow" "$tmp/same"
+done
+
 replay "$data/vrf-dis7-gaz69-straight.pcap" "$tmp/gaz" --rate 0.2
 check "gaz69-straight: no missile, and still shown" [ $code = 0 ]
 check "gaz69-straight: the truck is in the truth" grep -qE '"model": *"truck"' "$tmp/gaz/truth.jsonl"
