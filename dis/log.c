@@ -466,7 +466,7 @@ static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
     return STATUS_OK;
 }
 
-Status dis_log_open(DisLog *out, const char *path, uint16_t port)
+static Status open_port(DisLog *out, const char *path, uint16_t port)
 {
     pcap_t *capture = NULL;
     Status  status = open_capture(&capture, path);
@@ -490,6 +490,23 @@ Status dis_log_open(DisLog *out, const char *path, uint16_t port)
         dis_log_close(&log);
         return status;
     }
+    *out = log;
+    return STATUS_OK;
+}
+
+Status dis_log_open(DisLog *out, const char *path, int port)
+{
+    DisLog log;
+    if (port < dis_port_default || port > UINT16_MAX) return STATUS_BAD_VALUE;
+    Status status = open_port(&log, path, (uint16_t)(port == dis_port_default ? dis_port : port));
+    if (status != STATUS_OK) return status;
+    if (port == dis_port_default && log.count == 0 && log.counters.other_port > 0) {
+        dis_log_close(&log);
+        status = open_port(&log, path, dis_port_any);
+        if (status != STATUS_OK) return status;
+        log.any_port = true;
+    }
+    log.any_port |= port == dis_port_any;
     *out = log;
     return STATUS_OK;
 }

@@ -24,12 +24,16 @@ typedef struct DisLog {
     DisDatagram   *datagram; /* in file order */
     DisLogCounters counters;
     bool           truncated; /* the file ended inside a packet; what came before is here */
+    bool           any_port;  /* datagrams of any port were taken */
     void          *storage;
 } DisLog;
 
-/* port 0: any UDP port whose payload begins as a DIS header. A file that is not a capture, or cannot be
+enum { dis_port_any = 0, dis_port_default = -1 };
+
+/* port: of the UDP destination. dis_port_any: every port, payloads that begin as a DIS header.
+ * dis_port_default: 3000, and when nothing at all went there, any port (any_port says so). A file that is not a capture, or cannot be
  * read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a warning. */
-Status dis_log_open(DisLog *out, const char *path, uint16_t port);
+Status dis_log_open(DisLog *out, const char *path, int port);
 void   dis_log_close(DisLog *log);
 
 #endif

@@ -152,8 +152,8 @@ void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, cons
     if (hit->north_west) upward(n_geo, (ne - nw) * scale, (nw - sw) * scale);
     else upward(n_geo, (se - sw) * scale, (ne - se) * scale);
 
-    const double a = ground_unit((x_m - g->x0_m) * g->cells_per_m - hit->i);
-    const double b = ground_unit((y_m - g->y0_m) * g->cells_per_m - hit->j);
+    const double a = clamp((x_m - g->x0_m) * g->cells_per_m - hit->i, 0, 1);
+    const double b = clamp((y_m - g->y0_m) * g->cells_per_m - hit->j, 0, 1);
     double       at_sw[2], at_ne[2], at_corner[2];
     post_slope(at_sw, g, scale, hit->i, hit->j);
     post_slope(at_ne, g, scale, hit->i + 1, hit->j + 1);

@@ -94,55 +94,50 @@ static inline int ground_cell_at(double p0, double dp, double per_dp, double t, 
     return (int)e;
 }
 
-static inline double ground_unit(double x) { return x < 0 ? 0 : x > 1 ? 1 : x; }
-
-/* Height of the ray over the surface of cell (i, j) at t, posts. */
-static inline double ground_clearance(const LevelRay *r, const double z[4], double i, double j, double t)
-{
-    const double a = ground_unit(r->u0 + t * r->du - i), b = ground_unit(r->v0 + t * r->dv - j);
-    const double sw = z[0], se = z[1], nw = z[2], ne = z[3];
-    const double surface = a >= b ? sw + a * (se - sw) + b * (ne - se) : sw + a * (ne - nw) + b * (nw - sw);
-    return r->w0 + t * r->dw - surface;
-}
-
-/* First place in cell (i, j) where the ray is not above it; INFINITY for none. */
+/* First place in cell (i, j) where the ray is not above it; INFINITY for none. Its height over the surface is
+ * taken at the way in, the diagonal (again the way in where it is not crossed) and the way out, all four numbers
+ * of one vector and without a branch: which way a ray passes through a cell cannot be predicted. */
 static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, int ci, int cj, bool *north_west)
 {
     const uint16_t *post = g->post + (size_t)cj * (size_t)g->nx + (size_t)ci;
-    const double    z[4] = {post[0], post[1], post[g->nx], post[g->nx + 1]};
+    const double    sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
     const double    i = ci, j = cj;
     const double    u_low = (i - r->u0) * r->per_du, u_high = (i + 1 - r->u0) * r->per_du;
     const double    v_low = (j - r->v0) * r->per_dv, v_high = (j + 1 - r->v0) * r->per_dv;
-    const double    u_in = r->per_du > 0 ? u_low : u_high, u_out = r->per_du > 0 ? u_high : u_low;
-    const double    v_in = r->per_dv > 0 ? v_low : v_high, v_out = r->per_dv > 0 ? v_high : v_low;
+    const double    u_in = u_low < u_high ? u_low : u_high, u_out = u_low < u_high ? u_high : u_low;
+    const double    v_in = v_low < v_high ? v_low : v_high, v_out = v_low < v_high ? v_high : v_low;
     double          in  = u_in > v_in ? u_in : v_in;
     double          out = u_out < v_out ? u_out : v_out;
     in  = in > r->first_m ? in : r->first_m;
     out = out < r->last_m ? out : r->last_m;
+    double diagonal = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
+    diagonal = diagonal > in ? diagonal : in;
+    diagonal = diagonal < out ? diagonal : in;
 
-    double clear_in = ground_clearance(r, z, i, j, in);
-    if (!(clear_in > 0)) {
-        *north_west = r->u0 + in * r->du - i < r->v0 + in * r->dv - j;
-        return in;
+    const double t[4] = {in, diagonal, out, out};
+    double       clear[4];
+    for (int p = 0; p < 4; p++) {
+        double a = r->u0 + t[p] * r->du - i, b = r->v0 + t[p] * r->dv - j;
+        a = a > 0 ? a : 0;
+        b = b > 0 ? b : 0;
+        a = a < 1 ? a : 1;
+        b = b < 1 ? b : 1;
+        const double south_east = sw + a * (se - sw) + b * (ne - se), north_side = sw + a * (ne - nw) + b * (nw - sw);
+        clear[p] = r->w0 + t[p] * r->dw - (a >= b ? south_east : north_side);
     }
-    double diagonal  = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
-    bool   crosses   = diagonal > in && diagonal < out;
-    bool   west_side = r->per_duv < 0; /* of the diagonal, before it is crossed */
-    if (crosses) {
-        const double s     = ground_unit(r->u0 + diagonal * r->du - i);
-        const double clear = r->w0 + diagonal * r->dw - (z[0] + s * (z[3] - z[0]));
-        if (!(clear > 0)) {
-            *north_west = west_side;
-            return in + (diagonal - in) * (clear_in / (clear_in - clear));
-        }
-        clear_in = clear;
-        in       = diagonal;
+    const double lowest = clear[0] < clear[1] ? clear[0] : clear[1];
+    if (lowest > 0 && clear[2] > 0) return INFINITY;
+
+    double from = in, to = in, hit = in;
+    if (clear[0] > 0) {
+        const int p = clear[1] > 0; /* comes down before the diagonal, or after it */
+        from = t[p];
+        to   = t[p + 1];
+        hit  = from + (to - from) * (clear[p] / (clear[p] - clear[p + 1]));
     }
-    const double clear_out = ground_clearance(r, z, i, j, out);
-    if (clear_out > 0) return INFINITY;
-    const double t = in + (out - in) * (clear_in / (clear_in - clear_out));
-    *north_west = crosses ? !west_side : r->u0 + t * r->du - i < r->v0 + t * r->dv - j;
-    return t;
+    const double middle = 0.5 * (from + to); /* well inside the triangle, where the hit itself may be on its edge */
+    *north_west = r->u0 + middle * r->du - i < r->v0 + middle * r->dv - j;
+    return hit;
 }
 
 #endif

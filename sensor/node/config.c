@@ -44,7 +44,7 @@ static const Key keys[] = {
     {"radar.bin_m", KEY_DOUBLE, AT(radar.bin_m), 0.01, 100, NULL, "m", "range bin of the profile"},
     {"radar.bins", KEY_INT, AT(radar.bins), 16, 65536, NULL, "", "range bins, about the aim"},
     {"radar.lobe_deg", KEY_DOUBLE, AT(radar.lobe_deg), 0.2, 30, NULL, "deg", "rms half width of the exit lobe"},
-    {"exercise.port", KEY_INT, AT(exercise.port), 0, 65535, NULL, "", "UDP port of the exercise; 0: any"},
+    {"exercise.port", KEY_INT, AT(exercise.port), -1, 65535, NULL, "", "UDP port of the exercise; 0: any; -1: 3000, or any when nothing went there"},
     {"exercise.exercise", KEY_INT, AT(exercise.exercise), -1, 255, NULL, "", "exercise identifier; -1: all"},
     {"exercise.utc", KEY_TEXT, AT(exercise.utc), 0, 0, NULL, "", "date and time of the first PDU, 2026-06-21T10:00:00Z"},
     {"exercise.host", KEY_TEXT, AT(exercise.host), 0, 0, NULL, "", "site:application:entity that carries the sensor"},
@@ -97,7 +97,7 @@ Config config_default(void)
     c.radar.bin_m                   = 0.3; /* 500 MHz of bandwidth */
     c.radar.bins                    = 512;
     c.radar.lobe_deg                = 3;
-    c.exercise.port                 = 3000;
+    c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
     c.exercise.from_s               = NAN;
     c.exercise.to_s                 = NAN;

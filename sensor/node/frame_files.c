@@ -151,12 +151,34 @@ static char *material_names(const Materials *materials)
     return text;
 }
 
+/* `model:part,part,...;model:...` for the models that the frame holds: value k of the part plane is the k-th
+ * part of its entity's model. */
+static char *part_names(const FrameFiles *frame)
+{
+    const Catalog *catalog = frame->world->catalog;
+    size_t         size = 1, n = 0;
+    for (int m = 0; m < catalog_model_count(catalog); m++)
+        size += (size_t)(catalog_model(catalog, m)->part_count + 2) * sizeof(((ModelPart *)0)->name);
+    char *text = calloc(size, 1);
+    for (int m = 0; text && m < catalog_model_count(catalog); m++) {
+        const Model *model = catalog_model(catalog, m);
+        bool         here  = false;
+        for (int i = 0; i < frame->snapshot->count; i++) here |= frame->snapshot->entity[i].model == m;
+        for (int i = 0; here && i < model->part_count; i++)
+            if (i == 0)
+                n += (size_t)snprintf(text + n, size - n, "%s%s:%s", n ? ";" : "", model->name, model->part[i].name);
+            else
+                n += (size_t)snprintf(text + n, size - n, ",%s", model->part[i].name);
+    }
+    return text;
+}
+
 static Status write_exr(const FrameFiles *frame, int band)
 {
     char           path[path_size], date[32];
     Plane          plane[max_planes];
     ImageAttribute attribute[16];
-    char          *ids = NULL, *names = NULL;
+    char          *ids = NULL, *names = NULL, *parts = NULL;
     int            n   = 0;
     const int      planes = band_planes(plane, frame->picture, band);
 
@@ -172,13 +194,16 @@ static Status write_exr(const FrameFiles *frame, int band)
         ids            = entity_ids(frame->snapshot);
         names          = material_names(&frame->world->materials);
         attribute[n++] = image_string("entity_ids", ids ? ids : "");
+        parts          = part_names(frame);
         attribute[n++] = image_string("material_names", names ? names : "");
+        attribute[n++] = image_string("part_names", parts ? parts : "");
     }
     date_time(date, frame->unix_s);
     frame_path(path, frame, "frames", band < BAND_COUNT ? band_name((Band)band) : "truth", "exr");
     const Status status = image_write_exr(path, plane, planes, date, attribute, n);
     free(ids);
     free(names);
+    free(parts);
     return status;
 }
 

@@ -24,7 +24,7 @@ static const char usage_text[] =
     "                tshark -d udp.port==3000,dis -T fields\n"
     "  --full        with --pdus tsv: also entity type, dead reckoning, capabilities,\n"
     "                alternative type and articulation (change:attached:parameter:value; ...)\n"
-    "  --port N      UDP destination port, default 3000; 0: any port that carries DIS\n"
+    "  --port N      UDP destination port; 0: any that carries DIS (default: 3000, any when nothing went there)\n"
     "  --exercise N  only this exercise, 0 .. 255; default: all\n";
 
 typedef struct Options {
@@ -568,7 +568,7 @@ static bool read_number(long long *out, const char *name, const char *text, long
 /* 0: go on; else the exit code + 1. */
 static int read_options(Options *out, int argc, char **argv)
 {
-    Options o = {.port = dis_port, .exercise = -1};
+    Options o = {.port = dis_port_default, .exercise = -1};
     bool    only_paths = false;
     for (int i = 1; i < argc; i++) {
         const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
@@ -622,9 +622,11 @@ int inspect_command(int argc, char **argv)
     if (stop) return stop - 1;
 
     DisLog log;
-    Status status = dis_log_open(&log, options.path, (uint16_t)options.port);
+    Status status = dis_log_open(&log, options.path, (int)options.port);
     if (status != STATUS_OK) return 1; /* said where it happened */
-    if (log.count == 0 && options.port != 0 && log.counters.other_port)
+    if (log.any_port && options.port == dis_port_default)
+        log_warn("inspect: nothing went to port %d: every port that carries DIS is taken; --port N chooses", dis_port);
+    if (log.count == 0 && options.port > 0 && log.counters.other_port)
         log_warn("inspect: no UDP to port %lld in %s; try --port 0", options.port, options.path);
 
     if (options.tsv)

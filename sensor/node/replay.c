@@ -282,6 +282,8 @@ static Status run_host(Run *run, const char *host_text)
     status = host_text ? plan_host(&plan, &choices, &run->survey, &o->config, host)
                        : choose_host(&plan, &choices, &run->survey, &o->config);
     if (status != STATUS_OK) return status;
+    if (run->log.any_port && o->config.exercise.port == dis_port_default)
+        choice_add(&choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
     status = choose_frame(&frame, &run->survey, &plan);
     if (status == STATUS_OK) status = choose_time(&unix_s, &choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
@@ -328,16 +330,16 @@ static Status open_run(Run *run)
     const Options *o = &run->options;
     char           path[path_size];
     if (!parse_bands(&run->bands, o->config.sensor.bands)) return STATUS_BAD_VALUE;
-    Status status = dis_log_open(&run->log, o->log, (uint16_t)o->config.exercise.port);
+    Status status = dis_log_open(&run->log, o->log, o->config.exercise.port);
     if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
     if (status == STATUS_OK) status = hash_config(run->config_sha256, o);
     if (status == STATUS_OK) status = survey_log(&run->survey, &run->log, o->config.exercise.exercise);
     if (status != STATUS_OK) return status;
     say_drops(&run->survey);
     if (run->survey.track_count == 0) {
-        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams on port %d); "
-                  "`pitviper inspect %s` says what it holds, --set exercise.port=0 takes any port",
-                  o->log, (unsigned long long)run->survey.counters.datagrams, o->config.exercise.port, o->log);
+        log_error("replay: %s holds no Entity State with a usable position (%llu datagrams heard); "
+                  "`pitviper inspect %s` says what it holds, --set exercise.port=N takes another port",
+                  o->log, (unsigned long long)run->survey.counters.datagrams, o->log);
         return STATUS_BAD_VALUE;
     }
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;

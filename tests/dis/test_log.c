@@ -21,7 +21,7 @@ static void listen_to(void *user, LogLevel level, const char *line)
     strncat(said, line, sizeof said - strlen(said) - 1);
 }
 
-static Status open_bytes(DisLog *log, uint16_t port)
+static Status open_bytes(DisLog *log, int port)
 {
     char path[64];
     CHECK(write_file(path, &file));
@@ -43,7 +43,7 @@ static void make_payload(size_t octets)
     payload[9] = (uint8_t)octets;
 }
 
-static void expect_one(uint16_t port, size_t octets, uint32_t number)
+static void expect_one(int port, size_t octets, uint32_t number)
 {
     DisLog log;
     CHECK(open_bytes(&log, port) == STATUS_OK);
@@ -54,7 +54,7 @@ static void expect_one(uint16_t port, size_t octets, uint32_t number)
     CHECK(log.count == 0 && log.datagram == NULL);
 }
 
-static void expect_none(uint16_t port, DisLogCounters want)
+static void expect_none(int port, DisLogCounters want)
 {
     DisLog log;
     CHECK(open_bytes(&log, port) == STATUS_OK);
@@ -268,6 +268,7 @@ static void what_is_left_out_is_counted(void **state)
     expect_none(3000, (DisLogCounters){.other_port = 1});
     expect_one(0, 40, 1); /* any port: it looks like DIS */
     expect_one(3001, 40, 1);
+    expect_one(dis_port_default, 40, 1); /* nothing went to 3000 */
 
     static const uint8_t not_dis[] = {0, 4, 9, 1}; /* version, version, length, type */
     for (int i = 0; i < 4; i++) {
