@@ -58,9 +58,11 @@ void ground_ray(GroundRay *out, const Ground *ground, const double o[3], const d
     if (inner == ground->level_count) return;
 
     const LevelRay *r = out->of_level;
-    for (int k = ground->level_count - 1; k > inner; k--) add_piece(out, k, r[k].first_m, fmin(r[k - 1].first_m, r[k].last_m));
+    for (int k = ground->level_count - 1; k > inner; k--)
+        add_piece(out, k, r[k].first_m, fmin(r[k - 1].first_m, r[k].last_m));
     add_piece(out, inner, r[inner].first_m, r[inner].last_m);
-    for (int k = inner + 1; k < ground->level_count; k++) add_piece(out, k, fmax(r[k - 1].last_m, r[k].first_m), r[k].last_m);
+    for (int k = inner + 1; k < ground->level_count; k++)
+        add_piece(out, k, fmax(r[k - 1].last_m, r[k].first_m), r[k].last_m);
 }
 
 /* One level. Walks down the max pyramid where the ray comes lower than a node's highest post, along it
@@ -70,7 +72,7 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
     double t, stop;
     ground_walk(&t, &stop, g, r, far_m);
     const bool east = r->per_du > 0, north = r->per_dv > 0;
-    int        k = ground_start_level(g), i = 0, j = 0;
+    int        k = ground_start_level(g, r), i = 0, j = 0;
     if (!(t < stop)) return INFINITY;
     i = ground_cell_at(r->u0, r->du, r->per_du, t, g->cells_x);
     j = ground_cell_at(r->v0, r->dv, r->per_dv, t, g->cells_y);
@@ -106,7 +108,8 @@ static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelR
     }
 }
 
-double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m)
+double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3],
+                        double far_m)
 {
     GroundRay ray;
     ground_ray(&ray, ground, o_enu, d_enu, far_m);
@@ -129,10 +132,10 @@ static void post_slope(double slope[2], const GroundLevel *g, double cells_per_p
 {
     const int       west = i > 0 ? i - 1 : i, east = i < g->cells_x ? i + 1 : i;
     const int       south = j > 0 ? j - 1 : j, north = j < g->cells_y ? j + 1 : j;
-    const uint16_t *row = g->post + (size_t)j * (size_t)g->nx;
+    const size_t    nx = (size_t)g->nx;
+    const uint16_t *row = g->post + (size_t)j * nx, *column = g->post + i;
     slope[0] = (row[east] - row[west]) * cells_per_post / (east - west);
-    slope[1] = (g->post[(size_t)north * (size_t)g->nx + (size_t)i] - g->post[(size_t)south * (size_t)g->nx + (size_t)i]) *
-               cells_per_post / (north - south);
+    slope[1] = (column[(size_t)north * nx] - column[(size_t)south * nx]) * cells_per_post / (north - south);
 }
 
 static void upward(double n[3], double slope_x, double slope_y)
@@ -143,7 +146,8 @@ static void upward(double n[3], double slope_x, double slope_y)
     n[2] = s;
 }
 
-void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m)
+void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
+                    double y_m)
 {
     const GroundLevel *g = &ground->level[hit->level];
     const uint16_t    *post = g->post + (size_t)hit->j * (size_t)g->nx + (size_t)hit->i;

@@ -41,7 +41,8 @@ void ground_prepare(Ground *out, const Elevation *elevation);
 
 /* Distance to the first hit nearer than far_m along the unit direction d; INFINITY when there is none (or
  * the ray is not finite, or starts more than 1e9 m out). hit may be NULL; written only with a hit. */
-double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m);
+double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3],
+                        double far_m);
 
 /* The same for count rays in arrays, eight at a time. range_m[i] and hit[i] (hit may be NULL) as above, to
  * the bit, in whatever company a ray comes. */
@@ -50,6 +51,7 @@ void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, in
 
 /* Upward unit normal of the triangle that was hit, and the one interpolated between central differences at
  * its posts, for shading. */
-void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m, double y_m);
+void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
+                    double y_m);
 
 #endif

@@ -1,7 +1,7 @@
 /* Eight rays walk the pyramid side by side, each at its own node; a lane that is done takes the next ray of
  * the list. A step is the same for every lane, in two vectors of four; looking up posts, the triangles of a
  * cell and changes of ray are done a lane at a time. Written with intrinsics because the compiler finds
- * control flow in these selections and gives up (a fifth of the speed).
+ * control flow in these selections and gives up (half the speed).
  *
  * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
 #include <immintrin.h>
@@ -127,7 +127,7 @@ static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, d
     w->t_m[l] = start_m;
     w->i[l] = ground_cell_at(r->u0, r->du, r->per_du, start_m, g->cells_x);
     w->j[l] = ground_cell_at(r->v0, r->dv, r->per_dv, start_m, g->cells_y);
-    w->k[l] = ground_start_level(g), w->size[l] = 1 << ground_start_level(g), w->per_size[l] = 1 / w->size[l];
+    w->k[l] = ground_start_level(g, r), w->size[l] = 1 << ground_start_level(g, r), w->per_size[l] = 1 / w->size[l];
 }
 
 /* Gives the lane its ray's next piece over a level, or the next ray; false when there are no more. */
@@ -181,7 +181,8 @@ void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, in
         return;
     }
     Walk     w;
-    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m, .range_m = range_m, .hit = hit};
+    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m,
+                       .range_m = range_m, .hit = hit};
     unsigned busy = 0;
     for (int l = 0; l < lanes; l++) {
         /* an idle lane stands in the first cell of level 0 and is not listened to */

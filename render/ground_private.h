@@ -69,9 +69,14 @@ static inline void ground_walk(double *start_m, double *stop_m, const GroundLeve
 }
 
 /* The level of the pyramid to begin at. A ray that has come down to the highest post nearly always goes on
- * down from the coarsest nodes, so they are left out: 1.1 times faster over 801 x 801 posts, no difference
- * over 6001 x 6001. */
-static inline int ground_start_level(const GroundLevel *g) { return g->top > 6 ? g->top - 6 : 0; }
+ * down from the coarsest nodes; a rising one mostly starts near the ground, where it must be looked at closely
+ * before it is clear. Measured over 6001 x 6001 posts, eight wide: sun rays 1.2 times faster from level 2 than
+ * from the top; 6 below the top is worth a tenth on small fields to primary rays. */
+static inline int ground_start_level(const GroundLevel *g, const LevelRay *r)
+{
+    const int k = g->top > 6 ? g->top - 6 : 0;
+    return r->dw > 0 && k > 2 ? 2 : k;
+}
 
 /* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The
  * estimate is off by at most one; the lines decide. */

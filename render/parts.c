@@ -11,8 +11,9 @@ struct NodeMesh {
     RTCScene     scene;
     int          triangle_count;
     uint32_t    *triangle;  /* of the model, by Embree's primID */
-    double       centre[3]; /* of a sphere round its vertices, node axes */
-    double       radius_m;  /* with room for the narrowing to float */
+    double       centre[3]; /* of a sphere and a box round its vertices, node axes */
+    double       radius_m;  /* both with room for the narrowing to float */
+    double       half[3];
 };
 
 typedef struct ModelMeshes {
@@ -35,7 +36,8 @@ static void latch_error(void *user, enum RTCError code, const char *text)
 {
     Tracer *tracer = user;
     int     none = RTC_ERROR_NONE;
-    if (atomic_compare_exchange_strong(&tracer->error, &none, (int)code)) log_warn("tracer: Embree: %s", text ? text : "?");
+    if (atomic_compare_exchange_strong(&tracer->error, &none, (int)code))
+        log_warn("tracer: Embree: %s", text ? text : "?");
 }
 
 static Status status_of_error(int code)
@@ -70,7 +72,9 @@ static void bound_mesh(NodeMesh *mesh)
             square = fmax(square, v3_dot(d, d));
         }
     /* a float of that size steps by 1e-7 of it: a hundred steps of room */
-    mesh->radius_m = sqrt(square) * (1 + 1e-5) + v3_length(mesh->centre) * 1e-5 + 1e-4;
+    const double room_m = (sqrt(square) + v3_length(mesh->centre)) * 1e-5 + 1e-4;
+    mesh->radius_m = sqrt(square) + room_m;
+    for (int a = 0; a < 3; a++) mesh->half[a] = 0.5 * (high[a] - low[a]) + room_m;
 }
 
 static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *meshes, int node, int triangle_count)
@@ -219,6 +223,19 @@ static void mesh_centre(double centre_enu[3], const PosedNode *node)
     v3_add(centre_enu, node->p_enu, d);
 }
 
+/* Widens the entity's box by that of one node. */
+static void include_box(PosedEntity *entity, const NodeMesh *mesh, const NodePose *pose)
+{
+    double centre[3];
+    m3_mul_v3(centre, pose->r_body_from_node, mesh->centre);
+    for (int a = 0; a < 3; a++) {
+        double half = 0;
+        for (int c = 0; c < 3; c++) half += fabs(pose->r_body_from_node[3 * a + c]) * mesh->half[c];
+        entity->box_low[a]  = fmin(entity->box_low[a], pose->p_body[a] + centre[a] - half);
+        entity->box_high[a] = fmax(entity->box_high[a], pose->p_body[a] + centre[a] + half);
+    }
+}
+
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
                 const double r_enu_from_body[9])
 {
@@ -227,11 +244,16 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
     out->model      = model;
     out->node_count = 0;
     out->radius_m   = 0;
-    v3_scale(out->centre_enu, 1, p_enu);
+    memset(out->centre_enu, 0, sizeof out->centre_enu);
     if (!pose_is_finite(p_enu, r_enu_from_body)) {
-        v3_scale(out->centre_enu, 0, (const double[3]){0, 0, 0});
         out->model = -1;
         return;
+    }
+    memcpy(out->p_enu, p_enu, sizeof out->p_enu);
+    memcpy(out->r_enu_from_body, r_enu_from_body, sizeof out->r_enu_from_body);
+    for (int a = 0; a < 3; a++) {
+        out->box_low[a]  = INFINITY;
+        out->box_high[a] = -INFINITY;
     }
     for (int k = 0; k < meshes->count; k++) {
         PosedNode      *node = &out->node[out->node_count];
@@ -247,6 +269,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
             low[c]  = fmin(low[c], centre[c] - node->mesh->radius_m);
             high[c] = fmax(high[c], centre[c] + node->mesh->radius_m);
         }
+        include_box(out, node->mesh, p);
         out->node_count++;
     }
     if (out->node_count == 0) {
@@ -264,6 +287,23 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
 }
 
 /* ---- tracing ------------------------------------------------------------------------------ */
+
+/* Whether a ray may meet the entity's box ahead: one look that spares most rays a look at every node. */
+static bool meets_box(const PosedEntity *entity, const double o_enu[3], const double d_enu[3])
+{
+    double from[3], o[3], d[3], in = 0, out = INFINITY;
+    v3_sub(from, o_enu, entity->p_enu);
+    m3_tmul_v3(o, entity->r_enu_from_body, from);
+    m3_tmul_v3(d, entity->r_enu_from_body, d_enu);
+    for (int a = 0; a < 3; a++) {
+        const double per_d = fabs(d[a]) < 1e-30 ? 1e30 : 1 / d[a]; /* along a side: in or out, by its sign */
+        const double low = (entity->box_low[a] - o[a]) * per_d, high = (entity->box_high[a] - o[a]) * per_d;
+        const double near = low < high ? low : high, far = low < high ? high : low;
+        in  = near > in ? near : in;
+        out = far < out ? far : out;
+    }
+    return in <= out;
+}
 
 /* A ray in a node's axes, from where it enters the node's sphere. */
 typedef struct NodeRay {
@@ -286,7 +326,7 @@ static bool node_ray(NodeRay *r, const PosedNode *node, const double o_enu[3], c
     v3_add_scaled(across, m, -along, r->d); /* not |m|^2 - along^2, which cancels from afar */
     const double left   = mesh->radius_m * mesh->radius_m - v3_dot(across, across);
     const double half_m = left > 0 ? sqrt(left) : 0;
-    r->start_m  = fmax(0, along - half_m);
+    r->start_m  = along > half_m ? along - half_m : 0;
     r->length_m = along + half_m - r->start_m;
     v3_add_scaled(r->o, o, r->start_m, r->d);
     if (ask_all) {
@@ -324,6 +364,7 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
 {
     double best_m = far_m;
     bool   found = false;
+    if (!ask_all && !meets_box(entity, o_enu, d_enu)) return INFINITY;
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
         NodeRay          r;
@@ -349,6 +390,7 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all)
 {
     bool met = false;
+    if (!ask_all && !meets_box(entity, o_enu, d_enu)) return false;
     for (int k = 0; k < entity->node_count && !(met && !ask_all); k++) {
         NodeRay r;
         if (!node_ray(&r, &entity->node[k], o_enu, d_enu, INFINITY, ask_all)) continue;

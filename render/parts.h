@@ -25,12 +25,14 @@ typedef struct PosedNode {
     double r_enu_from_node[9];
 } PosedNode;
 
-/* An entity where it is now. The sphere holds all of its nodes as they are posed, whatever the model says. */
+/* An entity where it is now. Sphere and box hold all of its nodes as they are posed, whatever the model says. */
 typedef struct PosedEntity {
     int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
     int          node_count; /* those with triangles */
     PosedNode   *node;
     double       centre_enu[3], radius_m;
+    double       p_enu[3], r_enu_from_body[9];
+    double       box_low[3], box_high[3]; /* body axes */
 } PosedEntity;
 
 typedef struct PartHit {
@@ -48,7 +50,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
                 const double r_enu_from_body[9]);
 
 /* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is
- * asked even where a node's sphere is missed, which must not change the answer. */
+ * asked even where the entity's box or a node's sphere is missed, which must not change the answer. */
 double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],
                        double far_m, bool ask_all);
 /* Whether any triangle is ahead. */

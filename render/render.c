@@ -11,8 +11,6 @@
 #include <time.h>
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
-/* Fixed point of the range profile: sums are exact below 2^62 quanta of 2^-40 relative power. */
-static const double profile_quantum = 0x1p-40, profile_limit = 0x1p20;
 
 typedef struct TargetCount {
     int64_t visible, amodal, hidden_ground, hidden_entity;
@@ -49,6 +47,9 @@ typedef struct Job {
     Scratch            **scratch; /* a worker */
     HiddenBy            *pairs;   /* [tiles][pairs_per_tile] */
     int                  side_px, tiles_x, tiles_y;
+    /* fixed point of the range profile: fine enough to be exact in float's terms, coarse enough that all samples
+     * of a picture at the limit stay below 2^62 quanta */
+    double               profile_limit, profile_quantum;
 } Job;
 
 typedef struct Tile {
@@ -149,15 +150,16 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
         }
 }
 
-static void add_to_profile(Scratch *s, const RenderRequest *request)
+static void add_to_profile(Scratch *s, const Job *job)
 {
+    const RenderRequest *request = job->request;
     for (int b = 0; b < radar_bounces; b++)
         for (int i = 0; i < s->hits.count; i++) {
             const double power = s->radar.power[b][i];
             if (!(power > 0)) continue;
             const double bin = floor((s->radar.slant_m[b][i] - request->profile_near_m) / request->profile_bin_m);
             if (!(bin >= 0 && bin < request->profile_bins)) continue;
-            s->profile[(int)bin * radar_bounces + b] += llrint(fmin(power, profile_limit) / profile_quantum);
+            s->profile[(int)bin * radar_bounces + b] += llrint(fmin(power, job->profile_limit) / job->profile_quantum);
         }
 }
 
@@ -173,9 +175,7 @@ static void shade_radar(Scratch *s, const Job *job, const Tile *tile)
         s->out[i] = (float)sum;
     }
     average(picture->radar, s->out, tile, picture->width);
-    for (int b = 0; b < radar_bounces; b++)
-        average(picture->radar_bounce[b], s->radar.power[b], tile, picture->width);
-    if (job->request->profile_bins > 0) add_to_profile(s, job->request);
+    if (job->request->profile_bins > 0) add_to_profile(s, job);
 }
 
 /* Truth of a pixel is that of the sample nearest its centre; of equals, the first. */
@@ -332,8 +332,6 @@ static Status allocate_planes(Picture *picture, const RenderRequest *request, in
     if (wants(request, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
     if (wants(request, BAND_RADAR)) {
         ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
-        for (int b = 0; b < radar_bounces; b++)
-            ok = (picture->radar_bounce[b] = arena_alloc(arena, px, sizeof(float))) && ok;
         if (request->profile_bins > 0)
             ok = (picture->profile = arena_alloc(arena, (size_t)request->profile_bins * radar_bounces,
                                                  sizeof(double))) && ok;
@@ -473,7 +471,7 @@ static void gather(Picture *picture, const Job *job, int workers)
     for (int i = 0; picture->profile && i < job->request->profile_bins * radar_bounces; i++) {
         int64_t sum = 0;
         for (int w = 0; w < workers; w++) sum += job->scratch[w]->profile[i];
-        picture->profile[i] = (double)sum * profile_quantum * share;
+        picture->profile[i] = (double)sum * job->profile_quantum * share;
     }
 }
 
@@ -492,6 +490,11 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     job.side_px = tile_side_samples / request->samples;
     job.tiles_x = (request->view.width + job.side_px - 1) / job.side_px;
     job.tiles_y = (request->view.height + job.side_px - 1) / job.side_px;
+
+    /* nothing answers with more than the peak of its lobe; a power of two, so that scaling is exact */
+    const double samples = (double)request->view.width * request->view.height * request->samples * request->samples;
+    job.profile_limit    = exp2(ceil(log2(2 / (pi_rad * world->radar.lobe_rad * world->radar.lobe_rad))));
+    job.profile_quantum  = job.profile_limit * exp2(ceil(log2(samples)) - 61);
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
     if (status == STATUS_OK) status = allocate_job(&job, pool_threads(pool), arena);

@@ -31,7 +31,7 @@ typedef struct TargetPixels {
 
 typedef struct RenderCounters {
     VisibilityCounters visibility;
-    uint64_t rays_primary, rays_radar, tiles, tiles_without_entities;
+    uint64_t rays_primary, tiles, tiles_without_entities;
 } RenderCounters;
 
 typedef struct RenderTimes {
@@ -44,7 +44,6 @@ typedef struct Picture {
     float    *optical[3];           /* R G B, or [0] alone: W/(m2 sr) */
     float    *mwir, *lwir;          /* W/(m2 sr) */
     float    *radar;                /* relative */
-    float    *radar_bounce[radar_bounces];
     double   *profile;              /* [profile_bins][radar_bounces], relative power */
     float    *range_m;              /* +inf: sky */
     uint32_t *entity;               /* snapshot index + 1; 0: none */

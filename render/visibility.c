@@ -140,8 +140,8 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
 }
 
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
-                          VisibilityCounters *counters)
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                          int hidden, VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};

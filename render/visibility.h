@@ -43,8 +43,8 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
 
 /* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
-                          VisibilityCounters *counters);
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                          int hidden, VisibilityCounters *counters);
 
 /* 1 where something (anybody, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
  * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */

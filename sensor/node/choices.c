@@ -144,9 +144,10 @@ static const Track *longest_flight(const Survey *survey, bool impact)
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot  = shot_of(survey, track->id);
-        if (track->type.kind != kind_munition || track->count < 2) continue;
+        if (track->type.kind != kind_munition) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
-        const double flight_s = track->point[track->count - 1].t_s - track->point[0].t_s;
+        const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s : track->point[track->count - 1].t_s;
+        const double flight_s = end_s - track->point[0].t_s;
         if (flight_s > most_s) {
             most_s  = flight_s;
             longest = track;
@@ -226,10 +227,12 @@ static long long days_from_date(int year, int month, int day)
 
 static bool parse_utc(double *unix_s, const char *text)
 {
+    static const int days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
     int    year, month, day, hour, minute, used = 0;
     double second;
     if (sscanf(text, "%4d-%2d-%2dT%2d:%2d:%lfZ%n", &year, &month, &day, &hour, &minute, &second, &used) != 6 ||
-        text[used] || year < 1900 || year > 2100 || month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 ||
+        text[used] || year < 1900 || year > 2100 || month < 1 || month > 12 || day < 1 ||
+        day > days[month - 1] + (month == 2 && year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)) || hour < 0 ||
         hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 60))
         return false;
     *unix_s = (double)days_from_date(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
@@ -323,6 +326,8 @@ static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *surve
     const Track *target = shot ? survey_track(survey, shot->hit) : NULL;
     for (int i = 0; i + 1 < track->count; i++)
         add_line(e, frame, track->point[i].p_ecef, track->point[i + 1].p_ecef);
+    if (shot && isfinite(shot->detonation_s) && shot->detonation_s > track->point[track->count - 1].t_s)
+        add_line(e, frame, track->point[track->count - 1].p_ecef, shot->p_burst_ecef);
     /* a shot that hit saw its target all the way */
     for (int i = 0; target && i < track->count; i++) {
         TrackPose pose;
@@ -343,7 +348,7 @@ Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, con
 
     Status status = STATUS_NO_MEMORY;
     e.fix         = calloc(points + 1, sizeof *e.fix);
-    e.line        = calloc(2 * points + 1, sizeof *e.line);
+    e.line        = calloc(2 * points + (size_t)survey->track_count + 1, sizeof *e.line);
     if (!e.fix || !e.line) goto done;
 
     for (int i = 0; i < survey->track_count; i++) {

@@ -65,7 +65,7 @@ static const Key keys[] = {
     {"models.sag_m", KEY_DOUBLE, AT(models.sag_m), 1e-5, 0.1, NULL, "m", "largest distance of a facet from its surface"},
     {"entities.timeout_s", KEY_DOUBLE, AT(entities.timeout_s), 0.1, 1e5, NULL, "s", "silence after which an entity is gone"},
     {"entities.timeout_land_v7_s", KEY_DOUBLE, AT(entities.timeout_land_v7_s), 0.1, 1e5, NULL, "s", "the same for land entities of version 7"},
-    {"entities.extrapolation_limit_s", KEY_DOUBLE, AT(entities.extrapolation_limit_s), 0, 1e4, NULL, "s", "longest dead reckoning"},
+    {"entities.extrapolation_limit_s", KEY_DOUBLE, AT(entities.extrapolation_limit_s), 0.01, 1e4, NULL, "s", "longest dead reckoning"},
     {"entities.capacity", KEY_INT, AT(entities.capacity), 1, 1000000, NULL, "", "most entities at once"},
     {"seed", KEY_LONG, AT(seed), 0, 2147483647, NULL, "", "of everything random"},
 };

@@ -19,6 +19,10 @@ enum { path_size = 4096, max_planes = 24, max_jobs = 16 };
 static Status make_folders(const char *path)
 {
     char part[path_size];
+    if (!*path) {
+        log_error("replay: the folder for the products has no name; choose one with --out");
+        return STATUS_BAD_VALUE;
+    }
     if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return STATUS_BAD_VALUE;
     for (char *at = part + 1;; at++) {
         if (*at != '/' && *at) continue;
@@ -64,9 +68,13 @@ Status frame_files_prepare(const char *out, unsigned bands)
     char   path[path_size];
     Status status = make_folders(out);
     if (status != STATUS_OK) return status;
-    snprintf(path, sizeof path, "%s/run.json", out);
-    const bool earlier = access(path, F_OK) == 0;
-    if (earlier) unlink(path);
+    /* a run leaves truth.jsonl from its first moment, run.json at its end */
+    static const char *const marks[] = {"run.json", "truth.jsonl"};
+    bool earlier = false;
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, marks[i]);
+        earlier = unlink(path) == 0 || earlier;
+    }
     for (int b = 0; b <= BAND_COUNT + 1; b++) {
         snprintf(path, sizeof path, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
                  b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
@@ -88,6 +96,8 @@ typedef struct FileJob {
 
 typedef struct FileJobs {
     const FrameFiles *frame;
+    char             *hash;
+    Status            hash_status;
     int               count;
     FileJob           job[max_jobs];
 } FileJobs;
@@ -207,16 +217,18 @@ static Status write_exr(const FrameFiles *frame, int band)
     return status;
 }
 
-static double mean_of(const float *const *plane, int planes, size_t count)
+double frame_optical_sigma(const Picture *picture, const Config *config)
 {
-    double sum = 0;
-    for (int c = 0; c < planes; c++)
-        for (size_t i = 0; i < count; i++) sum += plane[c][i];
-    return sum / ((double)count * planes);
+    const size_t count = (size_t)picture->width * (size_t)picture->height;
+    double       sum   = 0;
+    int          planes = 0;
+    for (; planes < 3 && picture->optical[planes]; planes++)
+        for (size_t i = 0; i < count; i++) sum += picture->optical[planes][i];
+    return planes ? config->detector.noise_optical * fmax(0, sum / ((double)count * planes)) : 0;
 }
 
 /* What the detector of one band shows: noise, gain and level, quantisation. */
-static DetectorConfig detector_of(const FrameFiles *frame, int band, const float *const *plane, int planes, size_t count)
+static DetectorConfig detector_of(const FrameFiles *frame, int band)
 {
     const Config  *c = frame->config;
     DetectorConfig d = detector_default_config();
@@ -226,7 +238,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band, const float
     d.auto_level     = strcmp(c->detector.level, "auto") == 0;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
-        d.noise_sigma   = c->detector.noise_optical * fmax(0, mean_of(plane, planes, count));
+        d.noise_sigma   = frame_optical_sigma(frame->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;
     } else {
@@ -263,7 +275,7 @@ static Status write_png(const FrameFiles *frame, int band)
         const float *out[3] = {noisy, noisy + count, noisy + 2 * count};
         const int    planes = rgb ? 3 : 1;
         for (int c = 0; c < planes; c++) in[c] = band == BAND_OPTICAL ? p->optical[c] : band == BAND_MWIR ? p->mwir : p->lwir;
-        const DetectorConfig detector = detector_of(frame, band, in, planes, count);
+        const DetectorConfig detector = detector_of(frame, band);
         for (int c = 0; c < planes; c++)
             detector_noise(noisy + (size_t)c * count, in[c], 0, count, detector.noise_sigma, (uint64_t)frame->config->seed,
                            (uint32_t)(3 * band + c), (uint32_t)frame->frame);
@@ -305,36 +317,11 @@ static Status write_profile(const FrameFiles *frame, int band)
     return STATUS_IO;
 }
 
-static void run_job(void *user, int worker, int task)
+static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
 {
-    FileJobs *jobs = user;
-    FileJob  *job  = &jobs->job[task];
-    (void)worker;
-    job->status = job->write(jobs->frame, job->band);
-}
-
-static void add_job(FileJobs *jobs, Status (*write)(const FrameFiles *, int), int band)
-{
-    jobs->job[jobs->count++] = (FileJob){write, band, STATUS_OK};
-}
-
-Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool)
-{
-    FileJobs jobs = {.frame = frame};
-    Plane    plane[max_planes];
-    char     name[max_planes][32];
-    int      planes = 0;
-
-    add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
-    for (int b = 0; b <= BAND_COUNT; b++)
-        if (frame->png && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
-    if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
-    pool_run(pool, jobs.count, run_job, &jobs);
-    for (int i = 0; i < jobs.count; i++)
-        if (jobs.job[i].status != STATUS_OK) return jobs.job[i].status;
-
+    Plane plane[max_planes];
+    char  name[max_planes][32];
+    int   planes = 0;
     for (int b = 0; b <= BAND_COUNT; b++) {
         if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
         const int added = band_planes(plane + planes, frame->picture, b);
@@ -350,4 +337,38 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
         planes++;
     }
     return plane_hash(hash, plane, planes);
+}
+
+/* Task 0 hashes, each other one writes a file. */
+static void run_job(void *user, int worker, int task)
+{
+    FileJobs *jobs = user;
+    (void)worker;
+    if (task == 0) {
+        jobs->hash_status = hash_planes(jobs->hash, jobs->frame);
+        return;
+    }
+    FileJob *job = &jobs->job[task - 1];
+    job->status  = job->write(jobs->frame, job->band);
+}
+
+static void add_job(FileJobs *jobs, Status (*write)(const FrameFiles *, int), int band)
+{
+    jobs->job[jobs->count++] = (FileJob){write, band, STATUS_OK};
+}
+
+Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool)
+{
+    FileJobs jobs = {.frame = frame, .hash = hash};
+
+    add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
+    for (int b = 0; b <= BAND_COUNT; b++)
+        if (frame->png && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+    if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
+    pool_run(pool, jobs.count + 1, run_job, &jobs);
+    for (int i = 0; i < jobs.count; i++)
+        if (jobs.job[i].status != STATUS_OK) return jobs.job[i].status;
+    return jobs.hash_status;
 }

@@ -20,8 +20,10 @@ typedef struct FrameFiles {
 } FrameFiles;
 
 /* Makes OUT and the folders below it for these bands; takes away the frames of an earlier run in OUT (known
- * by its run.json). A clear message when the place cannot be written. */
+ * by its truth.jsonl or run.json). A clear message when the place cannot be written. */
 Status frame_files_prepare(const char *out, unsigned bands);
+/* Sigma of the detector's noise in one optical channel, W/(m2 sr): a share of the picture's mean. */
+double frame_optical_sigma(const Picture *picture, const Config *config);
 /* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
 

@@ -82,29 +82,31 @@ static bool set_pair(Config *config, const char *text)
     return config_set(config, key, equals + 1, "--set") == STATUS_OK;
 }
 
+enum { OUT = 1, BANDS, SIZE, RATE, FROM, TO, HOST, SAMPLES, CONFIG, SET, THREADS, SEED, SPEED, CAUSAL, NO_SKIP, ISA,
+       NO_PNG, HELP };
+
+static const struct option options[] = {
+    {"out", 1, NULL, OUT}, {"bands", 1, NULL, BANDS}, {"size", 1, NULL, SIZE}, {"rate", 1, NULL, RATE},
+    {"from", 1, NULL, FROM}, {"to", 1, NULL, TO}, {"host", 1, NULL, HOST}, {"samples", 1, NULL, SAMPLES},
+    {"config", 1, NULL, CONFIG}, {"set", 1, NULL, SET}, {"threads", 1, NULL, THREADS}, {"seed", 1, NULL, SEED},
+    {"speed", 1, NULL, SPEED}, {"causal", 0, NULL, CAUSAL}, {"no-skip", 0, NULL, NO_SKIP}, {"isa", 1, NULL, ISA},
+    {"no-png", 0, NULL, NO_PNG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+
 /* The configuration file first, whatever its place on the line: options override it. */
 static bool read_config(Config *config, int argc, char **argv)
 {
-    for (int i = 1; i < argc; i++) {
-        const char *path = NULL;
-        if (strcmp(argv[i], "--config") == 0 && i + 1 < argc) path = argv[i + 1];
-        if (strncmp(argv[i], "--config=", 9) == 0) path = argv[i] + 9;
-        if (path && config_read(config, path) != STATUS_OK) return false;
-    }
-    return true;
+    bool ok = true;
+    optind  = 1;
+    opterr  = 0; /* the pass over all options speaks */
+    for (int option; ok && (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+        if (option == CONFIG) ok = config_read(config, optarg) == STATUS_OK;
+    opterr = 1;
+    return ok;
 }
 
 /* 0: go on; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 1, BANDS, SIZE, RATE, FROM, TO, HOST, SAMPLES, CONFIG, SET, THREADS, SEED, SPEED, CAUSAL, NO_SKIP, ISA,
-           NO_PNG, HELP };
-    static const struct option options[] = {
-        {"out", 1, NULL, OUT}, {"bands", 1, NULL, BANDS}, {"size", 1, NULL, SIZE}, {"rate", 1, NULL, RATE},
-        {"from", 1, NULL, FROM}, {"to", 1, NULL, TO}, {"host", 1, NULL, HOST}, {"samples", 1, NULL, SAMPLES},
-        {"config", 1, NULL, CONFIG}, {"set", 1, NULL, SET}, {"threads", 1, NULL, THREADS}, {"seed", 1, NULL, SEED},
-        {"speed", 1, NULL, SPEED}, {"causal", 0, NULL, CAUSAL}, {"no-skip", 0, NULL, NO_SKIP}, {"isa", 1, NULL, ISA},
-        {"no-png", 0, NULL, NO_PNG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     static const struct { int option; const char *key; } direct[] = {
         {BANDS, "sensor.bands"}, {RATE, "sensor.rate_hz"}, {FROM, "exercise.from_s"}, {TO, "exercise.to_s"},
         {SAMPLES, "sensor.samples"}, {SEED, "seed"}};
@@ -138,8 +140,8 @@ static int parse(Options *o, int argc, char **argv)
             if (strcmp(optarg, "max") == 0) {
                 o->speed = INFINITY;
             } else {
-                ok = text_to_double(&o->speed, optarg) && o->speed > 0;
-                if (!ok) log_error("replay: --speed: '%s' is neither `max` nor a number above 0", optarg);
+                ok = text_to_double(&o->speed, optarg) && o->speed >= 1e-3 && o->speed <= 1e6;
+                if (!ok) log_error("replay: --speed: '%s' is neither `max` nor a number in 0.001 .. 1000000", optarg);
             }
             break;
         case CAUSAL: o->config.causal = true; break;
@@ -164,6 +166,8 @@ static int parse(Options *o, int argc, char **argv)
         return 1 + 2;
     }
     o->log = argv[optind];
+    if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
+    if (o->host_count == 1) o->host_count = 0; /* one host is a setting like any other */
     return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
 }
 
@@ -261,6 +265,7 @@ static Status write_run(const Run *run, const char *out, const HostPlan *plan, c
 }
 
 /* One host: its own ground and frame, its own folder when there are several. */
+/* host_text: checked already; NULL: as configured, or chosen. */
 static Status run_host(Run *run, const char *host_text)
 {
     const Options *o       = &run->options;
@@ -275,11 +280,8 @@ static Status run_host(Run *run, const char *host_text)
     DisEntityId    host;
     Status         status;
 
-    if (host_text && !dis_entity_id_parse(&host, host_text)) {
-        log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82", host_text);
-        return STATUS_BAD_VALUE;
-    }
-    status = host_text ? plan_host(&plan, &choices, &run->survey, &o->config, host)
+    if (host_text) printf("host: %s (--host)\n", host_text);
+    status = host_text && dis_entity_id_parse(&host, host_text) ? plan_host(&plan, &choices, &run->survey, &o->config, host)
                        : choose_host(&plan, &choices, &run->survey, &o->config);
     if (status != STATUS_OK) return status;
     if (run->log.any_port && o->config.exercise.port == dis_port_default)
@@ -325,6 +327,23 @@ static void say_drops(const Survey *survey)
             log_warn("replay: dropped: %s=%llu", dis_drop_name((DisDrop)i), (unsigned long long)survey->counters.dropped[i]);
 }
 
+/* All hosts before the first frame of any: a slip in the last is not found out after an hour. */
+static Status check_hosts(const Run *run)
+{
+    for (int i = 0; i < run->options.host_count; i++) {
+        DisEntityId host;
+        if (!dis_entity_id_parse(&host, run->options.host[i])) {
+            log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82", run->options.host[i]);
+            return STATUS_BAD_VALUE;
+        }
+        if (!survey_track(&run->survey, host)) {
+            log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists who is", run->options.host[i]);
+            return STATUS_BAD_VALUE;
+        }
+    }
+    return STATUS_OK;
+}
+
 static Status open_run(Run *run)
 {
     const Options *o = &run->options;
@@ -342,6 +361,8 @@ static Status open_run(Run *run)
                   o->log, (unsigned long long)run->survey.counters.datagrams, o->log);
         return STATUS_BAD_VALUE;
     }
+    status = check_hosts(run);
+    if (status != STATUS_OK) return status;
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
     if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
@@ -356,9 +377,13 @@ int replay_command(int argc, char **argv)
     if (stop) return stop - 1;
 
     thread_flush_denormals();
-    Status status = open_run(&run);
+    Status failed = STATUS_OK, status = open_run(&run);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
-    for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) status = run_host(&run, run.options.host[i]);
+    for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
+        const Status one = run_host(&run, run.options.host[i]);
+        if (one != STATUS_OK) failed = one; /* the others are still shown */
+    }
+    if (status == STATUS_OK) status = failed;
 
     pool_destroy(run.pool);
     catalog_close(run.catalog);

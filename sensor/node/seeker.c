@@ -29,8 +29,9 @@ void seeker_step(Seeker *seeker, const double d_body[3])
         seeker->elevation_rad = elevation_rad;
         return;
     }
-    const double share = seeker->config.lag_s > 0 ? -expm1(-seeker_tick_s / seeker->config.lag_s) : 1;
-    const double most  = seeker->config.rate_rps * seeker_tick_s;
+    static const double tick_s = 1.0 / seeker_ticks_per_s;
+    const double share = seeker->config.lag_s > 0 ? -expm1(-tick_s / seeker->config.lag_s) : 1;
+    const double most  = seeker->config.rate_rps * tick_s;
     seeker->azimuth_rad += clamp(share * remainder(azimuth_rad - seeker->azimuth_rad, 2 * pi_rad), -most, most);
     seeker->azimuth_rad = remainder(seeker->azimuth_rad, 2 * pi_rad);
     seeker->elevation_rad += clamp(share * (elevation_rad - seeker->elevation_rad), -most, most);

@@ -9,7 +9,7 @@
 
 #include "pitviper.h"
 
-static const double seeker_tick_s = 0.01;
+enum { seeker_ticks_per_s = 100 };
 
 typedef struct SeekerConfig {
     double limit_rad, rate_rps, lag_s;

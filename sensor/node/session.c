@@ -49,15 +49,17 @@ static void aim_point(Session *s, const EntityTable *table, double t_s)
     s->aim_known = true;
 }
 
-/* Pose of the host at t_s. A replay knows a munition's next report and may interpolate; a causal one may not. */
+/* Pose of the host at t_s. A replay knows a munition's next report, where there is one, and may interpolate; a
+ * causal one may not. */
 static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
 {
     const SessionShared *shared = s->shared;
     if (!entity_table_pose(host, s->table, entity_table_find(s->table, s->plan->host), t_s)) return false;
-    if (s->plan->munition && !shared->config->causal) {
+    const Track *track = survey_track(shared->survey, s->plan->host);
+    if (s->plan->munition && !shared->config->causal && t_s <= track->point[track->count - 1].t_s) {
         TrackPose pose;
         Origin    origin;
-        track_at(&pose, survey_track(shared->survey, s->plan->host), t_s);
+        track_at(&pose, track, t_s);
         const int    model  = catalog_find(shared->catalog, host->type, &origin, NULL);
         const double down_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(shared->catalog, model)->height_m : 0;
         for (int k = 0; k < 3; k++) host->p_ecef[k] = pose.p_ecef[k] + down_m * pose.r_ecef_from_body[3 * k + 2];
@@ -99,8 +101,8 @@ static void step_gimbal(Session *s, double t_s)
 /* Feeds the log and turns the gimbal up to t_s, on the fixed grid of ticks. */
 static void advance(Session *s, double t_s)
 {
-    for (; (double)s->tick * seeker_tick_s <= t_s; s->tick++) {
-        const double tick_s = (double)s->tick * seeker_tick_s;
+    /* a quotient is rounded correctly, so that tick 35 is 0.35 to the bit; 35 * 0.01 is more */
+    for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
         player_feed(s->player, s->table, tick_s);
         step_gimbal(s, tick_s);
     }
@@ -151,33 +153,40 @@ static bool host_eye(Eye *eye, const Session *s, Snapshot *snapshot, double t_s)
     return true;
 }
 
-/* On a circle about the aim, clockwise from above, starting in the south. */
-static bool observer_eye(Eye *eye, Session *s, double t_s)
+/* On a circle about the aim, clockwise from above, starting in the south; never in the ground. */
+static void observer_place(double p_ecef[3], double aim_enu[3], Session *s, double t_s)
 {
     const Config     *config = s->shared->config;
     const LocalFrame *frame  = &s->shared->world->frame;
-    if (!s->aim_known) {
-        memcpy(s->p_aim_ecef, s->plan->p_aim_ecef, sizeof s->p_aim_ecef);
-        s->aim_known = true;
-    }
+    const double      azimuth_rad = pi_rad + config->observer.rate_dps * rad_per_deg * (t_s - s->plan->start_s);
+    double            p_enu[3];
     aim_point(s, s->table, t_s);
-    double       aim_enu[3], p_enu[3], d_enu[3], v_enu[3];
-    const double azimuth_rad = pi_rad + config->observer.rate_dps * rad_per_deg * (t_s - s->plan->start_s);
-    const double speed_mps   = config->observer.range_m * config->observer.rate_dps * rad_per_deg;
     enu_from_ecef(aim_enu, frame, s->p_aim_ecef);
     p_enu[0] = aim_enu[0] + config->observer.range_m * sin(azimuth_rad);
     p_enu[1] = aim_enu[1] + config->observer.range_m * cos(azimuth_rad);
     p_enu[2] = aim_enu[2] + config->observer.height_m;
     const double ground_m = elevation_height(&s->shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
     if (p_enu[2] < ground_m + 20) p_enu[2] = ground_m + 20;
-    v_enu[0] = speed_mps * cos(azimuth_rad);
-    v_enu[1] = -speed_mps * sin(azimuth_rad);
-    v_enu[2] = 0;
+    ecef_from_enu(p_ecef, frame, p_enu);
+}
+
+static bool observer_eye(Eye *eye, Session *s, double t_s)
+{
+    static const double half_s = 0.005; /* velocity by difference: it rides with the aim, and over the hills */
+    const LocalFrame   *frame  = &s->shared->world->frame;
+    double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3];
+    if (!s->aim_known) {
+        memcpy(s->p_aim_ecef, s->plan->p_aim_ecef, sizeof s->p_aim_ecef);
+        s->aim_known = true;
+    }
+    observer_place(before_ecef, aim_enu, s, t_s - half_s);
+    observer_place(after_ecef, aim_enu, s, t_s + half_s);
+    observer_place(eye->state.p_ecef, aim_enu, s, t_s);
+    for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
+    enu_from_ecef(p_enu, frame, eye->state.p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);
     if (!v3_normalize(d_enu, d_enu)) return false;
     camera_upright(eye->view.r_enu_from_cam, d_enu);
-    ecef_from_enu(eye->state.p_ecef, frame, p_enu);
-    m3_mul_v3(eye->state.v_ecef_mps, frame->r_ecef_from_enu, v_enu);
     eye->hidden = eye->state.host_index = -1;
     finish_eye(eye, s);
     memcpy(eye->r_ecef_from_body, eye->state.r_ecef_from_cam, sizeof eye->r_ecef_from_body);
@@ -223,7 +232,7 @@ static void turn_normals(Picture *picture, const double r_host_from_enu[9])
     }
 }
 
-static Status make_request(RenderRequest *request, const Session *s, const Eye *eye)
+static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
@@ -240,7 +249,6 @@ static Status make_request(RenderRequest *request, const Session *s, const Eye *
         request->profile_bin_m  = config->radar.bin_m;
         request->profile_near_m = fmax(0, range_m - 0.5 * config->radar.bins * config->radar.bin_m);
     }
-    return STATUS_OK;
 }
 
 /* shown: false when the host is not there at t_s. */
@@ -265,7 +273,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     Picture       picture;
     RenderRequest request;
     status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s);
-    if (status == STATUS_OK) status = make_request(&request, s, &eye);
+    make_request(&request, s, &eye);
     const double posed_s = now_s();
     if (status == STATUS_OK)
         status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, s->frame_arena);
@@ -273,7 +281,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     turn_normals(&picture, r_host_from_enu);
 
     Target          *target = arena_alloc(s->frame_arena, (size_t)snapshot.count, sizeof *target);
-    const TruthNoise noise  = {shared->config->detector.noise_optical, shared->config->detector.netd_mwir_k,
+    const TruthNoise noise  = {frame_optical_sigma(&picture, shared->config), shared->config->detector.netd_mwir_k,
                                shared->config->detector.netd_lwir_k};
     if (!target) return STATUS_NO_MEMORY;
     const int targets = truth_targets(target, &picture, shared->world, &snapshot, &request, &eye.state, &noise);
@@ -296,9 +304,11 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     if (status != STATUS_OK) return status;
 
     const double done_s = now_s();
-    const double ms[session_stages] = {1e3 * (done_s - start_s), 1e3 * (posed_s - start_s),
-                                       picture.times.prepare_ms + picture.times.visibility_ms + picture.times.shadow_ms,
-                                       picture.times.shade_ms, picture.times.radar_ms, 1e3 * (done_s - rendered_s)};
+    const double share = 1.0 / pool_threads(shared->pool); /* of a sum over threads: as if evenly spread */
+    const double ms[session_stages] = {
+        1e3 * (done_s - start_s), 1e3 * (posed_s - start_s),
+        picture.times.prepare_ms + share * (picture.times.visibility_ms + picture.times.shadow_ms),
+        share * picture.times.shade_ms, share * picture.times.radar_ms, 1e3 * (done_s - rendered_s)};
     memcpy(stage_ms, ms, sizeof ms);
     *counters = picture.counters;
     *shown    = true;
@@ -333,11 +343,9 @@ static void add_counters(RenderCounters *sum, const RenderCounters *frame)
 static void pace(double begun_s, double first_s, double t_s, double speed)
 {
     if (!isfinite(speed)) return;
-    const double wait_s = begun_s + (t_s - first_s) / speed - now_s();
-    if (wait_s > 0) {
-        struct timespec t = {(time_t)wait_s, (long)((wait_s - floor(wait_s)) * 1e9)};
-        nanosleep(&t, NULL);
-    }
+    const double    until_s = begun_s + (t_s - first_s) / speed;
+    struct timespec until   = {(time_t)until_s, (long)((until_s - floor(until_s)) * 1e9)};
+    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {}
 }
 
 static Status open_session(Session *s)
@@ -354,7 +362,7 @@ static Status open_session(Session *s)
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s};
     s->rate_hz = shared->config->sensor.rate_hz > 0 ? shared->config->sensor.rate_hz : s->plan->munition ? 5 : 1;
-    s->tick    = (int64_t)ceil(s->plan->start_s / seeker_tick_s);
+    s->tick    = (int64_t)ceil(s->plan->start_s * seeker_ticks_per_s);
     if (dis_entity_id_is_none(s->plan->host))
         strcpy(s->host_text, "observer");
     else
@@ -408,6 +416,8 @@ static Status run_frames(SessionResult *result, Session *s)
         advance(s, t_s);
         const Status status = make_frame(&shown, result->hash[result->frames], result->stage_ms[result->frames],
                                          &counters, s, frame, t_s);
+        if (status == STATUS_NO_MEMORY)
+            log_error("replay: out of memory at frame %d; choose a smaller --size or fewer --samples", frame);
         if (status != STATUS_OK) return status;
         if (shown) {
             result->frames++;

@@ -160,13 +160,13 @@ static void thermal_band(TargetBand *out, const Target *t, const Picture *pictur
 }
 
 static void plain_band(TargetBand *out, const Target *t, const Picture *picture, PixelValue *value, const void *user,
-                       double noise_share)
+                       double noise_sigma)
 {
     Moments target, ring;
     two_moments(&target, &ring, t, picture, value, user);
     if (!(target.n > 0) || !(ring.n > 0)) return;
     const double mean = moments_mean(&ring), difference = moments_mean(&target) - mean;
-    const double sigma = sqrt(moments_variance(&ring) + noise_share * noise_share * mean * mean);
+    const double sigma = sqrt(moments_variance(&ring) + noise_sigma * noise_sigma);
     if (mean > 0) out->contrast = difference / mean;
     if (sigma > 0) out->snr = difference / sigma;
 }
@@ -176,7 +176,9 @@ static void radiometry(Target *t, const Picture *picture, const World *world, co
 {
     if (t->box[2] == 0) return;
     if (picture->optical[0]) {
-        plain_band(&t->band[BAND_OPTICAL], t, picture, luminance, picture, noise->optical_share);
+        /* the mean of three channels has a root of three less noise than one */
+        plain_band(&t->band[BAND_OPTICAL], t, picture, luminance, picture,
+                   noise->optical_w_m2_sr / (picture->optical[1] ? sqrt(3) : 1));
         t->band[BAND_OPTICAL].intensity_w_sr = intensity(t, picture, &request->view, luminance, picture);
         if (picture->optical[1]) t->band[BAND_OPTICAL].intensity_w_sr *= 3; /* the channels together: 0.4-0.7 um */
     }

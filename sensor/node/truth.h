@@ -28,10 +28,9 @@ typedef struct Target {
     TargetBand band[BAND_COUNT];
 } Target;
 
-/* What noise the bands have, for snr: sigma in the plane's unit for optical and radar (0: none), K for the
- * thermal ones. */
+/* What noise the detector adds, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
 typedef struct TruthNoise {
-    double optical_share, netd_mwir_k, netd_lwir_k;
+    double optical_w_m2_sr, netd_mwir_k, netd_lwir_k;
 } TruthNoise;
 
 /* The eye, as line of sight and its rate need it. */

@@ -72,7 +72,8 @@ static inline void hand_box_into(Model *m, int part, const double low[3], const 
 {
     static const int face[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     const int        first = m->vertex_count;
-    for (int v = 0; v < 8; v++) hand_vertex(m, v & 1 ? high[0] : low[0], v & 2 ? high[1] : low[1], v & 4 ? high[2] : low[2]);
+    for (int v = 0; v < 8; v++)
+        hand_vertex(m, v & 1 ? high[0] : low[0], v & 2 ? high[1] : low[1], v & 4 ? high[2] : low[2]);
     m->part[part].first_triangle = m->triangle_count;
     for (int f = 0; f < 6; f++) {
         hand_triangle(m, part, first + face[f][0], first + face[f][1], first + face[f][2]);
@@ -116,7 +117,8 @@ static inline double hand_sphere(Model *m, double radius_m, int bands)
     for (int b = 1; b < bands; b++)
         for (int a = 0; a < around; a++) {
             const double polar = pi_rad * b / bands, azimuth = 2 * pi_rad * a / around;
-            hand_vertex(m, radius_m * sin(polar) * cos(azimuth), radius_m * sin(polar) * sin(azimuth), -radius_m * cos(polar));
+            const double across_m = radius_m * sin(polar);
+            hand_vertex(m, across_m * cos(azimuth), across_m * sin(azimuth), -radius_m * cos(polar));
         }
     for (int a = 0; a < around; a++) {
         const int next = (a + 1) % around, last = 2 + (bands - 2) * around;

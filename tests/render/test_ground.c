@@ -178,8 +178,8 @@ static void same_as_every_triangle(void **state)
         /* to touch a post or an edge and go on is not to go through: rounding may call it either way */
         const double first = fmin(got, want);
         if (!(fabs(clearance(&e, o, d, first)) <= 1e-9 && clearance(&e, o, d, first + 1e-6) >= -1e-9))
-            fail_msg("ray %d from %.17g %.17g %.17g along %.17g %.17g %.17g: %.17g, every triangle: %.17g", n, o[0], o[1],
-                     o[2], d[0], d[1], d[2], got, want);
+            fail_msg("ray %d from %.17g %.17g %.17g along %.17g %.17g %.17g: %.17g, every triangle: %.17g", n, o[0],
+                     o[1], o[2], d[0], d[1], d[2], got, want);
         CHECK(n % 6 >= 2 && n % 6 <= 4); /* only those that were aimed so */
     }
     CHECK(hits > random_rays / 4);
@@ -276,7 +276,8 @@ static void make_levels(Elevation *e, bool meet)
         for (int j = 0; j < in->ny; j++)
             for (int i = 0; i < in->nx; i++) {
                 if (i > 0 && j > 0 && i + 1 < in->nx && j + 1 < in->ny) continue;
-                const double z = elevation_height(&outer, in->x0_m + i * in->spacing_m, in->y0_m + j * in->spacing_m, NULL);
+                const double x = in->x0_m + i * in->spacing_m, y = in->y0_m + j * in->spacing_m;
+                const double z = elevation_height(&outer, x, y, NULL);
                 in->post[j * in->nx + i] = (uint16_t)((z - in->z0_m) / in->step_m);
             }
     }
@@ -395,8 +396,10 @@ static double one_of(const double *choice, int count) { return choice[(int)unifo
 /* Ordinary rays, and numbers no ray should have. */
 static void fill_with_everything(List *list)
 {
-    static const double place[] = {0, -0.0, 1, -8, 16, -16, 64, -64, 4, 1e-300, -1e-300, 1e9, -1e9, 1e12, 0.5, -256, 5e-324};
-    static const double along[] = {0, -0.0, 1, -1, 1e-300, -1e-300, 1e-31, -1e-31, 1e-17, -1e-9, 0.6, -0.8, 0.70710678118654757};
+    static const double place[] = {0, -0.0, 1, -8, 16, -16, 64, -64, 4, 1e-300, -1e-300,
+                                   1e9, -1e9, 1e12, 0.5, -256, 5e-324};
+    static const double along[] = {0, -0.0, 1, -1, 1e-300, -1e-300, 1e-31, -1e-31, 1e-17, -1e-9,
+                                   0.6, -0.8, 0.70710678118654757};
     static const double wrong[] = {NAN, INFINITY, -INFINITY, 1e308, -1e308};
     for (int n = 0; n < list->count; n++) {
         double o[3], d[3], far_m = INFINITY;
@@ -509,7 +512,9 @@ static void far_cuts_and_changes_nothing_else(void **state)
     Ground ground;
     ground_prepare(&ground, &e);
     for (int n = 0; n < random_rays / 4; n++) {
-        double o[3] = {uniform(-200, 200), uniform(-150, 150), 30}, d[3], to[3] = {uniform(-200, 200), uniform(-150, 150), -4};
+        const double o[3] = {uniform(-200, 200), uniform(-150, 150), 30};
+        const double to[3] = {uniform(-200, 200), uniform(-150, 150), -4};
+        double       d[3];
         aim(d, o, to);
         const double t = ground_first_hit(NULL, &ground, o, d, INFINITY);
         if (!(t < INFINITY)) continue;

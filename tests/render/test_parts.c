@@ -181,7 +181,8 @@ static void a_sphere_has_its_radius_and_its_normals(void **state)
 static void nodes_are_where_their_poses_put_them(void **state)
 {
     (void)state;
-    static const double low[3] = {-3, -1, -1}, high[3] = {3, 1, 0}, gun_low[3] = {0, -0.1, -0.1}, gun_high[3] = {4, 0.1, 0.1};
+    static const double low[3] = {-3, -1, -1}, high[3] = {3, 1, 0};
+    static const double gun_low[3] = {0, -0.1, -0.1}, gun_high[3] = {4, 0.1, 0.1};
     Model model;
     Scene s;
     hand_model(&model, 2, 16, 24);

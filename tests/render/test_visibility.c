@@ -185,7 +185,8 @@ static void a_sphere_covers_its_ellipse(void **state)
         /* between the ellipses of the inner and the outer sphere; a row of pixels along the rim either way, and
          * those errors are independent: a tenth of the rim */
         const double sin_b = sqrt(c_cam[0] * c_cam[0] + c_cam[1] * c_cam[1]);
-        const double most = ellipse_px2(view.focal_px, sin_out, sin_b), least = ellipse_px2(view.focal_px, sin_in, sin_b);
+        const double most = ellipse_px2(view.focal_px, sin_out, sin_b);
+        const double least = ellipse_px2(view.focal_px, sin_in, sin_b);
         const double rim = 0.1 * 2 * sqrt(pi_rad * most);
         CHECK(covered > 500);
         CHECK(covered >= least - rim && covered <= most + rim);
@@ -279,7 +280,8 @@ static void the_nearest_wins_and_the_lowest_id_of_equals(void **state)
     (void)state;
     clear_stage();
     double       r[9];
-    const double z = ground_at(40, 30) + 50, at[3] = {40, 30, z}, behind[3] = {40, 40, z}, eye[3] = {40.2, -20, z + 0.7};
+    const double z = ground_at(40, 30) + 50, at[3] = {40, 30, z}, behind[3] = {40, 40, z};
+    const double eye[3] = {40.2, -20, z + 0.7};
     level_rotation(r, pi_rad); /* faces south, towards the eye */
     add_entity(model_plate, behind, r);
     add_entity(model_plate, at, r);
@@ -363,7 +365,8 @@ static void the_ground_hides_and_is_hidden(void **state)
 /* ---- shadows ------------------------------------------------------------------------------------ */
 
 /* Does the line from a place along the sun go through the plate? NaN where it is too close to an edge to say. */
-static double plate_shades(const double p[3], const double plate[3], const double r[9], const double sun[3], double near_m)
+static double plate_shades(const double p[3], const double plate[3], const double r[9], const double sun[3],
+                           double near_m)
 {
     const double normal[3] = {r[0], r[3], r[6]};
     double       from[3], at[3];
@@ -382,7 +385,9 @@ static void a_plate_shades_what_lies_behind_it(void **state)
     clear_stage();
     const double heading_rad = 0.3, sun_high_rad = 0.9;
     const double plate[3] = {20, -10, ground_at(20, -10) + 6};
-    double       r[9], sun[3] = {sin(heading_rad) * cos(sun_high_rad), cos(heading_rad) * cos(sun_high_rad), sin(sun_high_rad)};
+    const double level = cos(sun_high_rad);
+    const double sun[3] = {sin(heading_rad) * level, cos(heading_rad) * level, sin(sun_high_rad)};
+    double       r[9];
     level_rotation(r, heading_rad + 0.2);
     const int  host = add_entity(model_plate, plate, r);
     const double shade_to[3] = {plate[0] - sun[0] / sun[2] * 7, plate[1] - sun[1] / sun[2] * 7, plate[2] - 7};
@@ -477,7 +482,8 @@ static void skipping_changes_no_bit(void **state)
             else hand_rotation(r);
             add_entity(k % model_count, p, r);
         }
-        const double eye[3] = {hand_uniform(-90, 90), -110, ground_at(0, -110) + hand_uniform(5, 30)}, to[3] = {0, 0, ground_at(0, 0)};
+        const double eye[3] = {hand_uniform(-90, 90), -110, ground_at(0, -110) + hand_uniform(5, 30)};
+        const double to[3] = {0, 0, ground_at(0, 0)};
         const View   view = view_towards(eye, to, 96, 96, 180);
         Visibility  *skip = see(true, false), *all = see(true, true);
         for (int block = 0; block < 9; block++) {
