@@ -35,7 +35,7 @@ typedef struct Options {
     int         version;
     const char *datagrams; /* folder; NULL: none */
     bool        bundle, absolute;
-    double      lat_deg, lon_deg, stamp_s, clock_unix_s;
+    double      lat_deg, lon_deg, silent_s, stamp_s, clock_unix_s;
     uint64_t    seed;
 } Options;
 
@@ -538,7 +538,7 @@ static void send_shot(Sender *sender, bool fire, double t_s)
         if (!scene->ground_impact) detonation.p_target_m[i] = (float)off_body[i];
     }
     send_pdu(sender, t_s, bytes, dis_encode_detonation(bytes, sizeof bytes, &detonation));
-    send_entity(sender, missile, &k, deactivated, t_s);
+    if (!(sender->scene->options.silent_s > 0)) send_entity(sender, missile, &k, deactivated, t_s);
 }
 
 static void send_start(Sender *sender)
@@ -617,6 +617,7 @@ static void play(Sender *sender)
         }
         for (int entity = 0; entity < entity_count; entity++) {
             if (!alive(scene, entity, t_s)) continue;
+            if (entity == missile && t_s > scene->impact_s - scene->options.silent_s) continue;
             Kinematics k;
             kinematics_at(&k, scene, entity, t_s);
             const uint32_t appearance = appearance_of(scene, entity, t_s);
@@ -645,6 +646,7 @@ static const char help[] =
     "  --lat DEG         -89 .. 89 (36)\n"
     "  --lon DEG         -180 .. 180 (-123)\n"
     "  --seed N          another road, another place to fire from (1)\n"
+    "  --silent S        the missile sends no Entity State in its last S seconds, 0 .. 8 (0)\n"
     "  --datagrams DIR   each datagram as a file in DIR, too\n";
 
 static bool in_range(const char *option, double value, double low, double high)
@@ -658,7 +660,7 @@ static bool read_options(Options *o, int argc, char **argv)
 {
     static const struct option options[] = {{"version", 1, 0, 'v'}, {"bundle", 0, 0, 'b'}, {"absolute", 0, 0, 'a'},
                                             {"stamp", 1, 0, 's'},   {"clock", 1, 0, 'c'},  {"lat", 1, 0, 'y'},
-                                            {"lon", 1, 0, 'x'},     {"seed", 1, 0, 'r'},   {"datagrams", 1, 0, 'd'},
+                                            {"lon", 1, 0, 'x'},     {"silent", 1, 0, 'q'},  {"seed", 1, 0, 'r'},   {"datagrams", 1, 0, 'd'},
                                             {0, 0, 0, 0}};
     *o = (Options){.version = 7, .lat_deg = 36, .lon_deg = -123, .stamp_s = 1350, .clock_unix_s = NAN, .seed = 1};
     for (int c, at = 0; (c = getopt_long(argc, argv, "", options, &at)) != -1;) {
@@ -674,6 +676,7 @@ static bool read_options(Options *o, int argc, char **argv)
         case 'c': o->clock_unix_s = value; if (!in_range("clock", value, 0, 4e9)) return false; break;
         case 'y': o->lat_deg = value; if (!in_range("lat", value, -89, 89)) return false; break;
         case 'x': o->lon_deg = value; if (!in_range("lon", value, -180, 180)) return false; break;
+        case 'q': o->silent_s = value; if (!in_range("silent", value, 0, 8)) return false; break;
         case 'r': if (!in_range("seed", value, 0, 1e15)) return false; o->seed = (uint64_t)value; break;
         }
     }

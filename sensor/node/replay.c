@@ -95,12 +95,16 @@ static const struct option options[] = {
 /* The configuration file first, whatever its place on the line: options override it. */
 static bool read_config(Config *config, int argc, char **argv)
 {
-    bool ok = true;
-    optind  = 1;
-    opterr  = 0; /* the pass over all options speaks */
-    for (int option; ok && (option = getopt_long(argc, argv, "", options, NULL)) != -1;)
+    bool   ok   = true;
+    char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
+    if (!copy) return false;
+    memcpy(copy, argv, (size_t)argc * sizeof *copy);
+    optind = 0; /* start anew */
+    opterr = 0; /* the pass over all options speaks */
+    for (int option; ok && (option = getopt_long(argc, copy, "", options, NULL)) != -1;)
         if (option == CONFIG) ok = config_read(config, optarg) == STATUS_OK;
     opterr = 1;
+    free(copy);
     return ok;
 }
 
@@ -113,7 +117,7 @@ static int parse(Options *o, int argc, char **argv)
     long long number;
 
     if (!read_config(&o->config, argc, argv)) return 1 + 2;
-    optind = 1;
+    optind = 0;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         bool ok = true;
         for (size_t i = 0; i < sizeof direct / sizeof direct[0]; i++)

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# Motion in truth.jsonl against differences of its own ranges; the seeker flying on when its missile falls
+# silent; every frame's boresight on its own tick. labels: small
+. "$(dirname "$0")/common.sh"
+
+# aim OUT ENTITY: a line a frame: time, range, closing speed, boresight error right and up of that target
+aim() {
+    awk -v id="$2" '{
+        t = $0; sub(/.*"time_s": */, "", t)
+        if (!match($0, "\"entity\": *\"" id "\", *\"marking\"")) next
+        one = substr($0, RSTART); if (!match(one, /"type"/)) next
+        r = one; sub(/.*"range_m"/, "\"range_m\"", r)
+        split(one, parts, /"range_m": */); r = parts[2] + 0
+        split(one, parts, /"closing_mps": */); c = parts[2] + 0
+        split(one, parts, /"boresight_error_deg": *\[/); split(parts[2], b, /[],]/)
+        printf "%.6f %.6f %.6f %.6f %.6f\n", t + 0, r, c, b[1], b[2]
+    }' "$1/truth.jsonl"
+}
+# closing: worst difference between the closing speed and the central difference of the range, m/s
+closing() { aim "$@" | awk 'BEGIN { w = 0 } { t[NR] = $1; r[NR] = $2; c[NR] = $3 }
+    END { for (i = 2; i < NR; i++) { d = (r[i-1] - r[i+1]) / (t[i+1] - t[i-1]) - c[i]; if (d < 0) d = -d; if (d > w) w = d; n++ }
+          print (n ? w : "nothing") }'; }
+
+exercise demo "$tmp/demo.pcap"
+exercise no-missile "$tmp/quiet.pcap"
+fine=(--no-png --bands lwir --rate 50 --threads 2)
+
+# The missile: past its motor it slows smoothly; differences over 40 ms are good to a third derivative of some
+# 50 m/s3, 0.02 m/s; the reports it is interpolated between bend its path a little more.
+replay "$tmp/demo.pcap" "$tmp/flight" "${fine[@]}" --from 1365 --to 1366
+check "missile: 51 frames" [ "$(frames "$tmp/flight")" = 51 ]
+check "missile: closing speed is the range's slope" is "$(closing "$tmp/flight" 1:3001:22)" '<' 1
+check "missile: it does close" is "$(aim "$tmp/flight" 1:3001:22 | awk 'NR == 1 { print $3 }')" '>' 200
+
+# The observer rides with its aim on a circle: the range stays, whatever the vehicle does.
+replay "$tmp/quiet.pcap" "$tmp/circle" "${fine[@]}" --from 1365 --to 1366
+target=$(grep -oE 'aim: [0-9:]+' "$tmp/stdout" | cut -d' ' -f2)
+check "observer: closing speed is the range's slope" is "$(closing "$tmp/circle" "$target")" '<' 0.5
+check "observer: and small" is "$(aim "$tmp/circle" "$target" | awk 'BEGIN { w = 0 } { c = $3 < 0 ? -$3 : $3; if (c > w) w = c } END { print w }')" '<' 0.5
+
+# The gimbal moves on ticks of 10 ms; each frame must show its own. On a smooth flight the boresight error then
+# changes smoothly: no second difference beyond a tenth of a pixel of this narrow picture.
+jump() { aim "$1" "$2" | awk 'BEGIN { w = 0 } { b[NR] = $4 } END { for (i = 2; i < NR; i++) { d = b[i-1] - 2 * b[i] + b[i+1]; if (d < 0) d = -d; if (d > w) w = d }
+    print (NR > 2 ? w : "nothing") }'; }
+replay "$tmp/demo.pcap" "$tmp/smooth" --no-png --bands lwir --rate 20 --from 1366 --to 1368
+check "gimbal: no frame shows the tick before" is "$(jump "$tmp/smooth" 1:3001:22)" '<' 0.02
+
+# Silence for the last 1.5 s, some 470 m: the seeker flies on to its target.
+exercise demo "$tmp/silent.pcap" --silent 1.5
+replay "$tmp/silent.pcap" "$tmp/silent" --no-png --bands lwir --rate 5
+last() { aim "$1" 1:3001:22 | tail -n 1 | cut -d' ' -f2; }
+check "silent missile: replays" [ $code = 0 ]
+check "silent missile: still comes near" is "$(last "$tmp/silent")" '<' 100
+replay "$tmp/silent.pcap" "$tmp/causal" --no-png --bands lwir --rate 5 --causal
+check "causal: replays" [ $code = 0 ]
+check "causal: comes near, too" is "$(last "$tmp/causal")" '<' 100
+
+# An interrupted run leaves no frames among those of the next.
+replay "$tmp/demo.pcap" "$tmp/twice" --rate 2
+rm "$tmp/twice/run.json" # as if it had been killed
+replay "$tmp/demo.pcap" "$tmp/twice" --rate 1 --bands lwir
+check "second run: as many frames as it says" [ "$(frames "$tmp/twice" lwir)" = "$(frames "$tmp/twice")" ]
+check "second run: no picture of the first" [ "$(find "$tmp/twice" -name '*.png' | wc -l)" = $((2 * $(frames "$tmp/twice"))) ]
+check "second run: no other band" [ "$(frames "$tmp/twice" optical)" = 0 ]
+
+# One panchromatic channel, by a configuration file.
+printf 'sensor:\n  optical: pan\n' >"$tmp/pan.yaml"
+replay "$tmp/demo.pcap" "$tmp/pan" --rate 0.5 --no-png --config "$tmp/pan.yaml"
+check "pan: replays" [ $code = 0 ]
+if command -v oiiotool >/dev/null; then
+    check "pan: one channel Y" grep -q '1 channel' <(oiiotool --info "$(find "$tmp/pan/frames/optical" -name '*.exr' | head -n 1)")
+fi
+
+# The tracer's instruction set changes no bit.
+replay "$tmp/demo.pcap" "$tmp/avx2" --rate 1 --no-png
+replay "$tmp/demo.pcap" "$tmp/sse" --rate 1 --no-png --isa sse4.2
+check "--isa: same bits" same_hashes "$tmp/avx2" "$tmp/sse"
+finish
