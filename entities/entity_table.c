@@ -3,14 +3,12 @@
 
 #include <stdlib.h>
 
-enum { kind_platform = 1, kind_munition = 2, domain_air = 2, domain_space = 5, capacity_limit = 1 << 22 };
+enum { capacity_limit = 1 << 22 };
 
 static const uint16_t all_ids = 0xFFFF;
 
 /* No launcher uses an id again so soon. */
 static const double after_detonation_s = 1;
-
-enum { damage_shift = 3, damage_destroyed = 3 }; /* of the appearance: two bits */
 
 /* Faster than anything that leaves the Earth (11.2 km/s), and harder than a gun-launched round once it flies. */
 static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
@@ -117,7 +115,7 @@ static void remove_slot(EntityTable *table, EntitySlot *slot, double t_s, uint64
 static bool is_ghost(const EntityTable *table, const DisEntityState *pdu, double t_s)
 {
     const uint64_t key = entity_key(pdu->id) + 1;
-    const bool destroyed = (pdu->appearance >> damage_shift & 3) == damage_destroyed;
+    const bool destroyed = (pdu->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
     for (int g = 0; g < entity_grave_count; g++) {
         const EntityGrave *grave = table->grave + g;
         if (grave->key_plus_1 != key) continue;
@@ -150,9 +148,9 @@ const EntityCounters *entity_table_counters(const EntityTable *table) { return &
 static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
 {
     const double *v = slot->reported.v_mps;
-    const bool flies = slot->type.domain == domain_air || slot->type.domain == domain_space;
-    const bool quick = slot->type.kind == kind_munition || (slot->type.kind == kind_platform && flies);
-    const bool stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != kind_munition;
+    const bool flies = slot->type.domain == dis_domain_air || slot->type.domain == dis_domain_space;
+    const bool quick = slot->type.kind == dis_kind_munition || (slot->type.kind == dis_kind_platform && flies);
+    const bool stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != dis_kind_munition;
     return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
 }
 
@@ -255,7 +253,7 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
         remove_slot(table, slot, t_s, &table->counters.timed_out);
         slot = NULL;
     }
-    if (pdu->appearance >> appearance_deactivated_bit & 1) {
+    if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
         if (slot) remove_slot(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
@@ -302,7 +300,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
         table->counters.updates_without_entity++;
         return STATUS_OK;
     }
-    if (pdu->appearance >> appearance_deactivated_bit & 1) {
+    if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
         remove_slot(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
@@ -317,7 +315,7 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
     EntitySlot *firing = find_slot(table, pdu->firing), *munition = find_slot(table, pdu->munition);
     if (firing) heat_fire(&firing->heat, &table->heat, t_s);
-    if (munition && munition->type.kind == kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
+    if (munition && munition->type.kind == dis_kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
 }
 
 /* A munition does not outlive its Detonation; not every sender says so with a last Entity State. Version 7 also
@@ -325,7 +323,7 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 void entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
 {
     EntitySlot *munition = find_slot(table, pdu->munition);
-    if (!munition || munition->type.kind != kind_munition || t_s < munition->created_s) return;
+    if (!munition || munition->type.kind != dis_kind_munition || t_s < munition->created_s) return;
     remove_slot(table, munition, t_s, &table->counters.detonated);
 }
 

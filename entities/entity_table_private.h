@@ -2,6 +2,7 @@
 #ifndef ENTITIES_ENTITY_TABLE_PRIVATE_H
 #define ENTITIES_ENTITY_TABLE_PRIVATE_H
 
+#include "dis/enumerations.h"
 #include "entities/articulation.h"
 #include "entities/dead_reckoning.h"
 #include "entities/entity_index.h"
@@ -53,10 +54,8 @@ struct EntityTable {
     EntityCounters    counters;
 };
 
-enum { appearance_frozen_bit = 21, appearance_deactivated_bit = 23 };
-
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
-static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> appearance_frozen_bit & 1; }
+static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> dis_appearance_frozen_bit & 1; }
 /* Stopped entities are not expected to speak. */
 static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 {

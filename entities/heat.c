@@ -1,11 +1,7 @@
 /* entities/heat.c: first-order heat levels by role, exact between reports. See the header. */
 #include "entities/heat.h"
 
-/* Appearance bits of platforms, SISO-REF-010 */
-static const uint32_t damage_shift = 3, damage_mask = 3, damage_destroyed = 3;
-static const uint32_t power_plant_bit = UINT32_C(1) << 22;
-
-enum { kind_platform = 1, kind_munition = 2, domain_air = 2 };
+#include "dis/enumerations.h"
 
 static const double moving_mps = 0.3;       /* above the jitter of a standing vehicle's reports */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
@@ -103,14 +99,14 @@ Status heat_table_open(HeatTable *out, const char *path)
 /* Two bits, 3 = destroyed, in the same place for every platform domain. */
 static bool is_destroyed(const HeatEvidence *evidence)
 {
-    return evidence->type.kind == kind_platform &&
-           (evidence->appearance >> damage_shift & damage_mask) == damage_destroyed;
+    return evidence->type.kind == dis_kind_platform &&
+           (evidence->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
 }
 
 /* Sets every drive that a report speaks of; firing and burning go on by their own clocks. */
 static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_s)
 {
-    const bool platform = evidence->type.kind == kind_platform, air = platform && evidence->type.domain == domain_air;
+    const bool platform = evidence->type.kind == dis_kind_platform, air = platform && evidence->type.domain == dis_domain_air;
     const bool alive = !is_destroyed(evidence), was_moving = state->moving;
     const double ground_drive = clamp(evidence->speed_mps / full_speed_mps, 0, 1);
     HeatDrive *drive = state->drive;
@@ -122,7 +118,7 @@ static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_
     if (!alive) engine.value = 0;
     else if (air) engine.value = 1;
     else if (state->moving) engine.value = idle_engine + (1 - idle_engine) * ground_drive;
-    else if (platform && evidence->appearance & power_plant_bit) engine.value = idle_engine;
+    else if (platform && evidence->appearance >> dis_appearance_power_plant_bit & 1) engine.value = idle_engine;
     else if (platform && t_s < state->moved_s + engine_after_stop_s)
         engine = (HeatDrive){idle_engine, state->moved_s + engine_after_stop_s};
     drive[HEAT_DRIVER_ENGINE] = engine;
@@ -170,7 +166,7 @@ static void advance(HeatState *state, const HeatTable *table, double t_s)
 
 void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s, double ambient_s)
 {
-    const bool munition = evidence->type.kind == kind_munition;
+    const bool munition = evidence->type.kind == dis_kind_munition;
 
     *state = (HeatState){.t_s = t_s, .moved_s = -INFINITY};
     set_drives(state, evidence, t_s);

@@ -1,5 +1,6 @@
 /* entities/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
 #include "entities/survey.h"
+#include "dis/enumerations.h"
 #include "dis/simulation_management.h"
 #include "entities/dead_reckoning.h"
 #include "entities/entity_index.h"
@@ -11,8 +12,6 @@ enum {
     most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
     most_tracks = 1 << 20,
     most_warfare = 4000000,
-    frozen_bit = 21,
-    deactivated_bit = 23,
 };
 
 static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
@@ -88,8 +87,8 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     TrackPoint *point = track->point + track->count++;
     const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
     b->points++;
-    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> frozen_bit & 1,
-                          .deactivated = appearance >> deactivated_bit & 1};
+    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> dis_appearance_frozen_bit & 1,
+                          .deactivated = appearance >> dis_appearance_deactivated_bit & 1};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
     r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;

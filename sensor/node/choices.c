@@ -1,10 +1,12 @@
 #include "sensor/node/choices.h"
 
+#include "dis/enumerations.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { kind_platform = 1, kind_munition = 2, domain_land = 1, domain_air = 2, who_size = 80 };
+enum { who_size = 80 };
 
 void choice_add(Choices *choices, const char *format, ...)
 {
@@ -15,10 +17,10 @@ void choice_add(Choices *choices, const char *format, ...)
     va_end(arguments);
 }
 
-static bool is_land(const Track *track) { return track->type.kind == kind_platform && track->type.domain == domain_land; }
+static bool is_land(const Track *track) { return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_land; }
 static bool flies(const Track *track)
 {
-    return track->type.kind == kind_munition || (track->type.kind == kind_platform && track->type.domain == domain_air);
+    return track->type.kind == dis_kind_munition || (track->type.kind == dis_kind_platform && track->type.domain == dis_domain_air);
 }
 
 static double path_m(const Track *track)
@@ -60,7 +62,7 @@ static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], 
         const Track *track = &survey->track[i];
         TrackPose    pose;
         double       d[3];
-        if (track->type.kind == kind_munition || dis_entity_id_compare(track->id, not) == 0) continue;
+        if (track->type.kind == dis_kind_munition || dis_entity_id_compare(track->id, not) == 0) continue;
         if (track->point[0].t_s > t_s) continue;
         track_at(&pose, track, t_s);
         v3_sub(d, pose.p_ecef, p_ecef);
@@ -126,7 +128,7 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
         log_error("replay: host %s is not in the log; `pitviper inspect LOG` lists who is", text);
         return STATUS_BAD_VALUE;
     }
-    HostPlan    plan = {.host = host, .munition = track->type.kind == kind_munition};
+    HostPlan    plan = {.host = host, .munition = track->type.kind == dis_kind_munition};
     const Shot *shot = plan.munition ? shot_of(survey, host) : NULL;
     plan.start_s     = track->point[0].t_s;
     plan.end_s       = track->point[track->count - 1].t_s;
@@ -144,7 +146,7 @@ static const Track *longest_flight(const Survey *survey, bool impact)
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot  = shot_of(survey, track->id);
-        if (track->type.kind != kind_munition) continue;
+        if (track->type.kind != dis_kind_munition) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s : track->point[track->count - 1].t_s;
         const double flight_s = end_s - track->point[0].t_s;
@@ -322,7 +324,7 @@ static void add_vehicle(Evidence *e, const LocalFrame *frame, const Track *track
 
 static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *survey, const Track *track)
 {
-    const Shot  *shot   = track->type.kind == kind_munition ? shot_of(survey, track->id) : NULL;
+    const Shot  *shot   = track->type.kind == dis_kind_munition ? shot_of(survey, track->id) : NULL;
     const Track *target = shot ? survey_track(survey, shot->hit) : NULL;
     for (int i = 0; i + 1 < track->count; i++)
         add_line(e, frame, track->point[i].p_ecef, track->point[i + 1].p_ecef);

@@ -1,0 +1,17 @@
+/* dis/enumerations.h: the few numbers of SISO-REF-010 that Pitviper acts on. */
+#ifndef DIS_ENUMERATIONS_H
+#define DIS_ENUMERATIONS_H
+
+enum { dis_kind_platform = 1, dis_kind_munition = 2 };
+enum { dis_domain_land = 1, dis_domain_air = 2, dis_domain_space = 5 };
+
+/* Appearance: bits that platforms of every domain share, and those of land platforms. */
+enum {
+    dis_appearance_damage_shift    = 3, /* two bits; 3: destroyed */
+    dis_appearance_frozen_bit      = 21,
+    dis_appearance_power_plant_bit = 22,
+    dis_appearance_deactivated_bit = 23,
+};
+enum { dis_damage_destroyed = 3 };
+
+#endif
