@@ -72,6 +72,9 @@ void   pool_run(Pool *pool, int count, PoolTask *task, void *user);
 /* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
 void   thread_flush_denormals(void);
 
+/* Monotonic wall clock, s: for pacing and reports, never for anything that shows in a product. */
+double wall_clock_s(void);
+
 /* ---- random: a pure function of counters -------------------------------------------------- */
 
 /* Philox 4x32-10 (Salmon, Moraes, Dror, Shaw, SC 2011). Same inputs, same bits, in any order. */

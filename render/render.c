@@ -8,7 +8,6 @@
 #include "render/optical.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
 
@@ -56,13 +55,6 @@ typedef struct Tile {
     int x0, y0, x1, y1; /* px */
     int samples, across; /* samples a side of a pixel; samples along a row of the tile */
 } Tile;
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static bool wants(const RenderRequest *request, Band band) { return request->bands >> band & 1; }
 
@@ -284,7 +276,7 @@ static void render_tile(void *user, int worker, int task)
     tile.y1     = tile.y0 + job->side_px < view->height ? tile.y0 + job->side_px : view->height;
     tile.across = (tile.x1 - tile.x0) * tile.samples;
 
-    const double t0 = now_s();
+    const double t0 = wall_clock_s();
     make_rays(&s->rays, &tile, view);
     const int listed = visibility_block_entities(s->list, job->visibility, view, tile.x0, tile.y0, tile.x1, tile.y1,
                                                  request->hidden_entity);
@@ -294,21 +286,21 @@ static void render_tile(void *user, int worker, int task)
     s->counters.tiles++;
     s->counters.tiles_without_entities += listed == 0;
 
-    const double t1 = now_s();
+    const double t1 = wall_clock_s();
     memset(s->shadow, 0, sizeof s->shadow);
     if ((wants(request, BAND_OPTICAL) || wants(request, BAND_MWIR)) && job->air->sun_d_enu[2] > 0)
         visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
 
-    const double t2 = now_s();
+    const double t2 = wall_clock_s();
     resolve_materials(s, job);
     shade_bands(s, job, &tile);
     if (request->truth) {
         write_truth(s, job, &tile);
         count_targets(s, job, &tile, listed, job->pairs + (size_t)task * pairs_per_tile);
     }
-    const double t3 = now_s();
+    const double t3 = wall_clock_s();
     if (wants(request, BAND_RADAR)) shade_radar(s, job, &tile);
-    const double t4 = now_s();
+    const double t4 = wall_clock_s();
 
     s->visibility_s += t1 - t0;
     s->shadow_s += t2 - t1;
@@ -367,8 +359,13 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
 
 /* ---- after the tiles ------------------------------------------------------------------------ */
 
-static void add_counters(VisibilityCounters *to, const VisibilityCounters *from)
+void render_counters_add(RenderCounters *sum, const RenderCounters *more)
 {
+    VisibilityCounters       *to   = &sum->visibility;
+    const VisibilityCounters *from = &more->visibility;
+    sum->rays_primary += more->rays_primary;
+    sum->tiles += more->tiles;
+    sum->tiles_without_entities += more->tiles_without_entities;
     to->rays_ground += from->rays_ground;
     to->rays_parts += from->rays_parts;
     to->rays_sun_ground += from->rays_sun_ground;
@@ -434,10 +431,7 @@ static void gather(Picture *picture, const Job *job, int workers)
 
     for (int w = 0; w < workers; w++) {
         const Scratch *s = job->scratch[w];
-        add_counters(&picture->counters.visibility, &s->counters.visibility);
-        picture->counters.rays_primary += s->counters.rays_primary;
-        picture->counters.tiles += s->counters.tiles;
-        picture->counters.tiles_without_entities += s->counters.tiles_without_entities;
+        render_counters_add(&picture->counters, &s->counters);
         picture->times.visibility_ms += 1e3 * s->visibility_s;
         picture->times.shadow_ms += 1e3 * s->shadow_s;
         picture->times.shade_ms += 1e3 * s->shade_s;
@@ -482,7 +476,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
         !(request->view.focal_px > 0) || !v3_is_finite(request->view.p_enu) || request->profile_bins < 0)
         return STATUS_BAD_VALUE;
 
-    const double start_s = now_s();
+    const double start_s = wall_clock_s();
     Picture      picture = {0};
     Visibility  *visibility = NULL;
     Job          job = {.world = world, .snapshot = snapshot, .request = request, .air = air, .picture = &picture};
@@ -503,7 +497,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
                                    request->no_skip, arena);
     if (status != STATUS_OK) return status;
     job.visibility          = visibility;
-    picture.times.prepare_ms = 1e3 * (now_s() - start_s);
+    picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
 
     pool_run(pool, job.tiles_x * job.tiles_y, render_tile, &job);
     gather(&picture, &job, pool_threads(pool));

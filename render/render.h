@@ -34,6 +34,8 @@ typedef struct RenderCounters {
     uint64_t rays_primary, tiles, tiles_without_entities;
 } RenderCounters;
 
+void render_counters_add(RenderCounters *sum, const RenderCounters *more);
+
 typedef struct RenderTimes {
     double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads but prepare */
 } RenderTimes;

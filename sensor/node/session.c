@@ -28,13 +28,6 @@ typedef struct Session {
     bool                 aim_known;
 } Session;
 
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* ---- where the eye is, and where it looks ----------------------------------------------------- */
 
 static void aim_point(Session *s, const EntityTable *table, double t_s)
@@ -256,7 +249,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
                          RenderCounters *counters, Session *s, int frame, double t_s)
 {
     const SessionShared *shared = s->shared;
-    const double         start_s = now_s();
+    const double         start_s = wall_clock_s();
     Snapshot             snapshot;
     Eye                  eye = {.hidden = -1};
 
@@ -274,7 +267,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     RenderRequest request;
     status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s);
     make_request(&request, s, &eye);
-    const double posed_s = now_s();
+    const double posed_s = wall_clock_s();
     if (status == STATUS_OK)
         status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, s->frame_arena);
     if (status != STATUS_OK) return status;
@@ -286,7 +279,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     if (!target) return STATUS_NO_MEMORY;
     const int targets = truth_targets(target, &picture, shared->world, &snapshot, &request, &eye.state, &noise);
 
-    const double      rendered_s = now_s();
+    const double      rendered_s = wall_clock_s();
     const FrameFiles  files  = {.out = s->out, .config = shared->config, .world = shared->world, .picture = &picture,
                                 .snapshot = &snapshot, .request = &request, .host = s->host_text,
                                 .config_sha256 = shared->config_sha256, .frame = frame, .time_s = t_s,
@@ -303,7 +296,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     if (status == STATUS_OK) status = record_write_frame(s->truth, &record);
     if (status != STATUS_OK) return status;
 
-    const double done_s = now_s();
+    const double done_s = wall_clock_s();
     const double share = 1.0 / pool_threads(shared->pool); /* of a sum over threads: as if evenly spread */
     const double ms[session_stages] = {
         1e3 * (done_s - start_s), 1e3 * (posed_s - start_s),
@@ -320,23 +313,9 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
 static void show_progress(int frame, int first, int last, double begun_s, bool end)
 {
     if (!isatty(STDERR_FILENO)) return;
-    const double done = (double)(frame - first + 1) / (last - first + 1), spent_s = now_s() - begun_s;
+    const double done = (double)(frame - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
     fprintf(stderr, "\r  frame %d of %d  %3.0f %%  %.0f s left   %s", frame - first + 1, last - first + 1, 100 * done,
             spent_s * (1 - done) / done, end ? "\r\x1b[K" : "");
-}
-
-static void add_counters(RenderCounters *sum, const RenderCounters *frame)
-{
-    const VisibilityCounters *v = &frame->visibility;
-    sum->rays_primary += frame->rays_primary;
-    sum->tiles += frame->tiles;
-    sum->tiles_without_entities += frame->tiles_without_entities;
-    sum->visibility.rays_ground += v->rays_ground;
-    sum->visibility.rays_parts += v->rays_parts;
-    sum->visibility.rays_sun_ground += v->rays_sun_ground;
-    sum->visibility.rays_sun_parts += v->rays_sun_parts;
-    sum->visibility.skipped_parts += v->skipped_parts;
-    sum->visibility.skipped_sun_parts += v->skipped_sun_parts;
 }
 
 /* Waits until the log's own clock, times speed, has come to t_s. */
@@ -407,7 +386,7 @@ static Status run_frames(SessionResult *result, Session *s)
     result->stage_ms = calloc((size_t)capacity, sizeof *result->stage_ms);
     if (!result->hash || !result->stage_ms) return STATUS_NO_MEMORY;
 
-    const double begun_s = now_s();
+    const double begun_s = wall_clock_s();
     for (int frame = first; frame <= last; frame++) {
         const double   t_s = (origin_d + frame) / s->rate_hz;
         RenderCounters counters;
@@ -421,7 +400,7 @@ static Status run_frames(SessionResult *result, Session *s)
         if (status != STATUS_OK) return status;
         if (shown) {
             result->frames++;
-            add_counters(&result->counters, &counters);
+            render_counters_add(&result->counters, &counters);
         }
         show_progress(frame, first, last, begun_s, frame == last);
     }
