@@ -507,6 +507,7 @@ Status dis_log_open(DisLog *out, const char *path, int port)
         log.any_port = true;
     }
     log.any_port |= port == dis_port_any;
+    log.retimed = dis_log_retime(&log);
     *out = log;
     return STATUS_OK;
 }

@@ -24,6 +24,7 @@ typedef struct DisLog {
     DisDatagram   *datagram; /* in file order */
     DisLogCounters counters;
     bool           truncated; /* the file ended inside a packet; what came before is here */
+    bool           retimed;   /* packet times did not keep pace with the stamps: made from these */
     bool           any_port;  /* datagrams of any port were taken */
     void          *storage;
 } DisLog;
@@ -35,5 +36,10 @@ enum { dis_port_any = 0, dis_port_default = -1 };
  * read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a warning. */
 Status dis_log_open(DisLog *out, const char *path, int port);
 void   dis_log_close(DisLog *log);
+
+/* dis_log_open does this. Packet times that run at another pace than the stamps of the sender heard most are
+ * replaced by these, from the first packet on, in file order; true when they were. Stamps are believed when
+ * they step like a clock (-1 .. 120 s), span 5 s or more, and are not 20 times slower than the packets. */
+bool   dis_log_retime(DisLog *log);
 
 #endif

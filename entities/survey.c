@@ -264,6 +264,35 @@ static void drop_empty_tracks(Survey *survey)
     survey->track_count = kept;
 }
 
+/* A munition whose burst was heard after its last report came to the burst: its track's last point. */
+static Status end_flights(Building *b)
+{
+    static const double longest_silence_s = 60;
+    for (int i = 0; i < b->survey->shot_count; i++) {
+        const Shot *shot = &b->survey->shot[i];
+        int         t    = -1;
+        Status      status = find_or_add_track(&t, b, shot->munition, false);
+        if (status != STATUS_OK) return status;
+        if (t < 0 || b->survey->track[t].count == 0 || !isfinite(shot->detonation_s)) continue;
+        Track           *track = b->survey->track + t;
+        const TrackPoint last  = track->point[track->count - 1];
+        const double     dt_s  = shot->detonation_s - last.t_s;
+        double           way_ecef[3];
+        v3_sub(way_ecef, shot->p_burst_ecef, last.p_ecef);
+        if (track->type.kind != dis_kind_munition || !(dt_s > 1e-3 && dt_s < longest_silence_s) || last.deactivated ||
+            !(v3_length(way_ecef) / dt_s <= largest_speed_mps))
+            continue;
+        status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
+        if (status != STATUS_OK) return status;
+        TrackPoint *end = track->point + track->count++;
+        *end            = last;
+        end->t_s        = shot->detonation_s;
+        memcpy(end->p_ecef, shot->p_burst_ecef, sizeof end->p_ecef);
+        v3_scale(end->v_ecef_mps, 1 / dt_s, way_ecef);
+    }
+    return STATUS_OK;
+}
+
 Status survey_log(Survey *out, const DisLog *log, int exercise)
 {
     Survey survey = {.first_s = NAN, .last_s = NAN, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
@@ -280,6 +309,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
         status = hear_datagram(&b, d, log->datagram + d, exercise);
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
+    if (status == STATUS_OK) status = end_flights(&b);
     if (status == STATUS_OK) {
         drop_empty_tracks(&survey);
         if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);

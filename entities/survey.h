@@ -22,7 +22,7 @@ typedef struct Track {
     char          marking[12];
     uint8_t       force;
     int           count;
-    TrackPoint   *point;          /* in order of time */
+    TrackPoint   *point;          /* in order of time; of a munition heard to burst later, the burst is the last */
 } Track;
 
 typedef struct Shot {

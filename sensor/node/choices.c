@@ -51,6 +51,27 @@ static const char *who(char out[who_size], const Survey *survey, DisEntityId id)
     return out;
 }
 
+int choose_exercise(Choices *choices, const DisLog *log, const Config *config)
+{
+    int64_t     heard[256] = {0};
+    DisCounters ignored    = {0};
+    int         most = 0, exercises = 0;
+    if (config->exercise.exercise != -1) return config->exercise.exercise < 0 ? -1 : config->exercise.exercise;
+    for (int i = 0; i < log->count; i++) {
+        const uint8_t *at = log->datagram[i].bytes, *pdu;
+        DisHeader      header;
+        while (dis_next_pdu(&header, &pdu, &at, log->datagram[i].bytes + log->datagram[i].octets, &ignored))
+            heard[header.exercise] += header.type == dis_pdu_entity_state;
+    }
+    for (int e = 0; e < 256; e++) {
+        exercises += heard[e] > 0;
+        if (heard[e] > heard[most]) most = e;
+    }
+    if (exercises <= 1) return -1;
+    choice_add(choices, "exercise: %d, heard most of %d (exercise.exercise)", most, exercises);
+    return most;
+}
+
 /* ---- host and aim --------------------------------------------------------------------------- */
 
 /* Entity nearest a place at an instant, other than `not`; munitions do not count. */
@@ -322,14 +343,16 @@ static void add_vehicle(Evidence *e, const LocalFrame *frame, const Track *track
     }
 }
 
-static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *survey, const Track *track)
+static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *survey, const Track *track,
+                       const HostPlan *plan)
 {
     const Shot  *shot   = track->type.kind == dis_kind_munition ? shot_of(survey, track->id) : NULL;
     const Track *target = shot ? survey_track(survey, shot->hit) : NULL;
+    /* a hit that names nobody: what the host's own was found to have hit */
+    if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, plan->host) == 0)
+        target = survey_track(survey, plan->aim);
     for (int i = 0; i + 1 < track->count; i++)
         add_line(e, frame, track->point[i].p_ecef, track->point[i + 1].p_ecef);
-    if (shot && isfinite(shot->detonation_s) && shot->detonation_s > track->point[track->count - 1].t_s)
-        add_line(e, frame, track->point[track->count - 1].p_ecef, shot->p_burst_ecef);
     /* a shot that hit saw its target all the way */
     for (int i = 0; target && i < track->count; i++) {
         TrackPose pose;
@@ -341,7 +364,7 @@ static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *surve
 }
 
 Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, const Config *config,
-                     const LocalFrame *frame, const Catalog *catalog)
+                     const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
 {
     LandscapeConfig land = landscape_default_config();
     Evidence        e    = {0};
@@ -362,7 +385,7 @@ Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, con
             add_vehicle(&e, frame, track, base_below_m);
             e.vehicles++;
         } else if (flies(track)) {
-            add_flight(&e, frame, survey, track);
+            add_flight(&e, frame, survey, track, plan);
         }
     }
     for (int i = 0; i < survey->shot_count; i++)

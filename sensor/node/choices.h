@@ -34,10 +34,12 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 
 /* Unix time of exercise time 0. */
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
+/* The exercise identifier to hear: as configured, or the one with most Entity States; -1: all. */
+int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
 /* The invented landscape, fitted to the log. */
 Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, const Config *config,
-                     const LocalFrame *frame, const Catalog *catalog);
+                     const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
 
 #endif

@@ -45,7 +45,7 @@ static const Key keys[] = {
     {"radar.bins", KEY_INT, AT(radar.bins), 16, 65536, NULL, "", "range bins, about the aim"},
     {"radar.lobe_deg", KEY_DOUBLE, AT(radar.lobe_deg), 0.2, 30, NULL, "deg", "rms half width of the exit lobe"},
     {"exercise.port", KEY_INT, AT(exercise.port), -1, 65535, NULL, "", "UDP port of the exercise; 0: any; -1: 3000, or any when nothing went there"},
-    {"exercise.exercise", KEY_INT, AT(exercise.exercise), -1, 255, NULL, "", "exercise identifier; -1: all"},
+    {"exercise.exercise", KEY_INT, AT(exercise.exercise), -2, 255, NULL, "", "exercise identifier; -1: the one heard most; -2: all as one"},
     {"exercise.utc", KEY_TEXT, AT(exercise.utc), 0, 0, NULL, "", "date and time of the first PDU, 2026-06-21T10:00:00Z"},
     {"exercise.host", KEY_TEXT, AT(exercise.host), 0, 0, NULL, "", "site:application:entity that carries the sensor"},
     {"exercise.aim", KEY_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},

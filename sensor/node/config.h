@@ -32,7 +32,7 @@ typedef struct Config {
         double lobe_deg;
     } radar;
     struct {
-        int    port, exercise;     /* exercise -1: all */
+        int    port, exercise;     /* exercise -1: the one heard most, -2: all */
         char   utc[32];            /* of the first PDU; empty: chosen */
         char   host[24];           /* empty: chosen */
         char   aim[24];            /* empty: chosen */

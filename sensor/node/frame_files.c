@@ -63,27 +63,46 @@ static void clear_folder(const char *folder)
     closedir(directory);
 }
 
-Status frame_files_prepare(const char *out, unsigned bands)
+/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles. */
+static void product_folder(char path[path_size], const char *out, int b)
 {
-    char   path[path_size];
-    Status status = make_folders(out);
-    if (status != STATUS_OK) return status;
+    snprintf(path, path_size, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
+             b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
+}
+
+void frame_files_clear(const char *out)
+{
     /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"};
+    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const parents[] = {"frames", "profiles"};
+    char path[path_size];
     bool earlier = false;
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%s", out, marks[i]);
         earlier = unlink(path) == 0 || earlier;
     }
+    if (!earlier) return;
     for (int b = 0; b <= BAND_COUNT + 1; b++) {
-        snprintf(path, sizeof path, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
-                 b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
-        const bool wanted = b == BAND_COUNT || (b < BAND_COUNT ? bands >> b & 1 : bands >> BAND_RADAR & 1);
-        if (earlier) clear_folder(path);
-        if (wanted && (status = make_folders(path)) != STATUS_OK) return status;
-        if (!wanted) rmdir(path); /* an empty one that an earlier run left */
+        product_folder(path, out, b);
+        clear_folder(path);
+        rmdir(path); /* when nothing else is in it */
     }
-    return STATUS_OK;
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, parents[i]);
+        rmdir(path);
+    }
+}
+
+Status frame_files_prepare(const char *out, unsigned bands)
+{
+    char   path[path_size];
+    Status status = make_folders(out);
+    if (status == STATUS_OK) frame_files_clear(out);
+    for (int b = 0; b <= BAND_COUNT + 1 && status == STATUS_OK; b++) {
+        if (b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
+        product_folder(path, out, b);
+        status = make_folders(path);
+    }
+    return status;
 }
 
 /* ---- one frame ------------------------------------------------------------------------------ */

@@ -19,8 +19,10 @@ typedef struct FrameFiles {
     bool            png;
 } FrameFiles;
 
-/* Makes OUT and the folders below it for these bands; takes away the frames of an earlier run in OUT (known
- * by its truth.jsonl or run.json). A clear message when the place cannot be written. */
+/* clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
+ * prepare: that, and makes OUT and the folders below it for these bands; a clear message when the place
+ * cannot be written. */
+void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands);
 /* Sigma of the detector's noise in one optical channel, W/(m2 sr): a share of the picture's mean. */
 double frame_optical_sigma(const Picture *picture, const Config *config);

@@ -624,6 +624,8 @@ int inspect_command(int argc, char **argv)
     DisLog log;
     Status status = dis_log_open(&log, options.path, (int)options.port);
     if (status != STATUS_OK) return 1; /* said where it happened */
+    if (log.retimed)
+        log_warn("inspect: packet times do not keep pace with the time stamps; the stamps are taken as the clock");
     if (log.any_port && options.port == dis_port_default)
         log_warn("inspect: nothing went to port %d: every port that carries DIS is taken; --port N chooses", dis_port);
     if (log.count == 0 && options.port > 0 && log.counters.other_port)

@@ -1,5 +1,6 @@
 #include "sensor/node/replay.h"
 
+#include "sensor/node/frame_files.h"
 #include "sensor/node/session.h"
 #include "sensor/publish/records.h"
 
@@ -235,6 +236,8 @@ typedef struct Run {
     Pool         *pool;
     char          config_sha256[sha256_text_size], log_sha256[sha256_text_size];
     unsigned      bands;
+    int           exercise; /* -1: all */
+    Choices       choices; /* those that all hosts share */
 } Run;
 
 static Status write_run(const Run *run, const char *out, const HostPlan *plan, const Choices *choices,
@@ -273,7 +276,7 @@ static Status write_run(const Run *run, const char *out, const HostPlan *plan, c
 static Status run_host(Run *run, const char *host_text)
 {
     const Options *o       = &run->options;
-    Choices        choices = {0};
+    Choices        choices = run->choices;
     HostPlan       plan;
     LocalFrame     frame;
     Landscape      landscape = {0};
@@ -288,12 +291,10 @@ static Status run_host(Run *run, const char *host_text)
     status = host_text && dis_entity_id_parse(&host, host_text) ? plan_host(&plan, &choices, &run->survey, &o->config, host)
                        : choose_host(&plan, &choices, &run->survey, &o->config);
     if (status != STATUS_OK) return status;
-    if (run->log.any_port && o->config.exercise.port == dis_port_default)
-        choice_add(&choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
     status = choose_frame(&frame, &run->survey, &plan);
     if (status == STATUS_OK) status = choose_time(&unix_s, &choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = choose_ground(&landscape, &choices, &run->survey, &o->config, &frame, run->catalog);
+        status = choose_ground(&landscape, &choices, &run->survey, &o->config, &frame, run->catalog, &plan);
     if (status == STATUS_OK) status = world_open(world, run->catalog, &landscape, &frame, o->isa);
     if (status != STATUS_OK) goto done;
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
@@ -308,7 +309,7 @@ static Status run_host(Run *run, const char *host_text)
         snprintf(out, sizeof out, "%s", o->out);
     const SessionShared shared = {.config = &o->config, .log = &run->log, .survey = &run->survey,
                                   .catalog = run->catalog, .world = world, .pool = run->pool, .unix_s = unix_s,
-                                  .bands = run->bands, .png = o->png, .no_skip = o->no_skip, .speed = o->speed,
+                                  .bands = run->bands, .exercise = run->exercise, .png = o->png, .no_skip = o->no_skip, .speed = o->speed,
                                   .config_sha256 = run->config_sha256};
     status = session_run(&result, &shared, &plan, out);
     if (result.frames > 0) { /* what could be shown is recorded, even when it stopped early */
@@ -356,7 +357,13 @@ static Status open_run(Run *run)
     Status status = dis_log_open(&run->log, o->log, o->config.exercise.port);
     if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
     if (status == STATUS_OK) status = hash_config(run->config_sha256, o);
-    if (status == STATUS_OK) status = survey_log(&run->survey, &run->log, o->config.exercise.exercise);
+    if (status != STATUS_OK) return status;
+    if (run->log.retimed)
+        choice_add(&run->choices, "clock: the time stamps; the capture's packet times do not keep pace with them");
+    if (run->log.any_port && o->config.exercise.port == dis_port_default)
+        choice_add(&run->choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
+    run->exercise = choose_exercise(&run->choices, &run->log, &o->config);
+    status        = survey_log(&run->survey, &run->log, run->exercise);
     if (status != STATUS_OK) return status;
     say_drops(&run->survey);
     if (run->survey.track_count == 0) {
@@ -383,6 +390,7 @@ int replay_command(int argc, char **argv)
     thread_flush_denormals();
     Status failed = STATUS_OK, status = open_run(&run);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
+    if (status == STATUS_OK && run.options.host_count > 1) frame_files_clear(run.options.out);
     for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
         const Status one = run_host(&run, run.options.host[i]);
         if (one != STATUS_OK) failed = one; /* the others are still shown */

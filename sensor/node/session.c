@@ -352,7 +352,7 @@ static Status open_session(Session *s)
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
     Status status = entity_table_create(&s->table, &table, shared->catalog, path);
     if (status == STATUS_OK)
-        status = player_create(&s->player, shared->log, shared->config->exercise.exercise, shared->config->causal);
+        status = player_create(&s->player, shared->log, shared->exercise, shared->config->causal);
     if (status == STATUS_OK) status = frame_files_prepare(s->out, shared->bands);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
@@ -376,22 +376,23 @@ static Status run_frames(SessionResult *result, Session *s)
      * of the whole */
     const double  first_d = ceil(from_s * s->rate_hz - 1e-9), last_d = floor(to_s * s->rate_hz + 1e-9);
     const double  origin_d = ceil(s->plan->start_s * s->rate_hz - 1e-9);
-    if (!(last_d >= first_d) || last_d - origin_d > 999999) {
+    const bool single = to_s >= from_s && !(last_d >= first_d); /* too short for the grid: one frame, at its start */
+    if (!(last_d >= first_d || single) || last_d - origin_d > 999999) {
         log_error("replay: %s between %.3f and %.3f s at %g Hz; widen --from and --to or change --rate",
                   last_d >= first_d ? "more than a million frames" : "no frame", from_s, to_s, s->rate_hz);
         return STATUS_BAD_VALUE;
     }
-    const int first = (int)(first_d - origin_d), last = (int)(last_d - origin_d), capacity = last - first + 1;
+    const int first = (int)(first_d - origin_d), last = single ? first : (int)(last_d - origin_d), capacity = last - first + 1;
     result->hash     = calloc((size_t)capacity, sizeof *result->hash);
     result->stage_ms = calloc((size_t)capacity, sizeof *result->stage_ms);
     if (!result->hash || !result->stage_ms) return STATUS_NO_MEMORY;
 
     const double begun_s = wall_clock_s();
     for (int frame = first; frame <= last; frame++) {
-        const double   t_s = (origin_d + frame) / s->rate_hz;
+        const double   t_s = single ? from_s : (origin_d + frame) / s->rate_hz;
         RenderCounters counters;
         bool           shown;
-        pace(begun_s, first_d / s->rate_hz, t_s, shared->speed);
+        pace(begun_s, single ? from_s : first_d / s->rate_hz, t_s, shared->speed);
         advance(s, t_s);
         const Status status = make_frame(&shown, result->hash[result->frames], result->stage_ms[result->frames],
                                          &counters, s, frame, t_s);

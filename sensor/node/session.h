@@ -17,6 +17,7 @@ typedef struct SessionShared {
     Pool          *pool;
     double         unix_s;    /* Unix time of exercise time 0 */
     unsigned       bands;
+    int            exercise;  /* identifier; -1: all */
     bool           png, no_skip;
     double         speed;     /* exercise seconds a second; INFINITY: as fast as it goes */
     const char    *config_sha256;

@@ -1,0 +1,92 @@
+/* Packet times against stamps: which of the two is the clock. */
+#include "tests/check.h"
+
+#include "dis/entity_state.h"
+#include "dis/log.h"
+
+enum { pdus = 200 };
+
+static uint8_t     bytes[pdus][160];
+static DisDatagram datagram[pdus];
+
+/* PDU k stamped at stamp_s(k), captured at capture_s(k); every fifth from another sender, unstamped. */
+static DisLog make(double stamp_s[pdus], double capture_s[pdus])
+{
+    for (int k = 0; k < pdus; k++) {
+        const double   past_s = fmod(stamp_s[k] + 7200, 3600);
+        DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                         .timestamp = k % 5 == 4 ? 0 : (uint32_t)(past_s / 3600 * 2147483648.0) << 1},
+                              .id = {1, (uint16_t)(k % 5 == 4 ? 2 : 1), 7}};
+        const size_t octets = dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu);
+        CHECK(octets > 0);
+        datagram[k] = (DisDatagram){.capture_s = capture_s[k], .octets = (uint32_t)octets, .bytes = bytes[k]};
+    }
+    return (DisLog){.count = pdus, .datagram = datagram};
+}
+
+/* rate: packet seconds a stamp second; jitter_s on the packets. Stamps begin just before the hour. */
+static bool retimed(double rate, double jitter_s)
+{
+    double stamp_s[pdus], capture_s[pdus];
+    for (int k = 0; k < pdus; k++) {
+        stamp_s[k]   = 3580 + 0.3 * k;
+        capture_s[k] = 1e9 + rate * 0.3 * k + jitter_s * random_uniform(1, 2, 3, (uint64_t)k);
+    }
+    DisLog     log = make(stamp_s, capture_s);
+    const bool did = dis_log_retime(&log);
+    for (int k = 0; k < pdus; k++) {
+        if (!did) CHECK(datagram[k].capture_s == capture_s[k]);
+        /* the unstamped one stands where the one before it stood */
+        if (did) CHECK_NEAR(datagram[k].capture_s - capture_s[0], 0.3 * (k - (k % 5 == 4)), 1e-5);
+    }
+    return did;
+}
+
+static void packets_at_another_pace_take_the_stamps(void **state)
+{
+    (void)state;
+    CHECK(retimed(0, 0));     /* all at one instant */
+    CHECK(retimed(1e-5, 0));  /* a microsecond or so apart */
+    CHECK(retimed(0.05, 0));  /* played back 20 times as fast */
+    CHECK(retimed(2, 0));     /* at half speed */
+}
+
+static void an_honest_capture_is_left_alone(void **state)
+{
+    (void)state;
+    CHECK(!retimed(1, 0));
+    CHECK(!retimed(1, 0.5));
+    CHECK(!retimed(1.1, 0));
+}
+
+static void stamps_that_are_no_clock_are_not_believed(void **state)
+{
+    (void)state;
+    double stamp_s[pdus], capture_s[pdus];
+    for (int k = 0; k < pdus; k++) {
+        stamp_s[k]   = 100 + 1e-4 * k; /* a counter */
+        capture_s[k] = 1e9 + 0.3 * k;
+    }
+    DisLog log = make(stamp_s, capture_s);
+    CHECK(!dis_log_retime(&log));
+    for (int k = 0; k < pdus; k++) stamp_s[k] = 100 + (k < 100 ? 0 : -60) + 0.3 * k, capture_s[k] = 1e9;
+    log = make(stamp_s, capture_s); /* a restart */
+    CHECK(!dis_log_retime(&log));
+    for (int k = 0; k < pdus; k++) stamp_s[k] = 100 + 0.3 * k, capture_s[k] = 1e9 + (k < 100 ? 0 : 7200) + 0.3 * k;
+    log = make(stamp_s, capture_s); /* two hours of silence, which stamps cannot tell */
+    CHECK(!dis_log_retime(&log));
+    log.count = 3;
+    CHECK(!dis_log_retime(&log));
+    log.count = 0;
+    CHECK(!dis_log_retime(&log));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(packets_at_another_pace_take_the_stamps),
+        cmocka_unit_test(an_honest_capture_is_left_alone),
+        cmocka_unit_test(stamps_that_are_no_clock_are_not_believed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
