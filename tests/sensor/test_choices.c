@@ -1,0 +1,144 @@
+/* What replay picks by itself, and that it says so. */
+#include "tests/check.h"
+
+#include "dis/entity_state.h"
+#include "sensor/node/choices.h"
+
+static char last_line[1024];
+static void keep_line(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    (void)level;
+    snprintf(last_line, sizeof last_line, "%s", line);
+}
+
+static bool says(const Choices *choices, const char *text)
+{
+    for (int i = 0; i < choices->count; i++)
+        if (strstr(choices->line[i], text)) return true;
+    return false;
+}
+
+static void the_exercise_heard_most_is_taken(void **state)
+{
+    (void)state;
+    static uint8_t     bytes[5][160];
+    static DisDatagram datagram[5];
+    static const uint8_t exercise[5] = {7, 3, 7, 3, 7};
+    Config             config = config_default();
+    Choices            choices = {0};
+    for (int k = 0; k < 5; k++) {
+        DisEntityState pdu = {.header = {.version = 6, .exercise = exercise[k], .type = dis_pdu_entity_state}};
+        datagram[k] = (DisDatagram){.octets = (uint32_t)dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu), .bytes = bytes[k]};
+    }
+    DisLog log = {.count = 5, .datagram = datagram};
+    assert_int_equal(choose_exercise(&choices, &log, &config), 7);
+    CHECK(says(&choices, "exercise: 7, heard most of 2 (exercise.exercise)"));
+    choices.count            = 0;
+    config.exercise.exercise = 3;
+    assert_int_equal(choose_exercise(&choices, &log, &config), 3);
+    config.exercise.exercise = -2;
+    assert_int_equal(choose_exercise(&choices, &log, &config), -1);
+    config.exercise.exercise = -1;
+    log.count                = 1;
+    assert_int_equal(choose_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
+    CHECK(choices.count == 0);
+}
+
+static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
+{
+    (void)state;
+    Survey     survey = {.first_s = 1000, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
+    Config     config = config_default();
+    Choices    choices = {0};
+    LocalFrame frame = {.origin = {0, 90 * rad_per_deg, 0}};
+    double     unix_s = 0;
+    log_set_sink(keep_line, NULL);
+
+    /* local solar 10:00 at 90 E is 04:00 UTC; 2026-06-21 is 20625 days after 1970-01-01 */
+    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    CHECK_NEAR(unix_s + 1000, 20625.0 * 86400 + 4 * 3600, 1e-3);
+    CHECK(says(&choices, "local solar 10:00 on 21 June"));
+
+    survey.absolute_unix_s = 5e8;
+    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    CHECK_NEAR(unix_s, 5e8, 0);
+    survey.clock_start_unix_s = 6e8;
+    assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+    CHECK_NEAR(unix_s, 6e8, 0);
+
+    static const struct { const char *text; double unix_s; } good[] = {
+        {"1970-01-01T00:00:00Z", 0}, {"2000-02-29T12:30:15.5Z", 951827415.5}, {"2026-06-21T10:00:00Z", 1782036000}};
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++) { /* wanted values: date -u -d TEXT +%s */
+        strcpy(config.exercise.utc, good[i].text);
+        assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
+        CHECK_NEAR(unix_s + 1000, good[i].unix_s, 1e-6);
+    }
+    static const char *const bad[] = {"2026-02-31T00:00:00Z", "1900-02-29T00:00:00Z", "2026-06-21", "2026-13-01T00:00:00Z",
+                                      "2026-06-21T24:00:00Z", "2026-06-21T10:00:00", "2026-06-21T10:00:00Zx", "noon"};
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        strcpy(config.exercise.utc, bad[i]);
+        if (choose_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad[i]);
+        CHECK(strstr(last_line, "exercise.utc"));
+    }
+}
+
+/* Tracks at the Earth's surface; a missile k flies from start to end. */
+static Track track(uint16_t entity, uint8_t kind, uint8_t domain, TrackPoint *point, int count, double start_s, double end_s)
+{
+    for (int i = 0; i < count; i++) {
+        point[i] = (TrackPoint){.t_s = count > 1 ? start_s + (end_s - start_s) * i / (count - 1) : start_s, .p_ecef = {6378137 + 10.0 * kind, 100.0 * i, entity}};
+        m3_identity(point[i].r_ecef_from_body);
+    }
+    return (Track){.id = {1, 1, entity}, .type = {kind, domain, 225, 1, 1, 1, 0}, .count = count, .point = point};
+}
+
+static void the_longest_flight_that_hit_is_the_host(void **state)
+{
+    (void)state;
+    static TrackPoint points[5][4];
+    Track  tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 2, points[1], 4, 5, 30), track(21, 2, 2, points[2], 4, 5, 15),
+                        track(22, 2, 2, points[3], 4, 5, 12), track(23, 2, 2, points[4], 1, 40, 40)};
+    Shot   shots[4] = {{.munition = {1, 1, 20}, .result = dis_result_ground_impact, .fire_s = 5, .detonation_s = 30},
+                       {.munition = {1, 1, 21}, .target = {1, 1, 10}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5, .detonation_s = 15},
+                       {.munition = {1, 1, 22}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5, .detonation_s = 12},
+                       {.munition = {1, 1, 23}, .result = dis_result_none, .fire_s = 40, .detonation_s = NAN}};
+    Survey   survey = {.track_count = 5, .track = tracks, .shot_count = 4, .shot = shots, .first_s = 0, .last_s = 100};
+    Config   config = config_default();
+    Choices  choices = {0};
+    HostPlan plan;
+    log_set_sink(keep_line, NULL);
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && plan.start_s == 5 && plan.end_s == 15);
+    CHECK(says(&choices, "notional") && says(&choices, "target of its Fire PDU"));
+
+    shots[1].result = shots[2].result = dis_result_ground_impact; /* nobody hit: the longest flight */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 20);
+
+    survey.track_count = 1; /* no munition: the observer */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.munition);
+
+    strcpy(config.exercise.host, "1:1:99");
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    CHECK(strstr(last_line, "1:1:99 is not in the log"));
+    strcpy(config.exercise.host, "1:1");
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    config.exercise.host[0] = 0;
+    strcpy(config.exercise.aim, "9:9:9");
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    survey.track_count     = 0;
+    config.exercise.aim[0] = 0;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_exercise_heard_most_is_taken),
+        cmocka_unit_test(the_time_of_day_comes_from_the_best_that_is_known),
+        cmocka_unit_test(the_longest_flight_that_hit_is_the_host),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
