@@ -35,7 +35,10 @@ static Status make_folders(const char *path)
         *at = kept;
         if (!kept) break;
     }
-    if (access(path, W_OK | X_OK) != 0) {
+    struct stat there;
+    if (stat(path, &there) == 0 && !S_ISDIR(there.st_mode)) errno = ENOTDIR;
+    else errno = 0;
+    if (errno || access(path, W_OK | X_OK) != 0) {
         log_error("replay: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
         return STATUS_IO;
     }

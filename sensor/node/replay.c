@@ -33,7 +33,8 @@ static const char help[] =
     "  --bands LIST       any of optical,mwir,lwir,radar (default: all)\n"
     "  --size WxH         picture size in pixels (default: 720x486)\n"
     "  --rate HZ          frames a second of exercise time (default: 5 for a munition, 1 for an observer)\n"
-    "  --from S, --to S   only this span of exercise time, in seconds as `pitviper inspect` shows them\n"
+    "  --from S, --to S   only this span of exercise time, in seconds as `pitviper inspect` shows them; frames keep\n"
+    "                     the numbers they have in the whole\n"
     "  --host ID          site:application:entity that carries the sensor; may be given several times\n"
     "  --samples N        N x N rays a pixel (default: 1)\n"
     "  --config FILE      a YAML file of settings; options here override it\n"
@@ -340,6 +341,13 @@ static Status check_hosts(const Run *run)
         if (!dis_entity_id_parse(&host, run->options.host[i])) {
             log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82", run->options.host[i]);
             return STATUS_BAD_VALUE;
+        }
+        for (int k = 0; k < i; k++) {
+            DisEntityId other;
+            if (dis_entity_id_parse(&other, run->options.host[k]) && dis_entity_id_compare(host, other) == 0) {
+                log_error("replay: --host: %s is given twice", run->options.host[i]);
+                return STATUS_BAD_VALUE;
+            }
         }
         if (!survey_track(&run->survey, host)) {
             log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists who is", run->options.host[i]);

@@ -75,4 +75,13 @@ fi
 replay "$tmp/demo.pcap" "$tmp/avx2" --rate 1 --no-png
 replay "$tmp/demo.pcap" "$tmp/sse" --rate 1 --no-png --isa sse4.2
 check "--isa: same bits" same_hashes "$tmp/avx2" "$tmp/sse"
+
+# Progress on a terminal, and only there.
+replay "$tmp/demo.pcap" "$tmp/plain" --rate 0.5 --no-png --bands lwir
+check "no terminal, no progress" [ "$(grep -c 'frame 1 of' "$tmp/stderr")" = 0 ]
+if command -v script >/dev/null; then
+    script -qec "$pitviper replay $tmp/demo.pcap --out $tmp/term --size 96x64 --rate 0.5 --no-png --bands lwir" /dev/null \
+        </dev/null >"$tmp/terminal" 2>&1
+    check "a terminal sees progress" grep -q 'frame 1 of [0-9]* ' "$tmp/terminal"
+fi
 finish
