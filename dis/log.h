@@ -32,8 +32,9 @@ typedef struct DisLog {
 enum { dis_port_any = 0, dis_port_default = -1 };
 
 /* port: of the UDP destination. dis_port_any: every port, payloads that begin as a DIS header.
- * dis_port_default: 3000, and when nothing at all went there, any port (any_port says so). A file that is not a capture, or cannot be
- * read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a warning. */
+ * dis_port_default: 3000, and when nothing at all went there, any port (any_port says so). A file that is not
+ * a capture, or cannot be read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a
+ * warning. */
 Status dis_log_open(DisLog *out, const char *path, int port);
 void   dis_log_close(DisLog *log);
 

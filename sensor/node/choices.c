@@ -17,10 +17,15 @@ void choice_add(Choices *choices, const char *format, ...)
     va_end(arguments);
 }
 
-static bool is_land(const Track *track) { return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_land; }
+static bool is_land(const Track *track)
+{
+    return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_land;
+}
+
 static bool flies(const Track *track)
 {
-    return track->type.kind == dis_kind_munition || (track->type.kind == dis_kind_platform && track->type.domain == dis_domain_air);
+    return track->type.kind == dis_kind_munition ||
+           (track->type.kind == dis_kind_platform && track->type.domain == dis_domain_air);
 }
 
 static double path_m(const Track *track)
@@ -169,7 +174,8 @@ static const Track *longest_flight(const Survey *survey, bool impact)
         const Shot  *shot  = shot_of(survey, track->id);
         if (track->type.kind != dis_kind_munition) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
-        const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s : track->point[track->count - 1].t_s;
+        const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s
+                                                                     : track->point[track->count - 1].t_s;
         const double flight_s = end_s - track->point[0].t_s;
         if (flight_s > most_s) {
             most_s  = flight_s;

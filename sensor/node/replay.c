@@ -310,7 +310,8 @@ static Status run_host(Run *run, const char *host_text)
         snprintf(out, sizeof out, "%s", o->out);
     const SessionShared shared = {.config = &o->config, .log = &run->log, .survey = &run->survey,
                                   .catalog = run->catalog, .world = world, .pool = run->pool, .unix_s = unix_s,
-                                  .bands = run->bands, .exercise = run->exercise, .png = o->png, .no_skip = o->no_skip, .speed = o->speed,
+                                  .bands = run->bands, .exercise = run->exercise, .png = o->png,
+                                  .no_skip = o->no_skip, .speed = o->speed,
                                   .config_sha256 = run->config_sha256};
     status = session_run(&result, &shared, &plan, out);
     if (result.frames > 0) { /* what could be shown is recorded, even when it stopped early */
