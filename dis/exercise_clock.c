@@ -22,7 +22,7 @@ typedef struct Sender {
     uint32_t key; /* site, application */
     bool     used, distrusted;
     int      ties;
-    uint32_t tied_stamp; /* upper 31 bits of the stamp at the tie */
+    uint32_t tied_stamp;
     double   tied_s;     /* exercise time of it */
 } Sender;
 
@@ -62,12 +62,10 @@ static Sender *find_sender(ExerciseClock *clock, uint32_t key)
     }
 }
 
-/* Time of a stamp by the sender's own tie: the signed difference modulo 2^31 ticks, then whole hours towards
- * the ruler. */
+/* Time of a stamp by the sender's own tie: the short way round the hour, then whole hours towards the ruler. */
 static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
 {
-    const int32_t ticks = (int32_t)((stamp - sender->tied_stamp) << 1) / 2; /* 31 bits, sign-extended */
-    const double  t_s = sender->tied_s + ticks * (hour_s / 2147483648.0);
+    const double t_s = sender->tied_s + dis_timestamp_step_s(sender->tied_stamp, stamp);
     return t_s + hour_s * round((ruler_s - t_s) / hour_s);
 }
 
@@ -81,7 +79,6 @@ static void tie(Sender *sender, uint32_t stamp, double t_s)
 double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
                            double capture_s)
 {
-    const uint32_t stamp = timestamp >> 1;
     const bool     absolute = dis_timestamp_is_absolute(timestamp);
     if (!(fabs(capture_s) <= capture_limit_s)) capture_s = clock->last_capture_s; /* NaN too */
     clock->last_capture_s = capture_s;
@@ -101,16 +98,16 @@ double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t applica
     if (!sender || sender->distrusted) return ruler_s;
 
     if (sender->ties < 0) {
-        tie(sender, stamp, ruler_s);
+        tie(sender, timestamp, ruler_s);
         if (absolute && clock->first_is_absolute) {
             /* UTC on both sides: the stamp itself, in the hour of the ruler */
             const double past_s = dis_timestamp_seconds(timestamp);
             sender->tied_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
         }
     }
-    double t_s = stamped_time(sender, stamp, ruler_s);
+    double t_s = stamped_time(sender, timestamp, ruler_s);
     if (!(fabs(t_s - ruler_s) <= leave_s)) {
-        tie(sender, stamp, ruler_s);
+        tie(sender, timestamp, ruler_s);
         if (sender->ties >= ties_before_distrust) sender->distrusted = true;
         t_s = ruler_s;
     }

@@ -29,6 +29,12 @@ static inline double exercise_clock_pdu_time(ExerciseClock *clock, const DisHead
 }
 
 static inline double dis_timestamp_seconds(uint32_t timestamp) { return (timestamp >> 1) * (3600.0 / 2147483648.0); }
+/* Seconds from one stamp to the next, the short way round the hour: -1800 .. 1800. */
+static inline double dis_timestamp_step_s(uint32_t from, uint32_t to)
+{
+    const int32_t ticks = (int32_t)(((to >> 1) - (from >> 1)) << 1) / 2; /* 31 bits, sign-extended */
+    return ticks * (3600.0 / 2147483648.0);
+}
 static inline bool   dis_timestamp_is_absolute(uint32_t timestamp) { return timestamp & 1; }
 
 #endif

@@ -51,13 +51,6 @@ static bool loudest_sender(uint16_t out[2], const DisLog *log)
     return true;
 }
 
-/* From one stamp to the next, the short way round the hour. */
-static double step_s(uint32_t from, uint32_t to)
-{
-    const int32_t ticks = (int32_t)(((to >> 1) - (from >> 1)) << 1) / 2;
-    return ticks * (3600.0 / 2147483648.0);
-}
-
 /* Walks the sender's datagrams. write: sets capture_s of all datagrams by its stamps. Returns whether the
  * stamps step like a clock; spans of stamps and of packet times. */
 static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stamps_s, double *packets_s)
@@ -74,7 +67,7 @@ static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stam
                 begun   = true;
                 first_s = last_s = datagram->capture_s;
             }
-            const double step = last_stamp ? step_s(last_stamp, header.timestamp) : 0;
+            const double step = last_stamp ? dis_timestamp_step_s(last_stamp, header.timestamp) : 0;
             if (!write && (!(step >= -back_s && step <= ahead_s) || !(fabs(datagram->capture_s - last_s) < gap_s)))
                 return false;
             last_stamp = header.timestamp;

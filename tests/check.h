@@ -10,6 +10,8 @@
 #include <stdlib.h>
 #include <cmocka.h>
 
+#include <unistd.h>
+
 #include "pitviper.h"
 
 /* Written as !(error <= tolerance) so that a NaN fails. */
@@ -38,6 +40,25 @@ static inline bool reference_path(char out[512], const char *name)
     }
     fclose(file);
     return true;
+}
+
+enum { text_file_size = 64 };
+
+/* A file that holds this text, until remove(path). */
+static inline void text_file(char path[text_file_size], const char *text)
+{
+    strcpy(path, "/tmp/pitviper-test-XXXXXX");
+    const int    file   = mkstemp(path);
+    const size_t octets = strlen(text);
+    CHECK(file >= 0 && write(file, text, octets) == (ssize_t)octets && close(file) == 0);
+}
+
+/* What was said last at warning level or above, while log_set_sink(check_listen, NULL). */
+static char check_said[1024] __attribute__((unused));
+static inline void check_listen(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    if (level >= LOG_WARN) snprintf(check_said, sizeof check_said, "%s", line);
 }
 
 #endif

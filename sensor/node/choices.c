@@ -241,6 +241,14 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     return plan_observer(out, choices, survey, config);
 }
 
+void choose_rate(HostPlan *plan, Choices *choices, const Config *config)
+{
+    plan->rate_hz = config->sensor.rate_hz;
+    if (plan->rate_hz > 0) return;
+    plan->rate_hz = plan->munition ? 5 : 1; /* a flight lasts seconds, a watch minutes */
+    choice_add(choices, "rate: %g frames a second (sensor.rate_hz)", plan->rate_hz);
+}
+
 /* ---- time of day ---------------------------------------------------------------------------- */
 
 /* Days since 1970-01-01 of a proleptic Gregorian date. Source: Hinnant, "chrono-compatible low-level date

@@ -24,6 +24,7 @@ typedef struct HostPlan {
     double      start_s, end_s;
     double      p_aim_ecef[3]; /* where to look when there is no aim entity; valid for an observer */
     bool        munition;
+    double      rate_hz;   /* choose_rate */
 } HostPlan;
 
 /* The munition whose Detonation says entity impact, longest flight first; else the longest flight; else an
@@ -32,6 +33,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 /* For a host that was asked for by name. STATUS_BAD_VALUE and a message when the log does not hold it. */
 Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
 
+/* Frames a second of exercise time, into the plan. */
+void choose_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Unix time of exercise time 0. */
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
 /* The exercise identifier to hear: as configured, or the one with most Entity States; -1: all. */

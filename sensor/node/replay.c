@@ -289,8 +289,10 @@ static Status run_host(Run *run, const char *host_text)
     Status         status;
 
     if (host_text) printf("host: %s (--host)\n", host_text);
-    status = host_text && dis_entity_id_parse(&host, host_text) ? plan_host(&plan, &choices, &run->survey, &o->config, host)
-                       : choose_host(&plan, &choices, &run->survey, &o->config);
+    if (host_text && dis_entity_id_parse(&host, host_text))
+        status = plan_host(&plan, &choices, &run->survey, &o->config, host);
+    else
+        status = choose_host(&plan, &choices, &run->survey, &o->config);
     if (status != STATUS_OK) return status;
     status = choose_frame(&frame, &run->survey, &plan);
     if (status == STATUS_OK) status = choose_time(&unix_s, &choices, &run->survey, &o->config, &frame);
@@ -299,8 +301,7 @@ static Status run_host(Run *run, const char *host_text)
     if (status == STATUS_OK) status = world_open(world, run->catalog, &landscape, &frame, o->isa);
     if (status != STATUS_OK) goto done;
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
-    if (!(o->config.sensor.rate_hz > 0))
-        choice_add(&choices, "rate: %d frames a second (sensor.rate_hz)", plan.munition ? 5 : 1);
+    choose_rate(&plan, &choices, &o->config);
     for (int i = 0; i < choices.count; i++) printf("%s\n", choices.line[i]);
     fflush(stdout);
 

@@ -22,7 +22,6 @@ typedef struct Session {
     FILE                *truth;
     Seeker               seeker;
     Arena               *frame_arena;
-    double               rate_hz;
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
@@ -340,7 +339,6 @@ static Status open_session(Session *s)
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s};
-    s->rate_hz = shared->config->sensor.rate_hz > 0 ? shared->config->sensor.rate_hz : s->plan->munition ? 5 : 1;
     s->tick    = (int64_t)ceil(s->plan->start_s * seeker_ticks_per_s);
     if (dis_entity_id_is_none(s->plan->host))
         strcpy(s->host_text, "observer");
@@ -374,12 +372,12 @@ static Status run_frames(SessionResult *result, Session *s)
 
     /* frames stand on multiples of the interval, wherever the span begins: a part of a run equals that part
      * of the whole */
-    const double  first_d = ceil(from_s * s->rate_hz - 1e-9), last_d = floor(to_s * s->rate_hz + 1e-9);
-    const double  origin_d = ceil(s->plan->start_s * s->rate_hz - 1e-9);
+    const double  first_d = ceil(from_s * s->plan->rate_hz - 1e-9), last_d = floor(to_s * s->plan->rate_hz + 1e-9);
+    const double  origin_d = ceil(s->plan->start_s * s->plan->rate_hz - 1e-9);
     const bool single = to_s >= from_s && !(last_d >= first_d); /* too short for the grid: one frame, at its start */
     if (!(last_d >= first_d || single) || last_d - origin_d > 999999) {
         log_error("replay: %s between %.3f and %.3f s at %g Hz; widen --from and --to or change --rate",
-                  last_d >= first_d ? "more than a million frames" : "no frame", from_s, to_s, s->rate_hz);
+                  last_d >= first_d ? "more than a million frames" : "no frame", from_s, to_s, s->plan->rate_hz);
         return STATUS_BAD_VALUE;
     }
     const int first = (int)(first_d - origin_d), last = single ? first : (int)(last_d - origin_d), capacity = last - first + 1;
@@ -389,10 +387,10 @@ static Status run_frames(SessionResult *result, Session *s)
 
     const double begun_s = wall_clock_s();
     for (int frame = first; frame <= last; frame++) {
-        const double   t_s = single ? from_s : (origin_d + frame) / s->rate_hz;
+        const double   t_s = single ? from_s : (origin_d + frame) / s->plan->rate_hz;
         RenderCounters counters;
         bool           shown;
-        pace(begun_s, single ? from_s : first_d / s->rate_hz, t_s, shared->speed);
+        pace(begun_s, single ? from_s : first_d / s->plan->rate_hz, t_s, shared->speed);
         advance(s, t_s);
         const Status status = make_frame(&shown, result->hash[result->frames], result->stage_ms[result->frames],
                                          &counters, s, frame, t_s);

@@ -1,27 +1,14 @@
 /* Tables, numbers and foreign bytes. */
 #include "tests/check.h"
 
-#include <unistd.h>
-
-static char last_line[1024];
-static void keep_line(void *user, LogLevel level, const char *line)
-{
-    (void)user;
-    (void)level;
-    snprintf(last_line, sizeof last_line, "%s", line);
-}
-
 static Status open_text(Table *table, const char *text)
 {
-    char      path[] = "/tmp/pitviper-text-XXXXXX";
-    const int file   = mkstemp(path);
-    CHECK(file >= 0);
-    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
-    last_line[0] = 0;
-    log_set_sink(keep_line, NULL);
+    char path[text_file_size];
+    text_file(path, text);
+    check_said[0] = 0;
+    log_set_sink(check_listen, NULL);
     const Status status = table_open(table, path);
-    unlink(path);
+    remove(path);
     return status;
 }
 
@@ -43,7 +30,7 @@ static void a_table_reads_comments_quotes_and_numbers(void **state)
     assert_int_equal(table_number(&value, &table, 1, 1, -1e4, 0), STATUS_OK);
     CHECK_NEAR(value, -2000, 0);
     assert_int_equal(table_number(&value, &table, 0, 1, 2, 3), STATUS_BAD_VALUE);
-    CHECK(strstr(last_line, ":4: column value: '1.5' is not a number in 2 .. 3"));
+    CHECK(strstr(check_said, ":4: column value: '1.5' is not a number in 2 .. 3"));
     assert_int_equal(table_number(&value, &table, 0, 0, 0, 9), STATUS_BAD_VALUE);
     table_close(&table);
 }
@@ -53,10 +40,10 @@ static void malformed_tables_are_refused_with_the_line(void **state)
     (void)state;
     Table table = {0};
     assert_int_equal(open_text(&table, "a,b\n1,2\n3\n"), STATUS_BAD_VALUE);
-    CHECK(strstr(last_line, ":3: 1 columns where the header has 2"));
+    CHECK(strstr(check_said, ":3: 1 columns where the header has 2"));
     assert_int_equal(open_text(&table, "a,b\n1,2,3\n"), STATUS_BAD_VALUE);
     assert_int_equal(open_text(&table, "a,b\n\"open,2\n"), STATUS_BAD_VALUE);
-    CHECK(strstr(last_line, "quote"));
+    CHECK(strstr(check_said, "quote"));
     assert_int_equal(open_text(&table, "# nothing\n"), STATUS_BAD_VALUE);
     assert_int_equal(open_text(&table, ""), STATUS_BAD_VALUE);
     assert_int_equal(table_open(&table, "/nonexistent/table.csv"), STATUS_IO);

@@ -2,8 +2,6 @@
 #include "tests/check.h"
 #include "entities/catalog.h"
 
-#include <unistd.h>
-
 static char last_error[512];
 
 static void keep_error(void *user, LogLevel level, const char *line)
@@ -15,16 +13,13 @@ static void keep_error(void *user, LogLevel level, const char *line)
 /* Opens a catalog of the given text; on success the caller closes it. */
 static Status open_text(Catalog **catalog, const char *text)
 {
-    char path[] = "/tmp/test_catalog_XXXXXX";
-    const int file = mkstemp(path);
-    CHECK(file >= 0);
-    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
+    char path[text_file_size];
+    text_file(path, text);
     last_error[0] = 0;
     log_set_sink(keep_error, NULL);
     const Status status = catalog_open(catalog, path, 0.02);
     log_set_sink(NULL, NULL);
-    unlink(path);
+    remove(path);
     return status;
 }
 

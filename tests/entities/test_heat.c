@@ -179,15 +179,13 @@ static void bad_tables_are_refused(void **state)
     };
     log_set_sink(count_errors, NULL);
     for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
-        char path[] = "/tmp/test_heat_XXXXXX";
-        const int file = mkstemp(path);
+        char path[text_file_size];
         HeatTable table = {.rise_k = {-1}};
-        CHECK(file >= 0 && write(file, text[i], strlen(text[i])) == (ssize_t)strlen(text[i]));
-        close(file);
+        text_file(path, text[i]);
         errors = 0;
         CHECK(heat_table_open(&table, path) == STATUS_BAD_VALUE);
         CHECK(errors > 0 && table.rise_k[0] == -1);
-        unlink(path);
+        remove(path);
     }
     log_set_sink(NULL, NULL);
 }

@@ -27,15 +27,6 @@ static int stop_listening(void **state)
     return 0;
 }
 
-static void write_file(char path[64], const char *text)
-{
-    strcpy(path, "/tmp/pitviper_materials_XXXXXX");
-    const int file = mkstemp(path);
-    CHECK(file >= 0);
-    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
-}
-
 static const char header[] = "name,rho_b,rho_g,rho_r,rho_pan,rho_mwir,rho_lwir,solar_absorptance,gloss,"
                              "roughness_rad,metal,radar_gamma,source\n";
 static const char rows[] = "turf,0.04,0.09,0.06,0.0625,0.015,0.019,0.73,0,1,0,0.1,test\n"
@@ -46,11 +37,11 @@ static const char surfaces[] = "surface,material\ngrass,turf\ndry_grass,turf\ncr
 static Status open_texts(Materials *out, const char *table, const char *surface_table)
 {
     char a[64], b[64];
-    write_file(a, table);
-    write_file(b, surface_table);
+    text_file(a, table);
+    text_file(b, surface_table);
     const Status status = materials_open(out, a, b, NULL);
-    unlink(a);
-    unlink(b);
+    remove(a);
+    remove(b);
     return status;
 }
 

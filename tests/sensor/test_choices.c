@@ -4,14 +4,6 @@
 #include "dis/entity_state.h"
 #include "sensor/node/choices.h"
 
-static char last_line[1024];
-static void keep_line(void *user, LogLevel level, const char *line)
-{
-    (void)user;
-    (void)level;
-    snprintf(last_line, sizeof last_line, "%s", line);
-}
-
 static bool says(const Choices *choices, const char *text)
 {
     for (int i = 0; i < choices->count; i++)
@@ -53,7 +45,7 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     Choices    choices = {0};
     LocalFrame frame = {.origin = {0, 90 * rad_per_deg, 0}};
     double     unix_s = 0;
-    log_set_sink(keep_line, NULL);
+    log_set_sink(check_listen, NULL);
 
     /* local solar 10:00 at 90 E is 04:00 UTC; 2026-06-21 is 20625 days after 1970-01-01 */
     assert_int_equal(choose_time(&unix_s, &choices, &survey, &config, &frame), STATUS_OK);
@@ -79,7 +71,7 @@ static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         strcpy(config.exercise.utc, bad[i]);
         if (choose_time(&unix_s, &choices, &survey, &config, &frame) != STATUS_BAD_VALUE) fail_msg("accepted: %s", bad[i]);
-        CHECK(strstr(last_line, "exercise.utc"));
+        CHECK(strstr(check_said, "exercise.utc"));
     }
 }
 
@@ -107,7 +99,7 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
     Config   config = config_default();
     Choices  choices = {0};
     HostPlan plan;
-    log_set_sink(keep_line, NULL);
+    log_set_sink(check_listen, NULL);
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && plan.start_s == 5 && plan.end_s == 15);
     CHECK(says(&choices, "notional") && says(&choices, "target of its Fire PDU"));
@@ -122,7 +114,7 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
 
     strcpy(config.exercise.host, "1:1:99");
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
-    CHECK(strstr(last_line, "1:1:99 is not in the log"));
+    CHECK(strstr(check_said, "1:1:99 is not in the log"));
     strcpy(config.exercise.host, "1:1");
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
     config.exercise.host[0] = 0;

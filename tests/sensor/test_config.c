@@ -3,27 +3,14 @@
 
 #include "sensor/node/config.h"
 
-#include <unistd.h>
-
-static char last_line[1024];
-static void keep_line(void *user, LogLevel level, const char *line)
-{
-    (void)user;
-    (void)level;
-    snprintf(last_line, sizeof last_line, "%s", line);
-}
-
 static Status read_text(Config *config, const char *text)
 {
-    char      path[] = "/tmp/pitviper-config-XXXXXX";
-    const int file   = mkstemp(path);
-    CHECK(file >= 0);
-    CHECK(write(file, text, strlen(text)) == (ssize_t)strlen(text));
-    close(file);
-    last_line[0] = 0;
-    log_set_sink(keep_line, NULL);
+    char path[text_file_size];
+    text_file(path, text);
+    check_said[0] = 0;
+    log_set_sink(check_listen, NULL);
     const Status status = config_read(config, path);
-    unlink(path);
+    remove(path);
     return status;
 }
 
@@ -66,7 +53,7 @@ static void what_is_wrong_is_said_and_nothing_applied(void **state)
         Config config = config_default(), before;
         memcpy(&before, &config, sizeof config);
         if (read_text(&config, bad[i].text) == STATUS_OK) fail_msg("accepted: %s", bad[i].text);
-        if (!strstr(last_line, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", last_line, bad[i].said);
+        if (!strstr(check_said, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", check_said, bad[i].said);
         assert_memory_equal(&config, &before, sizeof config);
     }
 }

@@ -12,7 +12,6 @@
 #include "entities/entity_table.h"
 #include "render/render.h"
 
-#include <unistd.h>
 
 typedef long double Real;
 static const Real pi_l = 3.14159265358979323846264338327950288L;
@@ -106,15 +105,12 @@ static Fixture fixture;
 static int open_fixture(void **state)
 {
     (void)state;
-    char         path[] = "/tmp/pitviper-catalog-XXXXXX";
-    const char  *text   = "type,model,origin\n*.*.*.*.*.*.*,marker,base\n";
-    const int    file   = mkstemp(path);
+    char path[text_file_size];
+    text_file(path, "type,model,origin\n*.*.*.*.*.*.*,marker,base\n");
     LocalFrame   frame;
     const Geodetic origin = {0, 0, 0};
-    if (file < 0 || write(file, text, strlen(text)) != (ssize_t)strlen(text)) return -1;
-    close(file);
     const Status status = catalog_open(&fixture.catalog, path, 0.01);
-    unlink(path);
+    remove(path);
     if (status != STATUS_OK || local_frame_at(&frame, &origin) != STATUS_OK) return -1;
     if (world_open(&fixture.world, fixture.catalog, NULL, &frame, "avx2") != STATUS_OK) return -1;
     fixture.world.radar.lobe_rad = 0.5; /* wide, so that the plate answers at every angle used here */

@@ -3,7 +3,6 @@
 
 #include "sensor/node/truth.h"
 
-#include <unistd.h>
 
 enum { width = 60, height = 40 };
 
@@ -25,13 +24,10 @@ static Fixture f;
 static int open_fixture(void **state)
 {
     (void)state;
-    char        path[] = "/tmp/pitviper-catalog-XXXXXX";
-    const char *text   = "type,model,origin\n*.*.*.*.*.*.*,marker,base\n";
-    const int   file   = mkstemp(path);
-    if (file < 0 || write(file, text, strlen(text)) != (ssize_t)strlen(text)) return -1;
-    close(file);
+    char path[text_file_size];
+    text_file(path, "type,model,origin\n*.*.*.*.*.*.*,marker,base\n");
     const Status status = catalog_open(&f.catalog, path, 0.01);
-    unlink(path);
+    remove(path);
     f.world.catalog = f.catalog;
     return status == STATUS_OK && planck_table_create(&f.world.planck_lwir, 8e-6, 12e-6) == STATUS_OK ? 0 : -1;
 }
