@@ -1,9 +1,60 @@
-/* main.c: the commands, as one table. */
+/* main.c: the commands, as one table; and the probes, as the rooms list them. */
+#include "render/probe.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
 
 #include <stdio.h>
 #include <string.h>
+
+/* ---- probe: the rooms' lists ------------------------------------------------------------------ */
+
+static const struct ProbeList {
+    const Probe *probe;
+    const int   *count;
+} probe_lists[] = {
+    {render_probes, &render_probe_count},
+};
+
+static const Probe *next_probe(size_t *list, int *at)
+{
+    for (; *list < sizeof probe_lists / sizeof *probe_lists; (*list)++, *at = 0)
+        if (*at < *probe_lists[*list].count) return &probe_lists[*list].probe[(*at)++];
+    return NULL;
+}
+
+static void probe_usage(FILE *to)
+{
+    size_t list = 0;
+    int    at   = 0;
+    fputs("usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv > results.csv\n\n"
+          "Reads CSV with a header; writes each row again with the results behind it. Other columns pass through;\n"
+          "a row that cannot be computed says why in the column `error`. Columns marked $ are text, ? may be missing.\n", to);
+    for (const Probe *probe; (probe = next_probe(&list, &at));)
+        fprintf(to, "\n  %s%s%s\n      %s\n      in:  %s\n      out: %s\n", probe->name, probe->arguments ? " " : "",
+                probe->arguments ? probe->arguments : "", probe->help, probe->in, probe->out);
+}
+
+static int probe_command(int argc, char **argv)
+{
+    size_t list = 0;
+    int    at   = 0;
+    if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+        probe_usage(argc < 2 ? stderr : stdout);
+        return argc < 2 ? 2 : 0;
+    }
+    for (const Probe *probe; (probe = next_probe(&list, &at));) {
+        if (strcmp(argv[1], probe->name) != 0) continue;
+        if (!probe->arguments && argc > 2) {
+            fprintf(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows come from standard input\n",
+                    probe->name, argv[2]);
+            return 2;
+        }
+        return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
+    }
+    fprintf(stderr, "pitviper probe: no such probe: %s\n\n", argv[1]);
+    probe_usage(stderr);
+    return 2;
+}
 
 static const struct Command {
     const char *name;
@@ -12,6 +63,7 @@ static const struct Command {
 } commands[] = {
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
+    {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
 

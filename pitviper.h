@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 #ifdef __cplusplus
@@ -102,6 +103,9 @@ const char *table_text(const Table *table, int row, int column); /* row 0 .. row
 /* Finite numbers in [low, high] only; logs file, line, column, value and range otherwise. */
 Status table_number(double *out, const Table *table, int row, int column, double low, double high);
 
+/* Splits one line of CSV in place into trimmed cells; quotes keep commas, a doubled quote is one. Returns how many
+ * there are, those beyond capacity too; -1: a quote is not closed. */
+int text_split(char **cell, int capacity, char *line);
 /* Whole string as a finite double / integer; false otherwise (`1,5`, `3x`, empty, out of range). */
 bool text_to_double(double *out, const char *text);
 bool text_to_long(long long *out, const char *text);
@@ -110,6 +114,34 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 
 /* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
+
+/* ---- probes: one model at a time, held against anybody else's numbers --------------------------- */
+
+enum { probe_max_columns = 24, probe_text_size = 96 };
+
+typedef struct ProbeValue {
+    double      number;                /* of an input: its cell as a number. Of an output: written when text is NULL */
+    const char *text;                  /* of an input: its cell. Of an output: written when not NULL */
+    char        buffer[probe_text_size]; /* room for an output's text */
+} ProbeValue;
+
+/* A row of CSV in, the same row and its results out. Each room lists its own in <room>/probe.h; `pitviper probe NAME`
+ * finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text, all
+ * others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
+typedef struct Probe {
+    const char *name, *help;           /* help: one line, what it computes and from what source */
+    const char *arguments;             /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */
+    const char *in, *out;              /* result columns that could not be computed are NaN, and written empty */
+    /* May be NULL. On failure logs why; *state is then not closed. argv[0] is the probe's name. */
+    Status    (*open)(void **state, int argc, char **argv);
+    /* NULL: done; else why not, for the row's error column (in static storage, or in out[0].buffer). */
+    const char *(*row)(void *state, const ProbeValue *in, ProbeValue *out);
+    void      (*close)(void *state);   /* may be NULL */
+} Probe;
+
+/* Reads CSV with a header from in, writes to out: its columns, those of the probe, and `error`. Extra columns pass
+ * through; a bad row gets its reason and empty results. STATUS_BAD_VALUE, logged, when a column is missing. */
+Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out);
 
 /* ---- small vectors ------------------------------------------------------------------------ */
 /* Matrices are row by row: r_a_from_b[3 * row + column]. */

@@ -124,8 +124,7 @@ static char *trim(char *text)
     return text;
 }
 
-/* Splits one line in place; quotes keep commas, a doubled quote is one. -1: an open quote. */
-static int split(char **cell, int capacity, char *line)
+int text_split(char **cell, int capacity, char *line)
 {
     int   count = 0;
     char *at    = line;
@@ -187,7 +186,7 @@ Status table_open(Table *out, const char *path)
             table.columns = columns;
         }
         char    **row   = table.cell + (size_t)(table.rows + 1) * (size_t)table.columns;
-        const int cells = split(row, table.columns, line);
+        const int cells = text_split(row, table.columns, line);
         if (table.rows < 0 && cells > 0) table.columns = cells;
         if (cells != table.columns) {
             if (cells < 0)

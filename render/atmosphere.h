@@ -1,0 +1,65 @@
+/* render/atmosphere.h: the tables of etc/atmosphere: what a path, the sky and the sun are in a standard air.
+ *
+ * Exact here means: at a table's points it returns the table; between them its errors are those that
+ * tests/render/test_atmosphere.c measures against points the tables do not hold. One path at a time and to the table's
+ * own accuracy; what a frame needs (one eye, one sun, a third of a million paths) is collapsed from this once a frame by
+ * render/air.c. etc/atmosphere/README.md is the format, which knows nothing of the program that filled it. */
+#ifndef RENDER_ATMOSPHERE_H
+#define RENDER_ATMOSPHERE_H
+
+#include "pitviper.h"
+
+/* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7, 0.7-1.1, 3.4-4.8, 8-12 um. The first five are in the order of the optical
+ * channels of render/materials.h. */
+typedef enum AirBand { AIR_B, AIR_G, AIR_R, AIR_PAN, AIR_NIR, AIR_MWIR, AIR_LWIR, AIR_BAND_COUNT } AirBand;
+const char *air_band_name(AirBand band); /* b g r pan nir mwir lwir */
+
+typedef struct Atmosphere Atmosphere;
+
+/* model: us1976, midlat_summer, or any other that etc/atmosphere holds; all of its visibilities are read. Failures
+ * (no such model, a malformed row, a point missing) are logged with file and line. */
+Status atmosphere_open(Atmosphere **out, const char *model);
+void   atmosphere_close(Atmosphere *atmosphere);
+/* Visibilities that the tables span, m; outside them the nearest counts. Between them: interpolated in extinction. */
+void   atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
+
+/* One straight path. Heights above the ground that the model stands on (its 0 km), of both ends; the path may go up,
+ * down or along. */
+typedef struct AirPath {
+    double observer_m, target_m;   /* 0 .. the top of the tables; clamped */
+    double range_m;                /* >= |target_m - observer_m| */
+    double sun_zenith_rad;         /* for scattered sunlight; > pi / 2: none */
+    double rel_azimuth_rad;        /* between the view and the sun, 0: towards the sun */
+} AirPath;
+
+typedef struct PathAir {
+    double transmittance;          /* weighted by Planck(temp_k) in the thermal bands, by the sun elsewhere */
+    double sun_transmittance;      /* weighted by sunlight: of what is reflected */
+    double thermal_w_m2_sr;        /* the path's own emission */
+    double scattered_w_m2_sr;      /* sunlight scattered into the path */
+} PathAir;
+
+/* temp_k: of what emits, 200 .. 3000; outside the nearest counts. */
+void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
+                     double temp_k);
+
+/* To space. zenith_rad 0 .. pi / 2 (clamped a little above the horizon: what the tables' last row says). */
+typedef struct SkyAir {
+    double thermal_w_m2_sr, scattered_w_m2_sr;
+} SkyAir;
+void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, double observer_m,
+                    double zenith_rad, double sun_zenith_rad, double rel_azimuth_rad);
+
+typedef struct SunAir {
+    double direct_normal_w_m2;     /* facing the sun, at 1 AU */
+    double diffuse_horizontal_w_m2;/* scattered sunlight from the whole sky on a level plane */
+} SunAir;
+void atmosphere_sun(SunAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, double observer_m,
+                    double sun_zenith_rad);
+
+/* Thermal irradiance of the whole sky on a level plane, all wavelengths, W/m2, at the ground. */
+double atmosphere_longwave_down(const Atmosphere *atmosphere, double visibility_m);
+/* Air temperature of the model at a height, K. */
+double atmosphere_temp_k(const Atmosphere *atmosphere, double height_m);
+
+#endif
