@@ -1,4 +1,5 @@
 /* main.c: the commands, as one table; and the probes, as the rooms list them. */
+#include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
@@ -12,6 +13,7 @@ static const struct ProbeList {
     const Probe *probe;
     const int   *count;
 } probe_lists[] = {
+    {entities_probes, &entities_probe_count},
     {render_probes, &render_probe_count},
 };
 

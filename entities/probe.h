@@ -1,0 +1,10 @@
+/* entities/probe.h: what `pitviper probe` can ask of this room. */
+#ifndef ENTITIES_PROBE_H
+#define ENTITIES_PROBE_H
+
+#include "pitviper.h"
+
+extern const Probe entities_probes[];
+extern const int   entities_probe_count;
+
+#endif

@@ -1,0 +1,64 @@
+# pitviper probe: every probe says what it needs, refuses what it cannot use, and answers what is known on paper.
+# labels: small
+. "$(dirname "$0")/common.sh"
+
+# probe NAME [ARGUMENT ...] < rows: the rows and their results in $tmp/stdout
+probe() { "$pitviper" probe "$@" >"$tmp/stdout" 2>"$tmp/stderr"; code=$?; }
+# cell ROW COLUMN: of the last result; row 1 is the first behind the header. No quoted commas, please.
+cell() {
+    awk -F, -v row="$1" -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR == row + 1 { print $c }' \
+        "$tmp/stdout"
+}
+# near WHAT GOT WANT TOLERANCE
+near() { check "$1: $2, want $3 +- $4" awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN { d = a - b; exit !(a != "" && d <= t && -d <= t) }'; }
+
+run probe --help
+check "help is on standard output" test "$code" = 0 -a -s "$tmp/stdout" -a ! -s "$tmp/stderr"
+names=$(awk '/^  [a-z]/ { print $1 }' "$tmp/stdout")
+for name in planck deadreckon; do check "help names $name" grep -qw "$name" <<<"$names"; done
+run probe
+check "no name is a wrong command" test $code = 2
+run probe nonsense
+check "an unknown probe is a wrong command" test $code = 2
+check "and it is named" grep -q "no such probe: nonsense" "$tmp/stderr"
+
+# each probe, whatever room it is of: no rows, a foreign header, binary
+for name in $names; do
+    probe "$name" </dev/null
+    check "$name: nothing on standard input is an error" test $code -ge 1
+    printf 'these,are,not,its,columns\n1,2,3,4,5\n' | probe "$name"
+    check "$name: a foreign header is an error" test $code -ge 1
+    check "$name: which says so" test -s "$tmp/stderr"
+    head -c 100000 /dev/urandom | probe "$name"
+    check "$name: noise is an error, no crash" test $code -ge 1 -a $code -lt 124
+done
+
+# Planck: the reference's 25 digits, rounded
+printf 'lo_um,hi_um,temp_k,note\n8,12,300,a\n3.4,4.8,300,b\n8,12,1,c\n8,12,-1,d\n12,8,300,e\n' | probe planck
+near "8-12 um at 300 K" "$(cell 1 radiance_w_m2_sr)" 38.50042393334787 1e-12
+near "its derivative" "$(cell 1 dldt)" 0.62970434672218919 1e-14
+near "3.4-4.8 um at 300 K" "$(cell 2 radiance_w_m2_sr)" 1.3460717111444343 1e-13
+check "at 1 K nothing is left" test "$(cell 3 radiance_w_m2_sr)" = 0
+check "a temperature below 0 has no answer" test -z "$(cell 4 radiance_w_m2_sr)" -a -n "$(cell 4 error)"
+check "nor has a band upside down" test -n "$(cell 5 error)"
+check "foreign columns pass" test "$(cell 5 note)" = e
+
+# dead reckoning: a straight line, a constant turn about the vertical of the body (psi of 1 rad at 0.1 rad/s), body axes
+{
+    echo algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2,wz_rps,dt_s
+    echo 2,6378137,0,0,1,0.5,-0.25,10,20,-30,99,1,2.5
+    echo 3,6378137,0,0,1,0,0,10,0,0,,0.1,5
+    echo 5,6378137,0,0,0,0,0,10,0,0,4,,3
+    echo 6,6378137,0,0,1.5707963267948966,0,0,10,0,0,,,3
+    echo 10,0,0,0,0,0,0,0,0,0,,,1
+} | probe deadreckon
+near "FPW x" "$(cell 1 dr_x_m)" 6378162 1e-8
+near "FPW z" "$(cell 1 dr_z_m)" -75 1e-12
+near "FPW attitude is held" "$(cell 1 dr_psi_rad)" 1 1e-15
+near "RPW psi" "$(cell 2 dr_psi_rad)" 1.5 1e-14
+near "RPW x" "$(cell 2 dr_x_m)" 6378187 1e-8
+near "FVW x" "$(cell 3 dr_x_m)" 6378185 1e-8
+near "FPB goes where it points" "$(cell 4 dr_y_m)" 30 1e-8
+check "there is no algorithm 10" test -n "$(cell 5 error)"
+
+finish
