@@ -75,6 +75,10 @@ fi
 replay "$tmp/demo.pcap" "$tmp/avx2" --rate 1 --no-png
 replay "$tmp/demo.pcap" "$tmp/sse" --rate 1 --no-png --isa sse4.2
 check "--isa: same bits" same_hashes "$tmp/avx2" "$tmp/sse"
+if grep -qw avx512f /proc/cpuinfo; then
+    replay "$tmp/demo.pcap" "$tmp/avx512" --rate 1 --no-png --isa avx512
+    check "--isa avx512: same bits" same_hashes "$tmp/avx2" "$tmp/avx512"
+fi
 
 # Progress on a terminal, and only there.
 replay "$tmp/demo.pcap" "$tmp/plain" --rate 0.5 --no-png --bands lwir
