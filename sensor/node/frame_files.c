@@ -1,6 +1,7 @@
 #include "sensor/node/frame_files.h"
 
-#include "sensor/detector/detector.h"
+#include "sensor/detector/noise3d.h"
+#include "sensor/detector/quantise.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/truth_preview.h"
 
