@@ -2,6 +2,7 @@
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
+#include "sensor/probe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -13,6 +14,7 @@ static const struct ProbeList {
     const int   *count;
 } probe_lists[] = {
     {render_probes, &render_probe_count},
+    {sensor_probes, &sensor_probe_count},
 };
 
 static const Probe *next_probe(size_t *list, int *at)

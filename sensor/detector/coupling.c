@@ -9,9 +9,9 @@ void coupling_apply(float *plane, int width, int height, const Scan *scan, doubl
     for (size_t i = 0; i < count; i++) mean += isfinite(plane[i]) ? plane[i] : 0;
     mean /= (double)count;
 
-    double base = mean; /* what the capacitor has taken up */
     for (int r = 0; r < height; r++) {
         const bool back = scan->bidirectional && r % 2;
+        double     base = mean; /* what the capacitor has taken up */
         for (int k = 0; k < width; k++) {
             float       *at = plane + (size_t)r * (size_t)width + (size_t)(back ? width - 1 - k : k);
             const double x  = *at;
