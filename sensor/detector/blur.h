@@ -5,8 +5,10 @@
  * part goes through the sine transforms of the same cosine coefficients, which a third transform gives. In double, FFTW,
  * plans by estimate: same bits for any thread count. Between machines, FFTW may choose other vector instructions.
  *
- * The band ends at Nyquist, as the picture's samples do: an edge then overshoots by what the chain still passes there
- * (1.2 % with the footprint alone, less with optics), and radiance that this would make negative is set to 0.
+ * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the chain
+ * levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge
+ * overshoots by 1 % with the footprint alone and not at all behind optics; a point has a dark ring of 0.8 % at most.
+ * Radiance that this would turn negative is 0.
  * Mean kept to rounding (the coefficient of frequency 0 is not touched); with an oblique smear but for the corners. Measured for 720 x 486, one core: see
  * tests/sensor/test_blur.c. */
 #ifndef SENSOR_DETECTOR_BLUR_H
