@@ -2,6 +2,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/node/player.h"
+#include "sensor/node/scene_rate.h"
 #include "sensor/node/seeker.h"
 #include "sensor/publish/records.h"
 
@@ -117,25 +118,13 @@ typedef struct Eye {
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
 
-/* Rate of turn between two attitudes, step_s apart. */
-static void turn_rate(double w_cam_rps[3], const double r_before[9], const double r_after[9], double step_s)
+/* A thing at rest where the middle of the picture looks. */
+static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
 {
-    double turn[9];
-    m3_tmul(turn, r_before, r_after);
-    w_cam_rps[0] = (turn[7] - turn[5]) / (2 * step_s);
-    w_cam_rps[1] = (turn[2] - turn[6]) / (2 * step_s);
-    w_cam_rps[2] = (turn[3] - turn[1]) / (2 * step_s);
-}
-
-/* How a thing at rest at the boresight's range moves over the picture, px/s. */
-static void scene_rate(double rate_px_s[2], const Eye *eye, const Picture *picture)
-{
-    double       v_cam[3];
-    const double range_m = picture->range_m[(size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2)];
-    m3_tmul_v3(v_cam, eye->state.r_ecef_from_cam, eye->state.v_ecef_mps);
-    const double nearness = isfinite(range_m) && range_m > 1 ? 1 / range_m : 0;
-    rate_px_s[0] = eye->view.focal_px * (-eye->w_cam_rps[1] - v_cam[0] * nearness);
-    rate_px_s[1] = eye->view.focal_px * (eye->w_cam_rps[0] - v_cam[1] * nearness);
+    const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);
+    double       v_cam_mps[3];
+    m3_tmul_v3(v_cam_mps, eye->state.r_ecef_from_cam, eye->state.v_ecef_mps);
+    scene_rate(rate_px_s, eye->w_cam_rps, v_cam_mps, eye->view.focal_px, picture->range_m[middle]);
 }
 
 static void finish_eye(Eye *eye, const Session *s)
@@ -321,7 +310,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
 
     const double      rendered_s = wall_clock_s();
     double            rate_px_s[2];
-    scene_rate(rate_px_s, &eye, &picture);
+    rate_of_scene(rate_px_s, &eye, &picture);
     const FrameFiles  files  = {.out = s->out, .config = shared->config, .world = shared->world, .picture = &picture,
                                 .snapshot = &snapshot, .request = &request, .host = s->host_text,
                                 .config_sha256 = shared->config_sha256, .frame = frame, .time_s = t_s,
