@@ -3,6 +3,7 @@
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
+#include "sensor/probe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,6 +16,7 @@ static const struct ProbeList {
 } probe_lists[] = {
     {entities_probes, &entities_probe_count},
     {render_probes, &render_probe_count},
+    {sensor_probes, &sensor_probe_count},
 };
 
 static const Probe *next_probe(size_t *list, int *at)

@@ -29,6 +29,7 @@ static const Key keys[] = {
     {"sensor.gimbal_limit_deg", KEY_DOUBLE, AT(sensor.gimbal_limit_deg), 0, 180, NULL, "deg", "largest angle off the body axis"},
     {"sensor.gimbal_rate_dps", KEY_DOUBLE, AT(sensor.gimbal_rate_dps), 0.01, 10000, NULL, "deg/s", "largest rate"},
     {"sensor.gimbal_lag_s", KEY_DOUBLE, AT(sensor.gimbal_lag_s), 0, 10, NULL, "s", "time constant of the tracking loop"},
+    {"sensor.preset", KEY_TEXT, AT(sensor.preset), 0, 0, NULL, "", "none, or sensors of etc/sensors.csv, one a band: staring_lwir,staring_mwir,tv"},
     {"detector.bits", KEY_INT, AT(detector.bits), 8, 16, NULL, "", "8 or 16, of the PNG pictures"},
     {"detector.level", KEY_TEXT, AT(detector.level), 0, 0, "auto|manual", "", "gain and level from the picture, or as set"},
     {"detector.gain", KEY_DOUBLE, AT(detector.gain), 0.01, 100, NULL, "", "about the middle of the level"},
@@ -41,6 +42,17 @@ static const Key keys[] = {
     {"detector.lwir_low_k", KEY_DOUBLE, AT(detector.lwir_low_k), 150, 2000, NULL, "K", "black, manual level"},
     {"detector.lwir_high_k", KEY_DOUBLE, AT(detector.lwir_high_k), 150, 2000, NULL, "K", "white, manual level"},
     {"detector.optical_high_w_m2_sr", KEY_DOUBLE, AT(detector.optical_high_w_m2_sr), 1e-3, 1e4, NULL, "W/(m2 sr)", "white, manual level"},
+    {"detector.agc_s", KEY_DOUBLE, AT(detector.agc_s), 0, 1000, NULL, "s", "time constant of the automatic level, from the first frame made on; 0: each frame by itself"},
+    {"detector.noise", KEY_DOUBLE, AT(detector.noise), 0, 100, NULL, "", "factor of all noise; 0: none"},
+    {"detector.f_number", KEY_DOUBLE, AT(detector.f_number), 0.5, 100, NULL, "", "in place of the preset's"},
+    {"detector.obscuration", KEY_DOUBLE, AT(detector.obscuration), 0, 0.95, NULL, "", "central, share of the aperture's diameter; in place of the preset's"},
+    {"detector.integration_ms", KEY_DOUBLE, AT(detector.integration_ms), 1e-6, 1e4, NULL, "ms", "in place of the preset's"},
+    {"detector.jitter_px", KEY_DOUBLE, AT(detector.jitter_px), 0, 10, NULL, "px", "rms a direction, within the integration time; in place of the preset's"},
+    {"detector.bad_share", KEY_DOUBLE, AT(detector.bad_share), 0, 0.2, NULL, "", "faulty pixels; in place of the preset's"},
+    {"detector.ac_per_line", KEY_DOUBLE, AT(detector.ac_per_line), 0, 100, NULL, "", "cut-off of the AC coupling x line time; in place of the preset's"},
+    {"detector.line_noise", KEY_DOUBLE, AT(detector.line_noise), 0, 100, NULL, "", "rms of noise along lines over that of a pixel; in place of the preset's"},
+    {"detector.smear", KEY_BOOL, AT(detector.smear), 0, 1, NULL, "", "motion within the integration time and between lines, with a preset"},
+    {"detector.raw", KEY_BOOL, AT(detector.raw), 0, 1, NULL, "", "files of raw counts, with a preset"},
     {"radar.bin_m", KEY_DOUBLE, AT(radar.bin_m), 0.01, 100, NULL, "m", "range bin of the profile"},
     {"radar.bins", KEY_INT, AT(radar.bins), 16, 65536, NULL, "", "range bins, about the aim"},
     {"radar.lobe_deg", KEY_DOUBLE, AT(radar.lobe_deg), 0.2, 30, NULL, "deg", "rms half width of the exit lobe"},
@@ -70,6 +82,7 @@ static const Key keys[] = {
     {"seed", KEY_LONG, AT(seed), 0, 2147483647, NULL, "", "of everything random"},
 };
 enum { key_count = sizeof keys / sizeof keys[0] };
+_Static_assert((int)key_count <= (int)config_keys_max, "Config.given is too small");
 
 Config config_default(void)
 {
@@ -94,6 +107,12 @@ Config config_default(void)
     c.detector.lwir_low_k           = 270;
     c.detector.lwir_high_k          = 330;
     c.detector.optical_high_w_m2_sr = 40;
+    strcpy(c.sensor.preset, "none");
+    c.detector.noise                = 1;
+    c.detector.f_number = c.detector.obscuration = c.detector.integration_ms = c.detector.jitter_px = NAN;
+    c.detector.bad_share = c.detector.ac_per_line = c.detector.line_noise = NAN;
+    c.detector.smear                = true;
+    c.detector.raw                  = true;
     c.radar.bin_m                   = 0.3; /* 500 MHz of bandwidth */
     c.radar.bins                    = 512;
     c.radar.lobe_deg                = 3;
@@ -151,7 +170,7 @@ static void say_bad(const char *source, const Key *key, const char *value)
                   key->unit);
 }
 
-static Status set_key(Config *config, const Key *key, const char *value, const char *source)
+static Status store_key(Config *config, const Key *key, const char *value, const char *source)
 {
     char     *at = (char *)config + key->offset;
     double    number;
@@ -186,6 +205,15 @@ static Status set_key(Config *config, const Key *key, const char *value, const c
     say_bad(source, key, value);
     return STATUS_BAD_VALUE;
 }
+
+static Status set_key(Config *config, const Key *key, const char *value, const char *source)
+{
+    const Status status = store_key(config, key, value, source);
+    if (status == STATUS_OK) config->given[key - keys] = true;
+    return status;
+}
+
+bool config_given(const Config *config, const char *name) { return config->given[find_key(name) - keys]; }
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
@@ -294,6 +322,14 @@ Status config_check(const Config *config)
         log_error("config: detector: the low level must be below the high one");
         return STATUS_BAD_VALUE;
     }
+    static const char *const of_preset[] = {"detector.f_number", "detector.obscuration", "detector.integration_ms",
+                                            "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
+                                            "detector.line_noise", "detector.smear", "detector.raw"};
+    for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
+        if (strcmp(config->sensor.preset, "none") == 0 && config_given(config, of_preset[i])) {
+            log_error("config: %s: needs a sensor to change; choose one with sensor.preset", of_preset[i]);
+            return STATUS_BAD_VALUE;
+        }
     if (config->exercise.from_s > config->exercise.to_s) {
         log_error("config: exercise.from_s: %g is after exercise.to_s: %g", config->exercise.from_s,
                   config->exercise.to_s);

@@ -7,6 +7,8 @@
 
 #include "pitviper.h"
 
+enum { config_keys_max = 256 };
+
 typedef struct Config {
     struct {
         int    width_px, height_px;
@@ -16,6 +18,7 @@ typedef struct Config {
         char   bands[64];          /* comma separated */
         char   optical[8];         /* rgb or pan */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
+        char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
     } sensor;
     struct {
         int    bits;
@@ -25,6 +28,11 @@ typedef struct Config {
         double netd_mwir_k, netd_lwir_k;
         double lwir_low_k, lwir_high_k, mwir_low_k, mwir_high_k; /* manual levels, apparent temperature */
         double optical_high_w_m2_sr;
+        double agc_s;              /* automatic level: time constant; 0: each frame by itself */
+        double noise;              /* factor of all noise */
+        /* over the preset's; NaN: as it says */
+        double f_number, obscuration, integration_ms, jitter_px, bad_share, ac_per_line, line_noise;
+        bool   smear, raw;         /* of a preset: motion; files of raw counts */
     } detector;
     struct {
         double bin_m;
@@ -56,6 +64,7 @@ typedef struct Config {
     } entities;
     long long seed;
     bool      causal;
+    bool      given[config_keys_max]; /* by a file or the command line: what a preset leaves alone */
 } Config;
 
 Config config_default(void);
@@ -63,6 +72,8 @@ Config config_default(void);
 Status config_read(Config *config, const char *path);
 /* One key, as the command line gives it: `sensor.width_px`, `720`. source names where it came from. */
 Status config_set(Config *config, const char *key, const char *value, const char *source);
+/* Whether a file or the command line has set it; the key must exist. */
+bool   config_given(const Config *config, const char *key);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
 /* The canonical text: every key and value, in table order. What config_sha256 hashes. */

@@ -1,6 +1,7 @@
 #include "sensor/node/frame_files.h"
 
-#include "sensor/detector/detector.h"
+#include "sensor/detector/noise3d.h"
+#include "sensor/detector/quantise.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/truth_preview.h"
 
@@ -66,9 +67,15 @@ static void clear_folder(const char *folder)
     closedir(directory);
 }
 
-/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles. */
+/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts. */
+enum { raw_folder = BAND_COUNT + 2, folder_count = raw_folder + BAND_COUNT };
+
 static void product_folder(char path[path_size], const char *out, int b)
 {
+    if (b >= raw_folder) {
+        snprintf(path, path_size, "%s/raw/%s", out, band_name((Band)(b - raw_folder)));
+        return;
+    }
     snprintf(path, path_size, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
              b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
 }
@@ -76,7 +83,7 @@ static void product_folder(char path[path_size], const char *out, int b)
 void frame_files_clear(const char *out)
 {
     /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const parents[] = {"frames", "profiles"};
+    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const parents[] = {"frames", "profiles", "raw"};
     char path[path_size];
     bool earlier = false;
     for (int i = 0; i < 2; i++) {
@@ -84,24 +91,25 @@ void frame_files_clear(const char *out)
         earlier = unlink(path) == 0 || earlier;
     }
     if (!earlier) return;
-    for (int b = 0; b <= BAND_COUNT + 1; b++) {
+    for (int b = 0; b < folder_count; b++) {
         product_folder(path, out, b);
         clear_folder(path);
         rmdir(path); /* when nothing else is in it */
     }
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", out, parents[i]);
         rmdir(path);
     }
 }
 
-Status frame_files_prepare(const char *out, unsigned bands)
+Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
 {
     char   path[path_size];
     Status status = make_folders(out);
     if (status == STATUS_OK) frame_files_clear(out);
-    for (int b = 0; b <= BAND_COUNT + 1 && status == STATUS_OK; b++) {
-        if (b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
+    for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
+        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
+            b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
         product_folder(path, out, b);
         status = make_folders(path);
     }
@@ -239,76 +247,163 @@ static Status write_exr(const FrameFiles *frame, int band)
     return status;
 }
 
-double frame_optical_sigma(const Picture *picture, const Config *config)
+/* The planes that a band's detector looks at; how many. */
+static int band_radiance(const float *plane[3], const Picture *p, int band)
 {
-    const size_t count = (size_t)picture->width * (size_t)picture->height;
-    double       sum   = 0;
-    int          planes = 0;
-    for (; planes < 3 && picture->optical[planes]; planes++)
-        for (size_t i = 0; i < count; i++) sum += picture->optical[planes][i];
-    return planes ? config->detector.noise_optical * fmax(0, sum / ((double)count * planes)) : 0;
+    int n = 0;
+    if (band == BAND_MWIR || band == BAND_LWIR) {
+        plane[0] = band == BAND_MWIR ? p->mwir : p->lwir;
+        return plane[0] != NULL;
+    }
+    while (band == BAND_OPTICAL && n < 3 && p->optical[n]) {
+        plane[n] = p->optical[n];
+        n++;
+    }
+    return n;
 }
 
-/* What the detector of one band shows: noise, gain and level, quantisation. */
+static double mean_radiance(const Picture *picture, int band)
+{
+    const float *plane[3];
+    const size_t count  = (size_t)picture->width * (size_t)picture->height;
+    const int    planes = band_radiance(plane, picture, band);
+    double       sum    = 0;
+    for (int c = 0; c < planes; c++)
+        for (size_t i = 0; i < count; i++) sum += plane[c][i];
+    return planes ? fmax(0, sum / ((double)count * planes)) : 0;
+}
+
+/* Without a sensor: a share of the picture's mean in each optical channel. */
+static double optical_sigma(const Picture *picture, const Config *config)
+{
+    return config->detector.noise * config->detector.noise_optical * mean_radiance(picture, BAND_OPTICAL);
+}
+
+void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config)
+{
+    const float *plane[3];
+    *noise = (TruthNoise){.netd_mwir_k = config->detector.noise * config->detector.netd_mwir_k,
+                          .netd_lwir_k = config->detector.noise * config->detector.netd_lwir_k};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (chain[b] && band_radiance(plane, picture, b)) chain_expose(chain[b], plane);
+    noise->optical_w_m2_sr = chain[BAND_OPTICAL] ? chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL))
+                                                 : optical_sigma(picture, config);
+    for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
+        double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
+        const double mean   = mean_radiance(picture, b);
+        if (!chain[b] || !(mean > 0)) continue;
+        preset_band(&low_m, &high_m, (Band)b, -1);
+        planck_band(low_m, high_m, planck_band_inverse(low_m, high_m, mean), &slope);
+        *netd_k = chain_sigma(chain[b], 0, mean) / slope;
+    }
+}
+
+/* What the display of one band shows: gain and level, quantisation; and noise, without a sensor. In radiance, or in counts
+ * of the band's sensor. */
 static DetectorConfig detector_of(const FrameFiles *frame, int band)
 {
-    const Config  *c = frame->config;
-    DetectorConfig d = detector_default_config();
-    d.bits           = c->detector.bits;
-    d.gain           = c->detector.gain;
-    d.offset         = c->detector.offset;
-    d.auto_level     = strcmp(c->detector.level, "auto") == 0;
+    const Config  *c     = frame->config;
+    const Chain   *chain = frame->chain[band];
+    DetectorConfig d     = detector_default_config();
+    d.bits               = c->detector.bits;
+    d.gain               = c->detector.gain;
+    d.offset             = c->detector.offset;
+    d.auto_level         = strcmp(c->detector.level, "auto") == 0;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
-        d.noise_sigma   = frame_optical_sigma(frame->picture, c);
+        d.noise_sigma   = optical_sigma(frame->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;
     } else {
-        const bool   mwir  = band == BAND_MWIR;
-        const double low_m = mwir ? 3.4e-6 : 8e-6, high_m = mwir ? 4.8e-6 : 12e-6;
-        double       slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
-        planck_band(low_m, high_m, 300, &slope);
-        d.noise_sigma = slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
+        const bool   mwir = band == BAND_MWIR;
+        double       low_m, high_m, slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
+        preset_band(&low_m, &high_m, (Band)band, -1);
+        const double at_300_k = planck_band(low_m, high_m, 300, &slope);
+        d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
         d.min_span    = 2 * slope; /* never stretch less than 2 K over the screen */
         d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
+        if (chain)
+            d.min_span = chain_counts_at(chain, 0, at_300_k + d.min_span) - chain_counts_at(chain, 0, at_300_k);
+    }
+    if (chain) {
+        d.level_low  = chain_counts_at(chain, 0, d.level_low);
+        d.level_high = chain_counts_at(chain, 0, d.level_high);
     }
     return d;
 }
 
+static Status write_raw(const FrameFiles *frame, int band, int planes)
+{
+    const Chain *chain = frame->chain[band];
+    const int    w     = frame->picture->width, h = frame->picture->height;
+    const size_t count = (size_t)w * (size_t)h;
+    char         path[path_size];
+    frame_path(path, frame, "raw", band_name((Band)band), "png");
+    if (planes == 1) return image_write_png(path, chain_counts(chain, 0), w, h, 1, 16);
+    uint16_t *rgb = malloc(3 * count * sizeof *rgb);
+    if (!rgb) return STATUS_NO_MEMORY;
+    for (int c = 0; c < 3; c++)
+        for (size_t i = 0; i < count; i++) rgb[3 * i + (size_t)c] = chain_counts(chain, c)[i];
+    const Status status = image_write_png(path, rgb, w, h, 3, 16);
+    free(rgb);
+    return status;
+}
+
+/* One task a band at a time, frame after frame: the level's memory is its own. */
+static DetectorLevel follow_level(const FrameFiles *frame, int band, const DetectorConfig *detector, DetectorLevel now)
+{
+    FrameLevel *state = &frame->level[band];
+    if (!detector->auto_level) return now;
+    if (!state->known) state->level = now;
+    detector_level_follow(&state->level, now, frame->time_s - state->time_s, frame->config->detector.agc_s);
+    state->known  = true;
+    state->time_s = frame->time_s;
+    return state->level;
+}
+
+/* Runs the band's detector; display picture and raw counts, as asked for. */
 static Status write_png(const FrameFiles *frame, int band)
 {
     char           path[path_size];
-    const Picture *p     = frame->picture;
-    const size_t   count = (size_t)p->width * (size_t)p->height;
-    const int      bits  = band == BAND_COUNT ? 8 : frame->config->detector.bits;
-    const bool     rgb   = band == BAND_COUNT || (band == BAND_OPTICAL && p->optical[1]);
-    uint8_t       *shown = malloc(count * 6);
-    float         *noisy = malloc(count * 3 * sizeof *noisy);
+    const Picture *p      = frame->picture;
+    const size_t   count  = (size_t)p->width * (size_t)p->height;
+    const int      bits   = band == BAND_COUNT ? 8 : frame->config->detector.bits;
+    const bool     rgb    = band == BAND_COUNT || (band == BAND_OPTICAL && p->optical[1]);
+    Chain         *chain  = band < BAND_COUNT ? frame->chain[band] : NULL;
+    uint8_t       *shown  = malloc(count * 6);
+    float         *noisy  = malloc(count * 3 * sizeof *noisy);
     Status         status = STATUS_NO_MEMORY;
     if (!shown || !noisy) goto done;
+    status = STATUS_OK;
 
     if (band == BAND_COUNT) {
         truth_preview(shown, p->range_m, p->entity, p->normal[2], count, frame->snapshot);
     } else if (band == BAND_RADAR) {
         detector_display_db(shown, p->radar, count, detector_radar_range_db, bits);
     } else {
-        const float *in[3] = {NULL, NULL, NULL};
-        const float *out[3] = {noisy, noisy + count, noisy + 2 * count};
-        const int    planes = rgb ? 3 : 1;
-        for (int c = 0; c < planes; c++) in[c] = band == BAND_OPTICAL ? p->optical[c] : band == BAND_MWIR ? p->mwir : p->lwir;
+        const float         *in[3] = {NULL, NULL, NULL}, *out[3] = {noisy, noisy + count, noisy + 2 * count};
+        const int            planes   = band_radiance(in, p, band);
         const DetectorConfig detector = detector_of(frame, band);
-        for (int c = 0; c < planes; c++)
-            detector_noise(noisy + (size_t)c * count, in[c], 0, count, detector.noise_sigma, (uint64_t)frame->config->seed,
-                           (uint32_t)(3 * band + c), (uint32_t)frame->frame);
-        const DetectorLevel level = detector_level(&detector, out, planes, count);
+        if (chain) {
+            chain_run(chain, in, frame->frame, frame->rate_px_s);
+            for (int c = 0; c < planes; c++) out[c] = chain_values(chain, c);
+            if (frame->config->detector.raw) status = write_raw(frame, band, planes);
+        } else {
+            for (int c = 0; c < planes; c++)
+                detector_noise(noisy + (size_t)c * count, in[c], 0, count, detector.noise_sigma,
+                               (uint64_t)frame->config->seed, (uint32_t)(3 * band + c), (uint32_t)frame->frame);
+        }
+        const DetectorLevel level = follow_level(frame, band, &detector, detector_level(&detector, out, planes, count));
         if (rgb)
             detector_display_rgb(shown, out, count, &detector, level);
         else
-            detector_display(shown, noisy, count, &detector, level);
+            detector_display(shown, out[0], count, &detector, level);
     }
-    frame_path(path, frame, "frames", band < BAND_COUNT ? band_name((Band)band) : "truth", "png");
-    status = image_write_png(path, shown, p->width, p->height, rgb ? 3 : 1, bits);
+    if (frame->png && status == STATUS_OK) {
+        frame_path(path, frame, "frames", band < BAND_COUNT ? band_name((Band)band) : "truth", "png");
+        status = image_write_png(path, shown, p->width, p->height, rgb ? 3 : 1, bits);
+    }
 
 done:
     free(shown);
@@ -386,8 +481,10 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
     add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
     for (int b = 0; b < BAND_COUNT; b++)
         if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
-    for (int b = 0; b <= BAND_COUNT; b++)
-        if (frame->png && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+    for (int b = 0; b <= BAND_COUNT; b++) {
+        const bool raw = b < BAND_COUNT && frame->chain[b] && frame->config->detector.raw;
+        if ((frame->png || raw) && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+    }
     if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
     pool_run(pool, jobs.count + 1, run_job, &jobs);
     for (int i = 0; i < jobs.count; i++)

@@ -1,10 +1,21 @@
-/* sensor/node/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png. */
+/* sensor/node/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the aperture, and
+ * what a display behind the detector shows. Raw counts of a band with a sensor: OUT/raw/<band>/NNNNNN.png, 16 bits. */
 #ifndef SENSOR_NODE_FRAME_FILES_H
 #define SENSOR_NODE_FRAME_FILES_H
 
 #include "render/render.h"
+#include "sensor/detector/chain.h"
+#include "sensor/detector/level.h"
 #include "sensor/node/config.h"
+#include "sensor/node/truth.h"
 #include "sensor/publish/plane_hash.h"
+
+/* An automatic level that follows; begins with the first frame made. */
+typedef struct FrameLevel {
+    bool          known;
+    double        time_s;
+    DetectorLevel level;
+} FrameLevel;
 
 typedef struct FrameFiles {
     const char     *out;            /* folder of this host; exists, with its subfolders */
@@ -17,15 +28,18 @@ typedef struct FrameFiles {
     int             frame;
     double          time_s, unix_s;
     bool            png;
+    Chain *const   *chain;          /* [BAND_COUNT]; NULL: white noise as configured */
+    FrameLevel     *level;          /* [BAND_COUNT] */
+    double          rate_px_s[2];   /* how the scene moves over the picture: column, row */
 } FrameFiles;
 
 /* clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
- * prepare: that, and makes OUT and the folders below it for these bands; a clear message when the place
- * cannot be written. */
+ * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
+ * raw; a clear message when the place cannot be written. */
 void   frame_files_clear(const char *out);
-Status frame_files_prepare(const char *out, unsigned bands);
-/* Sigma of the detector's noise in one optical channel, W/(m2 sr): a share of the picture's mean. */
-double frame_optical_sigma(const Picture *picture, const Config *config);
+Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
+/* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
+void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
 

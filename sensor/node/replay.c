@@ -239,6 +239,7 @@ typedef struct Run {
     unsigned      bands;
     int           exercise; /* -1: all */
     Choices       choices; /* those that all hosts share */
+    Sensors       sensors;
 } Run;
 
 static Status write_run(const Run *run, const char *out, const HostPlan *plan, const Choices *choices,
@@ -312,7 +313,7 @@ static Status run_host(Run *run, const char *host_text)
     const SessionShared shared = {.config = &o->config, .log = &run->log, .survey = &run->survey,
                                   .catalog = run->catalog, .world = world, .pool = run->pool, .unix_s = unix_s,
                                   .bands = run->bands, .exercise = run->exercise, .png = o->png,
-                                  .no_skip = o->no_skip, .speed = o->speed,
+                                  .no_skip = o->no_skip, .speed = o->speed, .sensors = &run->sensors,
                                   .config_sha256 = run->config_sha256};
     status = session_run(&result, &shared, &plan, out);
     if (result.frames > 0) { /* what could be shown is recorded, even when it stopped early */
@@ -361,10 +362,11 @@ static Status check_hosts(const Run *run)
 
 static Status open_run(Run *run)
 {
-    const Options *o = &run->options;
-    char           path[path_size];
+    Options *o = &run->options;
+    char     path[path_size];
     if (!parse_bands(&run->bands, o->config.sensor.bands)) return STATUS_BAD_VALUE;
-    Status status = dis_log_open(&run->log, o->log, o->config.exercise.port);
+    Status status = sensors_choose(&run->sensors, &run->choices, &o->config, run->bands);
+    if (status == STATUS_OK) status = dis_log_open(&run->log, o->log, o->config.exercise.port);
     if (status == STATUS_OK) status = sha256_file(run->log_sha256, o->log);
     if (status == STATUS_OK) status = hash_config(run->config_sha256, o);
     if (status != STATUS_OK) return status;

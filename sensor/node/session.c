@@ -2,6 +2,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/node/player.h"
+#include "sensor/node/scene_rate.h"
 #include "sensor/node/seeker.h"
 #include "sensor/publish/records.h"
 
@@ -25,6 +26,10 @@ typedef struct Session {
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
+    double               r_ecef_from_cam[2][9]; /* of a host's gimbal at the last two ticks */
+    int                  ticks;         /* how many there were, to 2 */
+    Chain               *chain[BAND_COUNT];  /* of the bands with a sensor of etc/sensors.csv */
+    FrameLevel           level[BAND_COUNT];
 } Session;
 
 /* ---- where the eye is, and where it looks ----------------------------------------------------- */
@@ -88,6 +93,9 @@ static void step_gimbal(Session *s, double t_s)
         m3_tmul_v3(d_body, host.r_ecef_from_body, d_ecef);
     }
     seeker_step(&s->seeker, d_body);
+    memcpy(s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], sizeof s->r_ecef_from_cam[0]);
+    seeker_camera(s->r_ecef_from_cam[1], &s->seeker, host.r_ecef_from_body);
+    if (s->ticks < 2) s->ticks++;
 }
 
 /* Feeds the log and turns the gimbal up to t_s, on the fixed grid of ticks. */
@@ -107,7 +115,17 @@ typedef struct Eye {
     double   r_ecef_from_body[9];
     int      hidden; /* snapshot index of the host; -1 */
     bool     at_limit;
+    double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
+
+/* A thing at rest where the middle of the picture looks. */
+static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
+{
+    const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);
+    double       v_cam_mps[3];
+    m3_tmul_v3(v_cam_mps, eye->state.r_ecef_from_cam, eye->state.v_ecef_mps);
+    scene_rate(rate_px_s, eye->w_cam_rps, v_cam_mps, eye->view.focal_px, picture->range_m[middle]);
+}
 
 static void finish_eye(Eye *eye, const Session *s)
 {
@@ -141,6 +159,7 @@ static bool host_eye(Eye *eye, const Session *s, Snapshot *snapshot, double t_s)
     seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_body);
     eye->hidden = eye->state.host_index = index;
     eye->at_limit                       = s->seeker.at_limit;
+    if (s->ticks == 2) turn_rate(eye->w_cam_rps, s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], 1.0 / seeker_ticks_per_s);
     finish_eye(eye, s);
     return true;
 }
@@ -162,17 +181,28 @@ static void observer_place(double p_ecef[3], double aim_enu[3], Session *s, doub
     ecef_from_enu(p_ecef, frame, p_enu);
 }
 
+static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3], const LocalFrame *frame)
+{
+    double p_enu[3], d_enu[3];
+    enu_from_ecef(p_enu, frame, p_ecef);
+    v3_sub(d_enu, aim_enu, p_enu);
+    camera_upright(r_enu_from_cam, d_enu);
+}
+
 static bool observer_eye(Eye *eye, Session *s, double t_s)
 {
     static const double half_s = 0.005; /* velocity by difference: it rides with the aim, and over the hills */
     const LocalFrame   *frame  = &s->shared->world->frame;
-    double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3];
+    double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
     if (!s->aim_known) {
         memcpy(s->p_aim_ecef, s->plan->p_aim_ecef, sizeof s->p_aim_ecef);
         s->aim_known = true;
     }
     observer_place(before_ecef, aim_enu, s, t_s - half_s);
+    observer_camera(r_before, before_ecef, aim_enu, frame);
     observer_place(after_ecef, aim_enu, s, t_s + half_s);
+    observer_camera(r_after, after_ecef, aim_enu, frame);
+    turn_rate(eye->w_cam_rps, r_before, r_after, 2 * half_s);
     observer_place(eye->state.p_ecef, aim_enu, s, t_s);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
     enu_from_ecef(p_enu, frame, eye->state.p_ecef);
@@ -261,7 +291,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
 
     Air           air;
     Sun           sun;
-    double        r_host_from_enu[9];
+    double        r_host_from_enu[9] = {0};
     Picture       picture;
     RenderRequest request;
     status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s);
@@ -273,16 +303,19 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     turn_normals(&picture, r_host_from_enu);
 
     Target          *target = arena_alloc(s->frame_arena, (size_t)snapshot.count, sizeof *target);
-    const TruthNoise noise  = {frame_optical_sigma(&picture, shared->config), shared->config->detector.netd_mwir_k,
-                               shared->config->detector.netd_lwir_k};
+    TruthNoise       noise;
+    frame_expose(&noise, s->chain, &picture, shared->config);
     if (!target) return STATUS_NO_MEMORY;
     const int targets = truth_targets(target, &picture, shared->world, &snapshot, &request, &eye.state, &noise);
 
     const double      rendered_s = wall_clock_s();
+    double            rate_px_s[2];
+    rate_of_scene(rate_px_s, &eye, &picture);
     const FrameFiles  files  = {.out = s->out, .config = shared->config, .world = shared->world, .picture = &picture,
                                 .snapshot = &snapshot, .request = &request, .host = s->host_text,
                                 .config_sha256 = shared->config_sha256, .frame = frame, .time_s = t_s,
-                                .unix_s = shared->unix_s + t_s, .png = shared->png};
+                                .unix_s = shared->unix_s + t_s, .png = shared->png, .chain = s->chain,
+                                .level = s->level, .rate_px_s = {rate_px_s[0], rate_px_s[1]}};
     FrameRecord       record = {.frame = frame, .time_s = t_s, .snapshot = &snapshot, .catalog = shared->catalog,
                                 .host = eye.hidden >= 0 ? &snapshot.entity[eye.hidden] : NULL, .request = &request,
                                 .hfov_rad = shared->config->sensor.hfov_deg * rad_per_deg,
@@ -351,7 +384,16 @@ static Status open_session(Session *s)
     Status status = entity_table_create(&s->table, &table, shared->catalog, path);
     if (status == STATUS_OK)
         status = player_create(&s->player, shared->log, shared->exercise, shared->config->causal);
-    if (status == STATUS_OK) status = frame_files_prepare(s->out, shared->bands);
+    unsigned raw = 0;
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
+        if (!shared->sensors->has[b]) continue;
+        const bool rgb = b == BAND_OPTICAL && strcmp(shared->config->sensor.optical, "rgb") == 0;
+        status = chain_create(&s->chain[b], &shared->sensors->preset[b], shared->config->sensor.width_px,
+                              shared->config->sensor.height_px, rgb ? 3 : 1, shared->config->sensor.samples,
+                              (uint64_t)shared->config->seed);
+        raw |= shared->config->detector.raw ? 1u << b : 0;
+    }
+    if (status == STATUS_OK) status = frame_files_prepare(s->out, shared->bands, raw);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
     s->truth = fopen(path, "w");
@@ -422,6 +464,7 @@ Status session_run(SessionResult *result, const SessionShared *shared, const Hos
         log_error("replay: cannot write truth.jsonl: %s", strerror(errno));
         status = STATUS_IO;
     }
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s.chain[b]);
     player_destroy(s.player);
     entity_table_destroy(s.table);
     arena_destroy(s.frame_arena);

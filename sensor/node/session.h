@@ -5,6 +5,7 @@
 #include "entities/entity_table.h"
 #include "render/render.h"
 #include "sensor/node/choices.h"
+#include "sensor/node/sensors.h"
 #include "sensor/publish/plane_hash.h"
 
 /* What all hosts of one run share. */
@@ -21,6 +22,7 @@ typedef struct SessionShared {
     bool           png, no_skip;
     double         speed;     /* exercise seconds a second; INFINITY: as fast as it goes */
     const char    *config_sha256;
+    const Sensors *sensors;
 } SessionShared;
 
 enum { session_stages = 6 };

@@ -72,6 +72,26 @@ static void the_canonical_text_names_every_change(void **state)
     CHECK(strlen(plain) < sizeof plain / 2);
 }
 
+/* What a preset must leave alone is what somebody set, by file or by line, even to the default's own value. */
+static void what_was_given_is_known(void **state)
+{
+    (void)state;
+    Config config = config_default();
+    CHECK(!config_given(&config, "sensor.width_px") && !config_given(&config, "sensor.hfov_deg"));
+    assert_int_equal(read_text(&config, "sensor:\n  width_px: 720\n"), STATUS_OK);
+    CHECK(config_given(&config, "sensor.width_px") && !config_given(&config, "sensor.hfov_deg"));
+    assert_int_equal(config_set(&config, "sensor.hfov_deg", "6", "test"), STATUS_OK);
+    CHECK(config_given(&config, "sensor.hfov_deg"));
+    assert_int_equal(config_set(&config, "sensor.height_px", "3", "test"), STATUS_BAD_VALUE);
+    CHECK(!config_given(&config, "sensor.height_px"));
+
+    /* a key that only a sensor can obey */
+    assert_int_equal(config_set(&config, "detector.f_number", "2", "test"), STATUS_OK);
+    assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
+    assert_int_equal(config_set(&config, "sensor.preset", "tv", "test"), STATUS_OK);
+    assert_int_equal(config_check(&config), STATUS_OK);
+}
+
 static void ranges_of_several_keys_are_checked(void **state)
 {
     (void)state;
@@ -90,6 +110,7 @@ int main(void)
         cmocka_unit_test(a_file_fills_over_the_defaults),
         cmocka_unit_test(what_is_wrong_is_said_and_nothing_applied),
         cmocka_unit_test(the_canonical_text_names_every_change),
+        cmocka_unit_test(what_was_given_is_known),
         cmocka_unit_test(ranges_of_several_keys_are_checked),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,7 +1,8 @@
 /* The first detector: noise by its statistics, levels by exact order statistics, display by its invariants. */
 #include "tests/check.h"
 
-#include "sensor/detector/detector.h"
+#include "sensor/detector/noise3d.h"
+#include "sensor/detector/quantise.h"
 
 enum { pixels = 96 * 64, frames = 40 };
 

@@ -1,4 +1,4 @@
-#include "sensor/detector/detector.h"
+#include "sensor/detector/level.h"
 
 /* ---- configuration ------------------------------------------------------------------------ */
 
@@ -32,19 +32,6 @@ Status detector_check_config(const DetectorConfig *c)
         ok = false;
     }
     return ok ? STATUS_OK : STATUS_BAD_VALUE;
-}
-
-/* ---- noise -------------------------------------------------------------------------------- */
-
-void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma, uint64_t seed,
-                    uint32_t stream, uint32_t frame)
-{
-    if (!(noise_sigma > 0)) {
-        if (out != in) memmove(out, in, count * sizeof *out);
-        return;
-    }
-    for (size_t i = 0; i < count; i++)
-        out[i] = (float)(in[i] + noise_sigma * random_normal(seed, stream, frame, first + i));
 }
 
 /* ---- gain and level ----------------------------------------------------------------------- */
@@ -133,96 +120,10 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
     return level;
 }
 
-/* ---- display ------------------------------------------------------------------------------ */
-
-/* Linear light 0 .. 1 -> sRGB code value 0 .. 1, IEC 61966-2-1. */
-static double srgb_encode(double linear)
+void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s)
 {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
-/* The curve as a table of 4096 intervals, linear between: within 1.2e-4 of the curve, a thirtieth of an 8-bit
- * step; monotone, since the curve is. */
-enum { curve_intervals = 4096 };
-
-/* Gain, level and curve of one display, folded: code = curve(in * scale + shift) * full. */
-typedef struct Display {
-    double scale, shift, full;
-    bool   gamma;
-    float  curve[curve_intervals + 2];
-} Display;
-
-static void display_prepare(Display *d, const DetectorConfig *config, DetectorLevel level)
-{
-    const double span = level.high - level.low, middle = 0.5 * (level.low + level.high);
-    d->scale = config->gain / span;
-    d->shift = 0.5 - middle * d->scale + config->offset;
-    d->full = config->bits == 16 ? 65535 : 255;
-    d->gamma = config->display_gamma;
-    for (int i = 0; d->gamma && i <= curve_intervals; i++)
-        d->curve[i] = (float)srgb_encode((double)i / curve_intervals);
-    d->curve[curve_intervals + 1] = 1; /* so that the very end needs no branch */
-}
-
-static inline double display_code(const Display *d, float in)
-{
-    /* written so that NaN falls to 0 at the first comparison */
-    double x = in * d->scale + d->shift;
-    x = x > 0 ? x : 0;
-    x = x < 1 ? x : 1;
-    if (d->gamma) {
-        const double at = x * curve_intervals;
-        const int    i = (int)at;
-        x = d->curve[i] + (at - i) * ((double)d->curve[i + 1] - d->curve[i]);
-    }
-    return x * d->full + 0.5;
-}
-
-static void display_channel(void *out, int stride, int channel, const float *in, size_t count, const Display *d)
-{
-    if (d->full > 255) {
-        uint16_t *code = (uint16_t *)out + channel;
-        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint16_t)display_code(d, in[i]);
-    } else {
-        uint8_t *code = (uint8_t *)out + channel;
-        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint8_t)display_code(d, in[i]);
-    }
-}
-
-void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level)
-{
-    Display d;
-    display_prepare(&d, config, level);
-    display_channel(out, 1, 0, in, count, &d);
-}
-
-void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
-                          DetectorLevel level)
-{
-    Display d;
-    display_prepare(&d, config, level);
-    for (int c = 0; c < 3; c++) display_channel(out, 3, c, in[c], count, &d);
-}
-
-void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits)
-{
-    float brightest = 0;
-    for (size_t i = 0; i < count; i++)
-        if (isfinite(power[i]) && power[i] > brightest) brightest = power[i];
-
-    /* brightest 0: nothing shows, and the division below is never used */
-    const double full = bits == 16 ? 65535 : 255;
-    const double per_max = brightest > 0 ? 1.0 / brightest : 0;
-    const double least = brightest * pow(10, -0.1 * dynamic_range_db);
-    for (size_t i = 0; i < count; i++) {
-        double x = 0;
-        if (isinf(power[i]) && power[i] > 0)
-            x = 1;
-        else if (power[i] > least && power[i] > 0) /* false for NaN; spares the logarithm of the dark ones */
-            x = clamp(1 + 10 * log10(power[i] * per_max) / dynamic_range_db, 0, 1);
-        if (bits == 16)
-            ((uint16_t *)out)[i] = (uint16_t)(x * full + 0.5);
-        else
-            ((uint8_t *)out)[i] = (uint8_t)(x * full + 0.5);
-    }
+    const double share = time_s > 0 ? -expm1(-fmax(0, step_s) / time_s) : 1;
+    state->low += share * (now.low - state->low);
+    state->high += share * (now.high - state->high);
+    if (share == 1) *state = now;
 }

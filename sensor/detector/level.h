@@ -1,10 +1,9 @@
-/* sensor/detector/detector.h: from radiance to what a screen shows: noise, gain and level, quantisation.
+/* sensor/detector/level.h: gain and level: what black and white of a display stand for.
  *
- * A first detector. Pure functions on planes of `count` pixels, no memory of earlier frames, no allocation.
- * Noise is a function of (seed, stream, frame, pixel), so a plane may be cut into pieces in any way and
- * done by any thread. NaN shows as 0, -inf as 0, +inf as full scale; none of them moves the levels. */
-#ifndef SENSOR_DETECTOR_DETECTOR_H
-#define SENSOR_DETECTOR_DETECTOR_H
+ * Pure functions on planes of `count` values, no allocation; what memory an automatic level has, its caller keeps.
+ * Values that are not finite never move the levels. */
+#ifndef SENSOR_DETECTOR_LEVEL_H
+#define SENSOR_DETECTOR_LEVEL_H
 
 #include "pitviper.h"
 
@@ -31,25 +30,13 @@ typedef struct DetectorLevel {
     double low, high;
 } DetectorLevel;
 
-/* out[i] = in[i] + noise_sigma N(0, 1) for pixels first .. first + count - 1 of the frame; in and out begin
- * at `first` and may be the same. Non-finite values stay as they are. */
-void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma, uint64_t seed,
-                    uint32_t stream, uint32_t frame);
-
 /* Gain and level from the finite values of one or several planes together (R G B: one gain, so colours
  * stay). Percentiles are order statistics of all values, exact. A constant plane, or one constant to
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* Quantisation to config->bits: monotone, saturating, rounding to nearest. out: uint8_t or uint16_t [count]. */
-void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level);
-/* Three planes to RGB interleaved, one level for all three. out: uint8_t or uint16_t [3 * count]. */
-void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
-                          DetectorLevel level);
-
-/* Radar: decibels below the brightest finite pixel. 0 dB is full scale, -dynamic_range_db and below is 0, as
- * is any pixel <= 0 or NaN. Power in, linear; bits 8 or 16. */
-static const double detector_radar_range_db = 60;
-void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits);
+/* An automatic level with a time constant: state, the last frame's, goes to `now` by 1 - exp(-step_s / time_s).
+ * time_s 0: at once, no memory. */
+void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s);
 
 #endif

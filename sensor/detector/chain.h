@@ -1,0 +1,38 @@
+/* sensor/detector/chain.h: one band's sensor from radiance at the aperture to raw counts.
+ *
+ *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, footprint, smear, jitter -> each line at
+ *     its own time -> gain that differs from pixel to pixel -> shot, dark and read noise, three-dimensional noise, noise along
+ *     lines -> AC coupling -> well, converter -> faulty pixels, and their patches
+ *
+ * A frame needs no other: all noise is a function of (seed, frame, row, column), so any frame may be made first. */
+#ifndef SENSOR_DETECTOR_CHAIN_H
+#define SENSOR_DETECTOR_CHAIN_H
+
+#include "sensor/detector/preset.h"
+
+typedef struct Chain Chain;
+
+/* samples: rays a side of a pixel, which the picture has averaged (MtfChain). channels: 3 (R G B) or 1. */
+Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int channels, int samples,
+                    uint64_t seed);
+void   chain_destroy(Chain *chain);
+const SensorPreset *chain_preset(const Chain *chain);
+
+/* Sets the exposure for these planes, [channels], in-band W/(m2 sr). Before the calls below. */
+void chain_expose(Chain *chain, const float *const radiance[]);
+/* rate_px_s: how the scene moves over the picture, column and row. */
+void chain_run(Chain *chain, const float *const radiance[], int frame, const double rate_px_s[2]);
+/* Of the last run: [height][width], 0 .. 2^bits - 1; as numbers for levels and displays, the same. */
+const uint16_t *chain_counts(const Chain *chain, int channel);
+const float    *chain_values(const Chain *chain, int channel);
+
+/* Counts that this radiance gives, unbounded, before noise. */
+double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
+/* Rms of everything random at this radiance, in it: temporal, fixed and along lines. Faulty pixels are not in it. */
+double chain_sigma(const Chain *chain, int channel, double radiance_w_m2_sr);
+/* The same as a temperature difference of a black body, K. */
+double chain_netd_k(const Chain *chain, double temp_k);
+/* Electrons a count. */
+double chain_step_e(const Chain *chain);
+
+#endif

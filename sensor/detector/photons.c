@@ -1,0 +1,97 @@
+#include "sensor/detector/photons.h"
+
+#include "render/planck.h"
+
+#include <stdlib.h>
+
+/* Exact since the 2019 SI. */
+static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0, k_j_k = 1.380649e-23;
+
+/* 8-point Gauss-Legendre on [-1, 1], the positive half (Abramowitz & Stegun, table 25.4). */
+static const double gauss_node[4] = {0.1834346424956498049394761424, 0.5255324099163289858177390492,
+                                     0.7966664774136267395915539365, 0.9602898564975362316835608686};
+static const double gauss_weight[4] = {0.3626837833783619829651504493, 0.3137066458778872873379622020,
+                                       0.2223810344533744705443559944, 0.1012285362903762591525313543};
+
+double photon_band(double low_m, double high_m, double temp_k, double *derivative)
+{
+    enum { panels = 16 };
+    if (!(low_m > 0 && high_m > low_m && isfinite(high_m) && temp_k > 0)) {
+        if (derivative) *derivative = NAN;
+        return NAN;
+    }
+    const double hc = h_j_s * c_mps, half_m = 0.5 * (high_m - low_m) / panels;
+    double       sum = 0, slope = 0;
+    for (int p = 0; p < panels; p++)
+        for (int i = 0; i < 8; i++) {
+            const double at = i < 4 ? -gauss_node[i] : gauss_node[i - 4];
+            const double w_m = low_m + half_m * (2 * p + 1 + at), x = hc / (w_m * k_j_k * temp_k);
+            const double q = gauss_weight[i & 3] * half_m * planck_radiance(w_m, temp_k) * w_m / hc;
+            sum += q;
+            slope += q * x / (temp_k * -expm1(-x));
+        }
+    if (derivative) *derivative = slope;
+    return sum;
+}
+
+double photon_etendue(const PhotonDetector *d)
+{
+    const double solid_angle_sr = pi_rad / (4 * d->f_number * d->f_number + 1);
+    return solid_angle_sr * d->pitch_m * d->pitch_m * d->transmission * d->qe * d->integration_s;
+}
+
+double photon_electrons(const PhotonDetector *d, double temp_k, double *per_k)
+{
+    double       slope;
+    const double k = photon_etendue(d), q = photon_band(d->low_m, d->high_m, temp_k, &slope);
+    if (per_k) *per_k = k * slope;
+    return k * q;
+}
+
+double photon_netd_k(const PhotonDetector *d, double temp_k, double count_e, double extra_e)
+{
+    double       per_k;
+    const double n = photon_electrons(d, temp_k, &per_k);
+    return sqrt(n + d->dark_e + d->read_e * d->read_e + count_e * count_e / 12 + extra_e * extra_e) / per_k;
+}
+
+/* ---- table ------------------------------------------------------------------------------------ */
+
+/* Photons over watts hardly change with temperature: knots even in the logarithm of radiance, linear between. */
+enum { knots = 4096 };
+
+struct PhotonTable {
+    double low, high, per_log; /* logarithms of the ends; knots a unit of it. per_log 0: one ratio for all */
+    double ratio[knots];       /* electrons / (W/(m2 sr)) */
+};
+
+Status photon_table_create(PhotonTable **out, const PhotonDetector *d, bool emitted)
+{
+    PhotonTable *t = calloc(1, sizeof *t);
+    if (!t) return STATUS_NO_MEMORY;
+    const double k = photon_etendue(d);
+    t->ratio[0]    = k * 0.5 * (d->low_m + d->high_m) / (h_j_s * c_mps);
+    if (emitted) {
+        t->low     = log(planck_band(d->low_m, d->high_m, 180, NULL));
+        t->high    = log(planck_band(d->low_m, d->high_m, 1500, NULL));
+        t->per_log = (knots - 1) / (t->high - t->low);
+        for (int i = 0; i < knots; i++) {
+            const double radiance = exp(t->low + i / t->per_log);
+            t->ratio[i] = k * photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance), NULL) /
+                          radiance;
+        }
+    }
+    *out = t;
+    return STATUS_OK;
+}
+
+void photon_table_destroy(PhotonTable *table) { free(table); }
+
+double photon_table_electrons(const PhotonTable *t, double radiance)
+{
+    if (!(radiance > 0)) return isnan(radiance) ? NAN : 0;
+    if (t->per_log == 0) return radiance * t->ratio[0];
+    const double at = clamp((log(radiance) - t->low) * t->per_log, 0, knots - 1);
+    const int    i  = at < knots - 2 ? (int)at : knots - 2;
+    return radiance * (t->ratio[i] + (at - i) * (t->ratio[i + 1] - t->ratio[i]));
+}

@@ -1,0 +1,137 @@
+#include "sensor/detector/preset.h"
+
+typedef struct Column {
+    const char *name;
+    size_t      offset;
+    double      low, high, unit; /* of the file; unit: factor to the field's */
+} Column;
+
+#define FIELD(member) offsetof(SensorPreset, member)
+
+static const Column columns[] = {
+    {"width_px", FIELD(width_px), 8, 8192, 1},
+    {"height_px", FIELD(height_px), 8, 8192, 1},
+    {"hfov_deg", FIELD(hfov_deg), 0.01, 120, 1},
+    {"f_number", FIELD(photons.f_number), 0.5, 100, 1},
+    {"obscuration", FIELD(obscuration), 0, 0.95, 1},
+    {"pitch_um", FIELD(photons.pitch_m), 0.5, 1000, 1e-6},
+    {"footprint", FIELD(footprint), 0.1, 1, 1},
+    {"transmission", FIELD(photons.transmission), 0.001, 1, 1},
+    {"qe", FIELD(photons.qe), 0.001, 1, 1},
+    {"integration_ms", FIELD(photons.integration_s), 1e-6, 1e4, 1e-3},
+    {"dark_e_s", FIELD(dark_e_s), 0, 1e15, 1},
+    {"read_e", FIELD(photons.read_e), 0, 1e9, 1},
+    {"well_e", FIELD(photons.well_e), 100, 1e12, 1},
+    {"bits", FIELD(bits), 8, 16, 1},
+    {"jitter_px", FIELD(jitter_px), 0, 10, 1},
+    {"tv", FIELD(ratio.sigma[NOISE_TV]), 0, 100, 1},
+    {"th", FIELD(ratio.sigma[NOISE_TH]), 0, 100, 1},
+    {"vh", FIELD(ratio.sigma[NOISE_VH]), 0, 100, 1},
+    {"t", FIELD(ratio.sigma[NOISE_T]), 0, 100, 1},
+    {"v", FIELD(ratio.sigma[NOISE_V]), 0, 100, 1},
+    {"h", FIELD(ratio.sigma[NOISE_H]), 0, 100, 1},
+    {"prnu", FIELD(prnu), 0, 0.5, 1},
+    {"line_us", FIELD(scan.line_s), 0, 1e6, 1e-6},
+    {"active", FIELD(scan.active), 0, 1, 1},
+    {"ac_per_line", FIELD(ac_per_line), 0, 100, 1},
+    {"line_noise", FIELD(line_noise), 0, 100, 1},
+    {"line_noise_px", FIELD(line_noise_px), 0, 1e4, 1},
+    {"bad_share", FIELD(bad_share), 0, 0.2, 1},
+    {"bad_clustered", FIELD(bad_clustered), 0, 1, 1},
+    {"bad_patched", FIELD(bad_patched), 0, 1, 1},
+};
+enum { column_count = sizeof columns / sizeof columns[0] };
+
+void preset_band(double *low_m, double *high_m, Band band, int channel)
+{
+    static const double low_um[BAND_COUNT] = {0.4, 3.4, 8, NAN}, high_um[BAND_COUNT] = {0.7, 4.8, 12, NAN};
+    *low_m  = low_um[band] * 1e-6;
+    *high_m = high_um[band] * 1e-6;
+    if (band == BAND_OPTICAL && channel >= 0) { /* R first */
+        *low_m  = (0.6 - 0.1 * channel) * 1e-6;
+        *high_m = (0.7 - 0.1 * channel) * 1e-6;
+    }
+}
+
+void preset_refresh(SensorPreset *p)
+{
+    preset_band(&p->photons.low_m, &p->photons.high_m, p->band, -1);
+    p->photons.dark_e         = p->dark_e_s * p->photons.integration_s;
+    p->ratio.sigma[NOISE_TVH] = 1;
+}
+
+static Status bad_word(const Table *t, int row, const char *column, const char *value, const char *words)
+{
+    log_error("sensors: %s:%d: %s: '%s' is not one of %s", t->path, t->line[row + 1], column, value, words);
+    return STATUS_BAD_VALUE;
+}
+
+/* A column that must be there. */
+static int need(const Table *t, const char *name)
+{
+    const int column = table_column(t, name);
+    if (column < 0) log_error("sensors: %s: no column %s", t->path, name);
+    return column;
+}
+
+static Status read_row(SensorPreset *out, const Table *t, int row)
+{
+    SensorPreset p = {.noise_scale = 1, .smear = true};
+    const int    band = need(t, "band"), exposure = need(t, "exposure"), scan = need(t, "scan");
+    if (band < 0 || exposure < 0 || scan < 0) return STATUS_BAD_VALUE;
+    snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
+
+    const char *text = table_text(t, row, band);
+    int         b    = 0;
+    while (b < BAND_RADAR && strcmp(band_name((Band)b), text) != 0) b++;
+    if (b == BAND_RADAR) return bad_word(t, row, "band", text, "optical, mwir, lwir");
+    p.band = (Band)b;
+    text   = table_text(t, row, exposure);
+    if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0) return bad_word(t, row, "exposure", text, "fixed, auto");
+    p.auto_exposure = text[0] == 'a';
+    text            = table_text(t, row, scan);
+    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0)
+        return bad_word(t, row, "scan", text, "stare, lines, both");
+    p.scan.bidirectional = text[0] == 'b';
+
+    for (int i = 0; i < column_count; i++) {
+        double    value;
+        const int column = need(t, columns[i].name);
+        if (column < 0) return STATUS_BAD_VALUE;
+        const Status status = table_number(&value, t, row, column, columns[i].low, columns[i].high);
+        if (status != STATUS_OK) return status;
+        value *= columns[i].unit;
+        memcpy((char *)&p + columns[i].offset, &value, sizeof value);
+    }
+    if (floor(p.bits) != p.bits || floor(p.width_px) != p.width_px || floor(p.height_px) != p.height_px) {
+        log_error("sensors: %s:%d: bits=%g, width_px=%g and height_px=%g must be whole numbers", t->path, t->line[row + 1],
+                  p.bits, p.width_px, p.height_px);
+        return STATUS_BAD_VALUE;
+    }
+    preset_refresh(&p);
+    *out = p;
+    return STATUS_OK;
+}
+
+Status preset_read(SensorPreset *out, const char *path, const char *name)
+{
+    Table  table;
+    char   known[512] = "";
+    Status status     = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    const int column = need(&table, "name");
+    int       row    = -1;
+    status           = STATUS_BAD_VALUE;
+    for (int i = 0; column >= 0 && i < table.rows; i++) {
+        const char  *here   = table_text(&table, i, column);
+        const size_t length = strlen(known);
+        if (strcmp(here, name) == 0 && row < 0) row = i;
+        snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
+    }
+    if (row >= 0)
+        status = read_row(out, &table, row);
+    else if (column >= 0)
+        log_error("sensors: %s: no sensor named '%s'; there are: %s", path, name, known);
+    table_close(&table);
+    return status;
+}

@@ -1,0 +1,35 @@
+/* sensor/detector/preset.h: a sensor as a row of etc/sensors.csv. */
+#ifndef SENSOR_DETECTOR_PRESET_H
+#define SENSOR_DETECTOR_PRESET_H
+
+#include "render/view.h"
+#include "sensor/detector/noise3d.h"
+#include "sensor/detector/photons.h"
+#include "sensor/detector/scan.h"
+
+typedef struct SensorPreset {
+    char           name[32];
+    Band           band;               /* optical, mwir or lwir */
+    double         width_px, height_px, hfov_deg;
+    PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s */
+    double         obscuration, footprint, jitter_px;
+    bool           auto_exposure;
+    double         dark_e_s;
+    double         bits;
+    Noise3d        ratio;              /* of the temporal noise of a pixel, as etc/sensors.csv says; tvh: 1 */
+    double         prnu;
+    Scan           scan;
+    double         ac_per_line, line_noise, line_noise_px;
+    double         bad_share, bad_clustered, bad_patched;
+    double         noise_scale;        /* of all noise and non-uniformity; 1 */
+    bool           smear;              /* motion within the integration time, and between lines */
+} SensorPreset;
+
+/* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there is. */
+Status preset_read(SensorPreset *out, const char *path, const char *name);
+/* After fields were changed by hand. */
+void   preset_refresh(SensorPreset *preset);
+/* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of optical: R G B; -1: the whole. */
+void   preset_band(double *low_m, double *high_m, Band band, int channel);
+
+#endif

@@ -1,0 +1,18 @@
+/* sensor/node/sensors.h: which sensor of etc/sensors.csv each band has, with the user's own settings over it. */
+#ifndef SENSOR_NODE_SENSORS_H
+#define SENSOR_NODE_SENSORS_H
+
+#include "sensor/detector/chain.h"
+#include "sensor/node/choices.h"
+#include "sensor/node/config.h"
+
+typedef struct Sensors {
+    bool         has[BAND_COUNT];
+    SensorPreset preset[BAND_COUNT];
+} Sensors;
+
+/* Reads sensor.preset; raster and field of view of the first go into *config where the user has given none. A choice a
+ * sensor says what it can do. STATUS_BAD_VALUE, logged: an unknown name, two of one band, a band that is not shown. */
+Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
+
+#endif

@@ -1,0 +1,118 @@
+#include "sensor/probe.h"
+
+#include "sensor/detector/mtf.h"
+#include "sensor/detector/noise3d.h"
+#include "sensor/detector/photons.h"
+
+#include <stdlib.h>
+
+static double or_else(const ProbeValue *value, double otherwise) { return isnan(value->number) ? otherwise : value->number; }
+
+static bool whole(double x, double low, double high) { return x >= low && x <= high && floor(x) == x; }
+
+/* ---- mtf -------------------------------------------------------------------------------------- */
+
+static const char *mtf_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    (void)state;
+    const double   wavelength_um = in[0].number, f_number = in[1].number, pitch_um = in[3].number, f = in[6].number;
+    const MtfChain chain = {.cutoff_cyc_px = pitch_um / (wavelength_um * f_number), .obscuration = or_else(&in[2], 0),
+                            .footprint_px = 1, .samples = 1, .smear_px = {or_else(&in[4], 0), 0},
+                            .jitter_px = or_else(&in[5], 0)};
+    if (!(wavelength_um > 0 && f_number > 0 && pitch_um > 0)) return "wavelength_um, f_number and pitch_um must be above 0";
+    if (!(chain.obscuration >= 0 && chain.obscuration <= 0.95)) return "obscuration must be in 0 .. 0.95";
+    if (!(chain.smear_px[0] >= 0 && chain.jitter_px >= 0)) return "smear_px and jitter_px must not be negative";
+    out[0].number = mtf_optics(&chain, f, 0);
+    out[1].number = mtf_footprint(&chain, f, 0);
+    out[2].number = mtf_smear(&chain, f, 0);
+    out[3].number = mtf_jitter(&chain, f, 0);
+    out[4].number = mtf_chain(&chain, f, 0);
+    return NULL;
+}
+
+/* ---- netd ------------------------------------------------------------------------------------- */
+
+static const char *netd_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    (void)state;
+    const PhotonDetector d = {.low_m = in[0].number * 1e-6, .high_m = in[1].number * 1e-6, .f_number = in[3].number,
+                              .transmission = in[4].number, .qe = in[5].number, .pitch_m = in[6].number * 1e-6,
+                              .integration_s = in[7].number * 1e-3, .dark_e = or_else(&in[8], 0),
+                              .read_e = or_else(&in[9], 0)};
+    if (!(d.low_m > 0 && d.high_m > d.low_m)) return "lo_um must be above 0 and below hi_um";
+    if (!(in[2].number > 0)) return "temp_k must be above 0";
+    if (!(d.f_number > 0 && d.pitch_m > 0 && d.integration_s > 0)) return "f_number, pitch_um and integration_ms must be above 0";
+    if (!(d.transmission > 0 && d.transmission <= 1 && d.qe > 0 && d.qe <= 1)) return "transmission and qe must be in 0 .. 1";
+    if (!(d.dark_e >= 0 && d.read_e >= 0)) return "dark_e and read_e must not be negative";
+    out[0].number = photon_electrons(&d, in[2].number, &out[1].number);
+    out[2].number = 1e3 * photon_netd_k(&d, in[2].number, 0, 0);
+    return NULL;
+}
+
+/* ---- noise ------------------------------------------------------------------------------------ */
+
+static bool read_sigmas(Noise3d *out, const ProbeValue *in)
+{
+    for (int k = 0; k < noise_axes; k++) {
+        out->sigma[k] = or_else(&in[k], 0);
+        if (!(out->sigma[k] >= 0)) return false;
+    }
+    return true;
+}
+
+static const char *noise_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    (void)state;
+    Noise3d      noise;
+    const double seed = or_else(&in[10], 1);
+    for (int k = 0; k < 3; k++)
+        if (!whole(in[k].number, 0, 1e9)) return "frame, row and column must be whole numbers in 0 .. 1000000000";
+    if (!read_sigmas(&noise, in + 3)) return "a sigma must not be negative";
+    if (!whole(seed, 0, 2147483647)) return "seed must be a whole number in 0 .. 2147483647";
+    out[0].number = noise3d_at(&noise, (uint64_t)seed, 0, (int)in[0].number, (int)in[1].number, (int)in[2].number);
+    return NULL;
+}
+
+static const char *noise3d_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    (void)state;
+    Noise3d      noise, got;
+    const double seed = or_else(&in[10], 1), size = in[0].number * in[1].number * in[2].number;
+    for (int k = 0; k < 3; k++)
+        if (!whole(in[k].number, 2, 4096)) return "frames, rows and columns must be whole numbers in 2 .. 4096";
+    if (size > 1 << 26) return "frames x rows x columns must be at most 67108864";
+    if (!read_sigmas(&noise, in + 3)) return "a sigma must not be negative";
+    if (!whole(seed, 0, 2147483647)) return "seed must be a whole number in 0 .. 2147483647";
+
+    const int    frames = (int)in[0].number, rows = (int)in[1].number, columns = (int)in[2].number;
+    const size_t plane = (size_t)rows * (size_t)columns;
+    float       *cube = calloc((size_t)frames * plane, sizeof *cube);
+    double      *line = malloc((size_t)columns * sizeof *line);
+    Status       status = cube && line ? STATUS_OK : STATUS_NO_MEMORY;
+    for (int k = 0; k < frames && status == STATUS_OK; k++) {
+        noise3d_add_fixed(cube + (size_t)k * plane, columns, rows, &noise, (uint64_t)seed, 0);
+        noise3d_add_moving(cube + (size_t)k * plane, columns, rows, &noise, (uint64_t)seed, 0, k, line);
+    }
+    if (status == STATUS_OK) status = noise3d_estimate(&got, cube, frames, rows, columns);
+    free(cube);
+    free(line);
+    if (status != STATUS_OK) return "out of memory";
+    for (int k = 0; k < noise_axes; k++) out[k].number = got.sigma[k];
+    return NULL;
+}
+
+#define SIGMAS "sigma_tvh,sigma_tv?,sigma_th?,sigma_vh?,sigma_t?,sigma_v?,sigma_h?,seed?"
+
+const Probe sensor_probes[] = {
+    {.name = "mtf", .help = "modulation transfer of optics, a pixel's footprint, smear and jitter, along one axis",
+     .in = "wavelength_um,f_number,obscuration?,pitch_um,smear_px?,jitter_px?,f_cyc_px",
+     .out = "mtf_optics,mtf_detector,mtf_smear,mtf_jitter,mtf", .row = mtf_row},
+    {.name = "netd", .help = "electrons from a black body and the noise equivalent temperature difference of their counting",
+     .in = "lo_um,hi_um,temp_k,f_number,transmission,qe,pitch_um,integration_ms,dark_e?,read_e?",
+     .out = "electrons,electrons_per_k,netd_mk", .row = netd_row},
+    {.name = "noise", .help = "three-dimensional noise (D'Agostino & Webb) at one place of one frame",
+     .in = "frame,row,column," SIGMAS, .out = "noise", .row = noise_row},
+    {.name = "noise3d", .help = "makes frames of three-dimensional noise and estimates what is in them, unbiased",
+     .in = "frames,rows,columns," SIGMAS, .out = "est_tvh,est_tv,est_th,est_vh,est_t,est_v,est_h", .row = noise3d_row},
+};
+const int sensor_probe_count = sizeof sensor_probes / sizeof *sensor_probes;

@@ -1,0 +1,86 @@
+/* Faulty pixels by their statistics, shown and patched by hand. */
+#include "tests/check.h"
+
+#include "sensor/detector/bad_pixels.h"
+
+enum { width = 720, height = 486 };
+static uint8_t  map[width * height];
+static uint16_t count[width * height];
+
+/* Expected share within five deviations: faults come in clumps of up to 9, so n is less by as much; overlapping clumps
+ * (share^2 of the pixels) lie within that. */
+static void share_and_kinds_are_as_asked(void **state)
+{
+    (void)state;
+    static const double share[3] = {0.001, 0.005, 0.02}, clustered[3] = {0, 0.3, 1};
+    for (int k = 0; k < 9; k++) {
+        int kinds[4] = {0}, beside = 0;
+        bad_pixels_make(map, width, height, share[k % 3], clustered[k / 3], 4, (uint32_t)k);
+        for (int i = 0; i < width * height; i++) {
+            kinds[map[i]]++;
+            beside += map[i] && i % width > 0 && map[i - 1];
+        }
+        const double n = width * height, bad = n - kinds[PIXEL_GOOD], want = share[k % 3] * n;
+        const double mean = 1 + 4 * clustered[k / 3], deviation = sqrt(want * (mean + 6 * clustered[k / 3]));
+        CHECK_NEAR(bad, want, 5 * deviation + 3 * share[k % 3] * want);
+        CHECK_NEAR(kinds[PIXEL_DEAD], 0.5 * bad, 5 * deviation);
+        CHECK_NEAR(kinds[PIXEL_HOT], 0.25 * bad, 5 * deviation);
+        CHECK((beside > 3 * share[k % 3] * bad + 10) == (clustered[k / 3] > 0));
+    }
+    bad_pixels_make(map, width, height, 0, 0.5, 4, 0);
+    for (int i = 0; i < width * height; i++) CHECK(map[i] == PIXEL_GOOD);
+}
+
+static void kinds_show_as_they_are(void **state)
+{
+    (void)state;
+    int on = 0, changes = 0, was = -1;
+    memset(map, PIXEL_GOOD, sizeof map);
+    map[5] = PIXEL_DEAD, map[6] = PIXEL_HOT, map[7] = PIXEL_BLINKING;
+    for (int frame = 0; frame < 8000; frame++) {
+        for (int i = 0; i < 10; i++) count[i] = 1000;
+        bad_pixels_show(count, map, 10, 1, 16383, 1, 0, frame);
+        CHECK(count[5] == 0 && count[6] == 16383 && count[4] == 1000 && (count[7] == 1000 || count[7] == 16383));
+        on += count[7] == 16383;
+        if (was >= 0 && was != count[7]) {
+            changes++;
+            CHECK(frame % 8 == 0);
+        }
+        was = count[7];
+    }
+    CHECK_NEAR(on, 4000, 5 * 8 * sqrt(250)); /* 1000 lots of one half */
+    CHECK_NEAR(changes, 500, 5 * sqrt(250));
+}
+
+static void patches_come_from_the_nearest_good(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 100; i++) count[i] = (uint16_t)(10 * (i % 10) + 100 * (i / 10)), map[i] = PIXEL_GOOD;
+    /* one alone: the mean of its eight, which on a slope is itself */
+    map[44] = PIXEL_DEAD, count[44] = 0;
+    bad_pixels_replace(count, map, 10, 10);
+    CHECK(count[44] == 440);
+    /* a corner: three neighbours 10, 100, 110: 73.3 */
+    map[0] = PIXEL_HOT, count[0] = 16383;
+    bad_pixels_replace(count, map, 10, 10);
+    CHECK(count[0] == 73);
+    /* the middle of a 3 x 3 clump: the ring two away, symmetric: itself again; never from a fault */
+    for (int y = 4; y < 7; y++)
+        for (int x = 4; x < 7; x++) map[y * 10 + x] = PIXEL_HOT, count[y * 10 + x] = 16383;
+    bad_pixels_replace(count, map, 10, 10);
+    CHECK(count[55] == 550);
+    for (int i = 0; i < 100; i++) CHECK(count[i] <= 1000);
+    memset(map, PIXEL_DEAD, 100); /* nothing to patch from */
+    bad_pixels_replace(count, map, 10, 10);
+    CHECK(count[55] == 550);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(share_and_kinds_are_as_asked),
+        cmocka_unit_test(kinds_show_as_they_are),
+        cmocka_unit_test(patches_come_from_the_nearest_good),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

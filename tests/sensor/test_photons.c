@@ -1,0 +1,93 @@
+/* Electrons from radiance: photon integrals of 25 digits, and shot-limited temperature differences computed elsewhere. */
+#include "tests/check.h"
+
+#include "render/planck.h"
+#include "sensor/detector/photons.h"
+
+static void photons_agree_with_25_digits(void **state)
+{
+    (void)state;
+    char path[512];
+    if (!reference_path(path, "thermal/planck_band_reference.csv")) skip();
+    Table table;
+    assert_int_equal(table_open(&table, path), STATUS_OK);
+    int rows = 0;
+    for (int r = 0; r < table.rows; r++) {
+        double v[6];
+        for (int c = 0; c < 6; c++) v[c] = strtod(table_text(&table, r, c), NULL);
+        if (!(v[2] >= 180 && v[2] <= 1500 && v[0] >= 3)) continue; /* thermal bands */
+        /* the integrand is smooth over each of 16 panels: 8 points leave less than the tables of light hold */
+        CHECK_NEAR(photon_band(v[0] * 1e-6, v[1] * 1e-6, v[2], NULL) / v[5], 1, 1e-10);
+        double slope;
+        const double step = 1e-3 * v[2];
+        photon_band(v[0] * 1e-6, v[1] * 1e-6, v[2], &slope);
+        /* Richardson's difference: fourth order, (1e-3)^4 times a fifth derivative of about (30)^5 */
+        const double a = v[0] * 1e-6, b = v[1] * 1e-6;
+        const double d1 = (photon_band(a, b, v[2] + step, NULL) - photon_band(a, b, v[2] - step, NULL)) / (2 * step);
+        const double d2 = (photon_band(a, b, v[2] + 2 * step, NULL) - photon_band(a, b, v[2] - 2 * step, NULL)) / (4 * step);
+        CHECK_NEAR(slope / ((4 * d1 - d2) / 3), 1, 1e-6);
+        rows++;
+    }
+    table_close(&table);
+    CHECK(rows >= 15);
+}
+
+static PhotonDetector reference_detector(double low_um, double high_um, double time_s)
+{
+    return (PhotonDetector){.low_m = low_um * 1e-6, .high_m = high_um * 1e-6, .f_number = 2, .transmission = 0.8,
+                            .qe = 0.7, .pitch_m = 30e-6, .integration_s = time_s};
+}
+
+/* F/2, transmission 0.8, QE 0.7, 30 um, pi / (4 N^2 + 1): computed by another program to seven digits: half
+ * a unit of the last. */
+static void netd_from_first_principles(void **state)
+{
+    (void)state;
+    const PhotonDetector mwir = reference_detector(3.4, 4.8, 5e-3), lwir = reference_detector(8, 12, 100e-6);
+    CHECK_NEAR(photon_electrons(&mwir, 300, NULL), 1.368430e7, 5);
+    CHECK_NEAR(photon_netd_k(&mwir, 300, 0, 0), 7.332610e-3, 6e-10);
+    CHECK_NEAR(photon_electrons(&lwir, 300, NULL), 1.803135e7, 5);
+    CHECK_NEAR(photon_netd_k(&lwir, 300, 0, 0), 14.582702e-3, 6e-10);
+
+    /* other noise adds in squares: as much dark current as signal makes it a root of two more */
+    PhotonDetector dark = lwir;
+    dark.dark_e = photon_electrons(&lwir, 300, NULL);
+    CHECK_NEAR(photon_netd_k(&dark, 300, 0, 0) / photon_netd_k(&lwir, 300, 0, 0), sqrt(2), 1e-12);
+    dark.dark_e = 0;
+    dark.read_e = 3 * sqrt(photon_electrons(&lwir, 300, NULL));
+    CHECK_NEAR(photon_netd_k(&dark, 300, 0, 4 * dark.read_e / 3) / photon_netd_k(&lwir, 300, 0, 0), sqrt(26), 1e-12);
+}
+
+static void table_agrees_with_the_integral(void **state)
+{
+    (void)state;
+    const PhotonDetector mwir = reference_detector(3.4, 4.8, 5e-3);
+    PhotonTable *table;
+    assert_int_equal(photon_table_create(&table, &mwir, true), STATUS_OK);
+    double last = -1;
+    for (double temp_k = 180; temp_k < 1500; temp_k *= 1.0137) {
+        const double got = photon_table_electrons(table, planck_band(3.4e-6, 4.8e-6, temp_k, NULL));
+        CHECK_NEAR(got / photon_electrons(&mwir, temp_k, NULL), 1, 1e-6);
+        CHECK(got > last);
+        last = got;
+    }
+    CHECK(photon_table_electrons(table, 0) == 0 && photon_table_electrons(table, -1) == 0);
+    CHECK(isnan(photon_table_electrons(table, NAN)) && isinf(photon_table_electrons(table, INFINITY)));
+    photon_table_destroy(table);
+
+    /* light: one photon energy, that of 0.55 um: h c / 0.55 um = 3.6117197e-19 J */
+    PhotonDetector tv = reference_detector(0.4, 0.7, 1e-3);
+    assert_int_equal(photon_table_create(&table, &tv, false), STATUS_OK);
+    CHECK_NEAR(photon_table_electrons(table, 10), 10 * photon_etendue(&tv) / 3.6117197e-19, 1e-6 * photon_table_electrons(table, 10));
+    photon_table_destroy(table);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(photons_agree_with_25_digits),
+        cmocka_unit_test(netd_from_first_principles),
+        cmocka_unit_test(table_agrees_with_the_integral),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
