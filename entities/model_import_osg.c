@@ -458,7 +458,17 @@ static int material_of(const Text *x, int object, int above)
 
 /* ---- nodes --------------------------------------------------------------------------------------------------------- */
 
-/* How many of a switch's or level's children are seen: bit by bit, for child i. */
+/* The least distance at which a level of detail is drawn; INFINITY for what is none. */
+static double nearest_range(const Text *x, int object)
+{
+    const int list = strstr(word(x, object, 0), "LOD") ? find(x, object, "RangeList") : -1;
+    double    least = INFINITY, low;
+    for (int line = list >= 0 ? x->element[list].child : -1; line >= 0; line = x->element[line].next)
+        if (numbers(&low, 1, x, line, 0) && low < least) least = low;
+    return least;
+}
+
+/* Whether child `index` of a switch or of levels of detail is seen. */
 static bool is_seen(Walk *w, int object, const char *kind, int index, int children)
 {
     const Text *x = w->x;
@@ -521,10 +531,15 @@ static Status walk_object(Walk *w, int element, int parent, int material, int de
         w->s.lost[LOST_OTHER]++;
     for (int c = drawables >= 0 ? x->element[drawables].child : -1; c >= 0 && status == STATUS_OK; c = x->element[c].next)
         status = walk_object(w, c, node, material, depth + 1);
-    int count = 0, index = 0;
-    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0; c = x->element[c].next) count++;
-    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0 && status == STATUS_OK; c = x->element[c].next, index++)
-        if (is_seen(w, object, kind, index, count)) status = walk_object(w, c, node, material, depth + 1);
+    int    count = 0, index = 0;
+    double near = INFINITY;
+    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0; c = x->element[c].next, count++)
+        near = fmin(near, nearest_range(x, resolve(x, c)));
+    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0 && status == STATUS_OK; c = x->element[c].next, index++) {
+        const double range = nearest_range(x, resolve(x, c));
+        if (isfinite(range) && range > near) w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight's levels are neighbours */
+        else if (is_seen(w, object, kind, index, count)) status = walk_object(w, c, node, material, depth + 1);
+    }
     return status;
 }
 
