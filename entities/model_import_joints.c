@@ -249,7 +249,10 @@ static Status fill_from_spec(ImportJoint *joint, const Builder *b, const Sidecar
     } else if (!joint->from_file) {
         const double *m = b->out->place[joint->source].m;
         for (int i = 0; i < 3; i++) joint->p_pivot_file[i] = m[4 * i + 3];
-        if (v3_dot(joint->p_pivot_file, joint->p_pivot_file) == 0)
+        bool placed = false;
+        for (int n = joint->source; n >= 0 && !placed; n = b->scene->node[n].parent)
+            placed = b->scene->node[n].m[3] != 0 || b->scene->node[n].m[7] != 0 || b->scene->node[n].m[11] != 0;
+        if (!placed)
             return refuse_joint(b, spec, "pivot: is missing (x y z or centre), for no place is in the file for node", node);
     }
     joint->rest          = spec->rest;
