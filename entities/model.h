@@ -56,8 +56,8 @@ typedef struct ModelPart {
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
     int      first_triangle, triangle_count;
-    /* How damage shows, by the damage the entity's appearance states ([0] is not used): not there at all (bit 1 << state),
-     * or of another material (empty: the same). Parametric models say nothing; a sidecar may. */
+    /* How damage shows, by the damage the entity's appearance states ([0] is not used): not there at all (bit
+     * 1 << state), or of another material (empty: the same). Parametric models say nothing; a sidecar may. */
     uint8_t  damage_hidden;
     char     damage_material[model_damage_states][32];
 } ModelPart;

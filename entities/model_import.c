@@ -12,8 +12,9 @@
 const char *import_lost_name(ImportLost lost)
 {
     static const char *const name[IMPORT_LOST_COUNT] = {
-        "textures", "lights", "cameras", "animations", "bones", "points_and_lines", "levels_of_detail",
-        "switched_off", "external_references", "freedom_offsets", "other_objects",
+        "textures",         "lights",           "cameras",      "animations",          "bones",
+        "points_and_lines", "levels_of_detail", "switched_off", "external_references", "freedom_offsets",
+        "other_objects",
     };
     return (unsigned)lost < IMPORT_LOST_COUNT ? name[lost] : "?";
 }
@@ -33,7 +34,7 @@ static void split_extension(char out[16], size_t *stem, const char *path)
             if (count >= 16) return;
             for (size_t i = 0; i < count; i++) out[i] = (char)tolower((unsigned char)path[at + i]);
             out[count] = 0;
-            *stem      = at - 1;
+            *stem = at - 1;
             return;
         }
 }
@@ -49,7 +50,7 @@ bool model_is_path(const char *name) { return strpbrk(name, "/.") != NULL; }
 /* The model's file and the sidecar's from what a user named; reads the sidecar. */
 static Status find_files(ModelImport *report, Sidecar *sidecar, const char *path)
 {
-    char   extension[16];
+    char extension[16];
     size_t stem;
     if (strlen(path) >= sizeof report->file - 8) {
         log_error("model: the path is longer than %zu characters: %.60s...", sizeof report->file - 8, path);
@@ -65,8 +66,9 @@ static Status find_files(ModelImport *report, Sidecar *sidecar, const char *path
             return STATUS_BAD_VALUE;
         }
         const char *slash = strrchr(path, '/');
-        const int   folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
-        if ((size_t)snprintf(report->file, sizeof report->file, "%.*s%s", folder, path, sidecar->file) >= sizeof report->file) {
+        const int folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
+        if ((size_t)snprintf(report->file, sizeof report->file, "%.*s%s", folder, path, sidecar->file) >=
+            sizeof report->file) {
             log_error("sidecar: %s: file: the path is too long", path);
             return STATUS_BAD_VALUE;
         }
@@ -86,7 +88,8 @@ static Status find_files(ModelImport *report, Sidecar *sidecar, const char *path
         return STATUS_IO;
     }
     if (!S_ISREG(info.st_mode) || info.st_size > import_max_octets) {
-        log_error("model: cannot read: file=%s: %s", report->file, S_ISREG(info.st_mode) ? "larger than 256 MiB" : "not a file");
+        log_error("model: cannot read: file=%s: %s", report->file,
+                  S_ISREG(info.st_mode) ? "larger than 256 MiB" : "not a file");
         return S_ISREG(info.st_mode) ? STATUS_BAD_VALUE : STATUS_IO;
     }
     return STATUS_OK;
@@ -95,13 +98,13 @@ static Status find_files(ModelImport *report, Sidecar *sidecar, const char *path
 /* ---- building ------------------------------------------------------------------------------------------------ */
 
 typedef struct Build {
-    const ImportScene  *scene;
-    const Sidecar      *sidecar;
+    const ImportScene *scene;
+    const Sidecar *sidecar;
     const ImportPaints *paints;
-    ImportJoints        joints;
-    ModelImport        *report;
-    Model               model;
-    int                 vertex_room, triangle_room;
+    ImportJoints joints;
+    ModelImport *report;
+    Model model;
+    int vertex_room, triangle_room;
 } Build;
 
 static void to_body(double p_body[3], const ModelImport *r, const double p_file[3])
@@ -119,18 +122,18 @@ static void node_to_file(double p_file[3], const double m[12], const double p[3]
 
 static void set_frame(Build *b)
 {
-    ModelImport   *r = b->report;
+    ModelImport *r = b->report;
     const Sidecar *s = b->sidecar;
-    const double  *forward = s->has_axes ? s->forward : b->scene->forward, *up = s->has_axes ? s->up : b->scene->up;
-    double         right[3];
+    const double *forward = s->has_axes ? s->forward : b->scene->forward, *up = s->has_axes ? s->up : b->scene->up;
+    double right[3];
     v3_cross(right, forward, up);
     for (int i = 0; i < 3; i++) {
-        r->r_body_from_file[i]     = forward[i];
+        r->r_body_from_file[i] = forward[i];
         r->r_body_from_file[3 + i] = right[i];
         r->r_body_from_file[6 + i] = -up[i] + 0.0;
     }
     r->axes_assumed = !s->has_axes;
-    r->scale_m      = s->scale_m > 0 ? s->scale_m : 1;
+    r->scale_m = s->scale_m > 0 ? s->scale_m : 1;
 }
 
 /* The centre of the base: over the middle of what does not move (DIS measures an entity without its articulated
@@ -138,19 +141,20 @@ static void set_frame(Build *b)
 static Status set_origin(Build *b)
 {
     const double low0[3] = {INFINITY, INFINITY, INFINITY};
-    double       low[2][3], high[2][3]; /* in body directions, of the file's origin: [0] all, [1] what does not move */
+    double low[2][3], high[2][3]; /* in body directions, of the file's origin: [0] all, [1] what does not move */
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) {
-            low[k][i]  = low0[i];
+            low[k][i] = low0[i];
             high[k][i] = -low0[i];
         }
     for (int m = 0; m < b->scene->mesh_count; m++) {
-        const ImportMesh  *mesh = &b->scene->mesh[m];
+        const ImportMesh *mesh = &b->scene->mesh[m];
         const ImportPlace *place = &b->joints.place[mesh->node];
         if (place->dropped) continue;
         for (int t = 3 * mesh->first_triangle; t < 3 * (mesh->first_triangle + mesh->triangle_count); t++) {
             double p_file[3], p[3];
-            node_to_file(p_file, place->m, b->scene->vertex[mesh->first_vertex + (int)b->scene->triangle[t / 3][t % 3]]);
+            node_to_file(p_file, place->m,
+                         b->scene->vertex[mesh->first_vertex + (int)b->scene->triangle[t / 3][t % 3]]);
             if (!v3_is_finite(p_file)) {
                 log_error("model: a coordinate is not a finite number: file=%s node=%s", b->report->file,
                           b->scene->node[mesh->node].name);
@@ -159,7 +163,7 @@ static Status set_origin(Build *b)
             m3_mul_v3(p, b->report->r_body_from_file, p_file);
             for (int k = 0; k < (place->joint < 0 ? 2 : 1); k++)
                 for (int i = 0; i < 3; i++) {
-                    low[k][i]  = fmin(low[k][i], p[i]);
+                    low[k][i] = fmin(low[k][i], p[i]);
                     high[k][i] = fmax(high[k][i], p[i]);
                 }
         }
@@ -179,7 +183,7 @@ static Status set_origin(Build *b)
     if (b->sidecar->has_origin) {
         memcpy(b->report->p_origin_file, b->sidecar->p_origin_file, sizeof b->report->p_origin_file);
     } else {
-        const int    k = low[1][0] <= high[1][0];
+        const int k = low[1][0] <= high[1][0];
         const double base[3] = {0.5 * (low[k][0] + high[k][0]), 0.5 * (low[k][1] + high[k][1]), high[0][2]};
         m3_tmul_v3(b->report->p_origin_file, b->report->r_body_from_file, base);
     }
@@ -199,12 +203,12 @@ static void clean_name(char out[model_name_size], const char *name, const char *
 /* `name~2`, `name~3` ... for those that are called the same; `step` octets lie from one name to the next. */
 static void make_unique(char name[model_name_size], const char *taken, int count, size_t step)
 {
-    char      base[model_name_size];
+    char base[model_name_size];
     const int room = model_name_size - 12; /* before ~ and a number */
-    int       number = 1;
+    int number = 1;
     memcpy(base, name, sizeof base);
     for (int i = 0; i < count; i++) {
-        const char  *other = taken + (size_t)i * step;
+        const char *other = taken + (size_t)i * step;
         const size_t length = strlen(base);
         number += strcmp(other, base) == 0 || (strncmp(other, base, length) == 0 && other[length] == '~');
     }
@@ -235,13 +239,13 @@ static Status build_nodes(Build *b)
     m->node_count = b->joints.count + 1;
     strcpy(m->node[0].name, "hull");
     m->node[0].parent = -1;
-    m->node[0].low    = 1;
-    m->node[0].high   = -1;
+    m->node[0].low = 1;
+    m->node[0].high = -1;
     m3_identity(m->node[0].r_parent_from_node);
     for (int j = 0; j < b->joints.count; j++) {
         const ImportJoint *joint = &b->joints.joint[j];
-        ModelNode         *node = &m->node[j + 1];
-        double             p_body[3], p_above[3] = {0, 0, 0};
+        ModelNode *node = &m->node[j + 1];
+        double p_body[3], p_above[3] = {0, 0, 0};
         clean_name(node->name, joint->name, "joint");
         make_unique(node->name, m->node[0].name, j + 1, sizeof *m->node);
         node->parent = joint->parent + 1;
@@ -251,12 +255,12 @@ static Status build_nodes(Build *b)
         node->joint = joint->kind;
         memcpy(node->axis, joint->axis_body, sizeof node->axis);
         turned(node->r_parent_from_node, joint->axis_body, joint->kind == JOINT_ROTATION ? -joint->rest : 0);
-        node->dis_class       = joint->dis_class;
-        node->dis_metric      = joint->dis_metric;
-        node->low             = joint->low;
-        node->high            = joint->high;
+        node->dis_class = joint->dis_class;
+        node->dis_metric = joint->dis_metric;
+        node->low = joint->low;
+        node->high = joint->high;
         node->spin_rps_moving = joint->spin_rps;
-        node->roll_radius_m   = joint->roll_radius_m;
+        node->roll_radius_m = joint->roll_radius_m;
         b->report->joints_from_file += joint->from_file;
     }
     return STATUS_OK;
@@ -280,14 +284,17 @@ static void warn_unused(const Build *b)
 {
     const struct {
         const SidecarRules *rules;
-        const char         *key;
-    } list[] = {{&b->sidecar->drop, "drop"},       {&b->sidecar->node_materials, "node_materials"},
-                {&b->sidecar->roles, "roles"},     {&b->sidecar->damage_hide, "damage.hide"},
-                {&b->sidecar->damage_materials, "damage.materials"}, {&b->sidecar->materials, "materials"}};
+        const char *key;
+    } list[] = {{&b->sidecar->drop, "drop"},
+                {&b->sidecar->node_materials, "node_materials"},
+                {&b->sidecar->roles, "roles"},
+                {&b->sidecar->damage_hide, "damage.hide"},
+                {&b->sidecar->damage_materials, "damage.materials"},
+                {&b->sidecar->materials, "materials"}};
     for (size_t k = 0; k < sizeof list / sizeof *list; k++)
         for (int i = 0; i < list[k].rules->count; i++) {
             const SidecarRule *rule = &list[k].rules->rule[i];
-            bool               used = false;
+            bool used = false;
             if (list[k].rules == &b->sidecar->materials) {
                 for (int m = 0; m < b->scene->material_count && !used; m++)
                     used = import_matches(rule->pattern, b->scene->material[m].name);
@@ -296,19 +303,22 @@ static void warn_unused(const Build *b)
                     used = import_matches(rule->pattern, b->scene->node[n].name) ||
                            import_matches(rule->pattern, b->joints.place[n].path);
             }
-            if (!used) log_warn("sidecar: %s:%d: %s: nothing matches '%s'", b->sidecar->path, rule->line, list[k].key, rule->pattern);
+            if (!used)
+                log_warn("sidecar: %s:%d: %s: nothing matches '%s'", b->sidecar->path, rule->line, list[k].key,
+                         rule->pattern);
         }
 }
 
 static void surface_part(Build *b, ModelPart *part, const ImportMesh *mesh)
 {
     const ImportMaterial *material = &b->scene->material[mesh->material];
-    const ImportPlace    *place = b->joints.place;
-    const SidecarRule    *rule = import_rule(&b->sidecar->node_materials, b->scene, place, mesh->node, 0);
-    ImportMaterialSource  source = MATERIAL_BY_SIDECAR;
-    const char           *name = rule ? rule->value : NULL;
+    const ImportPlace *place = b->joints.place;
+    const SidecarRule *rule = import_rule(&b->sidecar->node_materials, b->scene, place, mesh->node, 0);
+    ImportMaterialSource source = MATERIAL_BY_SIDECAR;
+    const char *name = rule ? rule->value : NULL;
     for (int i = b->sidecar->materials.count - 1; i >= 0 && !name; i--)
-        if (import_matches(b->sidecar->materials.rule[i].pattern, material->name)) name = b->sidecar->materials.rule[i].value;
+        if (import_matches(b->sidecar->materials.rule[i].pattern, material->name))
+            name = b->sidecar->materials.rule[i].value;
     if (!name) name = import_paint_guess(&source, b->paints, material);
     snprintf(part->material, sizeof part->material, "%s", name);
     b->report->material_parts[source]++;
@@ -317,7 +327,8 @@ static void surface_part(Build *b, ModelPart *part, const ImportMesh *mesh)
     if (!role || !heat_role_find(&part->role, role->value)) part->role = import_role_guess(place[mesh->node].path);
     for (int state = 1; state < model_damage_states; state++) {
         const SidecarRule *other = import_rule(&b->sidecar->damage_materials, b->scene, place, mesh->node, state);
-        if (import_rule(&b->sidecar->damage_hide, b->scene, place, mesh->node, state)) part->damage_hidden |= (uint8_t)(1 << state);
+        if (import_rule(&b->sidecar->damage_hide, b->scene, place, mesh->node, state))
+            part->damage_hidden |= (uint8_t)(1 << state);
         if (other) snprintf(part->damage_material[state], sizeof part->damage_material[state], "%s", other->value);
     }
 }
@@ -348,31 +359,33 @@ static double normal_matrix(double out[9], const double m[12])
 /* One mesh of the file -> one part. */
 static Status build_part(Build *b, const ImportMesh *mesh)
 {
-    Model             *m = &b->model;
+    Model *m = &b->model;
     const ImportPlace *place = &b->joints.place[mesh->node];
-    const int          node = place->joint + 1;
-    double             p_pivot[3] = {0, 0, 0}, flip[9];
-    Status             status = STATUS_NO_MEMORY;
-    const double       determinant = normal_matrix(flip, place->m);
-    double           (*corner)[3] = malloc(((size_t)mesh->triangle_count * 3 + 1) * sizeof *corner);
-    uint32_t         (*from)[3] = malloc(((size_t)mesh->triangle_count + 1) * sizeof *from);
+    const int node = place->joint + 1;
+    double p_pivot[3] = {0, 0, 0}, flip[9];
+    Status status = STATUS_NO_MEMORY;
+    const double determinant = normal_matrix(flip, place->m);
+    double(*corner)[3] = malloc(((size_t)mesh->triangle_count * 3 + 1) * sizeof *corner);
+    uint32_t(*from)[3] = malloc(((size_t)mesh->triangle_count + 1) * sizeof *from);
     if (!corner || !from) goto done;
     if (place->joint >= 0) to_body(p_pivot, b->report, b->joints.joint[place->joint].p_pivot_file);
 
     int triangles = 0;
     for (int t = mesh->first_triangle; t < mesh->first_triangle + mesh->triangle_count; t++) {
-        double (*c)[3] = corner + 3 * triangles;
+        double(*c)[3] = corner + 3 * triangles;
         for (int k = 0; k < 3; k++) {
             /* a mirrored placement turns every triangle inside out */
             const uint32_t v = b->scene->triangle[t][determinant < 0 ? 2 - k : k];
-            double         p_file[3];
+            double p_file[3];
             node_to_file(p_file, place->m, b->scene->vertex[mesh->first_vertex + (int)v]);
             to_body(c[k], b->report, p_file);
             v3_sub(c[k], c[k], p_pivot);
             from[triangles][k] = v;
         }
-        if (has_area(c[0], c[1], c[2])) triangles++;
-        else b->report->degenerate_triangles++;
+        if (has_area(c[0], c[1], c[2]))
+            triangles++;
+        else
+            b->report->degenerate_triangles++;
     }
     if (triangles == 0) {
         b->report->empty_meshes++;
@@ -398,10 +411,10 @@ static Status build_part(Build *b, const ImportMesh *mesh)
         double plane[3];
         for (int t = 0; t < triangles; t++)
             for (int k = 0; k < 3; k++) {
-                const int    v = first + (int)from[t][k];
+                const int v = first + (int)from[t][k];
                 const float *n_node = b->scene->normal[mesh->first_vertex + (int)from[t][k]];
                 const double n[3] = {n_node[0], n_node[1], n_node[2]};
-                double       n_file[3], n_body[3], ab[3], ac[3];
+                double n_file[3], n_body[3], ab[3], ac[3];
                 m3_mul_v3(n_file, flip, n);
                 if (determinant < 0) v3_scale(n_file, -1, n_file);
                 m3_mul_v3(n_body, b->report->r_body_from_file, n_file);
@@ -416,7 +429,7 @@ static Status build_part(Build *b, const ImportMesh *mesh)
         m->vertex_count += mesh->vertex_count;
     } else {
         const int count = import_smooth(m->vertex + first, m->normal + first, m->triangle + m->triangle_count,
-                                        (const double (*)[3])corner, triangles, b->sidecar->crease_rad);
+                                        (const double(*)[3])corner, triangles, b->sidecar->crease_rad);
         if (count < 0) goto done;
         for (int t = 0; t < triangles; t++)
             for (int k = 0; k < 3; k++) m->triangle[m->triangle_count + t][k] += (uint32_t)first;
@@ -443,17 +456,17 @@ static Status build_parts(Build *b)
         vertices += mesh->has_normals ? (size_t)mesh->vertex_count : 3 * (size_t)mesh->triangle_count;
         triangles += (size_t)mesh->triangle_count;
     }
-    m->part          = calloc((size_t)b->scene->mesh_count + 1, sizeof *m->part);
-    m->vertex        = calloc(vertices + 1, sizeof *m->vertex);
-    m->normal        = calloc(vertices + 1, sizeof *m->normal);
-    m->triangle      = calloc(triangles + 1, sizeof *m->triangle);
+    m->part = calloc((size_t)b->scene->mesh_count + 1, sizeof *m->part);
+    m->vertex = calloc(vertices + 1, sizeof *m->vertex);
+    m->normal = calloc(vertices + 1, sizeof *m->normal);
+    m->triangle = calloc(triangles + 1, sizeof *m->triangle);
     m->triangle_part = calloc(triangles + 1, sizeof *m->triangle_part);
     if (!m->part || !m->vertex || !m->normal || !m->triangle || !m->triangle_part) return STATUS_NO_MEMORY;
     for (size_t v = 0; v < vertices; v++) m->normal[v][0] = 1; /* of vertices that no triangle uses */
     /* parts of a node must be neighbours */
     for (int node = 0; node < m->node_count; node++)
         for (int i = 0; i < b->scene->mesh_count; i++) {
-            const ImportMesh  *mesh = &b->scene->mesh[i];
+            const ImportMesh *mesh = &b->scene->mesh[i];
             const ImportPlace *place = &b->joints.place[mesh->node];
             if (place->joint + 1 != node) continue;
             if (place->dropped) {
@@ -472,8 +485,8 @@ static Status build_parts(Build *b)
 
 static void name_model(Build *b)
 {
-    char        extension[16], stem_name[model_name_size];
-    size_t      stem;
+    char extension[16], stem_name[model_name_size];
+    size_t stem;
     const char *slash = strrchr(b->report->file, '/');
     split_extension(extension, &stem, b->report->file);
     const size_t from = slash ? (size_t)(slash - b->report->file) + 1 : 0;
@@ -500,13 +513,13 @@ static Status build_model(Build *b)
 
 Status model_import(Model *out, ModelImport *report, const char *path)
 {
-    ModelImport  filled = {0};
-    Sidecar      sidecar = sidecar_default();
-    ImportScene  scene = {0};
+    ModelImport filled = {0};
+    Sidecar sidecar = sidecar_default();
+    ImportScene scene = {0};
     ImportPaints paints = {0};
-    char         extension[16];
-    size_t       stem;
-    Status       status = find_files(&filled, &sidecar, path);
+    char extension[16];
+    size_t stem;
+    Status status = find_files(&filled, &sidecar, path);
     if (status == STATUS_OK) {
         split_extension(extension, &stem, filled.file);
         status = strcmp(extension, "flt") == 0 ? import_openflight(&scene, filled.file)
@@ -516,8 +529,8 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     Build b = {.scene = &scene, .sidecar = &sidecar, .paints = &paints, .report = &filled};
     if (status == STATUS_OK) status = build_model(&b);
     if (status == STATUS_NO_MEMORY) log_error("model: no memory: file=%s", filled.file);
-    filled.source_nodes     = scene.node_count;
-    filled.source_meshes    = scene.mesh_count;
+    filled.source_nodes = scene.node_count;
+    filled.source_meshes = scene.mesh_count;
     filled.source_materials = scene.material_count;
     memcpy(filled.lost, scene.lost, sizeof filled.lost);
     import_joints_close(&b.joints, scene.node_count);

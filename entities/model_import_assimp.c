@@ -26,34 +26,37 @@ Status import_read_whole(char **out, size_t *octets, const char *path, bool quie
 {
     struct stat info;
     const char *why = NULL;
-    gzFile      file = NULL;
-    char       *text = NULL;
-    size_t      size = 0, capacity = 1 << 16;
-    Status      status = STATUS_IO;
+    gzFile file = NULL;
+    char *text = NULL;
+    size_t size = 0, capacity = 1 << 16;
+    Status status = STATUS_IO;
 
-    if (stat(path, &info) != 0) why = strerror(errno);
-    else if (!S_ISREG(info.st_mode)) why = "not a file";
-    else if (!(file = gzopen(path, "rb"))) why = strerror(errno);
+    if (stat(path, &info) != 0)
+        why = strerror(errno);
+    else if (!S_ISREG(info.st_mode))
+        why = "not a file";
+    else if (!(file = gzopen(path, "rb")))
+        why = strerror(errno);
     while (!why) {
         char *larger = realloc(text, capacity + 1);
         if (!larger) {
             status = STATUS_NO_MEMORY;
-            why    = "no memory";
+            why = "no memory";
             break;
         }
         text = larger;
         const int got = gzread(file, text + size, (unsigned)(capacity - size));
-        int       code;
+        int code;
         if (got > 0) size += (size_t)got;
         gzerror(file, &code);
         if (got < 0 || (code != Z_OK && code != Z_STREAM_END)) {
             status = STATUS_BAD_VALUE;
-            why    = "the packed data are broken or cut short";
+            why = "the packed data are broken or cut short";
         } else if (size < capacity) {
             break;
         } else if (capacity >= import_max_octets) {
             status = STATUS_BAD_VALUE;
-            why    = "larger than 256 MiB";
+            why = "larger than 256 MiB";
         } else {
             capacity *= 2;
         }
@@ -65,8 +68,8 @@ Status import_read_whole(char **out, size_t *octets, const char *path, bool quie
         return status;
     }
     text[size] = 0;
-    *out       = text;
-    *octets    = size;
+    *out = text;
+    *octets = size;
     return STATUS_OK;
 }
 
@@ -74,15 +77,15 @@ Status import_read_whole(char **out, size_t *octets, const char *path, bool quie
 
 /* The model `tank.obj.gz` is `tank.obj` to assimp; what it names (materials, buffers) lies in the same folder. */
 typedef struct Files {
-    const char *path;        /* as it is on disk */
-    char        shown[1024]; /* without .gz */
-    size_t      folder;      /* length of the folder's name with its slash */
+    const char *path; /* as it is on disk */
+    char shown[1024]; /* without .gz */
+    size_t folder;    /* length of the folder's name with its slash */
 } Files;
 
 typedef struct OpenFile {
     struct aiFile file;
-    char         *bytes;
-    size_t        octets, at;
+    char *bytes;
+    size_t octets, at;
 } OpenFile;
 
 static size_t file_read(struct aiFile *file, char *out, size_t size, size_t count)
@@ -104,11 +107,11 @@ static size_t file_write(struct aiFile *file, const char *in, size_t size, size_
 
 static size_t file_tell(struct aiFile *file) { return ((OpenFile *)file)->at; }
 static size_t file_size(struct aiFile *file) { return ((OpenFile *)file)->octets; }
-static void   file_flush(struct aiFile *file) { (void)file; }
+static void file_flush(struct aiFile *file) { (void)file; }
 
 static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin origin)
 {
-    OpenFile    *f = (OpenFile *)file;
+    OpenFile *f = (OpenFile *)file;
     const size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? f->at : f->octets;
     const size_t to = from + offset; /* a negative offset arrives as a large one, and wraps back */
     if (to > f->octets) return aiReturn_FAILURE;
@@ -119,10 +122,11 @@ static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin
 static struct aiFile *files_open(struct aiFileIO *io, const char *name, const char *mode)
 {
     const Files *files = (const Files *)io->UserData;
-    char         packed[1100];
+    char packed[1100];
     (void)mode;
     const bool is_model = strcmp(name, files->shown) == 0;
-    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, ".."))) return NULL;
+    if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, "..")))
+        return NULL;
     OpenFile *f = calloc(1, sizeof *f);
     if (!f) return NULL;
     snprintf(packed, sizeof packed, "%s.gz", name);
@@ -146,10 +150,10 @@ static void files_close(struct aiFileIO *io, struct aiFile *file)
 /* ---- in the child: aiScene -> a memory file -------------------------------------------------------- */
 
 typedef struct Header {
-    int  status;
+    int status;
     char said[256];
-    int  node_count, material_count, mesh_count, vertex_count, triangle_count;
-    int  lost[IMPORT_LOST_COUNT];
+    int node_count, material_count, mesh_count, vertex_count, triangle_count;
+    int lost[IMPORT_LOST_COUNT];
 } Header;
 
 static void copy_name(char out[model_name_size], const struct aiString *name)
@@ -160,23 +164,28 @@ static void copy_name(char out[model_name_size], const struct aiString *name)
 }
 
 typedef struct Flat {
-    ImportScene            scene;
-    const struct aiScene  *source;
-    const char            *said; /* what is wrong */
+    ImportScene scene;
+    const struct aiScene *source;
+    const char *said; /* what is wrong */
 } Flat;
 
 /* Counts what the nodes below draw, meshes as often as they are drawn. */
 static bool count_node(Flat *flat, const struct aiNode *node, int depth)
 {
     ImportScene *s = &flat->scene;
-    if (depth > import_max_depth) flat->said = "more than 256 levels of nodes";
-    else if (++s->node_count > import_max_nodes) flat->said = "more than 65536 nodes";
+    if (depth > import_max_depth)
+        flat->said = "more than 256 levels of nodes";
+    else if (++s->node_count > import_max_nodes)
+        flat->said = "more than 65536 nodes";
     for (unsigned i = 0; i < node->mNumMeshes && !flat->said; i++) {
         const struct aiMesh *mesh = flat->source->mMeshes[node->mMeshes[i]];
         if (!(mesh->mPrimitiveTypes & aiPrimitiveType_TRIANGLE)) continue;
-        if (mesh->mNumVertices > (unsigned)(import_max_vertices - s->vertex_count)) flat->said = "more than 8 M vertices";
-        else if (mesh->mNumFaces > (unsigned)(import_max_triangles - s->triangle_count)) flat->said = "more than 8 M triangles";
-        else if (++s->mesh_count > import_max_meshes) flat->said = "more than 16384 parts";
+        if (mesh->mNumVertices > (unsigned)(import_max_vertices - s->vertex_count))
+            flat->said = "more than 8 M vertices";
+        else if (mesh->mNumFaces > (unsigned)(import_max_triangles - s->triangle_count))
+            flat->said = "more than 8 M triangles";
+        else if (++s->mesh_count > import_max_meshes)
+            flat->said = "more than 16384 parts";
         if (flat->said) return false;
         s->vertex_count += (int)mesh->mNumVertices;
         s->triangle_count += (int)mesh->mNumFaces;
@@ -188,12 +197,15 @@ static bool count_node(Flat *flat, const struct aiNode *node, int depth)
 static void fill_mesh(ImportScene *s, const struct aiMesh *mesh, int node)
 {
     ImportMesh *m = &s->mesh[s->mesh_count++];
-    *m = (ImportMesh){.node = node, .material = (int)mesh->mMaterialIndex, .first_vertex = s->vertex_count,
-                      .vertex_count = (int)mesh->mNumVertices, .first_triangle = s->triangle_count,
+    *m = (ImportMesh){.node = node,
+                      .material = (int)mesh->mMaterialIndex,
+                      .first_vertex = s->vertex_count,
+                      .vertex_count = (int)mesh->mNumVertices,
+                      .first_triangle = s->triangle_count,
                       .has_normals = mesh->mNormals != NULL};
     for (unsigned v = 0; v < mesh->mNumVertices; v++) {
         double *p = s->vertex[s->vertex_count];
-        float  *n = s->normal[s->vertex_count++];
+        float *n = s->normal[s->vertex_count++];
         p[0] = mesh->mVertices[v].x, p[1] = mesh->mVertices[v].y, p[2] = mesh->mVertices[v].z;
         if (mesh->mNormals) n[0] = mesh->mNormals[v].x, n[1] = mesh->mNormals[v].y, n[2] = mesh->mNormals[v].z;
     }
@@ -207,10 +219,10 @@ static void fill_mesh(ImportScene *s, const struct aiMesh *mesh, int node)
 
 static void fill_node(Flat *flat, const struct aiNode *node, int parent)
 {
-    ImportScene             *s = &flat->scene;
+    ImportScene *s = &flat->scene;
     const struct aiMatrix4x4 *t = &node->mTransformation;
-    const int                index = s->node_count++;
-    ImportNode              *n = &s->node[index];
+    const int index = s->node_count++;
+    ImportNode *n = &s->node[index];
     copy_name(n->name, &node->mName);
     n->parent = parent;
     const double m[12] = {t->a1, t->a2, t->a3, t->a4, t->b1, t->b2, t->b3, t->b4, t->c1, t->c2, t->c3, t->c4};
@@ -224,7 +236,7 @@ static void fill_node(Flat *flat, const struct aiNode *node, int parent)
 
 static void fill_material(ImportMaterial *out, const struct aiMaterial *material)
 {
-    struct aiString  name = {0};
+    struct aiString name = {0};
     struct aiColor4D colour;
     if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS) copy_name(out->name, &name);
     out->has_colour = aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) == aiReturn_SUCCESS ||
@@ -236,11 +248,11 @@ static void fill_material(ImportMaterial *out, const struct aiMaterial *material
 
 static bool scene_room(ImportScene *s)
 {
-    s->node     = calloc((size_t)s->node_count + 1, sizeof *s->node);
+    s->node = calloc((size_t)s->node_count + 1, sizeof *s->node);
     s->material = calloc((size_t)s->material_count + 1, sizeof *s->material);
-    s->mesh     = calloc((size_t)s->mesh_count + 1, sizeof *s->mesh);
-    s->vertex   = calloc((size_t)s->vertex_count + 1, sizeof *s->vertex);
-    s->normal   = calloc((size_t)s->vertex_count + 1, sizeof *s->normal);
+    s->mesh = calloc((size_t)s->mesh_count + 1, sizeof *s->mesh);
+    s->vertex = calloc((size_t)s->vertex_count + 1, sizeof *s->vertex);
+    s->normal = calloc((size_t)s->vertex_count + 1, sizeof *s->normal);
     s->triangle = calloc((size_t)s->triangle_count + 1, sizeof *s->triangle);
     return s->node && s->material && s->mesh && s->vertex && s->normal && s->triangle;
 }
@@ -256,9 +268,9 @@ static int count_textures(const struct aiScene *source)
 
 static void count_lost(ImportScene *s, const struct aiScene *source)
 {
-    s->lost[LOST_TEXTURES]   = count_textures(source);
-    s->lost[LOST_LIGHTS]     = (int)source->mNumLights;
-    s->lost[LOST_CAMERAS]    = (int)source->mNumCameras;
+    s->lost[LOST_TEXTURES] = count_textures(source);
+    s->lost[LOST_LIGHTS] = (int)source->mNumLights;
+    s->lost[LOST_CAMERAS] = (int)source->mNumCameras;
     s->lost[LOST_ANIMATIONS] = (int)source->mNumAnimations;
     for (unsigned m = 0; m < source->mNumMeshes; m++) {
         s->lost[LOST_BONES] += (int)source->mMeshes[m]->mNumBones;
@@ -281,9 +293,9 @@ static bool put(int fd, const void *bytes, size_t octets)
 
 static void child_reads(int fd, const char *path)
 {
-    Flat   flat = {0};
+    Flat flat = {0};
     Header header = {.status = STATUS_BAD_VALUE};
-    Files  files = {.path = path};
+    Files files = {.path = path};
     snprintf(files.shown, sizeof files.shown, "%s", path);
     const size_t length = strlen(files.shown);
     if (length > 3 && strcasecmp(files.shown + length - 3, ".gz") == 0) files.shown[length - 3] = 0;
@@ -291,8 +303,8 @@ static void child_reads(int fd, const char *path)
     files.folder = slash ? (size_t)(slash - files.shown) + 1 : 0;
 
     struct aiFileIO io = {files_open, files_close, (char *)&files};
-    flat.source = aiImportFileEx(files.shown, aiProcess_Triangulate | aiProcess_SortByPType |
-                                 aiProcess_ValidateDataStructure, &io);
+    flat.source = aiImportFileEx(files.shown,
+                                 aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure, &io);
     if (!flat.source) {
         snprintf(header.said, sizeof header.said, "%s", aiGetErrorString());
     } else if (flat.source->mNumMaterials > import_max_materials) {
@@ -300,7 +312,7 @@ static void child_reads(int fd, const char *path)
     } else if (!flat.source->mRootNode || !count_node(&flat, flat.source->mRootNode, 1)) {
         if (!flat.said) flat.said = "no nodes";
     } else {
-        ImportScene *s    = &flat.scene;
+        ImportScene *s = &flat.scene;
         s->material_count = (int)flat.source->mNumMaterials;
         if (!scene_room(s)) {
             flat.said = "no memory";
@@ -313,11 +325,11 @@ static void child_reads(int fd, const char *path)
         }
     }
     if (flat.said) snprintf(header.said, sizeof header.said, "%s", flat.said);
-    const ImportScene *s  = &flat.scene;
-    header.node_count     = s->node_count;
+    const ImportScene *s = &flat.scene;
+    header.node_count = s->node_count;
     header.material_count = s->material_count;
-    header.mesh_count     = s->mesh_count;
-    header.vertex_count   = s->vertex_count;
+    header.mesh_count = s->mesh_count;
+    header.vertex_count = s->vertex_count;
     header.triangle_count = s->triangle_count;
     memcpy(header.lost, s->lost, sizeof header.lost);
     bool written = put(fd, &header, sizeof header);
@@ -339,14 +351,14 @@ static void child_limits(void)
     setrlimit(RLIMIT_CPU, &cpu);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) /* their shadows are terabytes of address space */
-    FILE         *statm = fopen("/proc/self/statm", "r");
+    FILE *statm = fopen("/proc/self/statm", "r");
     unsigned long pages = 0;
     if (statm) {
         if (fscanf(statm, "%lu", &pages) != 1) pages = 0;
         fclose(statm);
     }
     if (pages > 0) {
-        const rlim_t        most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + import_max_memory;
+        const rlim_t most = (rlim_t)pages * (rlim_t)sysconf(_SC_PAGESIZE) + import_max_memory;
         const struct rlimit memory = {most, most};
         setrlimit(RLIMIT_AS, &memory);
     }
@@ -384,7 +396,8 @@ static bool scene_is_sound(ImportScene *s)
         const ImportMesh *m = &s->mesh[i];
         if (!in_range(m->node, 0, s->node_count - 1) || !in_range(m->material, 0, s->material_count - 1)) return false;
         if (m->first_vertex != vertices || !in_range(m->vertex_count, 0, s->vertex_count - vertices)) return false;
-        if (m->first_triangle != triangles || !in_range(m->triangle_count, 0, s->triangle_count - triangles)) return false;
+        if (m->first_triangle != triangles || !in_range(m->triangle_count, 0, s->triangle_count - triangles))
+            return false;
         vertices += m->vertex_count;
         triangles += m->triangle_count;
         for (int t = m->first_triangle; t < triangles; t++)
@@ -397,7 +410,7 @@ static bool scene_is_sound(ImportScene *s)
 static Status take_scene(ImportScene *out, const char *bytes, size_t octets, const char *path)
 {
     const char *at = bytes, *end = bytes + octets;
-    Header      header;
+    Header header;
     ImportScene s = {0};
     if (!take(&header, sizeof header, &at, end)) goto broken;
     if (header.status != STATUS_OK) {
@@ -407,14 +420,15 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         log_error("model: cannot be read: file=%s: %s", path, said);
         return STATUS_BAD_VALUE;
     }
-    if (!in_range(header.node_count, 1, import_max_nodes) || !in_range(header.material_count, 0, import_max_materials) ||
+    if (!in_range(header.node_count, 1, import_max_nodes) ||
+        !in_range(header.material_count, 0, import_max_materials) ||
         !in_range(header.mesh_count, 0, import_max_meshes) || !in_range(header.vertex_count, 0, import_max_vertices) ||
         !in_range(header.triangle_count, 0, import_max_triangles))
         goto broken;
-    s.node_count     = header.node_count;
+    s.node_count = header.node_count;
     s.material_count = header.material_count;
-    s.mesh_count     = header.mesh_count;
-    s.vertex_count   = header.vertex_count;
+    s.mesh_count = header.mesh_count;
+    s.vertex_count = header.vertex_count;
     s.triangle_count = header.triangle_count;
     memcpy(s.lost, header.lost, sizeof s.lost);
     if (!scene_room(&s)) {
@@ -455,7 +469,7 @@ static void format_axes(ImportScene *s, const char *extension)
 {
     const bool z_up = strcmp(extension, "ply") == 0 || strcmp(extension, "stl") == 0;
     s->forward[z_up ? 0 : 2] = 1;
-    s->up[z_up ? 2 : 1]      = 1;
+    s->up[z_up ? 2 : 1] = 1;
 }
 
 Status import_assimp(ImportScene *out, const char *path, const char *extension)
@@ -463,11 +477,12 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension)
     char dotted[40];
     snprintf(dotted, sizeof dotted, ".%s", extension);
     if (!*extension || aiIsExtensionSupported(dotted) != AI_TRUE) {
-        log_error("model: no reader: file=%s: `.%s` is not a format that assimp or osgconv reads; convert it to glTF or OBJ",
-                  path, extension);
+        log_error(
+            "model: no reader: file=%s: `.%s` is not a format that assimp or osgconv reads; convert it to glTF or OBJ",
+            path, extension);
         return STATUS_UNSUPPORTED;
     }
-    Status    status = STATUS_IO;
+    Status status = STATUS_IO;
     const int fd = memfd_create("model", MFD_CLOEXEC);
     if (fd < 0) {
         log_error("model: cannot read: file=%s: memfd_create: %s", path, strerror(errno));
@@ -494,9 +509,10 @@ Status import_assimp(ImportScene *out, const char *path, const char *extension)
         goto done;
     }
     if (!WIFEXITED(ended) || WEXITSTATUS(ended) != 0) {
-        log_error("model: cannot be read: file=%s: the reader broke off (%s %d): the file is broken, or needs more than %d MB",
-                  path, WIFSIGNALED(ended) ? "signal" : "exit", WIFSIGNALED(ended) ? WTERMSIG(ended) : WEXITSTATUS(ended),
-                  import_max_memory / 1000000);
+        log_error("model: cannot be read: file=%s: the reader broke off (%s %d): the file is broken, or needs more "
+                  "than %d MB",
+                  path, WIFSIGNALED(ended) ? "signal" : "exit",
+                  WIFSIGNALED(ended) ? WTERMSIG(ended) : WEXITSTATUS(ended), import_max_memory / 1000000);
         goto done;
     }
     struct stat info;

@@ -20,16 +20,16 @@
 
 typedef struct Element {
     int first_word, words;
-    int child, next;  /* -1: none */
+    int child, next; /* -1: none */
 } Element;
 
 typedef struct Text {
     const char *path;
-    int         element_count, element_room, word_count, word_room;
-    Element    *element;
-    char      **word;
-    int        *by_id; /* element with this UniqueID that says more than the id; -1 */
-    int         id_count;
+    int element_count, element_room, word_count, word_room;
+    Element *element;
+    char **word;
+    int *by_id; /* element with this UniqueID that says more than the id; -1 */
+    int id_count;
 } Text;
 
 /* Words of one line in place; `"a b"` is one, without its quotes. False: no memory. */
@@ -40,9 +40,9 @@ static bool split_words(Text *x, char *line)
         if (!*at) return true;
         if (x->word_count == x->word_room) {
             const int room = x->word_room ? 2 * x->word_room : 4096;
-            char    **grown = realloc(x->word, (size_t)room * sizeof *grown);
+            char **grown = realloc(x->word, (size_t)room * sizeof *grown);
             if (!grown) return false;
-            x->word      = grown;
+            x->word = grown;
             x->word_room = room;
         }
         if (*at == '"') {
@@ -92,15 +92,17 @@ static Status read_tree(Text *x, char *text)
         if (opens) words--;
         if (x->element_count == x->element_room) {
             const int room = x->element_room ? 2 * x->element_room : 4096;
-            Element  *grown = realloc(x->element, (size_t)room * sizeof *grown);
+            Element *grown = realloc(x->element, (size_t)room * sizeof *grown);
             if (!grown) return STATUS_NO_MEMORY;
-            x->element      = grown;
+            x->element = grown;
             x->element_room = room;
         }
         const int e = x->element_count++;
         x->element[e] = (Element){first, words, -1, -1};
-        if (last[depth] >= 0) x->element[last[depth]].next = e;
-        else if (open[depth] >= 0) x->element[open[depth]].child = e;
+        if (last[depth] >= 0)
+            x->element[last[depth]].next = e;
+        else if (open[depth] >= 0)
+            x->element[open[depth]].child = e;
         last[depth] = e;
         if (!opens) continue;
         if (++depth == depth_max) return STATUS_BAD_VALUE;
@@ -136,11 +138,11 @@ static int resolve(const Text *x, int element)
 static Status number_objects(Text *x)
 {
     x->id_count = x->element_count + 1; /* ids count objects, and an object is more than one element */
-    x->by_id    = malloc((size_t)x->id_count * sizeof *x->by_id);
+    x->by_id = malloc((size_t)x->id_count * sizeof *x->by_id);
     if (!x->by_id) return STATUS_NO_MEMORY;
     for (int i = 0; i < x->id_count; i++) x->by_id[i] = -1;
     for (int e = 0; e < x->element_count; e++) {
-        const int       first = x->element[e].child;
+        const int first = x->element[e].child;
         const long long id = first >= 0 && x->element[first].next >= 0 ? id_of(x, e) : -1;
         if (id >= 0 && x->by_id[id] < 0) x->by_id[id] = e;
     }
@@ -158,10 +160,10 @@ static bool numbers(double *out, int count, const Text *x, int element, int from
 /* ---- the tree as a scene ------------------------------------------------------------------------------------- */
 
 typedef struct Walk {
-    Text       *x;
+    Text *x;
     ImportScene s;
-    int         node_room, mesh_room, vertex_room, triangle_room, dof_room, material_room;
-    int         visits;
+    int node_room, mesh_room, vertex_room, triangle_room, dof_room, material_room;
+    int visits;
 } Walk;
 
 /* Room for `more` in a growing array; false: no memory. */
@@ -235,9 +237,9 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
 {
     static const struct {
         const char *low, *high, *step, *current, *tail;
-        int         component, axis; /* of H P R or x y z; of the transform's own axes */
-        bool        slides;
-        uint32_t    limited;         /* bit of LimitationFlags */
+        int component, axis; /* of H P R or x y z; of the transform's own axes */
+        bool slides;
+        uint32_t limited; /* bit of LimitationFlags */
     } freedom[6] = {
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".x", 0, 0, true, 1u << 31},
         {"MinTranslate", "MaxTranslate", "IncrementTranslate", "CurrentTranslate", ".y", 1, 1, true, 1u << 30},
@@ -246,14 +248,16 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
         {"MinHPR", "MaxHPR", "IncrementHPR", "CurrentHPR", ".pitch", 1, 0, false, 1u << 28},
         {"MinHPR", "MaxHPR", "IncrementHPR", "CurrentHPR", ".roll", 2, 1, false, 1u << 27},
     };
-    const Text  *x = w->x;
+    const Text *x = w->x;
     ImportScene *s = &w->s;
-    Freedom      zero;
-    long long    flags = 0;
-    bool         first = true;
-    if (!read_freedom(&zero, x, element)) return refuse(w, "the place of a degree of freedom is not a rotation and a point");
+    Freedom zero;
+    long long flags = 0;
+    bool first = true;
+    if (!read_freedom(&zero, x, element))
+        return refuse(w, "the place of a degree of freedom is not a rotation and a point");
     const int flag_element = find(x, element, "LimitationFlags");
-    if (flag_element >= 0 && !text_to_long(&flags, word(x, flag_element, 1))) return refuse(w, "LimitationFlags is not a number");
+    if (flag_element >= 0 && !text_to_long(&flags, word(x, flag_element, 1)))
+        return refuse(w, "LimitationFlags is not a number");
     *out = parent;
     for (int f = 0; f < 6; f++) {
         double low[3] = {0}, high[3] = {0}, step[3] = {0}, current[3] = {0};
@@ -261,7 +265,7 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
         numbers(high, 3, x, find(x, element, freedom[f].high), 1);
         numbers(step, 3, x, find(x, element, freedom[f].step), 1);
         numbers(current, 3, x, find(x, element, freedom[f].current), 1);
-        const int  c = freedom[f].component;
+        const int c = freedom[f].component;
         const bool limited = (uint32_t)flags & freedom[f].limited;
         if (current[c] != 0) s->lost[LOST_FREEDOM_OFFSETS]++;
         if (!(high[c] > low[c] || (step[c] != 0 && !limited)) || (freedom[f].slides && !limited)) continue;
@@ -272,7 +276,8 @@ static Status add_freedoms(int *out, Walk *w, int element, const char *name, int
         if (status != STATUS_OK) return status;
         if (!grow(&s->dof, &w->dof_room, s->dof_count, 1, sizeof *s->dof)) return STATUS_NO_MEMORY;
         ImportDof *dof = &s->dof[s->dof_count++];
-        *dof = (ImportDof){.node = *out, .slides = freedom[f].slides, .limited = limited, .low = low[c], .high = high[c]};
+        *dof =
+            (ImportDof){.node = *out, .slides = freedom[f].slides, .limited = limited, .low = low[c], .high = high[c]};
         memcpy(dof->p_pivot_parent, zero.p_parent, sizeof dof->p_pivot_parent);
         memcpy(dof->axis_parent, zero.r_own_from_parent + 3 * freedom[f].axis, sizeof dof->axis_parent);
     }
@@ -290,7 +295,7 @@ static int array_numbers(double *out, int room, const Text *x, int property)
 {
     if (property < 0 || x->element[property].child < 0) return -1;
     const int list = find(x, resolve(x, x->element[property].child), "vector");
-    int       count = 0;
+    int count = 0;
     if (list < 0) return -1;
     for (int line = x->element[list].child; line >= 0; line = x->element[line].next)
         for (int i = 0; i < x->element[line].words; i++, count++) {
@@ -317,17 +322,21 @@ static Status add_triangle(Walk *w, ImportMesh *mesh, long long a, long long b, 
 }
 
 /* One run of `count` vertices; index: NULL for first, first + 1 ... */
-static Status add_primitive(Walk *w, ImportMesh *mesh, const char *mode, long long first, int count, const double *index)
+static Status add_primitive(Walk *w, ImportMesh *mesh, const char *mode, long long first, int count,
+                            const double *index)
 {
-    #define AT(i) (index ? (long long)index[i] : first + (i))
+#define AT(i) (index ? (long long)index[i] : first + (i))
     Status status = STATUS_OK;
     if (strcmp(mode, "TRIANGLES") == 0) {
-        for (int i = 0; i + 2 < count && status == STATUS_OK; i += 3) status = add_triangle(w, mesh, AT(i), AT(i + 1), AT(i + 2));
+        for (int i = 0; i + 2 < count && status == STATUS_OK; i += 3)
+            status = add_triangle(w, mesh, AT(i), AT(i + 1), AT(i + 2));
     } else if (strcmp(mode, "TRIANGLE_STRIP") == 0 || strcmp(mode, "QUAD_STRIP") == 0) {
         for (int i = 0; i + 2 < count && status == STATUS_OK; i++)
-            status = i % 2 ? add_triangle(w, mesh, AT(i + 1), AT(i), AT(i + 2)) : add_triangle(w, mesh, AT(i), AT(i + 1), AT(i + 2));
+            status = i % 2 ? add_triangle(w, mesh, AT(i + 1), AT(i), AT(i + 2))
+                           : add_triangle(w, mesh, AT(i), AT(i + 1), AT(i + 2));
     } else if (strcmp(mode, "TRIANGLE_FAN") == 0 || strcmp(mode, "POLYGON") == 0) {
-        for (int i = 1; i + 1 < count && status == STATUS_OK; i++) status = add_triangle(w, mesh, AT(0), AT(i), AT(i + 1));
+        for (int i = 1; i + 1 < count && status == STATUS_OK; i++)
+            status = add_triangle(w, mesh, AT(0), AT(i), AT(i + 1));
     } else if (strcmp(mode, "QUADS") == 0) {
         for (int i = 0; i + 3 < count && status == STATUS_OK; i += 4) {
             status = add_triangle(w, mesh, AT(i), AT(i + 1), AT(i + 2));
@@ -336,7 +345,7 @@ static Status add_primitive(Walk *w, ImportMesh *mesh, const char *mode, long lo
     } else {
         w->s.lost[LOST_POINTS_AND_LINES]++;
     }
-    #undef AT
+#undef AT
     return status;
 }
 
@@ -344,23 +353,25 @@ static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
 {
     const Text *x = w->x;
     const char *kind = word(x, set, 0);
-    const int   mode = find(x, set, "Mode"), first_element = find(x, set, "First"), count_element = find(x, set, "Count");
-    long long   first = 0, count = 0;
+    const int mode = find(x, set, "Mode"), first_element = find(x, set, "First"), count_element = find(x, set, "Count");
+    long long first = 0, count = 0;
     if (mode < 0) return STATUS_OK;
-    if (first_element >= 0 && (!text_to_long(&first, word(x, first_element, 1)) || first < 0 || first > import_max_vertices))
+    if (first_element >= 0 &&
+        (!text_to_long(&first, word(x, first_element, 1)) || first < 0 || first > import_max_vertices))
         return refuse(w, "First is out of range");
     if (strcmp(kind, "osg::DrawArrays") == 0) {
-        if (count_element < 0 || !text_to_long(&count, word(x, count_element, 1)) || count < 0 || count > import_max_vertices)
+        if (count_element < 0 || !text_to_long(&count, word(x, count_element, 1)) || count < 0 ||
+            count > import_max_vertices)
             return refuse(w, "Count is out of range");
         return add_primitive(w, mesh, word(x, mode, 1), first, (int)count, NULL);
     }
     /* the numbers lie in the set itself */
     const int list = find(x, set, "vector");
-    int       total = 0, at = 0;
+    int total = 0, at = 0;
     if (list < 0) return STATUS_OK;
     for (int line = x->element[list].child; line >= 0; line = x->element[line].next) total += x->element[line].words;
     double *value = malloc(((size_t)total + 1) * sizeof *value);
-    Status  status = value ? STATUS_OK : STATUS_NO_MEMORY;
+    Status status = value ? STATUS_OK : STATUS_NO_MEMORY;
     for (int line = x->element[list].child; line >= 0 && status == STATUS_OK; line = x->element[line].next)
         for (int i = 0; i < x->element[line].words && status == STATUS_OK; i++, at++)
             if (!text_to_double(value + at, word(x, line, i)) || !(value[at] >= 0 && value[at] <= import_max_vertices))
@@ -399,10 +410,10 @@ static Status add_material(int *out, Walk *w, const char *name, const float rgb[
 static Status read_material(int *out, Walk *w, int geometry, int material)
 {
     const Text *x = w->x;
-    double      rgb[4] = {0};
-    float       colour[3] = {0};
-    const int   diffuse = find(x, material, "Diffuse"), name = find(x, material, "Name");
-    bool        has = numbers(rgb, 3, x, diffuse, 3); /* Diffuse TRUE Front r g b a Back ... */
+    double rgb[4] = {0};
+    float colour[3] = {0};
+    const int diffuse = find(x, material, "Diffuse"), name = find(x, material, "Name");
+    bool has = numbers(rgb, 3, x, diffuse, 3); /* Diffuse TRUE Front r g b a Back ... */
     if (array_numbers(rgb, 4, x, find(x, geometry, "ColorArray")) >= 3) has = true;
     char text[model_name_size];
     snprintf(text, sizeof text, "%s", name >= 0 ? word(x, name, 1) : "");
@@ -416,10 +427,10 @@ static Status read_material(int *out, Walk *w, int geometry, int material)
 
 static Status add_geometry(Walk *w, int geometry, int node, int material)
 {
-    const Text  *x = w->x;
+    const Text *x = w->x;
     ImportScene *s = &w->s;
-    const int    vertices = find(x, geometry, "VertexArray"), sets = find(x, geometry, "PrimitiveSetList");
-    const int    values = array_numbers(NULL, 0, x, vertices);
+    const int vertices = find(x, geometry, "VertexArray"), sets = find(x, geometry, "PrimitiveSetList");
+    const int values = array_numbers(NULL, 0, x, vertices);
     if (values <= 0 || values % 3 != 0 || sets < 0) return STATUS_OK; /* text, shapes: nothing to trace */
     const int count = values / 3;
     if (count > import_max_vertices - s->vertex_count) return refuse(w, "more than 8 M vertices");
@@ -429,13 +440,15 @@ static Status add_geometry(Walk *w, int geometry, int node, int material)
         !grow(&s->vertex, &w->vertex_room, s->vertex_count, count, sizeof *s->vertex) ||
         !grow(&s->mesh, &w->mesh_room, s->mesh_count, 1, sizeof *s->mesh))
         return STATUS_NO_MEMORY;
-    ImportMesh mesh = {.node = node, .first_vertex = s->vertex_count, .vertex_count = count, .first_triangle = s->triangle_count};
+    ImportMesh mesh = {
+        .node = node, .first_vertex = s->vertex_count, .vertex_count = count, .first_triangle = s->triangle_count};
     array_numbers(s->vertex[s->vertex_count], values, x, vertices);
-    double   *normals = malloc((size_t)values * sizeof *normals);
-    Status    status = normals ? STATUS_OK : STATUS_NO_MEMORY;
+    double *normals = malloc((size_t)values * sizeof *normals);
+    Status status = normals ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         mesh.has_normals = array_numbers(normals, values, x, find(x, geometry, "NormalArray")) == values;
-        for (int i = 0; i < values; i++) s->normal[s->vertex_count + i / 3][i % 3] = mesh.has_normals ? (float)normals[i] : 0;
+        for (int i = 0; i < values; i++)
+            s->normal[s->vertex_count + i / 3][i % 3] = mesh.has_normals ? (float)normals[i] : 0;
         status = read_material(&mesh.material, w, geometry, material);
     }
     free(normals);
@@ -456,13 +469,14 @@ static int material_of(const Text *x, int object, int above)
     return material >= 0 ? resolve(x, material) : above;
 }
 
-/* ---- nodes --------------------------------------------------------------------------------------------------------- */
+/* ---- nodes ---------------------------------------------------------------------------------------------------------
+ */
 
 /* The least distance at which a level of detail is drawn; INFINITY for what is none. */
 static double nearest_range(const Text *x, int object)
 {
     const int list = strstr(word(x, object, 0), "LOD") ? find(x, object, "RangeList") : -1;
-    double    least = INFINITY, low;
+    double least = INFINITY, low;
     for (int line = list >= 0 ? x->element[list].child : -1; line >= 0; line = x->element[line].next)
         if (numbers(&low, 1, x, line, 0) && low < least) least = low;
     return least;
@@ -475,12 +489,12 @@ static bool is_seen(Walk *w, int object, const char *kind, int index, int childr
     if (strstr(kind, "LOD")) {
         /* the finest: the one that is drawn nearest by */
         const int list = find(x, object, "RangeList");
-        double    least = INFINITY;
-        int       finest = 0, i = 0;
+        double least = INFINITY;
+        int finest = 0, i = 0;
         for (int line = list >= 0 ? x->element[list].child : -1; line >= 0; line = x->element[line].next, i++) {
             double low;
             if (!numbers(&low, 1, x, line, 0) || !(low < least)) continue;
-            least  = low;
+            least = low;
             finest = i;
         }
         const bool seen = index == (finest < children ? finest : 0);
@@ -488,7 +502,8 @@ static bool is_seen(Walk *w, int object, const char *kind, int index, int childr
         return seen;
     }
     if (strstr(kind, "Switch")) {
-        /* ValueList n { TRUE FALSE ... } of a switch; Values n { m { TRUE ... } } of one with several sets, the first */
+        /* ValueList n { TRUE FALSE ... } of a switch; Values n { m { TRUE ... } } of one with several sets, the first
+         */
         int list = find(x, object, "ValueList");
         if (list < 0 && (list = find(x, object, "Values")) >= 0) list = x->element[list].child;
         int i = 0;
@@ -505,10 +520,10 @@ static bool is_seen(Walk *w, int object, const char *kind, int index, int childr
 static Status walk_object(Walk *w, int element, int parent, int material, int depth)
 {
     const Text *x = w->x;
-    const int   object = resolve(x, element), name_element = find(x, object, "Name");
+    const int object = resolve(x, element), name_element = find(x, object, "Name");
     const char *kind = word(x, object, 0), *name = name_element >= 0 ? word(x, name_element, 1) : "";
-    int         node = parent;
-    Status      status = STATUS_OK;
+    int node = parent;
+    Status status = STATUS_OK;
     if (depth > import_max_depth) return refuse(w, "more than 256 levels of nodes");
     if (++w->visits > 4 * import_max_nodes) return refuse(w, "more than 262144 nodes, as often as they are drawn");
     material = material_of(x, object, material);
@@ -520,33 +535,39 @@ static Status walk_object(Walk *w, int element, int parent, int material, int de
     if (strcmp(kind, "osgSim::DOFTransform") == 0) {
         status = add_freedoms(&node, w, object, name, parent);
     } else if (drawables < 0 || parent < 0) {
-        /* a Geode's own name is that of its first face: its triangles belong to the node above, which has the object's */
+        /* a Geode's own name is that of its first face: its triangles belong to the node above, which has the object's
+         */
         status = add_node(&node, w, name, parent);
         if (status == STATUS_OK && strcmp(kind, "osg::MatrixTransform") == 0) {
             const int matrix = find(x, object, "Matrix");
-            if (matrix >= 0 && !read_matrix(w->s.node[node].m, x, matrix)) return refuse(w, "a matrix is not 4 x 4 numbers");
+            if (matrix >= 0 && !read_matrix(w->s.node[node].m, x, matrix))
+                return refuse(w, "a matrix is not 4 x 4 numbers");
         }
     }
     if (drawables < 0 && children < 0 && !strstr(kind, "Group") && !strstr(kind, "Light") && !strstr(kind, "Proxy"))
         w->s.lost[LOST_OTHER]++;
-    for (int c = drawables >= 0 ? x->element[drawables].child : -1; c >= 0 && status == STATUS_OK; c = x->element[c].next)
+    for (int c = drawables >= 0 ? x->element[drawables].child : -1; c >= 0 && status == STATUS_OK;
+         c = x->element[c].next)
         status = walk_object(w, c, node, material, depth + 1);
-    int    count = 0, index = 0;
+    int count = 0, index = 0;
     double near = INFINITY;
     for (int c = children >= 0 ? x->element[children].child : -1; c >= 0; c = x->element[c].next, count++)
         near = fmin(near, nearest_range(x, resolve(x, c)));
-    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0 && status == STATUS_OK; c = x->element[c].next, index++) {
+    for (int c = children >= 0 ? x->element[children].child : -1; c >= 0 && status == STATUS_OK;
+         c = x->element[c].next, index++) {
         const double range = nearest_range(x, resolve(x, c));
-        if (isfinite(range) && range > near) w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight's levels are neighbours */
-        else if (is_seen(w, object, kind, index, count)) status = walk_object(w, c, node, material, depth + 1);
+        if (isfinite(range) && range > near)
+            w->s.lost[LOST_LEVELS_OF_DETAIL]++; /* OpenFlight's levels are neighbours */
+        else if (is_seen(w, object, kind, index, count))
+            status = walk_object(w, c, node, material, depth + 1);
     }
     return status;
 }
 
 Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets)
 {
-    Text   x = {.path = path};
-    Walk   w = {.x = &x, .s = {.forward = {0, 1, 0}, .up = {0, 0, 1}}}; /* as OpenFlight has it */
+    Text x = {.path = path};
+    Walk w = {.x = &x, .s = {.forward = {0, 1, 0}, .up = {0, 0, 1}}}; /* as OpenFlight has it */
     Status status = strlen(text) == octets ? read_tree(&x, text) : STATUS_BAD_VALUE;
     if (status == STATUS_BAD_VALUE) refuse(&w, "what osgconv wrote is not a whole scene");
     if (status == STATUS_OK) status = number_objects(&x);
@@ -558,12 +579,15 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
     free(x.element);
     free(x.word);
     free(x.by_id);
-    if (status == STATUS_OK) *out = w.s;
-    else import_scene_close(&w.s);
+    if (status == STATUS_OK)
+        *out = w.s;
+    else
+        import_scene_close(&w.s);
     return status;
 }
 
-/* ---- osgconv --------------------------------------------------------------------------------------------------------- */
+/* ---- osgconv
+ * --------------------------------------------------------------------------------------------------------- */
 
 /* Waits for a process, up to `seconds`; false: it had to be stopped. */
 static bool wait_for(int *ended, pid_t child, double seconds)
@@ -576,7 +600,8 @@ static bool wait_for(int *ended, pid_t child, double seconds)
         nanosleep(&(struct timespec){0, 5000000}, NULL);
     }
     kill(child, SIGKILL);
-    while (waitpid(child, ended, 0) < 0 && errno == EINTR) {}
+    while (waitpid(child, ended, 0) < 0 && errno == EINTR) {
+    }
     return false;
 }
 
@@ -596,10 +621,10 @@ static char **osg_environment(void)
 
 static Status convert(const char *from, const char *to, const char *path)
 {
-    char  program[] = "osgconv", option[] = "-O", options[] = "preserveObject precision 9";
+    char program[] = "osgconv", option[] = "-O", options[] = "preserveObject precision 9";
     char *argument[] = {program, option, options, (char *)(uintptr_t)from, (char *)(uintptr_t)to, NULL};
     pid_t child;
-    int   ended = 0;
+    int ended = 0;
     posix_spawn_file_actions_t actions;
     char **environment = osg_environment();
     if (!environment || posix_spawn_file_actions_init(&actions) != 0) {
@@ -637,14 +662,15 @@ static Status convert(const char *from, const char *to, const char *path)
 Status import_openflight(ImportScene *out, const char *path)
 {
     const char *root = getenv("TMPDIR");
-    char        folder[512], text_path[560], whole[PATH_MAX];
-    char       *text = NULL;
-    size_t      octets = 0;
+    char folder[512], text_path[560], whole[PATH_MAX];
+    char *text = NULL;
+    size_t octets = 0;
     if (!realpath(path, whole)) { /* so that no name looks like an option */
         log_error("model: cannot open: file=%s: %s", path, strerror(errno));
         return STATUS_IO;
     }
-    if ((size_t)snprintf(folder, sizeof folder, "%s/pitviper-flt-XXXXXX", root && *root ? root : "/tmp") >= sizeof folder ||
+    if ((size_t)snprintf(folder, sizeof folder, "%s/pitviper-flt-XXXXXX", root && *root ? root : "/tmp") >=
+            sizeof folder ||
         !mkdtemp(folder)) {
         log_error("model: cannot convert: file=%s: no folder for the conversion: %s", path, folder);
         return STATUS_IO;

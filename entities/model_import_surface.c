@@ -8,16 +8,16 @@
 
 Status import_paints_open(ImportPaints *out)
 {
-    char         path[512];
-    Table        table;
+    char path[512];
+    Table table;
     ImportPaints paints = {0};
     if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
-    const int name = table_column(&table, "name"), column[3] = {table_column(&table, "rho_r"), table_column(&table, "rho_g"),
-                                                                table_column(&table, "rho_b")};
+    const int name = table_column(&table, "name"),
+              column[3] = {table_column(&table, "rho_r"), table_column(&table, "rho_g"), table_column(&table, "rho_b")};
     paints.name = calloc((size_t)table.rows + 1, sizeof *paints.name);
-    paints.rgb  = calloc((size_t)table.rows + 1, sizeof *paints.rgb);
+    paints.rgb = calloc((size_t)table.rows + 1, sizeof *paints.rgb);
     if (!paints.name || !paints.rgb) {
         status = STATUS_NO_MEMORY;
     } else if (name < 0 || column[0] < 0 || column[1] < 0 || column[2] < 0) {
@@ -33,8 +33,10 @@ Status import_paints_open(ImportPaints *out)
         }
     }
     table_close(&table);
-    if (status == STATUS_OK) *out = paints;
-    else import_paints_close(&paints);
+    if (status == STATUS_OK)
+        *out = paints;
+    else
+        import_paints_close(&paints);
     return status;
 }
 
@@ -55,7 +57,7 @@ bool import_paints_have(const ImportPaints *paints, const char *name)
 /* Where a word ends in the text, case aside; 0: not in it. The rightmost counts: the last word says the most. */
 static size_t word_end(const char *text, const char *word)
 {
-    size_t       end = 0;
+    size_t end = 0;
     const size_t length = strlen(word);
     for (const char *at = text; (at = strcasestr(at, word)); at++) end = (size_t)(at - text) + length;
     return end;
@@ -66,22 +68,39 @@ const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints 
     static const struct {
         const char *word, *material;
     } words[] = {
-        {"glass", "glass_window"},  {"window", "glass_window"},       {"lens", "glass_window"}, {"rubber", "rubber_black"},
-        {"tyre", "rubber_black"},   {"tire", "rubber_black"},         {"canvas", "canvas"},     {"tarp", "canvas"},
-        {"wood", "wood_pine"},      {"aluminium", "metal_aluminium_bare"}, {"aluminum", "metal_aluminium_bare"},
-        {"steel", "steel_worn"},    {"track", "steel_worn"},          {"bark", "bark_oak"},     {"foliage", "leaf_deciduous"},
-        {"leaves", "leaf_deciduous"}, {"leaf", "leaf_deciduous"},     {"brick", "brick_red"},   {"concrete", "concrete"},
-        {"olive", "paint_olive"},   {"sand", "paint_sand"},           {"tan", "paint_sand"},
+        {"glass", "glass_window"},
+        {"window", "glass_window"},
+        {"lens", "glass_window"},
+        {"rubber", "rubber_black"},
+        {"tyre", "rubber_black"},
+        {"tire", "rubber_black"},
+        {"canvas", "canvas"},
+        {"tarp", "canvas"},
+        {"wood", "wood_pine"},
+        {"aluminium", "metal_aluminium_bare"},
+        {"aluminum", "metal_aluminium_bare"},
+        {"steel", "steel_worn"},
+        {"track", "steel_worn"},
+        {"bark", "bark_oak"},
+        {"foliage", "leaf_deciduous"},
+        {"leaves", "leaf_deciduous"},
+        {"leaf", "leaf_deciduous"},
+        {"brick", "brick_red"},
+        {"concrete", "concrete"},
+        {"olive", "paint_olive"},
+        {"sand", "paint_sand"},
+        {"tan", "paint_sand"},
     };
     /* the colours of things that are painted or left bare; nothing turns into grass */
-    static const char *const painted[] = {"paint_olive", "paint_sand", "paint_grey", "paint_white_missile", "paint_black_gloss",
-                                          "steel_worn", "metal_dark", "rubber_black", "wood_pine", "brick_red"};
+    static const char *const painted[] = {"paint_olive",       "paint_sand", "paint_grey", "paint_white_missile",
+                                          "paint_black_gloss", "steel_worn", "metal_dark", "rubber_black",
+                                          "wood_pine",         "brick_red"};
     const char *best = NULL;
-    size_t      end = 0;
+    size_t end = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         const size_t at = word_end(material->name, words[i].word);
         if (at <= end || !import_paints_have(paints, words[i].material)) continue;
-        end  = at;
+        end = at;
         best = words[i].material;
     }
     *source = MATERIAL_BY_NAME;
@@ -89,13 +108,15 @@ const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints 
     double least = INFINITY;
     for (int i = 0; i < paints->count && material->has_colour; i++) {
         double distance = 0;
-        bool   candidate = false;
-        for (size_t k = 0; k < sizeof painted / sizeof *painted; k++) candidate |= strcmp(painted[k], paints->name[i]) == 0;
+        bool candidate = false;
+        for (size_t k = 0; k < sizeof painted / sizeof *painted; k++)
+            candidate |= strcmp(painted[k], paints->name[i]) == 0;
         if (!candidate) continue;
-        for (int c = 0; c < 3; c++) distance += (material->rgb[c] - paints->rgb[i][c]) * (material->rgb[c] - paints->rgb[i][c]);
+        for (int c = 0; c < 3; c++)
+            distance += (material->rgb[c] - paints->rgb[i][c]) * (material->rgb[c] - paints->rgb[i][c]);
         if (!(distance < least)) continue;
         least = distance;
-        best  = paints->name[i];
+        best = paints->name[i];
     }
     *source = best ? MATERIAL_BY_COLOUR : MATERIAL_BY_DEFAULT;
     return best ? best : "paint_olive";
@@ -107,19 +128,20 @@ HeatRole import_role_guess(const char *path)
 {
     static const struct {
         const char *word;
-        HeatRole    role;
+        HeatRole role;
     } words[] = {
-        {"exhaust", HEAT_EXHAUST}, {"muffler", HEAT_EXHAUST}, {"engine", HEAT_ENGINE_DECK}, {"grille", HEAT_ENGINE_DECK},
-        {"turret", HEAT_TURRET},   {"gun", HEAT_GUN},         {"barrel", HEAT_GUN},         {"track", HEAT_TRACK},
-        {"wheel", HEAT_WHEEL},     {"tyre", HEAT_WHEEL},      {"tire", HEAT_WHEEL},         {"rotor", HEAT_ROTOR},
-        {"turbine", HEAT_TURBINE}, {"cabin", HEAT_CABIN},     {"hull", HEAT_HULL},
+        {"exhaust", HEAT_EXHAUST},    {"muffler", HEAT_EXHAUST}, {"engine", HEAT_ENGINE_DECK},
+        {"grille", HEAT_ENGINE_DECK}, {"turret", HEAT_TURRET},   {"gun", HEAT_GUN},
+        {"barrel", HEAT_GUN},         {"track", HEAT_TRACK},     {"wheel", HEAT_WHEEL},
+        {"tyre", HEAT_WHEEL},         {"tire", HEAT_WHEEL},      {"rotor", HEAT_ROTOR},
+        {"turbine", HEAT_TURBINE},    {"cabin", HEAT_CABIN},     {"hull", HEAT_HULL},
     };
     HeatRole role = HEAT_PASSIVE;
-    size_t   end = 0;
+    size_t end = 0;
     for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
         const size_t at = word_end(path, words[i].word);
         if (at <= end) continue;
-        end  = at;
+        end = at;
         role = words[i].role;
     }
     return role;
@@ -131,7 +153,7 @@ enum { smooth_max_fan = 256 }; /* triangles about one point; beyond it every one
 
 typedef struct Point {
     double p[3];
-    int    corner;
+    int corner;
 } Point;
 
 static int point_order(const void *a, const void *b)
@@ -148,7 +170,7 @@ static int point_order(const void *a, const void *b)
 static double corner_angle(const double (*corner)[3], int c)
 {
     const int first = c / 3 * 3;
-    double    a[3], b[3];
+    double a[3], b[3];
     v3_sub(a, corner[first + (c + 1) % 3], corner[c]);
     v3_sub(b, corner[first + (c + 2) % 3], corner[c]);
     if (!v3_normalize(a, a) || !v3_normalize(b, b)) return 0;
@@ -158,11 +180,11 @@ static double corner_angle(const double (*corner)[3], int c)
 int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[3], const double (*corner)[3],
                   int triangle_count, double crease_rad)
 {
-    const int    corners = 3 * triangle_count;
+    const int corners = 3 * triangle_count;
     const double least = cos(crease_rad) - 1e-9;
-    int          count = 0;
-    Point       *point = malloc((size_t)corners * sizeof *point);
-    double     (*plane)[3] = malloc((size_t)triangle_count * sizeof *plane);
+    int count = 0;
+    Point *point = malloc((size_t)corners * sizeof *point);
+    double(*plane)[3] = malloc((size_t)triangle_count * sizeof *plane);
     if (!point || !plane) {
         count = -1;
         goto done;
@@ -180,12 +202,13 @@ int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[
     }
     qsort(point, (size_t)corners, sizeof *point, point_order);
     for (int from = 0, to; from < corners; from = to) {
-        for (to = from + 1; to < corners && memcmp(point[to].p, point[from].p, sizeof point[to].p) == 0; to++) {}
+        for (to = from + 1; to < corners && memcmp(point[to].p, point[from].p, sizeof point[to].p) == 0; to++) {
+        }
         const int first = count; /* vertices at this place */
         for (int i = from; i < to; i++) {
             const int c = point[i].corner;
-            double    sum[3] = {0, 0, 0};
-            float     n[3];
+            double sum[3] = {0, 0, 0};
+            float n[3];
             if (to - from <= smooth_max_fan)
                 for (int k = from; k < to; k++) {
                     const int other = point[k].corner;

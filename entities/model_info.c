@@ -7,21 +7,25 @@
 
 static void usage(FILE *to)
 {
-    fputs("usage: pitviper model info NAME|FILE [--sag M]\n\n"
-          "Says what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
-          "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, also\n"
-          "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is read:\n"
-          "tank.glb, tank.yaml.\n\n"
-          "  --sag M   largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n", to);
+    fputs(
+        "usage: pitviper model info NAME|FILE [--sag M]\n\n"
+        "Says what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
+        "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, "
+        "also\n"
+        "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is "
+        "read:\n"
+        "tank.glb, tank.yaml.\n\n"
+        "  --sag M   largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n",
+        to);
 }
 
 static void print_import(const ModelImport *r)
 {
-    static const char *const source[MATERIAL_SOURCE_COUNT] = {"the sidecar", "the name in the file", "the nearest colour",
-                                                              "nothing: paint_olive"};
+    static const char *const source[MATERIAL_SOURCE_COUNT] = {"the sidecar", "the name in the file",
+                                                              "the nearest colour", "nothing: paint_olive"};
     printf("file: %s\nsidecar: %s\n", r->file, r->sidecar[0] ? r->sidecar : "none");
     const double *m = r->r_body_from_file;
-    char          axes[2][3];
+    char axes[2][3];
     for (int k = 0; k < 2; k++)
         for (int i = 0; i < 3; i++) {
             const double along = k == 0 ? m[i] : -m[6 + i];
@@ -48,9 +52,12 @@ static void print_import(const ModelImport *r)
 static void print_limits(const ModelNode *node)
 {
     const bool turns = node->joint == JOINT_ROTATION;
-    if (node->low > node->high) printf(" free");
-    else if (turns) printf(" %g .. %g deg", node->low / rad_per_deg, node->high / rad_per_deg);
-    else printf(" %g .. %g m", node->low, node->high);
+    if (node->low > node->high)
+        printf(" free");
+    else if (turns)
+        printf(" %g .. %g deg", node->low / rad_per_deg, node->high / rad_per_deg);
+    else
+        printf(" %g .. %g m", node->low, node->high);
 }
 
 static void print_nodes(const Model *m)
@@ -58,17 +65,19 @@ static void print_nodes(const Model *m)
     printf("\nnodes: %d\n", m->node_count);
     for (int i = 0; i < m->node_count; i++) {
         const ModelNode *node = &m->node[i];
-        char             text[32];
-        const char      *named = sidecar_class_text(text, node->dis_class), *metric = sidecar_metric_text(node->dis_metric);
+        char text[32];
+        const char *named = sidecar_class_text(text, node->dis_class), *metric = sidecar_metric_text(node->dis_metric);
         printf("  %3d %s", i, node->name);
-        if (node->parent >= 0) printf(" on %s at %.3f %.3f %.3f", m->node[node->parent].name, node->p_parent[0], node->p_parent[1],
-                                      node->p_parent[2]);
+        if (node->parent >= 0)
+            printf(" on %s at %.3f %.3f %.3f", m->node[node->parent].name, node->p_parent[0], node->p_parent[1],
+                   node->p_parent[2]);
         if (node->joint != JOINT_FIXED) {
             printf(", %s %.3f %.3f %.3f", node->joint == JOINT_ROTATION ? "turns about" : "slides along", node->axis[0],
                    node->axis[1], node->axis[2]);
             print_limits(node);
-            if (node->dis_class) printf(", DIS class %u%s%s metric %u %s", node->dis_class, named ? " " : "", named ? named : "",
-                                        node->dis_metric, metric ? metric : "?");
+            if (node->dis_class)
+                printf(", DIS class %u%s%s metric %u %s", node->dis_class, named ? " " : "", named ? named : "",
+                       node->dis_metric, metric ? metric : "?");
             if (node->spin_rps_moving != 0) printf(", spins at %g rpm", node->spin_rps_moving * 60 / (2 * pi_rad));
             if (node->roll_radius_m > 0) printf(", rolls on %.3f m", node->roll_radius_m);
         }
@@ -84,8 +93,10 @@ static void print_parts(const Model *m)
         printf("  %3d %s on %s, %s, heat %s, %d triangles", i, part->name, m->node[part->node].name, part->material,
                heat_role_name(part->role), part->triangle_count);
         for (int state = 1; state < model_damage_states; state++) {
-            if (part->damage_hidden >> state & 1) printf(", damage %d: hidden", state);
-            else if (part->damage_material[state][0]) printf(", damage %d: %s", state, part->damage_material[state]);
+            if (part->damage_hidden >> state & 1)
+                printf(", damage %d: hidden", state);
+            else if (part->damage_material[state][0])
+                printf(", damage %d: %s", state, part->damage_material[state]);
         }
         putchar('\n');
     }
@@ -93,10 +104,10 @@ static void print_parts(const Model *m)
 
 static int print_info(const char *name, double sag_m)
 {
-    Model       model;
+    Model model;
     ModelImport report = {0};
-    ModelEdges  edges;
-    bool        imported;
+    ModelEdges edges;
+    bool imported;
     if (model_open(&model, &report, &imported, name, sag_m) != STATUS_OK) return 1;
     if (model_edges(&edges, &model) != STATUS_OK) {
         model_destroy(&model);
@@ -104,8 +115,10 @@ static int print_info(const char *name, double sag_m)
         return 1;
     }
     printf("model: %s\n", model.name);
-    if (imported) print_import(&report);
-    else printf("built in, facets within %g m of their surfaces\n", model.sag_m);
+    if (imported)
+        print_import(&report);
+    else
+        printf("built in, facets within %g m of their surfaces\n", model.sag_m);
     printf("size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m, model.height_m);
     printf("box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n", model.box_low[0],
            model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1], model.box_high[2]);
@@ -122,7 +135,7 @@ static int print_info(const char *name, double sag_m)
 int model_command(int argc, char **argv)
 {
     const char *name = NULL;
-    double      sag_m = 0.005;
+    double sag_m = 0.005;
     if (argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
         usage(stdout);
         return 0;
@@ -142,11 +155,13 @@ int model_command(int argc, char **argv)
                 i++;
                 continue;
             }
-            fprintf(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n", i + 1 < argc ? argv[i + 1] : "");
+            fprintf(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n",
+                    i + 1 < argc ? argv[i + 1] : "");
             return 2;
         }
         if (argv[i][0] == '-' || name) {
-            fprintf(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time", argv[i]);
+            fprintf(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time",
+                    argv[i]);
             return 2;
         }
         name = argv[i];

@@ -6,9 +6,9 @@
 #include <yaml.h>
 
 typedef struct Reader {
-    const char      *path;
+    const char *path;
     yaml_document_t *document;
-    Sidecar         *sidecar;
+    Sidecar *sidecar;
 } Reader;
 
 static int line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
@@ -83,16 +83,16 @@ static bool numbers_within(const double *value, int count, double low, double hi
 /* SISO-REF-010, articulated parts, type classes (from memory); ten of each, 32 apart. */
 static const struct {
     const char *name;
-    uint32_t    first;
-    int         numbers;
+    uint32_t first;
+    int numbers;
 } classes[] = {
-    {"primary_turret", 4096, 10},   {"primary_gun", 4416, 10},   {"primary_launcher", 4736, 10},
-    {"primary_defence", 5056, 10},  {"primary_radar", 5376, 10}, {"secondary_turret", 5696, 10},
-    {"secondary_gun", 6016, 10},    {"secondary_launcher", 6336, 10}, {"secondary_defence", 6656, 10},
+    {"primary_turret", 4096, 10},  {"primary_gun", 4416, 10},        {"primary_launcher", 4736, 10},
+    {"primary_defence", 5056, 10}, {"primary_radar", 5376, 10},      {"secondary_turret", 5696, 10},
+    {"secondary_gun", 6016, 10},   {"secondary_launcher", 6336, 10}, {"secondary_defence", 6656, 10},
     {"secondary_radar", 6976, 10},
 };
-static const char class_accepted[] =
-    "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. _10, or a multiple of 32 in 1024 .. 8160";
+static const char class_accepted[] = "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. "
+                                     "_10, or a multiple of 32 in 1024 .. 8160";
 
 static bool read_class(uint32_t *out, const char *text)
 {
@@ -127,8 +127,8 @@ const char *sidecar_class_text(char out[32], uint32_t dis_class)
 
 static const struct {
     const char *name;
-    uint32_t    metric;
-} metrics[] = {{"position", 1}, {"extension", 3}, {"x", 5},         {"y", 7},
+    uint32_t metric;
+} metrics[] = {{"position", 1}, {"extension", 3}, {"x", 5},          {"y", 7},
                {"z", 9},        {"azimuth", 11},  {"elevation", 13}, {"rotation", 15}};
 
 const char *sidecar_metric_text(uint32_t dis_metric)
@@ -164,10 +164,10 @@ static bool read_body_axis(double out[3], const char *text)
 {
     static const struct {
         const char *name;
-        double      axis[3];
+        double axis[3];
     } words[] = {
-        {"yaw", {0, 0, 1}},      {"pitch", {0, 1, 0}}, {"roll", {1, 0, 0}},  {"forward", {1, 0, 0}}, {"back", {-1, 0, 0}},
-        {"right", {0, 1, 0}},    {"left", {0, -1, 0}}, {"up", {0, 0, -1}},   {"down", {0, 0, 1}},
+        {"yaw", {0, 0, 1}},   {"pitch", {0, 1, 0}}, {"roll", {1, 0, 0}}, {"forward", {1, 0, 0}}, {"back", {-1, 0, 0}},
+        {"right", {0, 1, 0}}, {"left", {0, -1, 0}}, {"up", {0, 0, -1}},  {"down", {0, 0, 1}},
     };
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (strcmp(words[i].name, text) == 0) {
@@ -194,13 +194,13 @@ static Status read_mapping(Reader *r, const Key *key, int key_count, SidecarJoin
          pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
-        const char        *text = scalar(name);
-        char               full[192], safe[128];
-        int                k = 0;
+        const char *text = scalar(name);
+        char full[192], safe[128];
+        int k = 0;
         while (k < key_count && !(text && strcmp(key[k].name, text) == 0)) k++;
         snprintf(full, sizeof full, "%s%s", where, shown(safe, name));
         if (k == key_count) {
-            char   accepted[400];
+            char accepted[400];
             size_t n = 0;
             for (int i = 0; i < key_count && n < sizeof accepted; i++)
                 n += (size_t)snprintf(accepted + n, sizeof accepted - n, "%s%s", i ? ", " : "", key[i].name);
@@ -295,8 +295,8 @@ READ_JOINT(joint_nodes)
     const ptrdiff_t count = value->data.sequence.items.top - value->data.sequence.items.start;
     if (count < 1 || count > sidecar_max_patterns) return bad_value(r, value, key, accepted);
     for (; j->pattern_count < count; j->pattern_count++) {
-        const yaml_node_t *item = yaml_document_get_node(r->document,
-                                                         value->data.sequence.items.start[j->pattern_count]);
+        const yaml_node_t *item =
+            yaml_document_get_node(r->document, value->data.sequence.items.start[j->pattern_count]);
         if (!copy_text(j->pattern[j->pattern_count], sizeof j->pattern[0], scalar(item)))
             return bad_value(r, item, key, accepted);
     }
@@ -314,8 +314,10 @@ READ_JOINT(joint_pivot)
 {
     const char *text = scalar(value);
     j->pivot = PIVOT_GIVEN;
-    if (text && strcmp(text, "node") == 0) j->pivot = PIVOT_NODE;
-    else if (text && strcmp(text, "centre") == 0) j->pivot = PIVOT_CENTRE;
+    if (text && strcmp(text, "node") == 0)
+        j->pivot = PIVOT_NODE;
+    else if (text && strcmp(text, "centre") == 0)
+        j->pivot = PIVOT_CENTRE;
     else if (!read_numbers(j->p_pivot_file, 3, r, value) || !numbers_within(j->p_pivot_file, 3, -1e9, 1e9))
         return bad_value(r, value, key, "node, centre, or x y z in -1e9 .. 1e9 units of the file");
     return STATUS_OK;
@@ -331,7 +333,8 @@ READ_JOINT(joint_axis)
     if (read_numbers(j->axis_xyz, 3, r, value) && numbers_within(j->axis_xyz, 3, -1e9, 1e9) &&
         v3_length(j->axis_xyz) > 1e-9 && v3_normalize(j->axis_xyz, j->axis_xyz))
         return STATUS_OK;
-    return bad_value(r, value, key, "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0");
+    return bad_value(r, value, key,
+                     "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0");
 }
 
 READ_JOINT(joint_class)
@@ -359,8 +362,8 @@ static Status read_limits(Reader *r, SidecarJoint *j, const char *key, const yam
         return STATUS_BAD_VALUE;
     }
     j->has_limits = true;
-    j->low        = limit[0];
-    j->high       = limit[1];
+    j->low = limit[0];
+    j->high = limit[1];
     return STATUS_OK;
 }
 
@@ -405,10 +408,18 @@ READ_JOINT(joint_roll_radius)
 }
 
 static const Key joint_keys[] = {
-    {"name", joint_name},         {"nodes", joint_nodes},       {"parent", joint_parent},
-    {"each", joint_each},         {"pivot", joint_pivot},       {"axis", joint_axis},
-    {"class", joint_class},       {"metric", joint_metric},     {"limits_deg", joint_limits_deg},
-    {"limits_m", joint_limits_m}, {"rest_deg", joint_rest_deg}, {"spin_rpm", joint_spin_rpm},
+    {"name", joint_name},
+    {"nodes", joint_nodes},
+    {"parent", joint_parent},
+    {"each", joint_each},
+    {"pivot", joint_pivot},
+    {"axis", joint_axis},
+    {"class", joint_class},
+    {"metric", joint_metric},
+    {"limits_deg", joint_limits_deg},
+    {"limits_m", joint_limits_m},
+    {"rest_deg", joint_rest_deg},
+    {"spin_rpm", joint_spin_rpm},
     {"roll_radius", joint_roll_radius},
 };
 
@@ -416,15 +427,22 @@ static const Key joint_keys[] = {
 static Status check_joint(const Reader *r, SidecarJoint *j)
 {
     const char *what = NULL;
-    if (j->pattern_count == 0) what = "nodes: is missing: which nodes move";
-    else if (j->dis_metric && j->dis_metric < 11 && !j->slides) what = "metric: a length needs limits_m";
-    else if (j->dis_metric >= 11 && j->slides) what = "metric: an angle, but limits_m says that it slides";
-    else if (!j->dis_class != !j->dis_metric) what = "class and metric belong together; one is missing";
+    if (j->pattern_count == 0)
+        what = "nodes: is missing: which nodes move";
+    else if (j->dis_metric && j->dis_metric < 11 && !j->slides)
+        what = "metric: a length needs limits_m";
+    else if (j->dis_metric >= 11 && j->slides)
+        what = "metric: an angle, but limits_m says that it slides";
+    else if (!j->dis_class != !j->dis_metric)
+        what = "class and metric belong together; one is missing";
     else if (j->slides && (j->rest != 0 || j->spin_rps != 0 || j->roll_radius_m != 0))
         what = "rest_deg, spin_rpm and roll_radius are of joints that turn, limits_m of those that slide";
-    else if (j->spin_rps != 0 && j->axis == AXIS_DEFAULT) what = "axis: is missing: about what spin_rpm turns";
-    else if (j->each && j->pivot == PIVOT_GIVEN) what = "pivot: one place for each of many joints; node or centre is accepted";
-    else if (j->each && j->name[0]) what = "name: one name for each of many joints; leave it out";
+    else if (j->spin_rps != 0 && j->axis == AXIS_DEFAULT)
+        what = "axis: is missing: about what spin_rpm turns";
+    else if (j->each && j->pivot == PIVOT_GIVEN)
+        what = "pivot: one place for each of many joints; node or centre is accepted";
+    else if (j->each && j->name[0])
+        what = "name: one name for each of many joints; leave it out";
     if (what) {
         log_error("sidecar: %s:%d: joints: %s", r->path, j->line, what);
         return STATUS_BAD_VALUE;
@@ -440,14 +458,16 @@ READ_TOP(top_file)
 {
     (void)j;
     return copy_text(r->sidecar->file, sizeof r->sidecar->file, scalar(value))
-               ? STATUS_OK : bad_value(r, value, key, "a path of 1 .. 511 characters");
+               ? STATUS_OK
+               : bad_value(r, value, key, "a path of 1 .. 511 characters");
 }
 
 READ_TOP(top_name)
 {
     (void)j;
     return copy_text(r->sidecar->name, sizeof r->sidecar->name, scalar(value))
-               ? STATUS_OK : bad_value(r, value, key, "a name of 1 .. 95 characters");
+               ? STATUS_OK
+               : bad_value(r, value, key, "a name of 1 .. 95 characters");
 }
 
 READ_TOP(top_scale)
@@ -462,7 +482,7 @@ READ_TOP(top_scale)
 READ_TOP(top_axes)
 {
     (void)j;
-    Sidecar    *s = r->sidecar;
+    Sidecar *s = r->sidecar;
     const char *text = scalar(value);
     const char *second = text ? strchr(text, ' ') : NULL;
     s->has_axes = second && read_axis_word(s->forward, text, (size_t)(second - text)) &&
@@ -474,7 +494,7 @@ READ_TOP(top_axes)
 READ_TOP(top_origin)
 {
     (void)j;
-    Sidecar    *s = r->sidecar;
+    Sidecar *s = r->sidecar;
     const char *text = scalar(value);
     if (text && strcmp(text, "auto") == 0) return STATUS_OK;
     s->has_origin = read_numbers(s->p_origin_file, 3, r, value) && numbers_within(s->p_origin_file, 3, -1e9, 1e9);
@@ -513,15 +533,16 @@ READ_TOP(top_roles)
 {
     (void)j;
     SidecarRules *roles = &r->sidecar->roles;
-    const Status  status = read_rules(r, roles, key, value, 0);
+    const Status status = read_rules(r, roles, key, value, 0);
     if (status != STATUS_OK) return status;
     for (int i = 0; i < roles->count; i++) {
         HeatRole role;
         if (heat_role_find(&role, roles->rule[i].value)) continue;
-        char   accepted[256];
+        char accepted[256];
         size_t n = 0;
         for (int k = 0; k < HEAT_ROLE_COUNT && n < sizeof accepted; k++)
-            n += (size_t)snprintf(accepted + n, sizeof accepted - n, "%s%s", k ? ", " : "", heat_role_name((HeatRole)k));
+            n +=
+                (size_t)snprintf(accepted + n, sizeof accepted - n, "%s%s", k ? ", " : "", heat_role_name((HeatRole)k));
         log_error("sidecar: %s:%d: %s: '%s' is not one of %s", r->path, roles->rule[i].line, key, roles->rule[i].value,
                   accepted);
         return STATUS_BAD_VALUE;
@@ -537,9 +558,9 @@ static Status read_damage_state(Reader *r, int state, const char *where, const y
          pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
-        const char        *text = scalar(name);
-        char               full[96];
-        const bool         hide = text && strcmp(text, "hide") == 0;
+        const char *text = scalar(name);
+        char full[96];
+        const bool hide = text && strcmp(text, "hide") == 0;
         if (!hide && !(text && strcmp(text, "materials") == 0)) return bad_value(r, name, where, "hide or materials");
         snprintf(full, sizeof full, "%s.%s", where, text);
         if (seen[hide]) {
@@ -559,12 +580,13 @@ READ_TOP(top_damage)
     static const char *const name[model_damage_states] = {"none", "slight", "moderate", "destroyed"};
     (void)j;
     bool seen[model_damage_states] = {false};
-    if (value->type != YAML_MAPPING_NODE) return bad_value(r, value, key, "slight, moderate or destroyed, and what shows it");
+    if (value->type != YAML_MAPPING_NODE)
+        return bad_value(r, value, key, "slight, moderate or destroyed, and what shows it");
     for (const yaml_node_pair_t *pair = value->data.mapping.pairs.start; pair < value->data.mapping.pairs.top; pair++) {
         const yaml_node_t *word = yaml_document_get_node(r->document, pair->key);
-        const char        *text = scalar(word);
-        char               full[64];
-        int                state = 1;
+        const char *text = scalar(word);
+        char full[64];
+        int state = 1;
         while (state < model_damage_states && !(text && strcmp(text, name[state]) == 0)) state++;
         if (state == model_damage_states) return bad_value(r, word, key, "one of slight, moderate, destroyed");
         snprintf(full, sizeof full, "damage.%s", text);
@@ -590,10 +612,11 @@ READ_TOP(top_joints)
     if (!s->joint) return STATUS_NO_MEMORY;
     for (; s->joint_count < count; s->joint_count++) {
         const yaml_node_t *item = yaml_document_get_node(r->document, value->data.sequence.items.start[s->joint_count]);
-        SidecarJoint      *joint = &s->joint[s->joint_count];
+        SidecarJoint *joint = &s->joint[s->joint_count];
         if (item->type != YAML_MAPPING_NODE) return bad_value(r, item, key, "a joint: `- {nodes: ...}`");
         joint->line = line_of(item);
-        Status status = read_mapping(r, joint_keys, (int)(sizeof joint_keys / sizeof *joint_keys), joint, "joints.", item);
+        Status status =
+            read_mapping(r, joint_keys, (int)(sizeof joint_keys / sizeof *joint_keys), joint, "joints.", item);
         if (status == STATUS_OK) status = check_joint(r, joint);
         if (status != STATUS_OK) return status;
     }
@@ -615,7 +638,8 @@ Sidecar sidecar_default(void) { return (Sidecar){.crease_rad = 30 * rad_per_deg}
 
 void sidecar_close(Sidecar *s)
 {
-    SidecarRules *rules[] = {&s->drop, &s->materials, &s->node_materials, &s->roles, &s->damage_hide, &s->damage_materials};
+    SidecarRules *rules[] = {&s->drop,  &s->materials,   &s->node_materials,
+                             &s->roles, &s->damage_hide, &s->damage_materials};
     for (size_t i = 0; i < sizeof rules / sizeof *rules; i++) free(rules[i]->rule);
     free(s->joint);
     memset(s, 0, sizeof *s);
@@ -623,17 +647,18 @@ void sidecar_close(Sidecar *s)
 
 Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t octets)
 {
-    Sidecar         filled = sidecar_default();
-    yaml_parser_t   parser;
+    Sidecar filled = sidecar_default();
+    yaml_parser_t parser;
     yaml_document_t document;
-    Reader          r = {.path = path, .document = &document, .sidecar = &filled};
-    Status          status = STATUS_OK;
+    Reader r = {.path = path, .document = &document, .sidecar = &filled};
+    Status status = STATUS_OK;
 
     snprintf(filled.path, sizeof filled.path, "%s", path);
     if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
     if (!yaml_parser_load(&parser, &document)) {
-        log_error("sidecar: %s:%d: %s", path, (int)parser.problem_mark.line + 1, parser.problem ? parser.problem : "not YAML");
+        log_error("sidecar: %s:%d: %s", path, (int)parser.problem_mark.line + 1,
+                  parser.problem ? parser.problem : "not YAML");
         status = STATUS_BAD_VALUE;
     } else {
         const yaml_node_t *root = yaml_document_get_root_node(&document);
@@ -646,8 +671,10 @@ Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t oc
         yaml_document_delete(&document);
     }
     yaml_parser_delete(&parser);
-    if (status == STATUS_OK) *out = filled;
-    else sidecar_close(&filled);
+    if (status == STATUS_OK)
+        *out = filled;
+    else
+        sidecar_close(&filled);
     return status;
 }
 
@@ -658,8 +685,8 @@ Status sidecar_read(Sidecar *out, const char *path)
         log_error("sidecar: cannot open %s: %s", path, strerror(errno));
         return STATUS_IO;
     }
-    Status       status = STATUS_OK;
-    char        *text = malloc(sidecar_max_octets + 1);
+    Status status = STATUS_OK;
+    char *text = malloc(sidecar_max_octets + 1);
     const size_t octets = text ? fread(text, 1, sidecar_max_octets + 1, file) : 0;
     if (!text) {
         status = STATUS_NO_MEMORY;

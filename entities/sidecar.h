@@ -77,8 +77,8 @@ typedef struct Sidecar {
 
 /* What holds without a sidecar. */
 Sidecar sidecar_default(void);
-/* A file that is wrong: one line with file, line, key, value and what is accepted, and *out untouched. A key that is not
- * there leaves its default. The names of materials are the importer's to check. */
+/* A file that is wrong: one line with file, line, key, value and what is accepted, and *out untouched. A key that
+ * is not there leaves its default. The names of materials are the importer's to check. */
 Status sidecar_read(Sidecar *out, const char *path);
 /* The same from memory; path is for the messages. */
 Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t octets);

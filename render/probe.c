@@ -42,7 +42,8 @@ static Status rays_open(void **state, int argc, char **argv)
     ModelImport report = {0};
     bool        imported = false;
     if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "file") != 0 && strcmp(argv[2], "body") != 0)) {
-        log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and whose axes the rows are in");
+        log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and whose axes the rows are "
+                  "in");
         return STATUS_BAD_VALUE;
     }
     RayProbe *p = calloc(1, sizeof *p);
@@ -59,7 +60,8 @@ static Status rays_open(void **state, int argc, char **argv)
     const Model *model = &p->model;
     if (status == STATUS_OK) status = tracer_create_models(&p->tracer, &model, 1, "avx2");
     NodePose *pose = status == STATUS_OK ? calloc((size_t)model->node_count, sizeof *pose) : NULL;
-    if (status == STATUS_OK) p->entity.node = calloc((size_t)parts_node_count(p->tracer, 0) + 1, sizeof *p->entity.node);
+    if (status == STATUS_OK)
+        p->entity.node = calloc((size_t)parts_node_count(p->tracer, 0) + 1, sizeof *p->entity.node);
     if (status == STATUS_OK && (!pose || !p->entity.node)) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         model_pose(pose, model, NULL);
@@ -103,8 +105,8 @@ const Probe render_probes[] = {
     {.name = "planck", .help = "in-band radiance of a black body and its derivative in temperature",
      .in = "lo_um,hi_um,temp_k", .out = "radiance_w_m2_sr,dldt", .row = planck_row},
     {.name = "rays", .arguments = "MODEL [file|body]",
-     .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it has no sidecar, "
-             "else in body axes",
+     .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it has no "
+             "sidecar, else in body axes",
      .in = "ox_m,oy_m,oz_m,dx,dy,dz", .out = "hit,dist_m,nx,ny,nz,part$",
      .open = rays_open, .row = rays_row, .close = rays_close},
 };

@@ -1,5 +1,6 @@
 /* Models from files: written here, so that paper knows the answer; of other people, whose makers say where the joints
- * are (models/free, models/brlcad READMEs); OpenFlight byte by byte from its specification; and files with octets turned. */
+ * are (models/free, models/brlcad READMEs); OpenFlight byte by byte from its specification; and files with octets
+ * turned. */
 #include "tests/check.h"
 
 #include <sys/stat.h>
@@ -17,7 +18,10 @@ static void write_file(char path[128], const char *name, const void *bytes, size
     CHECK(file && fwrite(bytes, 1, octets, file) == octets && fclose(file) == 0);
 }
 
-static void write_text(char path[128], const char *name, const char *text) { write_file(path, name, text, strlen(text)); }
+static void write_text(char path[128], const char *name, const char *text)
+{
+    write_file(path, name, text, strlen(text));
+}
 
 static Status import_quietly(Model *model, ModelImport *report, const char *path)
 {
@@ -65,24 +69,25 @@ static void part_box(double low[3], double high[3], const Model *model, const Mo
         m3_mul_v3(p, pose[part->node].r_body_from_node, model->vertex[model->triangle[t / 3][t % 3]]);
         for (int i = 0; i < 3; i++) {
             p[i] += pose[part->node].p_body[i];
-            low[i]  = fmin(low[i], p[i]);
+            low[i] = fmin(low[i], p[i]);
             high[i] = fmax(high[i], p[i]);
         }
     }
 }
 
 /* A block 2 x 4 x 6 in x, y, z from the origin, 12 triangles outward. */
-#define BLOCK "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nv 0 0 6\nv 2 0 6\nv 2 4 6\nv 0 4 6\n"                              \
-              "o block\nf 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\n"      \
-              "f 4 1 5\nf 4 5 8\n"
+#define BLOCK                                                                                                          \
+    "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nv 0 0 6\nv 2 0 6\nv 2 4 6\nv 0 4 6\n"                                         \
+    "o block\nf 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\n"              \
+    "f 4 1 5\nf 4 5 8\n"
 
 /* ---- from paper ------------------------------------------------------------------------------------ */
 
 static void a_block_lies_as_its_axes_say(void **state)
 {
     (void)state;
-    char        path[128], yaml[128];
-    Model       m;
+    char path[128], yaml[128];
+    Model m;
     ModelImport r;
     write_text(path, "block.obj", BLOCK);
     /* nobody said: +z forward, +y up: 6 long, 2 wide, 4 high, on its base's centre; left is +x, so right is -x */
@@ -100,7 +105,8 @@ static void a_block_lies_as_its_axes_say(void **state)
         CHECK(fmax(fabsf(m.normal[v][0]), fmax(fabsf(m.normal[v][1]), fabsf(m.normal[v][2]))) == 1);
     model_destroy(&m);
 
-    write_text(yaml, "block.yaml", "scale: 0.5\naxes: +x +z\norigin: 0 0 0\ncrease_deg: 100\nname: A Block\nmaterials: {'*': canvas}\n");
+    write_text(yaml, "block.yaml",
+               "scale: 0.5\naxes: +x +z\norigin: 0 0 0\ncrease_deg: 100\nname: A Block\nmaterials: {'*': canvas}\n");
     assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
     CHECK(!r.axes_assumed && strcmp(r.sidecar, yaml) == 0 && r.material_parts[MATERIAL_BY_SIDECAR] == 1);
     assert_string_equal(m.name, "A_Block");
@@ -115,7 +121,7 @@ static void a_block_lies_as_its_axes_say(void **state)
     model_destroy(&m);
 
     /* the same packed, and through the sidecar's own name */
-    char   packed[160];
+    char packed[160];
     snprintf(packed, sizeof packed, "%s/packed.obj.gz", folder);
     gzFile gz = gzopen(packed, "wb");
     CHECK(gzwrite(gz, BLOCK, (unsigned)strlen(BLOCK)) > 0 && gzclose(gz) == Z_OK);
@@ -129,14 +135,16 @@ static void a_block_lies_as_its_axes_say(void **state)
 static void what_is_odd_is_counted_and_what_is_broken_refused(void **state)
 {
     (void)state;
-    char        path[128];
-    Model       m;
+    char path[128];
+    Model m;
     ModelImport r;
     /* no lid, a triangle of two points, one of three on a line, and more in another material */
     write_text(path, "odd.mtl", "newmtl skin\nKd 0.1 0.1 0.1\nnewmtl window_front\nKd 1 1 1\n");
-    write_text(path, "odd.obj", "mtllib odd.mtl\nusemtl skin\nv 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nv 0 0 6\nv 2 0 6\nv 2 4 6\nv 0 4 6\nv 1 0 0\no block\n"
-                                "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"
-                                "f 1 2 2\nf 1 9 2\nusemtl window_front\nf 1 4 3\nf 1 3 2\nf 1 2 6\n");
+    write_text(path, "odd.obj",
+               "mtllib odd.mtl\nusemtl skin\nv 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nv 0 0 6\nv 2 0 6\nv 2 4 6\nv 0 4 6\nv "
+               "1 0 0\no block\n"
+               "f 1 4 3\nf 1 3 2\nf 1 2 6\nf 1 6 5\nf 2 3 7\nf 2 7 6\nf 3 4 8\nf 3 8 7\nf 4 1 5\nf 4 5 8\n"
+               "f 1 2 2\nf 1 9 2\nusemtl window_front\nf 1 4 3\nf 1 3 2\nf 1 2 6\n");
     assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
     assert_int_equal(r.degenerate_triangles, 2);
     assert_int_equal(m.part_count, 2);
@@ -196,32 +204,34 @@ static size_t make_gltf(char *out, size_t size, int depth)
 {
     static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     struct {
-        float    corner[4][3];
+        float corner[4][3];
         uint16_t index[12];
     } data = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}};
     const uint8_t *bytes = (const uint8_t *)&data;
-    char           base64[128];
-    size_t         n = 0;
+    char base64[128];
+    size_t n = 0;
     assert_int_equal(sizeof data, 72);
     for (size_t i = 0; i < sizeof data; i += 3) {
         const uint32_t w = (uint32_t)bytes[i] << 16 | (uint32_t)bytes[i + 1] << 8 | bytes[i + 2];
         for (int k = 18; k >= 0; k -= 6) base64[n++] = digits[w >> k & 63];
     }
     base64[n] = 0;
-    n = (size_t)snprintf(out, size, "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
+    n = (size_t)snprintf(out, size,
+                         "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[");
     for (int i = 0; i < depth; i++)
         n += (size_t)snprintf(out + n, size - n, "{\"name\":\"n%d\",\"translation\":[1,0,0]%s,\"%s\":%s%d%s},", i,
-                              i == 0 ? ",\"scale\":[-1,1,1]" : "", i + 1 < depth ? "children" : "mesh", i + 1 < depth ? "[" : "",
-                              i + 1 < depth ? i + 1 : 0, i + 1 < depth ? "]" : "");
+                              i == 0 ? ",\"scale\":[-1,1,1]" : "", i + 1 < depth ? "children" : "mesh",
+                              i + 1 < depth ? "[" : "", i + 1 < depth ? i + 1 : 0, i + 1 < depth ? "]" : "");
     n--;
-    n += (size_t)snprintf(out + n, size - n,
-                          "],\"materials\":[{\"name\":\"skin\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.06,0.06,0.06,1]}}],"
-                          "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"
-                          "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
-                          "\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],"
-                          "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,"
-                          "\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,\"uri\":\"data:application/octet-stream;base64,%s\"}]}",
-                          base64);
+    n += (size_t)snprintf(
+        out + n, size - n,
+        "],\"materials\":[{\"name\":\"skin\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.06,0.06,0.06,1]}}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1,\"material\":0}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\",\"min\":[0,0,0],"
+        "\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,\"type\":\"SCALAR\"}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,"
+        "\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,\"uri\":\"data:application/octet-stream;base64,%s\"}]}",
+        base64);
     CHECK(n < size);
     return n;
 }
@@ -230,8 +240,8 @@ static void nodes_compose_and_mirrors_turn_nothing_inside_out(void **state)
 {
     (void)state;
     static char text[1 << 16];
-    char        path[128], yaml[128];
-    Model       m;
+    char path[128], yaml[128];
+    Model m;
     ModelImport r;
     write_file(path, "chain.gltf", text, make_gltf(text, sizeof text, 3));
     write_text(yaml, "chain.yaml", "origin: 0 0 0\njoints:\n- {nodes: n1, axis: +y}\n");
@@ -258,22 +268,26 @@ static void nodes_compose_and_mirrors_turn_nothing_inside_out(void **state)
 static void turned_octets_never_crash(void **state)
 {
     (void)state;
-    static char    text[1 << 14], spoilt[1 << 15];
+    static char text[1 << 14], spoilt[1 << 15];
     const uint32_t key[2] = {77, 0};
-    int            failed = 0, read = 0;
+    int failed = 0, read = 0;
     for (int round = 0; round < 300; round++) {
         const bool gltf = round % 2;
-        size_t     size = gltf ? make_gltf(text, sizeof text, 4) : strlen(BLOCK);
-        char       path[128];
+        size_t size = gltf ? make_gltf(text, sizeof text, 4) : strlen(BLOCK);
+        char path[128];
         memcpy(spoilt, gltf ? text : BLOCK, size);
         for (uint32_t change = 0; change < 1 + (uint32_t)round % 3; change++) {
             uint32_t word[4];
             random_u32x4(word, (const uint32_t[4]){(uint32_t)round, change, 0, 0}, key);
-            size_t       at = word[0] % size;
+            size_t at = word[0] % size;
             const size_t octets = 1 + word[1] % 9;
             switch (word[2] % 8) {
-            case 0: spoilt[at] = (char)word[3]; break;
-            case 1: size = at > size / 2 ? at + 1 : size; break;
+            case 0:
+                spoilt[at] = (char)word[3];
+                break;
+            case 1:
+                size = at > size / 2 ? at + 1 : size;
+                break;
             case 2:
                 if (at + octets >= size) break;
                 memmove(spoilt + at, spoilt + at + octets, size - at - octets);
@@ -318,7 +332,8 @@ static bool ktank(char yaml[128], const char *name)
              "  - {nodes: tank/wheels/*, each: true, pivot: centre, roll_radius: auto}\n"
              "materials: {'*': paint_olive}\nnode_materials: {tank/wheels/*: rubber_black}\n"
              "roles: {'tank/fuel/*': hull}\n"
-             "damage: {destroyed: {hide: ['tank/turret/gun/*'], materials: {'*': metal_dark}}}\n", whole);
+             "damage: {destroyed: {hide: ['tank/turret/gun/*'], materials: {'*': metal_dark}}}\n",
+             whole);
     write_text(yaml, name, text);
     return true;
 }
@@ -328,10 +343,10 @@ static bool ktank(char yaml[128], const char *name)
 static void ktanks_joints_are_where_its_solids_say(void **state)
 {
     (void)state;
-    char        yaml[128];
-    Model       m;
+    char yaml[128];
+    Model m;
     ModelImport r;
-    double      low[3], high[3], value[64] = {0};
+    double low[3], high[3], value[64] = {0};
     if (!ktank(yaml, "k.yaml")) {
         skip();
         return;
@@ -340,9 +355,11 @@ static void ktanks_joints_are_where_its_solids_say(void **state)
     CHECK(check_said[0] == 0); /* every pattern matches */
     assert_string_equal(m.name, "K-Tank");
     CHECK(m.node_count == 1 + 2 + 14 && r.edges.open == 0 && r.dropped_meshes == 40);
-    const int        turret = node_called(&m, "turret"), gun = node_called(&m, "gun"), wheel = node_called(&m, "tank/wheels/r32");
+    const int turret = node_called(&m, "turret"), gun = node_called(&m, "gun"),
+              wheel = node_called(&m, "tank/wheels/r32");
     const ModelPart *barrel = part_called(&m, "tank/turret/gun/r210");
-    CHECK(m.node[gun].parent == turret && barrel->node == gun && m.node[gun].dis_class == 4416 && m.node[gun].dis_metric == 13);
+    CHECK(m.node[gun].parent == turret && barrel->node == gun && m.node[gun].dis_class == 4416 &&
+          m.node[gun].dis_metric == 13);
     CHECK_NEAR(m.node[gun].p_parent[0], 0.254, 1e-12);
     CHECK_NEAR(m.node[gun].p_parent[2], -0.127, 1e-12);
     CHECK_NEAR(m.node[wheel].roll_radius_m, 0.381, 0.001); /* the mesh's tolerance */
@@ -350,7 +367,8 @@ static void ktanks_joints_are_where_its_solids_say(void **state)
     CHECK_NEAR(m.node[wheel].p_parent[2], -0.381, 0.001); /* it stands on the ground */
     CHECK_NEAR(m.box_high[2], 0, 1e-12);
     assert_string_equal(part_called(&m, "tank/wheels/r32")->material, "rubber_black");
-    CHECK(part_called(&m, "tank/wheels/r32")->role == HEAT_WHEEL && part_called(&m, "tank/fuel/r23")->role == HEAT_HULL);
+    CHECK(part_called(&m, "tank/wheels/r32")->role == HEAT_WHEEL &&
+          part_called(&m, "tank/fuel/r23")->role == HEAT_HULL);
 
     /* at 0 the barrel is level and points forward */
     const double trunnion_x = m.node[turret].p_parent[0] + 0.254, trunnion_z = m.node[turret].p_parent[2] - 0.127;
@@ -362,7 +380,7 @@ static void ktanks_joints_are_where_its_solids_say(void **state)
     CHECK_NEAR(0.5 * (high[2] - low[2]), radius, 0.001);
     /* azimuth 90: to the right; elevation 15 then lifts the tip by 5.08 sin 15 */
     value[turret] = 90 * rad_per_deg;
-    value[gun]    = 15 * rad_per_deg;
+    value[gun] = 15 * rad_per_deg;
     part_box(low, high, &m, barrel, value);
     CHECK_NEAR(high[1], 0.254 + 5.08 * cos(15 * rad_per_deg) + radius * sin(15 * rad_per_deg), 0.002);
     CHECK_NEAR(low[2] - trunnion_z, -5.08 * sin(15 * rad_per_deg) - radius * cos(15 * rad_per_deg), 0.002);
@@ -382,8 +400,8 @@ static void ktanks_joints_are_where_its_solids_say(void **state)
 static void a_gltf_hierarchy_gives_its_own_pivots(void **state)
 {
     (void)state;
-    char        mesh[512], whole[4096], text[4600], yaml[128];
-    Model       m;
+    char mesh[512], whole[4096], text[4600], yaml[128];
+    Model m;
     ModelImport r;
     if (!reference_path(mesh, "models/free/t-54-main-battle.glb")) {
         skip();
@@ -393,7 +411,8 @@ static void a_gltf_hierarchy_gives_its_own_pivots(void **state)
     snprintf(text, sizeof text,
              "file: %s\naxes: -z +y\njoints:\n"
              "  - {name: turret, nodes: Joint_Turret, class: primary_turret_1, metric: azimuth}\n"
-             "  - {name: gun, nodes: Joint_MainGun, class: primary_gun_1, metric: elevation, limits_deg: -5 18}\n", whole);
+             "  - {name: gun, nodes: Joint_MainGun, class: primary_gun_1, metric: elevation, limits_deg: -5 18}\n",
+             whole);
     write_text(yaml, "t54.yaml", text);
     assert_int_equal(import_quietly(&m, &r, yaml), STATUS_OK);
     CHECK_NEAR(m.length_m, 9.01, 0.005); /* the README's rounding */
@@ -413,10 +432,11 @@ static void a_gltf_hierarchy_gives_its_own_pivots(void **state)
 static void a_catalog_names_files(void **state)
 {
     (void)state;
-    char     path[128], yaml[128];
+    char path[128], yaml[128];
     Catalog *c = NULL;
     write_text(path, "mine.obj", BLOCK);
-    write_text(path, "catalog.csv", "type,model,origin\n1.1.222.1,mine.obj,base\n1.1.222.2,tank,base\n1.1.222.3,mine.obj,base\n");
+    write_text(path, "catalog.csv",
+               "type,model,origin\n1.1.222.1,mine.obj,base\n1.1.222.2,tank,base\n1.1.222.3,mine.obj,base\n");
     assert_int_equal(catalog_open(&c, path, 0.02), STATUS_OK);
     assert_int_equal(catalog_model_count(c), 3); /* unknown, the block once, the tank */
     const int block = catalog_find(c, (DisEntityType){1, 1, 222, 1, 0, 0, 0}, NULL, NULL);
@@ -428,7 +448,8 @@ static void a_catalog_names_files(void **state)
         snprintf(text, sizeof text, "type,model,origin\n1.1,%s,base\n", yaml);
         write_text(path, "catalog.csv", text);
         assert_int_equal(catalog_open(&c, path, 0.02), STATUS_OK);
-        assert_string_equal(catalog_model(c, catalog_find(c, (DisEntityType){1, 1, 0, 0, 0, 0, 0}, NULL, NULL))->name, "K-Tank");
+        assert_string_equal(catalog_model(c, catalog_find(c, (DisEntityType){1, 1, 0, 0, 0, 0, 0}, NULL, NULL))->name,
+                            "K-Tank");
         catalog_close(c);
     }
     write_text(path, "catalog.csv", "type,model,origin\n1.1,none.glb,base\n");
@@ -443,9 +464,9 @@ static void a_catalog_names_files(void **state)
 /* Big-endian records of the OpenFlight 15.8 specification, one after the other. */
 typedef struct Flt {
     uint8_t at[1 << 16];
-    size_t  count, record;
-    double  vertex[64][3];
-    int     vertices;
+    size_t count, record;
+    double vertex[64][3];
+    int vertices;
 } Flt;
 
 static void put_bytes(Flt *f, size_t offset, uint64_t value, int octets)
@@ -478,8 +499,8 @@ static void pop(Flt *f) { record(f, 11, 4, NULL); }
 static void tetrahedron(Flt *f, const char *name, double x, double y, double z, double s)
 {
     static const int face[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
-    const double     corner[4][3] = {{x, y, z}, {x + s, y, z}, {x, y + s, z}, {x, y, z + s}};
-    const int        first = f->vertices;
+    const double corner[4][3] = {{x, y, z}, {x + s, y, z}, {x, y + s, z}, {x, y, z + s}};
+    const int first = f->vertices;
     memcpy(f->vertex[first], corner, sizeof corner);
     f->vertices += 4;
     record(f, 4, 28, name);
@@ -487,7 +508,7 @@ static void tetrahedron(Flt *f, const char *name, double x, double y, double z, 
     for (int i = 0; i < 4; i++) {
         record(f, 5, 80, "face");
         for (size_t at = 26; at < 32; at += 2) put_bytes(f, at, 0xffff, 2); /* no detail, texture, material */
-        put_bytes(f, 44, 0x10000000, 4);                                     /* packed colour: a, b, g, r */
+        put_bytes(f, 44, 0x10000000, 4);                                    /* packed colour: a, b, g, r */
         put_bytes(f, 56, 0xff204060, 4);
         put_bytes(f, 64, 0xffff, 2);
         push(f);
@@ -498,9 +519,10 @@ static void tetrahedron(Flt *f, const char *name, double x, double y, double z, 
     pop(f);
 }
 
-/* Degree of freedom at (x, y, z): its x axis along xd, yd; angles in degrees; flags as the specification's, bit 0 highest. */
-static void freedom(Flt *f, const char *name, const double p[3], double xd, double yd, double pitch_low, double pitch_high,
-                    double yaw_low, double yaw_high, uint32_t flags)
+/* Degree of freedom at (x, y, z): its x axis along xd, yd; angles in degrees; flags as the specification's, bit 0
+ * highest. */
+static void freedom(Flt *f, const char *name, const double p[3], double xd, double yd, double pitch_low,
+                    double pitch_high, double yaw_low, double yaw_high, uint32_t flags)
 {
     record(f, 14, 384, name);
     for (size_t i = 0; i < 3; i++) {
@@ -524,8 +546,8 @@ static void level(Flt *f, const char *name, double in_m, double out_m)
     put_double(f, 24, out_m);
 }
 
-/* hull; turret with yaw -30 .. 170 degrees about (0, 0.5, 1.5), on it a gun with pitch -5 .. 20 about (0, 1.5, 2), and a mast
- * that turns freely about an axis of its own; and a stone in two levels of detail. */
+/* hull; turret with yaw -30 .. 170 degrees about (0, 0.5, 1.5), on it a gun with pitch -5 .. 20 about (0, 1.5, 2), and
+ * a mast that turns freely about an axis of its own; and a stone in two levels of detail. */
 static void make_flt(Flt *out)
 {
     static Flt f;
@@ -576,9 +598,9 @@ static void make_flt(Flt *out)
 static void openflights_freedoms_are_joints(void **state)
 {
     (void)state;
-    static Flt  flt;
-    char        path[128];
-    Model       m;
+    static Flt flt;
+    char path[128];
+    Model m;
     ModelImport r;
     if (system("command -v osgconv >/dev/null") != 0) {
         printf("skipped: no osgconv (apt-get install openscenegraph)\n");
@@ -596,7 +618,8 @@ static void openflights_freedoms_are_joints(void **state)
     CHECK(part_called(&m, "dome")->node == turret && part_called(&m, "tube")->node == gun);
     CHECK(part_called(&m, "stone")->node == 0 && m.part_count == 5);
     /* OpenFlight: y forward, x right, z up. Yaw is counter-clockwise from above, DIS's azimuth clockwise */
-    CHECK(m.node[turret].dis_class == 4096 && m.node[turret].dis_metric == 11 && m.node[turret].joint == JOINT_ROTATION);
+    CHECK(m.node[turret].dis_class == 4096 && m.node[turret].dis_metric == 11 &&
+          m.node[turret].joint == JOINT_ROTATION);
     CHECK_NEAR(m.node[turret].axis[2], 1, 1e-12);
     CHECK_NEAR(m.node[turret].low, -170 * rad_per_deg, 1e-6); /* kept as float on the way */
     CHECK_NEAR(m.node[turret].high, 30 * rad_per_deg, 1e-6);
@@ -620,7 +643,8 @@ static void openflights_freedoms_are_joints(void **state)
 
     /* the sidecar has the last word, and keeps the file's pivot */
     char yaml[128];
-    write_text(yaml, "tank.yaml", "joints:\n- {nodes: mast, class: primary_radar_1, metric: rotation, limits_deg: -90 90}\n");
+    write_text(yaml, "tank.yaml",
+               "joints:\n- {nodes: mast, class: primary_radar_1, metric: rotation, limits_deg: -90 90}\n");
     assert_int_equal(import_quietly(&m, &r, path), STATUS_OK);
     const int radar = node_called(&m, "mast");
     CHECK(m.node_count == 4 && m.node[radar].dis_class == 5376 && m.node[radar].dis_metric == 15);
@@ -637,9 +661,9 @@ static void openflights_freedoms_are_joints(void **state)
 static void without_osgconv_the_next_step_is_said(void **state)
 {
     (void)state;
-    char        path[128];
-    char       *was = strdup(getenv("PATH"));
-    static Flt  flt;
+    char path[128];
+    char *was = strdup(getenv("PATH"));
+    static Flt flt;
     make_flt(&flt);
     write_file(path, "lonely.flt", flt.at, flt.count);
     setenv("PATH", folder, 1);

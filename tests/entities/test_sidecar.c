@@ -16,18 +16,19 @@ static void every_key_arrives_in_si_units(void **state)
 {
     (void)state;
     Sidecar s;
-    char    word[32];
-    assert_int_equal(parse(&s, "file: a.glb\nname: T-54\nscale: 0.0254\naxes: -z +Y\norigin: 1 2 -3.5\ncrease_deg: 45\n"
-                               "drop: [crew*, air]\n"
-                               "joints:\n"
-                               "  - {nodes: [t, u], name: turret, class: secondary_turret_3, metric: azimuth, pivot: [0, 0, 1]}\n"
-                               "  - {nodes: g, parent: turret, class: 4416, metric: elevation, limits_deg: -5 18, rest_deg: 15}\n"
-                               "  - {nodes: w*, each: true, pivot: centre, roll_radius: auto}\n"
-                               "  - {nodes: r, axis: 0 3 4, spin_rpm: 60}\n"
-                               "  - {nodes: m, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
-                               "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\n"
-                               "damage: {slight: {hide: x}, destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n"),
-                     STATUS_OK);
+    char word[32];
+    assert_int_equal(
+        parse(&s, "file: a.glb\nname: T-54\nscale: 0.0254\naxes: -z +Y\norigin: 1 2 -3.5\ncrease_deg: 45\n"
+                  "drop: [crew*, air]\n"
+                  "joints:\n"
+                  "  - {nodes: [t, u], name: turret, class: secondary_turret_3, metric: azimuth, pivot: [0, 0, 1]}\n"
+                  "  - {nodes: g, parent: turret, class: 4416, metric: elevation, limits_deg: -5 18, rest_deg: 15}\n"
+                  "  - {nodes: w*, each: true, pivot: centre, roll_radius: auto}\n"
+                  "  - {nodes: r, axis: 0 3 4, spin_rpm: 60}\n"
+                  "  - {nodes: m, axis: up, class: 2048, metric: extension, limits_m: 0 2}\n"
+                  "materials: {a: paint_olive}\nnode_materials: {w*: rubber_black}\nroles: {w*: wheel}\n"
+                  "damage: {slight: {hide: x}, destroyed: {hide: [a, b], materials: {\"*\": metal_dark}}}\n"),
+        STATUS_OK);
     assert_string_equal(s.file, "a.glb");
     assert_string_equal(s.name, "T-54");
     CHECK_NEAR(s.scale_m, 0.0254, 0);
@@ -90,7 +91,8 @@ static void what_is_wrong_is_said(void **state)
         {"joints:\n  - 3\n", "tank.yaml:2: joints: '3' is not a joint"},
         {"joints:\n  - {class: 4096, metric: azimuth}\n", "tank.yaml:2: joints: nodes: is missing"},
         {"joints:\n  - {nodes: a, hinge: 3}\n", "no such key: joints.hinge; there are name, nodes"},
-        {"joints:\n  - {nodes: a, class: 4097, metric: azimuth}\n", "joints.class: '4097' is not primary_ or secondary_"},
+        {"joints:\n  - {nodes: a, class: 4097, metric: azimuth}\n",
+         "joints.class: '4097' is not primary_ or secondary_"},
         {"joints:\n  - {nodes: a, class: primary_turret_11, metric: azimuth}\n", "'primary_turret_11' is not"},
         {"joints:\n  - {nodes: a, class: primary_turret_1}\n", "class and metric belong together"},
         {"joints:\n  - {nodes: a, metric: tilt}\n", "'tilt' is not one of position, extension"},
@@ -116,7 +118,8 @@ static void what_is_wrong_is_said(void **state)
             continue;
         }
         if (status == STATUS_OK) fail_msg("accepted: %s", bad[i].text);
-        if (!strstr(check_said, bad[i].said)) fail_msg("%s: said '%s' where '%s' was wanted", bad[i].text, check_said, bad[i].said);
+        if (!strstr(check_said, bad[i].said))
+            fail_msg("%s: said '%s' where '%s' was wanted", bad[i].text, check_said, bad[i].said);
         CHECK(s.joint_count == 77); /* untouched */
     }
 }

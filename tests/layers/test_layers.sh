@@ -42,6 +42,7 @@ wrapped() {
         OpenImageIO/*) echo 'sensor/publish/*.cpp' ;;
         embree*) echo 'render/*' ;;
         pcap*) echo 'dis/*' ;;
+        assimp/*) echo 'entities/model_import_assimp.c' ;;
         jansson.h) echo 'sensor/publish/*' ;;
         *) echo '*' ;;
     esac
