@@ -1,4 +1,5 @@
 /* main.c: the commands, as one table; and the probes, as the rooms list them. */
+#include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
@@ -67,6 +68,7 @@ static const struct Command {
 } commands[] = {
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
+    {"model", model_command, "say what a model is made of, built in or from a file"},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };

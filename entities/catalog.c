@@ -1,6 +1,6 @@
 /* entities/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
 #include "entities/catalog.h"
-#include "entities/parametric.h"
+#include "entities/model_import.h"
 
 #include <stdlib.h>
 
@@ -18,6 +18,7 @@ struct Catalog {
     int         row_count, model_count;
     CatalogRow *row;
     Model      *model; /* model[0]: unknown */
+    char      **source; /* of each model: its built-in name, or its file */
 };
 
 /* Dotted numbers and stars; what is left out at the end is a star. Fields are 8 bits, the country 16. */
@@ -44,17 +45,28 @@ static bool parse_type(int field[type_fields], const char *text)
     return false; /* an eighth field */
 }
 
-/* Index of the model of that name, built now if it is new. */
-static Status find_or_build(int *out, Catalog *catalog, const char *name, double sag_m)
+/* Index of the model of that name or file, built or read now if it is new. Files are beside the catalog at `path`. */
+static Status find_or_build(int *out, Catalog *catalog, const char *name, const char *path, double sag_m)
 {
+    char        source[1024];
+    bool        imported;
+    const char *slash = strrchr(path, '/');
+    const int   folder = model_is_path(name) && name[0] != '/' && slash ? (int)(slash - path) + 1 : 0;
+    if ((size_t)snprintf(source, sizeof source, "%.*s%s", folder, path, name) >= sizeof source) return STATUS_BAD_VALUE;
     for (int m = 0; m < catalog->model_count; m++) {
-        if (strcmp(catalog->model[m].name, name) == 0) {
+        if (strcmp(catalog->source[m], source) == 0) {
             *out = m;
             return STATUS_OK;
         }
     }
-    const Status status = parametric_build(catalog->model + catalog->model_count, name, sag_m);
-    if (status != STATUS_OK) return status;
+    char *kept = strdup(source);
+    if (!kept) return STATUS_NO_MEMORY;
+    const Status status = model_open(catalog->model + catalog->model_count, NULL, &imported, source, sag_m);
+    if (status != STATUS_OK) {
+        free(kept);
+        return status;
+    }
+    catalog->source[catalog->model_count] = kept;
     *out = catalog->model_count++;
     return STATUS_OK;
 }
@@ -83,9 +95,9 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
                   origin);
         return STATUS_BAD_VALUE;
     }
-    const Status status = find_or_build(&row->model, catalog, model, sag_m);
+    const Status status = find_or_build(&row->model, catalog, model, table->path, sag_m);
     if (status != STATUS_OK)
-        log_error("catalog: no such model: file=%s line=%d model=\"%s\" reason=%s", table->path, line, model,
+        log_error("catalog: cannot use this model: file=%s line=%d model=\"%s\" reason=%s", table->path, line, model,
                   status_name(status));
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
@@ -118,9 +130,10 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
     if (!catalog) goto done;
     catalog->row = calloc((size_t)table.rows + 1, sizeof *catalog->row);
     catalog->model = calloc((size_t)table.rows + 1, sizeof *catalog->model);
-    if (!catalog->row || !catalog->model) goto done;
+    catalog->source = calloc((size_t)table.rows + 1, sizeof *catalog->source);
+    if (!catalog->row || !catalog->model || !catalog->source) goto done;
 
-    status = find_or_build(&unknown, catalog, "unknown", sag_m);
+    status = find_or_build(&unknown, catalog, "unknown", "", sag_m);
     if (status != STATUS_OK) log_error("catalog: cannot build the unknown model: %s", status_name(status));
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
         CatalogRow row;
@@ -141,7 +154,11 @@ done:
 void catalog_close(Catalog *catalog)
 {
     if (!catalog) return;
-    for (int m = 0; m < catalog->model_count; m++) model_destroy(catalog->model + m);
+    for (int m = 0; m < catalog->model_count; m++) {
+        model_destroy(catalog->model + m);
+        free(catalog->source[m]);
+    }
+    free(catalog->source);
     free(catalog->model);
     free(catalog->row);
     free(catalog);

@@ -14,7 +14,9 @@ typedef struct Catalog Catalog;
 /* path: a CSV with the columns type, model, origin; type is dotted with `*` for anything, e.g.
  * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
  * wins (`1.1.*.1` before `1.1.225`: the category says more of the shape than the country), then the one with fewer
- * stars, then the earlier. A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as parametric_build. */
+ * stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
+ * folder), see entities/model_import.h. A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
+ * parametric_build. */
 Status catalog_open(Catalog **out, const char *path, double sag_m);
 void   catalog_close(Catalog *catalog);
 int    catalog_model_count(const Catalog *catalog);

@@ -3,13 +3,21 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-const char *heat_role_name(HeatRole role)
+static const char *const role_name[HEAT_ROLE_COUNT] = {
+    "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
+    "wheel", "cabin", "rotor", "turbine", "motor", "nose",
+};
+
+const char *heat_role_name(HeatRole role) { return (unsigned)role < HEAT_ROLE_COUNT ? role_name[role] : "?"; }
+
+bool heat_role_find(HeatRole *out, const char *name)
 {
-    static const char *const name[HEAT_ROLE_COUNT] = {
-        "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
-        "wheel", "cabin", "rotor", "turbine", "motor", "nose",
-    };
-    return (unsigned)role < HEAT_ROLE_COUNT ? name[role] : "?";
+    for (int r = 0; r < HEAT_ROLE_COUNT; r++)
+        if (strcmp(role_name[r], name) == 0) {
+            *out = (HeatRole)r;
+            return true;
+        }
+    return false;
 }
 
 void model_destroy(Model *model)
@@ -207,7 +215,7 @@ void model_measure(Model *model)
 /* Returns STATUS_BAD_VALUE and says what is wrong with which model. */
 static Status refuse(const Model *model, const char *what, const char *where, long long index)
 {
-    log_error("model: not valid: model=%.23s problem=\"%s\" where=%.23s index=%lld", model->name, what, where, index);
+    log_error("model: not valid: model=%.95s problem=\"%s\" where=%.95s index=%lld", model->name, what, where, index);
     return STATUS_BAD_VALUE;
 }
 
@@ -315,47 +323,42 @@ static void number_places(uint32_t *place, Corner *corner, const Model *m)
     }
 }
 
-/* Every directed edge of the part is matched by its reverse, one for one, and the part holds a volume. */
-static Status check_closed(const Model *m, int part, const uint32_t *place, uint64_t *edge)
+/* What the edges of one part say. volume_m3: of what they enclose, when it is closed. edge: room for three a triangle. */
+static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int part, const uint32_t *place,
+                       uint64_t *edge)
 {
     const ModelPart *p = &m->part[part];
     size_t count = 0;
-    double volume_m3 = 0;
+    *volume_m3 = 0;
+    memset(out, 0, sizeof *out);
     for (int t = p->first_triangle; t < p->first_triangle + p->triangle_count; t++) {
         const uint32_t *v = m->triangle[t];
         double cross[3];
         v3_cross(cross, m->vertex[v[1]], m->vertex[v[2]]);
-        volume_m3 += v3_dot(m->vertex[v[0]], cross) / 6;
+        *volume_m3 += v3_dot(m->vertex[v[0]], cross) / 6;
         for (int k = 0; k < 3; k++) {
             const uint64_t a = place[v[k]], c = place[v[(k + 1) % 3]];
-            if (a == c) return refuse(m, "triangle with an edge of no length", p->name, t);
+            if (a == c) continue;
             /* both directions of an edge sort together; the lowest bit tells them apart */
             edge[count++] = a < c ? a << 33 | c << 1 : c << 33 | a << 1 | 1;
         }
     }
     qsort(edge, count, sizeof *edge, key_order);
     for (size_t i = 0; i < count;) {
-        long long balance = 0;
+        long long balance = 0, users = 0;
         const uint64_t undirected = edge[i] >> 1;
-        for (; i < count && edge[i] >> 1 == undirected; i++) balance += edge[i] & 1 ? -1 : 1;
-        if (balance != 0) return refuse(m, "not closed: an edge without its reverse", p->name, part);
+        for (; i < count && edge[i] >> 1 == undirected; i++, users++) balance += edge[i] & 1 ? -1 : 1;
+        out->open += balance != 0;
+        out->crowded += users > 2;
     }
-    return volume_m3 > 0 ? STATUS_OK : refuse(m, "inside out: volume is not positive", p->name, part);
 }
 
-Status model_validate(const Model *m)
+/* Calls visit for each part until it says no. */
+static Status walk_edges(const Model *m, Status (*visit)(void *user, const Model *m, int part, const ModelEdges *edges,
+                                                         double volume_m3), void *user)
 {
-    if (!is_name(m->name, sizeof m->name)) return refuse(m, "no name", "-", 0);
-    if (m->vertex_count < 4 || m->triangle_count < 4 || !m->vertex || !m->normal || !m->triangle || !m->triangle_part)
-        return refuse(m, "no triangles", "-", 0);
-    Status status = check_nodes(m);
-    if (status == STATUS_OK) status = check_parts(m);
-    if (status == STATUS_OK) status = check_vertices(m);
-    if (status != STATUS_OK) return status;
-    if (!v3_is_finite(m->box_low) || !v3_is_finite(m->box_high) || !(m->radius_m > 0) || !isfinite(m->radius_m))
-        return refuse(m, "not measured", "-", 0);
-
-    int most = 0;
+    Status status = STATUS_OK;
+    int    most = 0;
     for (int i = 0; i < m->part_count; i++)
         if (m->part[i].triangle_count > most) most = m->part[i].triangle_count;
     uint32_t *place  = malloc((size_t)m->vertex_count * sizeof *place);
@@ -365,10 +368,75 @@ Status model_validate(const Model *m)
         status = STATUS_NO_MEMORY;
     } else {
         number_places(place, corner, m);
-        for (int i = 0; i < m->part_count && status == STATUS_OK; i++) status = check_closed(m, i, place, edge);
+        for (int i = 0; i < m->part_count && status == STATUS_OK; i++) {
+            ModelEdges edges;
+            double     volume_m3;
+            part_edges(&edges, &volume_m3, m, i, place, edge);
+            status = visit(user, m, i, &edges, volume_m3);
+        }
     }
     free(place);
     free(corner);
     free(edge);
     return status;
+}
+
+static Status sum_edges(void *user, const Model *m, int part, const ModelEdges *edges, double volume_m3)
+{
+    (void)m, (void)part;
+    ModelEdges *sum = user;
+    sum->open += edges->open;
+    sum->crowded += edges->crowded;
+    sum->open_parts += edges->open > 0;
+    sum->inside_out_parts += edges->open == 0 && volume_m3 < 0;
+    return STATUS_OK;
+}
+
+Status model_edges(ModelEdges *out, const Model *model)
+{
+    ModelEdges sum = {0};
+    const Status status = walk_edges(model, sum_edges, &sum);
+    if (status == STATUS_OK) *out = sum;
+    return status;
+}
+
+/* Every directed edge of the part is matched by its reverse, one for one, and the part holds a volume. */
+static Status check_closed(void *user, const Model *m, int part, const ModelEdges *edges, double volume_m3)
+{
+    (void)user;
+    const ModelPart *p = &m->part[part];
+    if (edges->open > 0) return refuse(m, "not closed: an edge without its reverse", p->name, part);
+    return volume_m3 > 0 ? STATUS_OK : refuse(m, "inside out: volume is not positive", p->name, part);
+}
+
+static Status check_edge_lengths(const Model *m)
+{
+    for (int t = 0; t < m->triangle_count; t++)
+        for (int k = 0; k < 3; k++) {
+            const double *a = m->vertex[m->triangle[t][k]], *b = m->vertex[m->triangle[t][(k + 1) % 3]];
+            if (a[0] == b[0] && a[1] == b[1] && a[2] == b[2])
+                return refuse(m, "triangle with an edge of no length", m->part[m->triangle_part[t]].name, t);
+        }
+    return STATUS_OK;
+}
+
+Status model_check(const Model *m)
+{
+    if (!is_name(m->name, sizeof m->name)) return refuse(m, "no name", "-", 0);
+    if (m->vertex_count < 3 || m->triangle_count < 1 || !m->vertex || !m->normal || !m->triangle || !m->triangle_part)
+        return refuse(m, "no triangles", "-", 0);
+    Status status = check_nodes(m);
+    if (status == STATUS_OK) status = check_parts(m);
+    if (status == STATUS_OK) status = check_vertices(m);
+    if (status == STATUS_OK) status = check_edge_lengths(m);
+    if (status != STATUS_OK) return status;
+    if (!v3_is_finite(m->box_low) || !v3_is_finite(m->box_high) || !(m->radius_m > 0) || !isfinite(m->radius_m))
+        return refuse(m, "not measured", "-", 0);
+    return STATUS_OK;
+}
+
+Status model_validate(const Model *m)
+{
+    const Status status = model_check(m);
+    return status == STATUS_OK ? walk_edges(m, check_closed, NULL) : status;
 }

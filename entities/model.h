@@ -7,6 +7,11 @@
 
 #include "pitviper.h"
 
+enum {
+    model_name_size = 96,    /* of nodes, parts and models: other people name a part by its whole path */
+    model_damage_states = 4, /* as DIS says it: 0 none, 1 slight, 2 moderate, 3 destroyed */
+};
+
 /* What makes a part warm. One driver each; etc/heat.csv gives the figures. */
 typedef enum HeatRole {
     HEAT_PASSIVE = 0,  /* follows air and sun only */
@@ -26,12 +31,13 @@ typedef enum HeatRole {
 } HeatRole;
 
 const char *heat_role_name(HeatRole role);
+bool heat_role_find(HeatRole *out, const char *name); /* false: none of that name */
 
 /* How a node moves in its parent: first translate to `p_parent`, then turn by the joint's value. */
 typedef enum JointKind { JOINT_FIXED, JOINT_ROTATION, JOINT_TRANSLATION } JointKind;
 
 typedef struct ModelNode {
-    char      name[24];
+    char      name[model_name_size];
     int       parent;           /* index of an earlier node; -1 for the hull (node 0) */
     double    p_parent[3];      /* pivot, in the parent's axes */
     double    r_parent_from_node[9]; /* rest attitude */
@@ -45,15 +51,19 @@ typedef struct ModelNode {
 } ModelNode;
 
 typedef struct ModelPart {
-    char     name[24];
+    char     name[model_name_size];
     int      node;
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
     int      first_triangle, triangle_count;
+    /* How damage shows, by the damage the entity's appearance states ([0] is not used): not there at all (bit
+     * 1 << state), or of another material (empty: the same). Parametric models say nothing; a sidecar may. */
+    uint8_t  damage_hidden;
+    char     damage_material[model_damage_states][32];
 } ModelPart;
 
 typedef struct Model {
-    char       name[24];        /* as truth says it: tank, truck, helicopter, missile ... */
+    char       name[model_name_size]; /* as truth says it: tank, truck, helicopter, missile ... */
     double     length_m, width_m, height_m; /* bounding box at rest */
     double     box_low[3], box_high[3];     /* at rest, body axes */
     double     radius_m;        /* of a sphere about the body origin that holds every pose */
@@ -83,5 +93,17 @@ void model_destroy(Model *model); /* frees and zeroes; accepts zeroes */
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */
 Status model_validate(const Model *model);
+/* What holds of imported models too: all of the above but closed parts. */
+Status model_check(const Model *model);
+
+/* How far a model is from closed parts: edges, by vertex position within a part. */
+typedef struct ModelEdges {
+    long long open;     /* without their reverse */
+    long long crowded;  /* shared by more than two triangles */
+    int       open_parts, inside_out_parts; /* with open edges; closed, and of negative volume */
+} ModelEdges;
+
+/* STATUS_NO_MEMORY is the only failure. model: as model_check wants it. */
+Status model_edges(ModelEdges *out, const Model *model);
 
 #endif

@@ -1,6 +1,10 @@
 #include "render/probe.h"
 
+#include "entities/model_import.h"
+#include "render/parts.h"
 #include "render/planck.h"
+
+#include <stdlib.h>
 
 static const char *planck_row(void *state, const ProbeValue *in, ProbeValue *out)
 {
@@ -12,8 +16,98 @@ static const char *planck_row(void *state, const ProbeValue *in, ProbeValue *out
     return NULL;
 }
 
+/* ---- rays: one model, its joints at 0 ------------------------------------------------ */
+
+typedef struct RayProbe {
+    Model        model;
+    Tracer      *tracer;
+    PosedEntity  entity;
+    double       scale_m, r_body_from_file[9], p_origin_file[3]; /* of the rows' axes */
+} RayProbe;
+
+static void rays_close(void *state)
+{
+    RayProbe *p = state;
+    tracer_destroy(p->tracer);
+    free(p->entity.node);
+    model_destroy(&p->model);
+    free(p);
+}
+
+/* rays MODEL [file|body]: in a file's own axes, origin and units unless a sidecar says what they mean. */
+static Status rays_open(void **state, int argc, char **argv)
+{
+    static const double origin[3] = {0, 0, 0};
+    double      attitude[9];
+    ModelImport report = {0};
+    bool        imported = false;
+    if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "file") != 0 && strcmp(argv[2], "body") != 0)) {
+        log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and whose axes the rows are "
+                  "in");
+        return STATUS_BAD_VALUE;
+    }
+    RayProbe *p = calloc(1, sizeof *p);
+    if (!p) return STATUS_NO_MEMORY;
+    Status status = model_open(&p->model, &report, &imported, argv[1], 0.002);
+    p->scale_m = 1;
+    m3_identity(p->r_body_from_file);
+    const bool file_axes = argc == 3 ? strcmp(argv[2], "file") == 0 : imported && !report.sidecar[0];
+    if (status == STATUS_OK && file_axes && imported) {
+        p->scale_m = report.scale_m;
+        memcpy(p->r_body_from_file, report.r_body_from_file, sizeof p->r_body_from_file);
+        memcpy(p->p_origin_file, report.p_origin_file, sizeof p->p_origin_file);
+    }
+    const Model *model = &p->model;
+    if (status == STATUS_OK) status = tracer_create_models(&p->tracer, &model, 1, "avx2");
+    NodePose *pose = status == STATUS_OK ? calloc((size_t)model->node_count, sizeof *pose) : NULL;
+    if (status == STATUS_OK)
+        p->entity.node = calloc((size_t)parts_node_count(p->tracer, 0) + 1, sizeof *p->entity.node);
+    if (status == STATUS_OK && (!pose || !p->entity.node)) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        model_pose(pose, model, NULL);
+        m3_identity(attitude);
+        parts_pose(&p->entity, p->tracer, 0, pose, origin, attitude);
+        *state = p;
+    } else {
+        rays_close(p);
+    }
+    free(pose);
+    return status;
+}
+
+static const char *rays_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    const RayProbe *p = state;
+    double          o_file[3], o[3], d_file[3], d[3], n_geo[3], n[3], n_file[3];
+    PartHit         hit;
+    for (int i = 0; i < 3; i++) {
+        o_file[i] = in[i].number - p->p_origin_file[i];
+        d_file[i] = in[3 + i].number;
+    }
+    m3_mul_v3(o, p->r_body_from_file, o_file);
+    v3_scale(o, p->scale_m, o);
+    m3_mul_v3(d, p->r_body_from_file, d_file);
+    if (!v3_normalize(d, d)) return "dx,dy,dz must not all be 0";
+    const double range_m = parts_first_hit(&hit, &p->entity, o, d, INFINITY, false);
+    out[0].number = !isinf(range_m);
+    for (int i = 1; i < 5; i++) out[i].number = NAN;
+    out[5].text = "";
+    if (isinf(range_m)) return NULL;
+    parts_normals(n_geo, n, &p->model, &p->entity, &hit, o, d, range_m);
+    m3_tmul_v3(n_file, p->r_body_from_file, n_geo);
+    out[1].number = range_m;
+    for (int i = 0; i < 3; i++) out[2 + i].number = n_file[i];
+    out[5].text = p->model.part[p->model.triangle_part[hit.triangle]].name;
+    return NULL;
+}
+
 const Probe render_probes[] = {
     {.name = "planck", .help = "in-band radiance of a black body and its derivative in temperature",
      .in = "lo_um,hi_um,temp_k", .out = "radiance_w_m2_sr,dldt", .row = planck_row},
+    {.name = "rays", .arguments = "MODEL [file|body]",
+     .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it has no "
+             "sidecar, else in body axes",
+     .in = "ox_m,oy_m,oz_m,dx,dy,dz", .out = "hit,dist_m,nx,ny,nz,part$",
+     .open = rays_open, .row = rays_row, .close = rays_close},
 };
 const int render_probe_count = sizeof render_probes / sizeof *render_probes;

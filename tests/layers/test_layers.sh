@@ -27,7 +27,7 @@ allowed() {
         entities:entities/*|entities:dis/*|entities:terrain/*) ;;
         # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
         render:render/*|render:terrain/*) ;;
-        render:entities/model.h|render:entities/catalog.h|render:entities/snapshot.h|render:dis/pdu.h) ;;
+        render:entities/model.h|render:entities/model_import.h|render:entities/catalog.h|render:entities/snapshot.h|render:dis/pdu.h) ;;
         sensor:dis/*|sensor:terrain/*|sensor:entities/*|sensor:render/*|sensor:sensor/*) ;;
         top:*|fuzz:*|analytic:*) ;;
         *) return 1 ;;
@@ -42,6 +42,7 @@ wrapped() {
         OpenImageIO/*) echo 'sensor/publish/*.cpp' ;;
         embree*) echo 'render/*' ;;
         pcap*) echo 'dis/*' ;;
+        assimp/*) echo 'entities/model_import_assimp.c' ;;
         jansson.h) echo 'sensor/publish/*' ;;
         *) echo '*' ;;
     esac

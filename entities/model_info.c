@@ -1,0 +1,174 @@
+#include "entities/model_info.h"
+
+#include "entities/model_import.h"
+#include "entities/sidecar.h"
+
+#include <stdlib.h>
+
+static void usage(FILE *to)
+{
+    fputs(
+        "usage: pitviper model info NAME|FILE [--sag M]\n\n"
+        "Says what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
+        "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, "
+        "also\n"
+        "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is "
+        "read:\n"
+        "tank.glb, tank.yaml.\n\n"
+        "  --sag M   largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n",
+        to);
+}
+
+static void print_import(const ModelImport *r)
+{
+    static const char *const source[MATERIAL_SOURCE_COUNT] = {"the sidecar", "the name in the file",
+                                                              "the nearest colour", "nothing: paint_olive"};
+    printf("file: %s\nsidecar: %s\n", r->file, r->sidecar[0] ? r->sidecar : "none");
+    const double *m = r->r_body_from_file;
+    char axes[2][3];
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < 3; i++) {
+            const double along = k == 0 ? m[i] : -m[6 + i];
+            if (fabs(along) > 0.5) snprintf(axes[k], sizeof axes[k], "%c%c", along > 0 ? '+' : '-', "xyz"[i]);
+        }
+    printf("axes of the file: %s forward, %s up (%s)\n", axes[0], axes[1],
+           r->axes_assumed ? "the format's habit; `axes` in a sidecar says otherwise" : "from the sidecar");
+    printf("scale: %g m a unit\n", r->scale_m);
+    printf("origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
+    printf("in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes, r->source_materials);
+    printf("left out: %d meshes by the sidecar, %d without triangles, %d triangles without area\n", r->dropped_meshes,
+           r->empty_meshes, r->degenerate_triangles);
+    printf("lost:");
+    int kinds = 0;
+    for (int i = 0; i < IMPORT_LOST_COUNT; i++)
+        if (r->lost[i] > 0) printf("%s %d %s", kinds++ ? "," : "", r->lost[i], import_lost_name((ImportLost)i));
+    printf("%s\n", kinds ? "" : " nothing");
+    printf("joints from the file: %d\n", r->joints_from_file);
+    printf("normals: of %d parts by crease angle, of the others from the file\n", r->smoothed_parts);
+    for (int i = 0; i < MATERIAL_SOURCE_COUNT; i++)
+        if (r->material_parts[i] > 0) printf("materials of %d parts by %s\n", r->material_parts[i], source[i]);
+}
+
+static void print_limits(const ModelNode *node)
+{
+    const bool turns = node->joint == JOINT_ROTATION;
+    if (node->low > node->high)
+        printf(" free");
+    else if (turns)
+        printf(" %g .. %g deg", node->low / rad_per_deg, node->high / rad_per_deg);
+    else
+        printf(" %g .. %g m", node->low, node->high);
+}
+
+static void print_nodes(const Model *m)
+{
+    printf("\nnodes: %d\n", m->node_count);
+    for (int i = 0; i < m->node_count; i++) {
+        const ModelNode *node = &m->node[i];
+        char text[32];
+        const char *named = sidecar_class_text(text, node->dis_class), *metric = sidecar_metric_text(node->dis_metric);
+        printf("  %3d %s", i, node->name);
+        if (node->parent >= 0)
+            printf(" on %s at %.3f %.3f %.3f", m->node[node->parent].name, node->p_parent[0], node->p_parent[1],
+                   node->p_parent[2]);
+        if (node->joint != JOINT_FIXED) {
+            printf(", %s %.3f %.3f %.3f", node->joint == JOINT_ROTATION ? "turns about" : "slides along", node->axis[0],
+                   node->axis[1], node->axis[2]);
+            print_limits(node);
+            if (node->dis_class)
+                printf(", DIS class %u%s%s metric %u %s", node->dis_class, named ? " " : "", named ? named : "",
+                       node->dis_metric, metric ? metric : "?");
+            if (node->spin_rps_moving != 0) printf(", spins at %g rpm", node->spin_rps_moving * 60 / (2 * pi_rad));
+            if (node->roll_radius_m > 0) printf(", rolls on %.3f m", node->roll_radius_m);
+        }
+        putchar('\n');
+    }
+}
+
+static void print_parts(const Model *m)
+{
+    printf("\nparts: %d\n", m->part_count);
+    for (int i = 0; i < m->part_count; i++) {
+        const ModelPart *part = &m->part[i];
+        printf("  %3d %s on %s, %s, heat %s, %d triangles", i, part->name, m->node[part->node].name, part->material,
+               heat_role_name(part->role), part->triangle_count);
+        for (int state = 1; state < model_damage_states; state++) {
+            if (part->damage_hidden >> state & 1)
+                printf(", damage %d: hidden", state);
+            else if (part->damage_material[state][0])
+                printf(", damage %d: %s", state, part->damage_material[state]);
+        }
+        putchar('\n');
+    }
+}
+
+static int print_info(const char *name, double sag_m)
+{
+    Model model;
+    ModelImport report = {0};
+    ModelEdges edges;
+    bool imported;
+    if (model_open(&model, &report, &imported, name, sag_m) != STATUS_OK) return 1;
+    if (model_edges(&edges, &model) != STATUS_OK) {
+        model_destroy(&model);
+        log_error("model: no memory: %s", name);
+        return 1;
+    }
+    printf("model: %s\n", model.name);
+    if (imported)
+        print_import(&report);
+    else
+        printf("built in, facets within %g m of their surfaces\n", model.sag_m);
+    printf("size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m, model.height_m);
+    printf("box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n", model.box_low[0],
+           model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1], model.box_high[2]);
+    printf("radius: %.3f m, of every pose\n", model.radius_m);
+    printf("triangles: %d, vertices: %d\n", model.triangle_count, model.vertex_count);
+    printf("edges: %lld open, in %d parts; %lld shared by more than two triangles; %d parts inside out\n", edges.open,
+           edges.open_parts, edges.crowded, edges.inside_out_parts);
+    print_nodes(&model);
+    print_parts(&model);
+    model_destroy(&model);
+    return 0;
+}
+
+int model_command(int argc, char **argv)
+{
+    const char *name = NULL;
+    double sag_m = 0.005;
+    if (argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
+        usage(stdout);
+        return 0;
+    }
+    if (argc < 2 || strcmp(argv[1], "info") != 0) {
+        if (argc >= 2) fprintf(stderr, "pitviper model: no such action: %s\n\n", argv[1]);
+        usage(stderr);
+        return 2;
+    }
+    for (int i = 2; i < argc; i++) {
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
+            usage(stdout);
+            return 0;
+        }
+        if (strcmp(argv[i], "--sag") == 0) {
+            if (i + 1 < argc && text_to_double(&sag_m, argv[i + 1]) && sag_m >= 1e-5 && sag_m <= 0.1) {
+                i++;
+                continue;
+            }
+            fprintf(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n",
+                    i + 1 < argc ? argv[i + 1] : "");
+            return 2;
+        }
+        if (argv[i][0] == '-' || name) {
+            fprintf(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time",
+                    argv[i]);
+            return 2;
+        }
+        name = argv[i];
+    }
+    if (!name) {
+        usage(stderr);
+        return 2;
+    }
+    return print_info(name, sag_m);
+}

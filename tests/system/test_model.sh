@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# `pitviper model info` and `pitviper probe rays`: built-in models, files, sidecars, and what is wrong with them; and a
+# replay whose catalog names a file. labels: small
+. "$(dirname "$0")/common.sh"
+
+run model --help
+check "model --help ends well" [ $code = 0 ]
+check "model --help shows its usage" grep -q 'usage: pitviper model info' "$tmp/stdout"
+run model info tank --sag 0.02
+check "model info tank" [ $code = 0 ]
+check "the tank's turret and its DIS class" said 'turret on hull .*DIS class 4096 primary_turret_1 metric 11 azimuth'
+check "the tank is closed" said 'edges: 0 open'
+for wrong in "" "frob" "info" "info tank truck" "info tank --sag 3" "info --frob"; do
+    # shellcheck disable=SC2086
+    run model $wrong
+    check "model $wrong: exit code" [ $code = 2 ]
+done
+run model info frigate9
+check "no such model: exit code" [ $code = 1 ]
+check "no such model: said" complained "no built-in model of this name: 'frigate9'"
+run model info "$tmp/none.glb"
+check "no such file: exit code" [ $code = 1 ]
+check "no such file: said" complained 'none.glb'
+
+# a block 2 x 4 x 6
+cat >"$tmp/block.obj" <<'OBJ'
+v 0 0 0
+v 2 0 0
+v 2 4 0
+v 0 4 0
+v 0 0 6
+v 2 0 6
+v 2 4 6
+v 0 4 6
+o block
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 2 3 7 6
+f 3 4 8 7
+f 4 1 5 8
+OBJ
+rays() { # rays MODEL [AXES]: one ray along the file's +x, one that misses, one without a direction
+    printf 'ox_m,oy_m,oz_m,dx,dy,dz\n-3,1,1,2,0,0\n-3,9,1,1,0,0\n0,0,0,0,0,0\n' |
+        "$pitviper" probe rays "$@" >"$tmp/stdout" 2>"$tmp/stderr"
+    code=$?
+}
+rays "$tmp/block.obj"
+check "rays: exit code" [ $code = 0 ]
+check "rays: from x = -3 the block is 3 m off, normal -x" grep -qx -- '-3,1,1,2,0,0,1,3,-1,0,0,block,' "$tmp/stdout"
+check "rays: a miss" grep -qx -- '-3,9,1,1,0,0,0,,,,,,' "$tmp/stdout"
+check "rays: no direction" grep -q -- 'must not all be 0' "$tmp/stdout"
+rays "$tmp/block.obj" body # x is forward, 6 m long, on its base's centre: 1 m up and down is below ground
+check "rays body: misses what is above z = 0" grep -qx -- '-3,1,1,2,0,0,0,,,,,,' "$tmp/stdout"
+printf 'axes: +x +z\norigin: 0 0 0\nscale: 0.5\njoints:\n- {nodes: block, axis: yaw, pivot: 0 0 0, limits_deg: -10 10}\n' >"$tmp/block.yaml"
+rays "$tmp/block.obj" file
+check "rays file: units of the file, distance in m" grep -qx -- '-3,1,1,2,0,0,1,1.5,-1,0,0,block,' "$tmp/stdout"
+run model info "$tmp/block.obj"
+check "info with a sidecar" [ $code = 0 ]
+check "info: the joint's limits" said 'turns about 0.000 0.000 1.000 -10 .. 10 deg'
+check "info: half the size" said 'size: 1.000 x 2.000 x 3.000'
+echo 'scael: 3' >"$tmp/block.yaml"
+run model info "$tmp/block.obj"
+check "a slip in the sidecar: exit code" [ $code = 1 ]
+check "a slip in the sidecar: said" complained 'block.yaml:1: no such key: scael'
+
+# the exercise's tanks as blocks
+printf 'axes: +z +y\nscale: 1\n' >"$tmp/block.yaml"
+cp -r etc "$tmp/etc"
+{ echo 'type,model,origin'; echo '1.1.*.1,../block.obj,base'; grep -E '^(1|2)' etc/catalog.csv | cut -d, -f1-3; } >"$tmp/etc/catalog.csv"
+exercise demo "$tmp/demo.pcap"
+PITVIPER_ETC=$tmp/etc replay "$tmp/demo.pcap" "$tmp/out"
+check "a replay with a file in its catalog" [ $code = 0 ]
+check "truth calls it by its name" grep -rqs '"block"' "$tmp/out" --include='*.json*'
+finish
