@@ -6,7 +6,10 @@
 
 #include <stdlib.h>
 
-static double or_else(const ProbeValue *value, double otherwise) { return isnan(value->number) ? otherwise : value->number; }
+static double or_else(const ProbeValue *value, double otherwise)
+{
+    return isnan(value->number) ? otherwise : value->number;
+}
 
 static bool whole(double x, double low, double high) { return x >= low && x <= high && floor(x) == x; }
 
@@ -19,7 +22,8 @@ static const char *mtf_row(void *state, const ProbeValue *in, ProbeValue *out)
     const MtfChain chain = {.cutoff_cyc_px = pitch_um / (wavelength_um * f_number), .obscuration = or_else(&in[2], 0),
                             .footprint_px = 1, .samples = 1, .smear_px = {or_else(&in[4], 0), 0},
                             .jitter_px = or_else(&in[5], 0)};
-    if (!(wavelength_um > 0 && f_number > 0 && pitch_um > 0)) return "wavelength_um, f_number and pitch_um must be above 0";
+    if (!(wavelength_um > 0 && f_number > 0 && pitch_um > 0))
+        return "wavelength_um, f_number and pitch_um must be above 0";
     if (!(chain.obscuration >= 0 && chain.obscuration <= 0.95)) return "obscuration must be in 0 .. 0.95";
     if (!(chain.smear_px[0] >= 0 && chain.jitter_px >= 0)) return "smear_px and jitter_px must not be negative";
     out[0].number = mtf_optics(&chain, f, 0);
@@ -41,8 +45,10 @@ static const char *netd_row(void *state, const ProbeValue *in, ProbeValue *out)
                               .read_e = or_else(&in[9], 0)};
     if (!(d.low_m > 0 && d.high_m > d.low_m)) return "lo_um must be above 0 and below hi_um";
     if (!(in[2].number > 0)) return "temp_k must be above 0";
-    if (!(d.f_number > 0 && d.pitch_m > 0 && d.integration_s > 0)) return "f_number, pitch_um and integration_ms must be above 0";
-    if (!(d.transmission > 0 && d.transmission <= 1 && d.qe > 0 && d.qe <= 1)) return "transmission and qe must be in 0 .. 1";
+    if (!(d.f_number > 0 && d.pitch_m > 0 && d.integration_s > 0))
+        return "f_number, pitch_um and integration_ms must be above 0";
+    if (!(d.transmission > 0 && d.transmission <= 1 && d.qe > 0 && d.qe <= 1))
+        return "transmission and qe must be in 0 .. 1";
     if (!(d.dark_e >= 0 && d.read_e >= 0)) return "dark_e and read_e must not be negative";
     out[0].number = photon_electrons(&d, in[2].number, &out[1].number);
     out[2].number = 1e3 * photon_netd_k(&d, in[2].number, 0, 0);

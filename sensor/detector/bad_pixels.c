@@ -4,7 +4,8 @@
 
 static const uint32_t streams = 0x3f000000u; /* away from the small numbers that others use */
 
-void bad_pixels_make(uint8_t *map, int width, int height, double share, double clustered, uint64_t seed, uint32_t stream)
+void bad_pixels_make(uint8_t *map, int width, int height, double share, double clustered, uint64_t seed,
+                     uint32_t stream)
 {
     const double begin = share / (1 + 4 * clustered); /* a cluster has 1 + 8 / 2 pixels on average */
     memset(map, PIXEL_GOOD, (size_t)width * (size_t)height);

@@ -15,10 +15,11 @@ struct Blur {
     fftw_plan cosines, back, back_odd;
 };
 
-/* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a level end
- * at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins without a kink. A
- * kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside an exhaust is stripes all
- * over the vehicle. Bent, the point spread of a chain with optics is positive but for a hair, as a real one is. */
+/* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a
+ * level end at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins
+ * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside
+ * an exhaust is stripes all over the vehicle. Bent, the point spread of a chain with optics is positive but for a
+ * hair, as a real one is. */
 static double bent(double f)
 {
     static const double from = 0.4, width = 0.1;

@@ -1,16 +1,16 @@
 /* sensor/detector/blur.h: an MTF chain applied to a plane.
  *
- * A convolution with mirrored edges is a product in the cosine transform (half-sample symmetry), so no padding is needed
- * and a plane costs two transforms of its own size. A smear that is oblique to the rows is not even in each axis; its odd
- * part goes through the sine transforms of the same cosine coefficients, which a third transform gives. In double, FFTW,
- * plans by estimate: same bits for any thread count. Between machines, FFTW may choose other vector instructions.
+ * A convolution with mirrored edges is a product in the cosine transform (half-sample symmetry), so no padding is
+ * needed and a plane costs two transforms of its own size. A smear that is oblique to the rows is not even in each
+ * axis; its odd part goes through the sine transforms of the same cosine coefficients, which a third transform
+ * gives. In double, FFTW, plans by estimate: same bits for any thread count. Between machines, FFTW may choose
+ * other vector instructions.
  *
- * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the chain
- * levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge
- * overshoots by 1 % with the footprint alone and not at all behind optics; a point has a dark ring of 0.8 % at most.
- * Radiance that this would turn negative is 0.
- * Mean kept to rounding (the coefficient of frequency 0 is not touched); with an oblique smear but for the corners. 
- * 720 x 486, one core: 5 ms; 17 ms with an oblique smear. */
+ * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the
+ * chain levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge overshoots
+ * by 1 % with the footprint alone and not at all behind optics; a point has a dark ring of 0.8 % at most. Radiance
+ * that this would turn negative is 0. Mean kept to rounding (the coefficient of frequency 0 is not touched); with
+ * an oblique smear but for the corners. 720 x 486, one core: 5 ms; 17 ms with an oblique smear. */
 #ifndef SENSOR_DETECTOR_BLUR_H
 #define SENSOR_DETECTOR_BLUR_H
 

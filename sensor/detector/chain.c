@@ -66,11 +66,11 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
     }
     if (p->bad_share > 0) {
         c->bad     = malloc(count);
-        c->patched = malloc(count);
+        c->patched = calloc(count, 1); /* PIXEL_GOOD */
         if (!c->bad || !c->patched) return STATUS_NO_MEMORY;
         bad_pixels_make(c->bad, w, h, p->bad_share, p->bad_clustered, chain->seed, stream);
         for (size_t i = 0; i < count; i++)
-            c->patched[i] = random_uniform(chain->seed, 0x3c800000u + stream, 0, i) < p->bad_patched ? c->bad[i] : PIXEL_GOOD;
+            if (random_uniform(chain->seed, 0x3c800000u + stream, 0, i) < p->bad_patched) c->patched[i] = c->bad[i];
     }
     return STATUS_OK;
 }
@@ -160,8 +160,8 @@ static double sigma_e(const Chain *c, double signal_e)
     for (int k = NOISE_TV; k < noise_axes; k++) pattern += p->ratio.sigma[k] * p->ratio.sigma[k];
     const double temporal = signal_e + c->exposure * d->dark_e + d->read_e * d->read_e;
     const double gain_e   = p->prnu * signal_e;
-    return sqrt(p->noise_scale * p->noise_scale * (temporal + pattern * c->sigma_ref_e * c->sigma_ref_e + gain_e * gain_e) +
-                c->step_e * c->step_e / 12);
+    const double all      = temporal + pattern * c->sigma_ref_e * c->sigma_ref_e + gain_e * gain_e;
+    return sqrt(p->noise_scale * p->noise_scale * all + c->step_e * c->step_e / 12);
 }
 
 double chain_sigma(const Chain *c, int channel, double radiance)

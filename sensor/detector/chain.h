@@ -1,8 +1,8 @@
 /* sensor/detector/chain.h: one band's sensor from radiance at the aperture to raw counts.
  *
- *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, footprint, smear, jitter -> each line at
- *     its own time -> gain that differs from pixel to pixel -> shot, dark and read noise, three-dimensional noise, noise along
- *     lines -> AC coupling -> well, converter -> faulty pixels, and their patches
+ *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, footprint, smear, jitter -> each
+ *     line at its own time -> gain that differs from pixel to pixel -> shot, dark and read noise, three-dimensional
+ *     noise, noise along lines -> AC coupling -> well, converter -> faulty pixels, and their patches
  *
  * A frame needs no other: all noise is a function of (seed, frame, row, column), so any frame may be made first. */
 #ifndef SENSOR_DETECTOR_CHAIN_H

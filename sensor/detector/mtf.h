@@ -26,9 +26,9 @@ typedef struct MtfChain {
 
 /* What the optics pass at (fx, fy), |f| <= 0.5. */
 double mtf_optics(const MtfChain *chain, double fx, double fy);
-/* What the footprint passes on top of what the renderer's own averaging has taken away already. n rays on a regular grid
- * pass sin(pi f) / (n sin(pi f / n)): nothing is taken by one ray, the whole sinc by many, and this is the quotient. For a
- * footprint of a whole pixel that is sinc(f / n). */
+/* What the footprint passes on top of what the renderer's own averaging has taken away already. n rays on a
+ * regular grid pass sin(pi f) / (n sin(pi f / n)): nothing is taken by one ray, the whole sinc by many, and this
+ * is the quotient. For a footprint of a whole pixel that is sinc(f / n). */
 double mtf_footprint(const MtfChain *chain, double fx, double fy);
 double mtf_smear(const MtfChain *chain, double fx, double fy);
 double mtf_jitter(const MtfChain *chain, double fx, double fy);

@@ -1,8 +1,8 @@
 /* sensor/detector/noise3d.h: three-dimensional noise: time, row (v) and column (h), alone and together.
  *
- * Seven independent components; each is a function of (seed, stream) and of those of frame, row and column that its name
- * has: v, h and vh are fixed patterns. Source: D'Agostino & Webb, "Three-dimensional analysis framework and measurement
- * methodology for imaging system noise", SPIE 1488 (1991). */
+ * Seven independent components; each is a function of (seed, stream) and of those of frame, row and column that
+ * its name has: v, h and vh are fixed patterns. Source: D'Agostino & Webb, "Three-dimensional analysis framework
+ * and measurement methodology for imaging system noise", SPIE 1488 (1991). */
 #ifndef SENSOR_DETECTOR_NOISE3D_H
 #define SENSOR_DETECTOR_NOISE3D_H
 
@@ -31,8 +31,8 @@ void noise3d_add_moving(float *plane, int width, int height, const Noise3d *nois
  * 0. STATUS_NO_MEMORY. */
 Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, int columns);
 
-/* Plain white noise: out[i] = in[i] + noise_sigma N(0, 1) for pixels first .. first + count - 1 of the frame; in and out
- * begin at `first` and may be the same. Non-finite values stay as they are. */
+/* Plain white noise: out[i] = in[i] + noise_sigma N(0, 1) for pixels first .. first + count - 1 of the frame; in
+ * and out begin at `first` and may be the same. Non-finite values stay as they are. */
 void detector_noise(float *out, const float *in, size_t first, size_t count, double noise_sigma, uint64_t seed,
                     uint32_t stream, uint32_t frame);
 

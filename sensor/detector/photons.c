@@ -77,8 +77,8 @@ Status photon_table_create(PhotonTable **out, const PhotonDetector *d, bool emit
         t->per_log = (knots - 1) / (t->high - t->low);
         for (int i = 0; i < knots; i++) {
             const double radiance = exp(t->low + i / t->per_log);
-            t->ratio[i] = k * photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance), NULL) /
-                          radiance;
+            const double temp_k   = planck_band_inverse(d->low_m, d->high_m, radiance);
+            t->ratio[i]           = k * photon_band(d->low_m, d->high_m, temp_k, NULL) / radiance;
         }
     }
     *out = t;

@@ -4,8 +4,9 @@
 
 #include "pitviper.h"
 
-/* In-band photon radiance of a black body, photons / (s m2 sr), and its derivative in T (may be NULL). 0 < low_m < high_m,
- * temp_k > 0, else NaN. Relative error < 1e-10 for 180 .. 1500 K (tests/sensor/test_photons.c, against 25 digits). */
+/* In-band photon radiance of a black body, photons / (s m2 sr), and its derivative in T (may be NULL). 0 < low_m <
+ * high_m, temp_k > 0, else NaN. Relative error < 1e-10 for 180 .. 1500 K (tests/sensor/test_photons.c, against 25
+ * digits). */
 double photon_band(double low_m, double high_m, double temp_k, double *derivative);
 
 typedef struct PhotonDetector {

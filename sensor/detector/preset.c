@@ -87,7 +87,8 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
     if (b == BAND_RADAR) return bad_word(t, row, "band", text, "optical, mwir, lwir");
     p.band = (Band)b;
     text   = table_text(t, row, exposure);
-    if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0) return bad_word(t, row, "exposure", text, "fixed, auto");
+    if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0)
+        return bad_word(t, row, "exposure", text, "fixed, auto");
     p.auto_exposure = text[0] == 'a';
     text            = table_text(t, row, scan);
     if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0)
@@ -104,7 +105,8 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
         memcpy((char *)&p + columns[i].offset, &value, sizeof value);
     }
     if (floor(p.bits) != p.bits || floor(p.width_px) != p.width_px || floor(p.height_px) != p.height_px) {
-        log_error("sensors: %s:%d: bits=%g, width_px=%g and height_px=%g must be whole numbers", t->path, t->line[row + 1],
+        log_error("sensors: %s:%d: bits=%g, width_px=%g and height_px=%g must be whole numbers", t->path,
+                  t->line[row + 1],
                   p.bits, p.width_px, p.height_px);
         return STATUS_BAD_VALUE;
     }

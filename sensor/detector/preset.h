@@ -25,7 +25,8 @@ typedef struct SensorPreset {
     bool           smear;              /* motion within the integration time, and between lines */
 } SensorPreset;
 
-/* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there is. */
+/* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there
+ * is. */
 Status preset_read(SensorPreset *out, const char *path, const char *name);
 /* After fields were changed by hand. */
 void   preset_refresh(SensorPreset *preset);

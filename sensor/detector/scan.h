@@ -1,9 +1,9 @@
-/* sensor/detector/scan.h: a picture taken line after line: when each pixel is taken, where the scene is by then, and the
- * noise that runs along the lines.
+/* sensor/detector/scan.h: a picture taken line after line: when each pixel is taken, where the scene is by then,
+ * and the noise that runs along the lines.
  *
  * The frame's time is that of the picture's middle, so that truth holds there. Founded on the first FLIR model of
- * Muuss & Lorenzo (1995): bi-directional scan, alternate lines taken left to right and right to left, and a rolling
- * sequence of ten frames of noise that is correlated along that path. */
+ * Muuss & Lorenzo (1995): bi-directional scan, alternate lines taken left to right and right to left, and a
+ * rolling sequence of ten frames of noise that is correlated along that path. */
 #ifndef SENSOR_DETECTOR_SCAN_H
 #define SENSOR_DETECTOR_SCAN_H
 
@@ -18,9 +18,9 @@ typedef struct Scan {
 /* When a place of the picture (px; pixel centres at 0.5) is taken, less the frame's time. */
 double scan_time_s(const Scan *scan, int width, int height, double column_px, int row);
 
-/* out: the picture as its lines see it while the scene moves over it by rate_px_s (column, row). Each value is taken from
- * `in` at its own time; mirrored at the edges. 16 taps of a Kaiser-windowed sine at 1/256 px: within 0.6 % to 0.4 cycles a
- * pixel (tests/sensor/test_scan.c). Not in place. line: scratch [width + scan_taps]. */
+/* out: the picture as its lines see it while the scene moves over it by rate_px_s (column, row). Each value is
+ * taken from `in` at its own time; mirrored at the edges. 16 taps of a Kaiser-windowed sine at 1/256 px: within
+ * 0.6 % to 0.4 cycles a pixel (tests/sensor/test_scan.c). Not in place. line: scratch [width + scan_taps]. */
 enum { scan_taps = 16 };
 void scan_resample(float *out, const float *in, int width, int height, const Scan *scan, const double rate_px_s[2],
                    float *line);

@@ -286,8 +286,9 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
                           .netd_lwir_k = config->detector.noise * config->detector.netd_lwir_k};
     for (int b = 0; b < BAND_COUNT; b++)
         if (chain[b] && band_radiance(plane, picture, b)) chain_expose(chain[b], plane);
-    noise->optical_w_m2_sr = chain[BAND_OPTICAL] ? chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL))
-                                                 : optical_sigma(picture, config);
+    noise->optical_w_m2_sr = optical_sigma(picture, config);
+    if (chain[BAND_OPTICAL])
+        noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
         double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
         const double mean   = mean_radiance(picture, b);
@@ -298,8 +299,8 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
     }
 }
 
-/* What the display of one band shows: gain and level, quantisation; and noise, without a sensor. In radiance, or in counts
- * of the band's sensor. */
+/* What the display of one band shows: gain and level, quantisation; and noise, without a sensor. In radiance, or
+ * in counts of the band's sensor. */
 static DetectorConfig detector_of(const FrameFiles *frame, int band)
 {
     const Config  *c     = frame->config;

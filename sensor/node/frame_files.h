@@ -1,5 +1,6 @@
-/* sensor/node/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the aperture, and
- * what a display behind the detector shows. Raw counts of a band with a sensor: OUT/raw/<band>/NNNNNN.png, 16 bits. */
+/* sensor/node/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the
+ * aperture, and what a display behind the detector shows. Raw counts of a band with a sensor:
+ * OUT/raw/<band>/NNNNNN.png, 16 bits. */
 #ifndef SENSOR_NODE_FRAME_FILES_H
 #define SENSOR_NODE_FRAME_FILES_H
 

@@ -4,11 +4,15 @@
 
 #include "pitviper.h"
 
-/* Rate of turn between two attitudes step_s apart, in the camera's own axes, rad/s. Second order in the angle turned. */
-void turn_rate(double w_cam_rps[3], const double r_world_from_before[9], const double r_world_from_after[9], double step_s);
+/* Rate of turn between two attitudes step_s apart, in the camera's own axes, rad/s. Second order in the angle
+ * turned. */
+void turn_rate(double w_cam_rps[3], const double r_world_from_before[9], const double r_world_from_after[9],
+               double step_s);
 
-/* px/s (column, row) in the middle of the picture, of a thing at rest at range_m on the boresight; not finite: far away. One
- * rate for the whole picture: roll, and what is nearer or farther, move otherwise. tests/sensor/test_scene_rate.c */
-void scene_rate(double rate_px_s[2], const double w_cam_rps[3], const double v_cam_mps[3], double focal_px, double range_m);
+/* px/s (column, row) in the middle of the picture, of a thing at rest at range_m on the boresight; not finite: far
+ * away. One rate for the whole picture: roll, and what is nearer or farther, move otherwise.
+ * tests/sensor/test_scene_rate.c */
+void scene_rate(double rate_px_s[2], const double w_cam_rps[3], const double v_cam_mps[3], double focal_px,
+                double range_m);
 
 #endif

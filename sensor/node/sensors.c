@@ -66,7 +66,8 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
         first = false;
     }
     if (first) {
-        log_error("replay: sensor.preset: '%s' names no sensor; `none` or names of etc/sensors.csv", config->sensor.preset);
+        log_error("replay: sensor.preset: '%s' names no sensor; `none` or names of etc/sensors.csv",
+                  config->sensor.preset);
         return STATUS_BAD_VALUE;
     }
     for (int b = 0; b < BAND_COUNT; b++) {

@@ -159,7 +159,8 @@ static bool host_eye(Eye *eye, const Session *s, Snapshot *snapshot, double t_s)
     seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_body);
     eye->hidden = eye->state.host_index = index;
     eye->at_limit                       = s->seeker.at_limit;
-    if (s->ticks == 2) turn_rate(eye->w_cam_rps, s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], 1.0 / seeker_ticks_per_s);
+    if (s->ticks == 2)
+        turn_rate(eye->w_cam_rps, s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], 1.0 / seeker_ticks_per_s);
     finish_eye(eye, s);
     return true;
 }
@@ -181,7 +182,8 @@ static void observer_place(double p_ecef[3], double aim_enu[3], Session *s, doub
     ecef_from_enu(p_ecef, frame, p_enu);
 }
 
-static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3], const LocalFrame *frame)
+static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3],
+                            const LocalFrame *frame)
 {
     double p_enu[3], d_enu[3];
     enu_from_ecef(p_enu, frame, p_ecef);

@@ -1,4 +1,5 @@
-/* The chain applied to planes: measured from a slanted edge as a laboratory would, and held against the closed forms. */
+/* The chain applied to planes: measured from a slanted edge as a laboratory would, and held against the closed
+ * forms. */
 #include "tests/check.h"
 
 #include "sensor/detector/blur.h"
@@ -35,9 +36,10 @@ static void slanted_edge(double angle_rad, int samples)
         }
 }
 
-/* A laboratory's way (ISO 12233): distances to the known edge in `per_px` bins a pixel, differences, transform, no window.
- * A bin's mean and the difference of two bins each pass sinc(f / per_px), and both are divided out. 80 rows: seven turns
- * of an edge of 5 degrees through a pixel, so that the bins fill evenly. Along the edge's normal, f in cycles a pixel. */
+/* A laboratory's way (ISO 12233): distances to the known edge in `per_px` bins a pixel, differences, transform, no
+ * window. A bin's mean and the difference of two bins each pass sinc(f / per_px), and both are divided out. 80
+ * rows: seven turns of an edge of 5 degrees through a pixel, so that the bins fill evenly. Along the edge's
+ * normal, f in cycles a pixel. */
 static double measured_mtf(const float *plane, double angle_rad, double f, int per_px)
 {
     enum { most_bins = 32 * 120, reach = 60 };
@@ -75,8 +77,9 @@ static const MtfChain chains[] = {
     {.cutoff_cyc_px = 2, .footprint_px = 1, .samples = 1, .smear_px = {1.2, -0.9}},
 };
 
-/* 1 % to 0.4 cycles a pixel, the house's bar. Four bins a pixel where each pixel has the edge's exact area; a picture of
- * few rays is a staircase whose steps would lie on the edges of four bins a pixel, so it is measured in 32. */
+/* 1 % to 0.4 cycles a pixel, the house's bar. Four bins a pixel where each pixel has the edge's exact area; a
+ * picture of few rays is a staircase whose steps would lie on the edges of four bins a pixel, so it is measured in
+ * 32. */
 static void slanted_edge_shows_the_product(void **state)
 {
     (void)state;
@@ -114,20 +117,22 @@ static void waves_come_back_with_their_amplitude(void **state)
             const double fx = 0.5 * kx / width, fy = 0.5 * ky / height;
             if (fx > 0.4 || fy > 0.4) continue; /* from there on the chain bends */
             for (int i = 0; i < width * height; i++)
-                edge[i] = (float)(100 + cos(2 * pi_rad * fx * (i % width + 0.5)) * cos(2 * pi_rad * fy * (i / width + 0.5)));
+                edge[i] = (float)(100 + cos(2 * pi_rad * fx * (i % width + 0.5)) *
+                                            cos(2 * pi_rad * fy * (i / width + 0.5)));
             blur_apply(blur, out, edge, chain.smear_px);
             /* cos cos is half cos(x + y) and half cos(x - y), each with its own amplitude */
             for (int i = 0; i < width * height; i += 97) {
                 const double x = 2 * pi_rad * fx * (i % width + 0.5), y = 2 * pi_rad * fy * (i / width + 0.5);
-                const double want = 100 * 1 + 0.5 * cos(x + y) * mtf_chain(&chain, fx, fy) + 0.5 * cos(x - y) * mtf_chain(&chain, fx, -fy);
+                const double want = 100 + 0.5 * cos(x + y) * mtf_chain(&chain, fx, fy) +
+                                    0.5 * cos(x - y) * mtf_chain(&chain, fx, -fy);
                 CHECK_NEAR(out[i], kx || ky ? want : 101, 2e-5); /* floats at 100 step by 8e-6 */
             }
         }
     blur_destroy(blur);
 }
 
-/* Constants stay, means stay, nothing turns negative; an edge overshoots by 1.0 % where nothing but the footprint is there to
- * end the band, and not at all behind optics (floats about 1). */
+/* Constants stay, means stay, nothing turns negative; an edge overshoots by 1.0 % where nothing but the footprint
+ * is there to end the band, and not at all behind optics (floats about 1). */
 static void mean_kept_and_nothing_rings_beyond(void **state)
 {
     (void)state;
@@ -164,9 +169,10 @@ static void mean_kept_and_nothing_rings_beyond(void **state)
     }
 }
 
-/* A thing of a hundred times the contrast, as an exhaust in 3.4-4.8 um: behind optics its surroundings fall off without
- * stripes: within 0.05 % of it from 4 pixels on off the axes, and never darker by more than that from there on; the dark ring
- * closer by is 0.8 % at most. (A chain that breaks off at Nyquist has 0.4 % bright and dark by turns at 4 pixels.) */
+/* A thing of a hundred times the contrast, as an exhaust in 3.4-4.8 um: behind optics its surroundings fall off
+ * without stripes: within 0.05 % of it from 4 pixels on off the axes, and never darker by more than that from
+ * there on; the dark ring closer by is 0.8 % at most. (A chain that breaks off at Nyquist has 0.4 % bright and
+ * dark by turns at 4 pixels.) */
 static void hot_things_do_not_ring(void **state)
 {
     (void)state;
@@ -197,7 +203,8 @@ static void odd_values_stay_where_they_are(void **state)
     blur_apply(blur, out, edge, chains[4].smear_px);
     blur_apply(blur, edge, edge, chains[4].smear_px);
     CHECK(memcmp(out, edge, sizeof out) == 0);
-    for (int i = 0; i < width * height; i++) CHECK(i == 777 ? isnan(out[i]) : i == 778 ? isinf(out[i]) : isfinite(out[i]));
+    for (int i = 0; i < width * height; i++)
+        CHECK(i == 777 ? isnan(out[i]) : i == 778 ? isinf(out[i]) : isfinite(out[i]));
     blur_apply(blur, out, out, still);
     blur_destroy(blur);
 }

@@ -20,12 +20,14 @@ static void make_cube(const Noise3d *noise, uint64_t seed)
     }
 }
 
-/* sigma_tvh within 1 % and pairs within 2 % (their sampling deviations are 0.05 % and 0.5 %); single axes by chi-square
- * with n - 1 degrees of freedom: in sigma 1 / sqrt(2 (n - 1)), four deviations each way, plus what an estimate subtracts. */
+/* sigma_tvh within 1 % and pairs within 2 % (their sampling deviations are 0.05 % and 0.5 %); single axes by
+ * chi-square with n - 1 degrees of freedom: in sigma 1 / sqrt(2 (n - 1)), four deviations each way, plus what an
+ * estimate subtracts. */
 static void estimates_recover_what_went_in(void **state)
 {
     (void)state;
-    static const Noise3d cases[3] = {{{1, 0.3, 0.2, 0.4, 0.15, 0.25, 0.35}}, {{1, 1, 1, 1, 1, 1, 1}}, {{0.5, 2, 1.5, 1, 3, 2, 4}}};
+    static const Noise3d cases[3] = {{{1, 0.3, 0.2, 0.4, 0.15, 0.25, 0.35}}, {{1, 1, 1, 1, 1, 1, 1}},
+                                     {{0.5, 2, 1.5, 1, 3, 2, 4}}};
     static const int     n[noise_axes] = {0, 0, 0, 0, frames, rows, columns};
     for (int k = 0; k < 3; k++) {
         Noise3d got;
@@ -39,8 +41,8 @@ static void estimates_recover_what_went_in(void **state)
     }
 }
 
-/* With no component in an axis the naive average still shows one (sigma_tvh / sqrt(H) in tv): the estimate must not. The
- * unbiased variance of nothing is 0 within its sampling deviation. */
+/* With no component in an axis the naive average still shows one (sigma_tvh / sqrt(H) in tv): the estimate must
+ * not. The unbiased variance of nothing is 0 within its sampling deviation. */
 static void what_is_not_there_is_not_found(void **state)
 {
     (void)state;
@@ -75,7 +77,8 @@ static void components_stand_still_where_they_should(void **state)
     noise3d_add_fixed(plane, columns, rows, &noise, 9, 1);
     noise3d_add_moving(plane, columns, rows, &noise, 9, 1, 4, scratch);
     for (int r = 0; r < rows; r += 7)
-        for (int c = 0; c < columns; c += 3) CHECK_NEAR(plane[r * columns + c], noise3d_at(&noise, 9, 1, 4, r, c), 1e-6);
+        for (int c = 0; c < columns; c += 3)
+            CHECK_NEAR(plane[r * columns + c], noise3d_at(&noise, 9, 1, 4, r, c), 1e-6);
 }
 
 int main(void)

@@ -1,4 +1,5 @@
-/* Electrons from radiance: photon integrals of 25 digits, and shot-limited temperature differences computed elsewhere. */
+/* Electrons from radiance: photon integrals of 25 digits, and shot-limited temperature differences computed
+ * elsewhere. */
 #include "tests/check.h"
 
 #include "render/planck.h"
@@ -24,7 +25,8 @@ static void photons_agree_with_25_digits(void **state)
         /* Richardson's difference: fourth order, (1e-3)^4 times a fifth derivative of about (30)^5 */
         const double a = v[0] * 1e-6, b = v[1] * 1e-6;
         const double d1 = (photon_band(a, b, v[2] + step, NULL) - photon_band(a, b, v[2] - step, NULL)) / (2 * step);
-        const double d2 = (photon_band(a, b, v[2] + 2 * step, NULL) - photon_band(a, b, v[2] - 2 * step, NULL)) / (4 * step);
+        const double warm = photon_band(a, b, v[2] + 2 * step, NULL), cool = photon_band(a, b, v[2] - 2 * step, NULL);
+        const double d2 = (warm - cool) / (4 * step);
         CHECK_NEAR(slope / ((4 * d1 - d2) / 3), 1, 1e-6);
         rows++;
     }
@@ -78,7 +80,8 @@ static void table_agrees_with_the_integral(void **state)
     /* light: one photon energy, that of 0.55 um: h c / 0.55 um = 3.6117197e-19 J */
     PhotonDetector tv = reference_detector(0.4, 0.7, 1e-3);
     assert_int_equal(photon_table_create(&table, &tv, false), STATUS_OK);
-    CHECK_NEAR(photon_table_electrons(table, 10), 10 * photon_etendue(&tv) / 3.6117197e-19, 1e-6 * photon_table_electrons(table, 10));
+    CHECK_NEAR(photon_table_electrons(table, 10), 10 * photon_etendue(&tv) / 3.6117197e-19,
+               1e-6 * photon_table_electrons(table, 10));
     photon_table_destroy(table);
 }
 

@@ -1,5 +1,5 @@
-/* Line timing, lines resampled at their own times, AC coupling and noise along lines: against kinematics, closed forms and
- * autocorrelations. */
+/* Line timing, lines resampled at their own times, AC coupling and noise along lines: against kinematics, closed
+ * forms and autocorrelations. */
 #include "tests/check.h"
 
 #include "sensor/detector/coupling.h"
@@ -32,7 +32,8 @@ static void a_panning_camera_leans(void **state)
     CHECK_NEAR((shift[height - 1] - shift[0]) * 486 / 485, 21.5639, 1.0 / 256);
     CHECK_NEAR(shift[height / 2] + shift[height / 2 - 1], 0, 1.0 / 256); /* the middle stands at the frame's time */
     for (int r = 1; r < height; r++) CHECK_NEAR(shift[r] - shift[r - 1], 21.5639 / 486, 1.0 / 256);
-    CHECK_NEAR(scan_time_s(&scan, width, height, 0, 100) - scan_time_s(&scan, width, height, 0, 0), 100 * line_s, 1e-12);
+    CHECK_NEAR(scan_time_s(&scan, width, height, 0, 100) - scan_time_s(&scan, width, height, 0, 0), 100 * line_s,
+               1e-12);
 }
 
 /* Down the rows: a scene that falls is stretched, one that climbs is squeezed: row r shows r - rate t(r). */
@@ -83,10 +84,12 @@ static void alternate_lines_run_back(void **state)
     const Scan scan = {.line_s = 1, .active = 0.8, .bidirectional = true};
     CHECK_NEAR(scan_time_s(&scan, 100, 2, 100, 0) - scan_time_s(&scan, 100, 2, 0, 0), 0.8, 1e-12);
     CHECK_NEAR(scan_time_s(&scan, 100, 2, 100, 1) - scan_time_s(&scan, 100, 2, 0, 1), -0.8, 1e-12);
-    CHECK(scan_path(&scan, 100, 0, 99) == 99 && scan_path(&scan, 100, 1, 99) == 100 && scan_path(&scan, 100, 2, 0) == 200);
+    CHECK(scan_path(&scan, 100, 0, 99) == 99 && scan_path(&scan, 100, 1, 99) == 100
+          && scan_path(&scan, 100, 2, 0) == 200);
 }
 
-/* A step in the first line: after n pixels exp(-2 pi f_c T) of it is left; f_c T = 0.01 gives 0.939101367 (nine digits). */
+/* A step in the first line: after n pixels exp(-2 pi f_c T) of it is left; f_c T = 0.01 gives 0.939101367 (nine
+ * digits). */
 static void a_step_droops(void **state)
 {
     (void)state;
@@ -117,9 +120,9 @@ static void a_step_droops(void **state)
     }
 }
 
-/* rho(k) = exp(-k / c) along the path, across the turn at the line's end too; none from line to line in a column but what
- * the path explains; ten frames, all different. Bounds: five deviations of a correlation of n correlated samples,
- * sqrt(c / n) each. */
+/* rho(k) = exp(-k / c) along the path, across the turn at the line's end too; none from line to line in a column
+ * but what the path explains; ten frames, all different. Bounds: five deviations of a correlation of n correlated
+ * samples, sqrt(c / n) each. */
 static void line_noise_runs_along_the_scan(void **state)
 {
     (void)state;
@@ -139,11 +142,13 @@ static void line_noise_runs_along_the_scan(void **state)
         CHECK_NEAR(sum2, 1, bound);
         CHECK_NEAR(apart, exp(-6 / c), bound);
         CHECK_NEAR(across, 0, bound);
-        for (int r = 1; r < height; r++) columns += out[r * width + width / 2] * out[(r - 1) * width + width / 2] / height;
+        for (int r = 1; r < height; r++)
+            columns += out[r * width + width / 2] * out[(r - 1) * width + width / 2] / height;
         CHECK_NEAR(columns, 0, 5 / sqrt(height));
         /* the turn: last of an even row, and the one below it, are one step apart; their product averages rho(1) */
         double turn = 0;
-        for (int r = 0; r + 1 < height; r += 2) turn += out[r * width + width - 1] * out[(r + 1) * width + width - 1] / (height / 2.0);
+        for (int r = 0; r + 1 < height; r += 2)
+            turn += out[r * width + width - 1] * out[(r + 1) * width + width - 1] / (height / 2.0);
         CHECK_NEAR(turn, exp(-1 / c), 5 * sqrt(2.0 / (height / 2.0)));
         memcpy(before, out, sizeof out);
     }

@@ -24,7 +24,8 @@ static void a_point_at_rest_moves_as_projected(void **state)
         {0.1, -0.2, 0.4, 250, -60, 90, INFINITY}};
     static const double lean[3] = {0.6, -0.64, 0.48};
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-        const double *w = cases[k], *v = cases[k] + 3, range_m = isfinite(cases[k][6]) ? cases[k][6] : 1e13, focal_px = 3000;
+        const double *w = cases[k], *v = cases[k] + 3, focal_px = 3000;
+        const double  range_m = isfinite(cases[k][6]) ? cases[k][6] : 1e13;
         const double  speed = v3_length(w), h_s = 1e-4;
         double        middle[9], at[2][2], attitude[2][9], axis[3] = {1, 0, 0}, p[3], v_cam[3], got[2], rate[3];
         if (speed > 0) v3_scale(axis, 1 / speed, w);
