@@ -7,7 +7,8 @@ const char *heat_role_name(HeatRole role)
 {
     static const char *const name[HEAT_ROLE_COUNT] = {
         "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
-        "wheel", "cabin", "rotor", "turbine", "motor", "nose",
+        "wheel", "cabin", "rotor", "turbine", "motor", "nose", "airframe",
+        "skin", "clothing", "dwelling", "flue", "flare",
     };
     return (unsigned)role < HEAT_ROLE_COUNT ? name[role] : "?";
 }
@@ -240,6 +241,8 @@ static Status check_nodes(const Model *m)
             return refuse(m, "sliding joint without limits", n->name, i);
         if (!isfinite(n->spin_rps_moving) || !(n->roll_radius_m >= 0 && isfinite(n->roll_radius_m)))
             return refuse(m, "spin or roll radius out of range", n->name, i);
+        if (!isfinite(n->dis_scale) || !isfinite(n->value_slow))
+            return refuse(m, "scale or slow value is not finite", n->name, i);
     }
     return STATUS_OK;
 }

@@ -16,5 +16,13 @@ Status parametric_tank(Model *out, double sag_m);
 Status parametric_truck(Model *out, double sag_m);
 Status parametric_helicopter(Model *out, double sag_m);
 Status parametric_missile(Model *out, double sag_m);
+Status parametric_carrier(Model *out, double sag_m);
+Status parametric_launcher(Model *out, double sag_m);
+Status parametric_aircraft(Model *out, double sag_m);
+Status parametric_ship(Model *out, double sag_m);
+Status parametric_person(Model *out, double sag_m);
+Status parametric_building(Model *out, double sag_m);
+Status parametric_decoy(Model *out, double sag_m);
+Status parametric_flare(Model *out, double sag_m);
 
 #endif
