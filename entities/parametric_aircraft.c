@@ -1,8 +1,8 @@
 /* Single-engined fighter of the F-16C class. Published (USAF fact sheet; Jane's All the World's Aircraft; the same in
  * the open encyclopedias): 15.06 m long, span 9.45 m over the tip rails, 5.09 m high, wing area 27.87 m2 at aspect
  * ratio 3.0, taper 0.21 and 40 degrees of leading-edge sweep (so span 9.144 m, centre chord 5.04 m, tip 1.06 m),
- * tailplane 5.58 m, wheel track 2.36 m, wheel base 4.00 m. Intake under the chin, bubble canopy, ventral fins, nozzle 1.0 m
- * across. Sections of the body are estimates from three-view drawings. The types of bomber, cargo and other fixed-wing
+ * tailplane 5.58 m, wheel track 2.36 m, wheel base 4.00 m. Intake under the chin, bubble canopy, ventral fins, nozzle
+ * 1.0 m across. Sections of the body are estimates from three-view drawings. Bombers, cargo and other fixed-wing
  * aircraft get this shape too, for want of a larger one.
  *
  * The base is the ground under the extended wheels. At rest the gear is up (a reported 3072 landing gear position of 1,
@@ -109,7 +109,7 @@ static void build_canopy(MeshBuilder *b)
     static const Station glass[6] = {{2.15, 0.30, -2.96, -2.45, 0.9},  {2.80, 0.37, -3.08, -2.45, 0.95},
                                      {3.50, 0.39, -3.10, -2.40, 0.95}, {4.20, 0.37, -2.96, -2.36, 0.95},
                                      {4.90, 0.28, -2.68, -2.30, 1.0},  {5.45, 0.10, -2.36, -2.26, 1.0}};
-    mesh_part(b, 0, "canopy", "glass_window", HEAT_CABIN);
+    mesh_part(b, 0, "canopy", "glass_window", HEAT_AIRFRAME);
     mesh_loft(b, place_at(0, 0, 0), glass, 6);
     mesh_part(b, 0, "canopy_frame", "paint_air_grey", HEAT_AIRFRAME);
     Station hoop[2];

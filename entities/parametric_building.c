@@ -30,8 +30,8 @@ static void build_roof(MeshBuilder *b)
     const double ridge_m = eaves_m + half_depth_m * tan(pitch_rad), thick = tiles_m / cos(pitch_rad);
     mesh_part(b, 0, "roof", "roof_tile_clay", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
-        const double slope[4][2] = {{0, -ridge_m}, {side * reach, -ridge_m + drop}, {side * reach, -ridge_m + drop - thick},
-                                    {0, -ridge_m - thick}};
+        const double slope[4][2] = {{0, -ridge_m}, {side * reach, -ridge_m + drop},
+                                    {side * reach, -ridge_m + drop - thick}, {0, -ridge_m - thick}};
         mesh_prism(b, place_at(0, 0, 0), 4, slope, -half_width_m - overhang_m, half_width_m + overhang_m);
     }
     mesh_bar(b, (double[3]){0, -half_width_m - overhang_m, -ridge_m - thick},
@@ -41,9 +41,9 @@ static void build_roof(MeshBuilder *b)
         const double x = side * (reach + 0.06), z = -ridge_m + drop - 0.02;
         mesh_bar(b, (double[3]){x, -half_width_m - overhang_m, z}, (double[3]){x, half_width_m + overhang_m, z}, 0.065);
         /* downpipe at one corner, back under the eaves */
-        mesh_bar(b, (double[3]){x, side * 4.85, z}, (double[3]){side * (half_depth_m + 0.07), side * 4.85, z + 0.45}, 0.04);
-        mesh_bar(b, (double[3]){side * (half_depth_m + 0.07), side * 4.85, z + 0.42},
-                 (double[3]){side * (half_depth_m + 0.07), side * 4.85, -0.05}, 0.04);
+        const double y = side * 4.85, wall_x = side * (half_depth_m + 0.07);
+        mesh_bar(b, (double[3]){x, y, z}, (double[3]){wall_x, y, z + 0.45}, 0.04);
+        mesh_bar(b, (double[3]){wall_x, y, z + 0.42}, (double[3]){wall_x, y, -0.05}, 0.04);
     }
 }
 
@@ -95,7 +95,7 @@ static void build_openings(MeshBuilder *b)
     mesh_part(b, 0, "door", "wood_pine", HEAT_DWELLING);
     mesh_box(b, place_at(0, 0, 0), half_depth_m - 0.02, -0.4925, -0.17 - 2.11, half_depth_m + 0.03, 0.4925, -0.17);
     for (int i = 0; i < 2; i++) /* two raised panels and the handle */
-        mesh_box(b, place_at(0, 0, 0), half_depth_m, -0.34, -1.10 - 0.95 * i, half_depth_m + 0.045, 0.34, -0.40 - 0.95 * i);
+        mesh_box(b, place_at(0, 0, -0.95 * i), half_depth_m, -0.34, -1.10, half_depth_m + 0.045, 0.34, -0.40);
     mesh_bar(b, (double[3]){half_depth_m, 0.42, -1.22}, (double[3]){half_depth_m + 0.09, 0.42, -1.22}, 0.012);
     mesh_bar(b, (double[3]){half_depth_m + 0.085, 0.43, -1.22}, (double[3]){half_depth_m + 0.085, 0.30, -1.22}, 0.011);
     mesh_part(b, 0, "door_frame", "paint_white_wood", HEAT_PASSIVE);

@@ -12,10 +12,12 @@
 
 static const double half_length_m = 5.258 / 2, half_width_m = 2.819 / 2, top_m = 2.007, clearance_m = 0.432;
 static const double turret_x_m = -0.20, turret_y_m = 0.34, roof_m = 2.619, sight_m = 2.794;
-static const double ramp_x_m = -2.47, ramp_z_m = -0.62, ramp_down_rad = 2.02; /* its outer face then rests on the ground */
+static const double ramp_x_m = -2.47, ramp_z_m = -0.62;
+static const double ramp_down_rad = 2.02; /* its outer face then rests on the ground */
 
 static const RunningGear gear = {
-    .half_gauge_m = 2.159 / 2, .track_width_m = 0.381, .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 64,
+    .half_gauge_m = 2.159 / 2, .track_width_m = 0.381,
+    .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 64,
     .road_wheels = 5, .first_x_m = 1.28, .step_m = 2.667 / 4, .road_radius_m = 0.305,
     .front_x_m = 2.05, .front_z_m = -0.70, .front_radius_m = 0.24,
     .rear_x_m = -2.02, .rear_z_m = -0.58, .rear_radius_m = 0.20, .front_drives = true,
@@ -30,8 +32,9 @@ static void build_hull(MeshBuilder *b)
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     mesh_prism(b, here, 6, tub, -0.87, 0.87);
     /* over the tracks: straight sides, then leaning in; glacis in front, a little rake behind */
-    parts_block(b, (Rectangle){-2.46, half_length_m, -1.37, 1.37}, 1.04, (Rectangle){-2.46, half_length_m, -1.37, 1.37}, 1.22);
-    parts_block(b, (Rectangle){-2.46, half_length_m, -1.37, 1.37}, 1.22, (Rectangle){-2.40, 1.85, -1.18, 1.18}, top_m);
+    const Rectangle belt = {-2.46, half_length_m, -1.37, 1.37};
+    parts_block(b, belt, 1.04, belt, 1.22);
+    parts_block(b, belt, 1.22, (Rectangle){-2.40, 1.85, -1.18, 1.18}, top_m);
     /* steel plates bolted a hand off the sides */
     for (int side = -1; side <= 1; side += 2) {
         mesh_box(b, parts_side(side), -2.30, 1.36, -1.34, 2.35, half_width_m, -1.06);
@@ -112,8 +115,8 @@ static void build_turret(MeshBuilder *b, int turret)
     mesh_part(b, turret, "smoke_dischargers", "metal_dark", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2)
         for (int i = 0; i < 3; i++)
-            mesh_cylinder(b, place_axis(0.52, side * (0.52 + 0.09 * i), -0.30, 1, side * (0.25 + 0.15 * i), -0.5), 0, 0.24,
-                          0.04);
+            mesh_cylinder(b, place_axis(0.52, side * (0.52 + 0.09 * i), -0.30, 1, side * (0.25 + 0.15 * i), -0.5), 0,
+                          0.24, 0.04);
 }
 
 static void build_gun(MeshBuilder *b, int gun)

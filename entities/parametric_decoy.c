@@ -1,7 +1,8 @@
 /* Inflatable decoy of a main battle tank: the outline of parametric_tank.c (hull 6.95 m, 9.53 m with the gun, 3.59 m
- * wide, 2.19 m to the turret roof) blown up out of coated fabric over air beams. Makers publish the full size of what is copied
- * and 30 .. 100 kg (open descriptions of Inflatech's and Rusbal's wares); the bulges are estimates. In the visible a
- * tank; in the infrared one cold skin, without engine, exhaust, warm tracks or gun; to radar, cloth. Nothing moves. */
+ * wide, 2.19 m to the turret roof) blown up out of coated fabric over air beams. Makers publish the full size of what
+ * is copied and 30 .. 100 kg (open descriptions of Inflatech's and Rusbal's wares); the bulges are estimates. In the
+ * visible a tank; in the infrared one cold skin, without engine, exhaust, warm tracks or gun; to radar, cloth. Nothing
+ * moves. */
 #include "entities/parametric.h"
 #include "entities/parametric_parts.h"
 
@@ -14,7 +15,8 @@ static void build_hull(MeshBuilder *b)
     mesh_part(b, 0, "hull", "decoy_fabric", HEAT_PASSIVE);
     const Station tub[6] = {
         {-half_length_m, 1.02, -1.28, -0.62, 0.6}, {-3.05, 1.10, -1.42, -0.45, 0.45}, {0.0, 1.12, -1.42, -0.42, 0.4},
-        {2.10, 1.12, -1.42, -0.44, 0.4},           {3.05, 1.08, -1.20, -0.62, 0.5},   {half_length_m, 0.98, -1.04, -0.86, 0.8}};
+        {2.10, 1.12, -1.42, -0.44, 0.4},           {3.05, 1.08, -1.20, -0.62, 0.5},
+        {half_length_m, 0.98, -1.04, -0.86, 0.8}};
     mesh_loft(b, here, tub, 6);
     /* fender beams: each a long bolster with quilted bins on top */
     for (int side = -1; side <= 1; side += 2) {
@@ -22,9 +24,9 @@ static void build_hull(MeshBuilder *b)
                                    {3.0, 0.40, -1.28, -0.93, 0.7},   {3.38, 0.36, -1.14, -0.96, 0.8}};
         mesh_loft(b, place_at(0, side * (half_width_m - 0.40), 0), fender, 4);
         for (int i = 0; i < 4; i++) {
-            const Station bin[3] = {{-3.0 + 1.4 * i, 0.25, -1.40, -1.20, 0.8}, {-2.4 + 1.4 * i, 0.30, -1.47, -1.20, 0.6},
-                                    {-1.8 + 1.4 * i, 0.25, -1.40, -1.20, 0.8}};
-            mesh_loft(b, place_at(0, side * 1.40, 0), bin, 3);
+            static const Station bin[3] = {{-0.6, 0.25, -1.40, -1.20, 0.8}, {0, 0.30, -1.47, -1.20, 0.6},
+                                           {0.6, 0.25, -1.40, -1.20, 0.8}};
+            mesh_loft(b, place_at(-2.4 + 1.4 * i, side * 1.40, 0), bin, 3);
         }
     }
     /* quilting of the engine deck */

@@ -1,7 +1,7 @@
 /* Tracked air-defence launcher of the 2P25 class (2K12 Kub, SA-6): three missiles on one turntable. Published (Jane's
- * Land-Based Air Defence; Zaloga; the same in the open encyclopedias): 7.389 m long over the missiles, 3.18 m wide, 3.45 m
- * high, six road wheels a side, drive behind, 0.40 m clearance; missile 3M9: 5.80 m long, 0.335 m across, wings of
- * 1.245 m span. Launcher elevation to 80 degrees is estimate, as are hull lines, wheel base and turntable.
+ * Land-Based Air Defence; Zaloga; the same in the open encyclopedias): 7.389 m long over the missiles, 3.18 m wide,
+ * 3.45 m high, six road wheels a side, drive behind, 0.40 m clearance; missile 3M9: 5.80 m long, 0.335 m across, wings
+ * of 1.245 m span. Launcher elevation to 80 degrees is estimate, as are hull lines, wheel base and turntable.
  *
  * The missiles point ahead, level, as before a launch. Articulated: turntable (4096 azimuth), rails with their missiles
  * (4736 primary launcher, elevation). */
@@ -16,7 +16,8 @@ static const double spacing_m = 0.93, middle_lift_m = 0.07, missile_m = 5.80, bo
 static const double half_span_m = 1.245 / 2;
 
 static const RunningGear gear = {
-    .half_gauge_m = 1.31, .track_width_m = 0.36, .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.06, .links = 93,
+    .half_gauge_m = 1.31, .track_width_m = 0.36,
+    .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.06, .links = 93,
     .road_wheels = 6, .first_x_m = 2.08, .step_m = 0.78, .road_radius_m = 0.335,
     .front_x_m = 2.85, .front_z_m = -0.66, .front_radius_m = 0.27,
     .rear_x_m = -2.80, .rear_z_m = -0.72, .rear_radius_m = 0.30, .front_drives = false,
@@ -31,7 +32,8 @@ static void build_hull(MeshBuilder *b)
     mesh_prism(b, here, 7, tub, -1.10, 1.10);
     /* over the tracks: shelf, then the low box of the fighting compartment with a raked cab front */
     parts_block(b, (Rectangle){rear_x_m, 3.10, -1.53, 1.53}, 1.13, (Rectangle){rear_x_m, 2.95, -1.53, 1.53}, 1.24);
-    parts_block(b, (Rectangle){rear_x_m, 2.75, -1.45, 1.45}, 1.24, (Rectangle){rear_x_m + 0.08, 2.05, -1.38, 1.38}, deck_m);
+    parts_block(b, (Rectangle){rear_x_m, 2.75, -1.45, 1.45}, 1.24, (Rectangle){rear_x_m + 0.08, 2.05, -1.38, 1.38},
+                deck_m);
     for (int side = -1; side <= 1; side += 2) {
         mesh_box(b, parts_side(side), -3.20, 1.52, -1.22, 2.80, half_width_m, -1.10); /* fender's rim */
         mesh_box(b, parts_side(side), -1.9, 1.40, -1.46, -0.9, 1.56, -1.23);          /* bins */

@@ -32,7 +32,8 @@ void parts_wing(MeshBuilder *b, Place place, double lead0, double trail0, double
         const double lead = end ? lead1 : lead0, chord = lead - (end ? trail1 : trail0), z = end ? z1 : z0;
         const double half = 0.5 * thickness * chord;
         const double points[6][2] = {{lead, z}, {lead - 0.25 * chord, z - half}, {lead - 0.60 * chord, z - half},
-                                     {lead - chord, z}, {lead - 0.60 * chord, z + half}, {lead - 0.25 * chord, z + half}};
+                                     {lead - chord, z}, {lead - 0.60 * chord, z + half},
+                                     {lead - 0.25 * chord, z + half}};
         memcpy(section[end], points, sizeof points);
     }
     mesh_slab(b, place, 6, (const double (*)[2])section[0], y0, (const double (*)[2])section[1], y1);
@@ -104,8 +105,10 @@ void parts_disc(MeshBuilder *b, Place place, double radius_m, double half_width_
     mesh_profile_line(b, w, 0.34 * r);
     mesh_profile_line(b, w, 0);
     mesh_lathe(b, place);
-    for (int i = 0; i < ribs; i++)
-        mesh_box(b, about_axle(place, 2 * pi_rad * i / ribs), 0.2 * w, -0.06 * r, 0.36 * r, 0.75 * w, 0.06 * r, 0.84 * r);
+    for (int i = 0; i < ribs; i++) {
+        const Place rib = about_axle(place, 2 * pi_rad * i / ribs);
+        mesh_box(b, rib, 0.2 * w, -0.06 * r, 0.36 * r, 0.75 * w, 0.06 * r, 0.84 * r);
+    }
 }
 
 void parts_track_wheels(MeshBuilder *b, const RunningGear *gear, int side)

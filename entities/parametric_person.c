@@ -96,7 +96,7 @@ static void build_kit(MeshBuilder *b)
         const Station foot[4] = {{-0.090, 0.036, -0.095, 0, 0.35}, {0.000, 0.044, -0.100, 0, 0.35},
                                  {0.110, 0.050, -0.075, 0, 0.35}, {0.190, 0.036, -0.040, 0, 0.5}};
         mesh_loft(b, place_turned(place_at(-0.01, side * 0.118, 0), (double[3]){0, 0, 1}, side * 0.12), foot, 4);
-        mesh_cone(b, standing(-0.015, side * 0.115), 0.06, 0.056, 0.27, 0.064);
+        mesh_cone(b, standing(-0.015, side * 0.115), 0.06, 0.062, 0.27, 0.074);
     }
 }
 

@@ -1,7 +1,7 @@
-/* Patrol frigate of the Floreal class. Published (Jane's Fighting Ships; the same in the open encyclopedias): 93.5 m long
- * over all, 85.2 m on the waterline, 14.0 m beam, 4.3 m draught, 2,950 t at full load; 100 mm gun forward (barrel 5.5 m,
- * elevation -15 .. +80 degrees), hangar and flight deck aft, two funnels side by side. The lines are drawn to those
- * figures, with chines for the bilge's curve; superstructure, mast and fittings are estimates.
+/* Patrol frigate of the Floreal class. Published (Jane's Fighting Ships; the same in the open encyclopedias): 93.5 m
+ * long over all, 85.2 m on the waterline, 14.0 m beam, 4.3 m draught, 2,950 t at full load; 100 mm gun forward (barrel
+ * 5.5 m, elevation -15 .. +80 degrees), hangar and flight deck aft, two funnels side by side. The lines are drawn to
+ * those figures, with chines for the bilge's curve; superstructure, mast and fittings are estimates.
  *
  * The base is the waterline: z = 0 is the sea, the hull reaches 4.3 m below it, and the origin lies half way along.
  *
@@ -131,9 +131,10 @@ static void build_hull(MeshBuilder *b, double sag_m)
         for (int i = 0; i < 34; i++) {
             const double x0 = -45.5 + 2.6 * i, x1 = x0 + 2.6;
             const double y0 = side * (deck_half_m(x0) - 0.12), y1 = side * (deck_half_m(x1) - 0.12);
-            mesh_bar(b, (double[3]){x0, y0, deck_z(x0) + 0.1}, (double[3]){x0, y0, deck_z(x0) - 1.05}, 0.025);
+            const double z0 = deck_z(x0), z1 = deck_z(x1);
+            mesh_bar(b, (double[3]){x0, y0, z0 + 0.1}, (double[3]){x0, y0, z0 - 1.05}, 0.025);
             for (int k = 1; k <= 2; k++)
-                mesh_bar(b, (double[3]){x0, y0, deck_z(x0) - 0.5 * k}, (double[3]){x1, y1, deck_z(x1) - 0.5 * k}, 0.012);
+                mesh_bar(b, (double[3]){x0, y0, z0 - 0.5 * k}, (double[3]){x1, y1, z1 - 0.5 * k}, 0.012);
         }
     /* screws, shafts and rudders */
     mesh_part(b, 0, "screws", "metal_dark", HEAT_PASSIVE);
@@ -163,7 +164,7 @@ static void build_superstructure(MeshBuilder *b)
         mesh_box(b, parts_side(side), 11.0, 5.0, -11.6, 13.4, 6.6, -10.5);
     parts_block(b, (Rectangle){-20.8, -6, -5.2, 5.2}, 7.85, (Rectangle){-20.8, -7, -4.9, 4.9}, 12.0);
     /* hangar door's ribs, on the flight deck's side */
-    for (int i = 0; i < 8; i++) mesh_box(b, place_at(0, 0, 0), -20.86, -3.4, -11.4 + 0.75 * i, -20.7, 3.4, -11.2 + 0.75 * i);
+    for (int i = 0; i < 5; i++) mesh_box(b, place_at(0, 0, 0.75 * i), -20.86, -3.4, -11.4, -20.7, 3.4, -11.2);
     /* boats in the waist, one a side, on their cradles */
     for (int side = -1; side <= 1; side += 2) {
         mesh_box(b, parts_side(side), -3.8, 5.0, -8.5, -3.4, 5.9, -7.85);
@@ -229,7 +230,7 @@ static void build_mast(MeshBuilder *b)
         const double z = -20.6 - 1.7 * i, y = 3.6 - 0.8 * i;
         mesh_bar(b, (double[3]){5.5, -y, z}, (double[3]){5.5, y, z}, 0.09);
         for (int side = -1; side <= 1; side += 2)
-            mesh_bar(b, (double[3]){5.5, side * (y - 0.1), z + 0.4}, (double[3]){5.5, side * (y - 0.1), z - 1.3}, 0.035);
+            mesh_cylinder(b, place_axis(5.5, side * (y - 0.1), z, 0, 0, -1), -0.4, 1.3, 0.035);
     }
     /* whips, ensign staff */
     for (int side = -1; side <= 1; side += 2)
@@ -282,8 +283,8 @@ static void build_radar(MeshBuilder *b, int radar)
     for (int i = 0; i < 6; i++) {
         const double z = -0.70 - 0.24 * i, x = 0.35 - 0.05 * (i - 2.5) * (i - 2.5);
         for (int k = -3; k < 3; k++) {
-            const double y0 = 0.7 * k, y1 = y0 + 0.7;
-            mesh_bar(b, (double[3]){x + 0.10 * y0 * y0 - 0.4, y0, z}, (double[3]){x + 0.10 * y1 * y1 - 0.4, y1, z}, 0.05);
+            const double y0 = 0.7 * k, y1 = y0 + 0.7, x0 = x + 0.10 * y0 * y0 - 0.4, x1 = x + 0.10 * y1 * y1 - 0.4;
+            mesh_bar(b, (double[3]){x0, y0, z}, (double[3]){x1, y1, z}, 0.05);
         }
     }
     for (int k = -3; k <= 3; k++) {
