@@ -8,7 +8,7 @@ const char *heat_role_name(HeatRole role)
     static const char *const name[HEAT_ROLE_COUNT] = {
         "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
         "wheel", "cabin", "rotor", "turbine", "motor", "nose", "airframe",
-        "skin", "clothing", "dwelling", "flue", "flare",
+        "skin", "clothing", "dwelling", "window", "flue", "flare",
     };
     return (unsigned)role < HEAT_ROLE_COUNT ? name[role] : "?";
 }

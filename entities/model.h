@@ -25,7 +25,8 @@ typedef enum HeatRole {
     HEAT_AIRFRAME,     /* speed, slower: thin metal skin */
     HEAT_SKIN,         /* life: bare skin */
     HEAT_CLOTHING,     /* life: cloth over a body */
-    HEAT_DWELLING,     /* life: walls and windows of a house that is lived in */
+    HEAT_DWELLING,     /* life: walls and door of a house that is lived in */
+    HEAT_WINDOW,       /* life: its panes */
     HEAT_FLUE,         /* life: chimney */
     HEAT_FLARE,        /* pyrotechnic: burning since it appeared */
     HEAT_ROLE_COUNT

@@ -90,7 +90,7 @@ static void build_openings(MeshBuilder *b)
     }
     mesh_part(b, 0, "window_frames", "paint_white_wood", HEAT_PASSIVE);
     for (int i = 0; i < count; i++) build_frame(b, place[i], 1.20, 1.35);
-    mesh_part(b, 0, "windows", "glass_window", HEAT_DWELLING);
+    mesh_part(b, 0, "windows", "glass_window", HEAT_WINDOW);
     for (int i = 0; i < count; i++) mesh_box(b, place[i], -0.02, -0.54, -0.61, 0.02, 0.54, 0.61);
     mesh_part(b, 0, "door", "wood_pine", HEAT_DWELLING);
     mesh_box(b, place_at(0, 0, 0), half_depth_m - 0.02, -0.4925, -0.17 - 2.11, half_depth_m + 0.03, 0.4925, -0.17);

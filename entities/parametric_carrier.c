@@ -83,6 +83,9 @@ static void build_hull(MeshBuilder *b)
         mesh_cylinder(b, place_axis(2.36, 1.08 * side, -1.60, 1, 0, 0), -0.05, 0.10, 0.085);
         mesh_box(b, parts_side(side), -half_length_m - 0.0, 1.02, -1.85, -half_length_m + 0.02, 1.20, -1.75);
     }
+    /* what an open ramp shows: a dark, crewed bay, here as a plate behind it */
+    mesh_part(b, 0, "troop_bay", "metal_dark", HEAT_CABIN);
+    mesh_box(b, here, -2.475, -0.70, -1.80, -2.38, 0.70, -0.68);
     mesh_part(b, 0, "mudguards", "rubber_black", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2)
         mesh_box(b, parts_side(side), 2.34, 0.90, -1.10, 2.40, 1.27, -0.72);
