@@ -112,11 +112,14 @@ void articulation_joint_values(double *value, const Model *model, const Articula
         value[n] = 0;
         if (node->dis_class &&
             articulation_value(value + n, articulation, node->dis_class, node->dis_metric, t_s, hold_s)) {
+            if (node->dis_scale != 0) value[n] *= node->dis_scale;
             if (node->joint == JOINT_ROTATION) value[n] = turn_into_limits(value[n], node->low, node->high);
         } else if (node->spin_rps_moving != 0) {
             value[n] = wrapped(node->spin_rps_moving * drive->spin_s);
         } else if (node->roll_radius_m > 0) {
             value[n] = wrapped(drive->distance_m / node->roll_radius_m);
+        } else if (drive->speed_mps < articulation_slow_mps) {
+            value[n] = node->value_slow;
         }
     }
 }

@@ -41,9 +41,15 @@ bool articulation_value(double *value, const Articulation *articulation, uint32_
 typedef struct JointDrive {
     double spin_s;     /* a clock that goes while the entity runs: rotors */
     double distance_m; /* how far it has gone forward: wheels */
+    double speed_mps;  /* landing gear */
 } JointDrive;
 
-/* value[model->node_count], ready for model_pose: what was reported, else spin, else roll, else 0. */
+/* Below it landing gear that nobody reports is taken to be down. Fighters approach at 70 .. 80 m/s and may keep
+ * their gear out to 150 (flight manuals); estimate. */
+static const double articulation_slow_mps = 100;
+
+/* value[model->node_count], ready for model_pose: what was reported, else spin, else roll, else gear down when slow,
+ * else 0. */
 void articulation_joint_values(double *value, const Model *model, const Articulation *articulation,
                                const JointDrive *drive, double t_s, double hold_s);
 

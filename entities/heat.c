@@ -9,6 +9,7 @@ static const double full_speed_mps = 10;    /* estimate: a vehicle's ordinary cr
 static const double idle_engine = 0.6;      /* estimate */
 static const double shot_s = 1;             /* heat.csv gives the gun's warm-up against this */
 static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
+static const double flare_s = 4; /* decoy flares of the MJU class burn for 3 .. 5 s; estimate */
 static const double most_queued_shots_s = 60;
 /* Turbulent recovery factor Pr^(1/3) is 0.89, laminar sqrt(Pr) 0.84; 0.85 of the stagnation rise v^2/(2 cp) */
 static const double recovery = 0.85, cp_air_j_kg_k = 1005;
@@ -18,7 +19,8 @@ static const double recovery = 0.85, cp_air_j_kg_k = 1005;
 static bool driver_by_name(HeatDriver *out, const char *name)
 {
     static const char *const names[HEAT_DRIVER_COUNT] = {"none",   "engine", "motion", "firing",
-                                                         "flight", "burn",   "speed"};
+                                                         "flight", "burn",   "speed",  "life",
+                                                         "pyrotechnic"};
     for (int d = 0; d < HEAT_DRIVER_COUNT; d++) {
         if (strcmp(names[d], name) == 0) {
             *out = (HeatDriver)d;
@@ -55,8 +57,8 @@ static Status read_row(HeatTable *heat, bool seen[HEAT_ROLE_COUNT], const Table 
     }
     seen[role] = true;
     if (!driver_by_name(&heat->driver[role], driver_name)) {
-        log_error("heat: no such driver: file=%s line=%d driver=\"%s\" want=none, engine, motion, firing, flight, burn "
-                  "or speed", table->path, line, driver_name);
+        log_error("heat: no such driver: file=%s line=%d driver=\"%s\" want=none, engine, motion, firing, flight, "
+                  "burn, speed, life or pyrotechnic", table->path, line, driver_name);
         return STATUS_BAD_VALUE;
     }
     Status status = table_number(&heat->rise_k[role], table, row, column[2], 0, 2000);
@@ -96,10 +98,12 @@ Status heat_table_open(HeatTable *out, const char *path)
 
 /* ---- drives ------------------------------------------------------------------------------- */
 
-/* Two bits, 3 = destroyed, in the same place for every platform domain. */
+/* Two bits, 3 = destroyed, in the same place for every platform domain, for buildings, and (fatally injured) for
+ * life forms. */
 static bool is_destroyed(const HeatEvidence *evidence)
 {
-    return evidence->type.kind == dis_kind_platform &&
+    const int kind = evidence->type.kind;
+    return (kind == dis_kind_platform || kind == dis_kind_life_form || kind == dis_kind_cultural_feature) &&
            (evidence->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
 }
 
@@ -125,6 +129,8 @@ static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_
 
     drive[HEAT_DRIVER_MOTION] = (HeatDrive){state->moving && !air ? ground_drive : 0, INFINITY};
     drive[HEAT_DRIVER_FLIGHT] = (HeatDrive){air && alive, INFINITY};
+    const bool lives = evidence->type.kind == dis_kind_life_form || evidence->type.kind == dis_kind_cultural_feature;
+    drive[HEAT_DRIVER_LIFE] = (HeatDrive){lives && alive, INFINITY};
     /* in kelvin here: each role's rise_k turns it into a level */
     const double recovery_k = recovery * evidence->speed_mps * evidence->speed_mps / (2 * cp_air_j_kg_k);
     drive[HEAT_DRIVER_SPEED] = (HeatDrive){recovery_k, INFINITY};
@@ -171,6 +177,8 @@ void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *ev
     *state = (HeatState){.t_s = t_s, .moved_s = -INFINITY};
     set_drives(state, evidence, t_s);
     if (munition) heat_launch(state, table, t_s);
+    else if (evidence->type.kind == dis_kind_expendable)
+        state->drive[HEAT_DRIVER_PYROTECHNIC] = (HeatDrive){1, t_s + flare_s};
     else
         for (int role = 0; role < HEAT_ROLE_COUNT; role++) {
             const double drive = drive_level(table, role, state->drive[table->driver[role]].value);

@@ -18,6 +18,8 @@ typedef enum HeatDriver {
     HEAT_DRIVER_FLIGHT, /* 1 for an air platform */
     HEAT_DRIVER_BURN,   /* 1 for a munition's first two seconds */
     HEAT_DRIVER_SPEED,  /* recovery rise r v^2 / (2 cp) over the role's rise_k, at most 1 */
+    HEAT_DRIVER_LIFE,   /* 1 for a life form that lives and a building that stands */
+    HEAT_DRIVER_PYROTECHNIC, /* 1 for an expendable's first four seconds */
     HEAT_DRIVER_COUNT
 } HeatDriver;
 
@@ -50,7 +52,8 @@ typedef struct HeatEvidence {
     double        speed_mps; /* as reported; 0 when frozen */
 } HeatEvidence;
 
-/* First report: taken to have been in that state for ambient_s. Munitions begin cold, and with their motor lit. */
+/* First report: taken to have been in that state for ambient_s. Munitions and
+ * expendables begin cold, and with their motor or grain lit. */
 void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s, double ambient_s);
 void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s);
 /* It fired; or it is the munition that was fired. */

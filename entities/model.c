@@ -5,7 +5,8 @@
 
 static const char *const role_name[HEAT_ROLE_COUNT] = {
     "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
-    "wheel", "cabin", "rotor", "turbine", "motor", "nose",
+    "wheel", "cabin", "rotor", "turbine", "motor", "nose", "airframe",
+    "skin", "clothing", "dwelling", "window", "flue", "flare",
 };
 
 const char *heat_role_name(HeatRole role) { return (unsigned)role < HEAT_ROLE_COUNT ? role_name[role] : "?"; }
@@ -248,6 +249,8 @@ static Status check_nodes(const Model *m)
             return refuse(m, "sliding joint without limits", n->name, i);
         if (!isfinite(n->spin_rps_moving) || !(n->roll_radius_m >= 0 && isfinite(n->roll_radius_m)))
             return refuse(m, "spin or roll radius out of range", n->name, i);
+        if (!isfinite(n->dis_scale) || !isfinite(n->value_slow))
+            return refuse(m, "scale or slow value is not finite", n->name, i);
     }
     return STATUS_OK;
 }

@@ -27,6 +27,13 @@ typedef enum HeatRole {
     HEAT_TURBINE,      /* flight: turbine casing and exhaust */
     HEAT_MOTOR,        /* burn: rocket motor and nozzle, after launch */
     HEAT_NOSE,         /* speed: aerodynamic heating */
+    HEAT_AIRFRAME,     /* speed, slower: thin metal skin */
+    HEAT_SKIN,         /* life: bare skin */
+    HEAT_CLOTHING,     /* life: cloth over a body */
+    HEAT_DWELLING,     /* life: walls and door of a house that is lived in */
+    HEAT_WINDOW,       /* life: its panes */
+    HEAT_FLUE,         /* life: chimney */
+    HEAT_FLARE,        /* pyrotechnic: burning since it appeared */
     HEAT_ROLE_COUNT
 } HeatRole;
 
@@ -48,6 +55,8 @@ typedef struct ModelNode {
     double    low, high;        /* limits of the value; low > high: none */
     double    spin_rps_moving;  /* turns by itself while the entity runs (rotors), rad/s; 0: no */
     double    roll_radius_m;    /* wheels: value = distance travelled / radius; 0: no */
+    double    dis_scale;        /* value for a reported 1, where DIS counts 0 .. 1 (doors, gear); 0: as reported */
+    double    value_slow;       /* unreported, the value below articulation_slow_mps (gear down); 0: no */
 } ModelNode;
 
 typedef struct ModelPart {

@@ -43,8 +43,10 @@ Status parametric_build(Model *out, const char *name, double sag_m)
         Status (*build)(Model *out, double sag_m);
     } table[] = {
         {"tank", parametric_tank},       {"truck", parametric_truck},     {"helicopter", parametric_helicopter},
-        {"missile", parametric_missile}, {"unknown", parametric_unknown},
-        {"marker", parametric_marker},
+        {"missile", parametric_missile}, {"carrier", parametric_carrier}, {"launcher", parametric_launcher},
+        {"aircraft", parametric_aircraft}, {"ship", parametric_ship},     {"person", parametric_person},
+        {"building", parametric_building}, {"decoy", parametric_decoy},   {"flare", parametric_flare},
+        {"unknown", parametric_unknown}, {"marker", parametric_marker},
     };
     if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
         log_error("parametric: sag out of range: model=%s sag_m=%g range=1e-5..0.1", name, sag_m);

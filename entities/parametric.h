@@ -6,9 +6,13 @@
 
 #include "entities/model.h"
 
-/* sag_m: 1e-5 .. 0.1 (else STATUS_BAD_VALUE). Triangles at 0.005 m: tank 15 k, truck 16 k, helicopter 14 k; at
- * 1e-5 m: tank 0.7 M, truck 3 M, helicopter 4 M, in a second or two. Names: tank, truck, helicopter,
- * missile, unknown (a box with a label's worth of detail). STATUS_UNSUPPORTED for any other. */
+/* sag_m: 1e-5 .. 0.1 (else STATUS_BAD_VALUE). STATUS_UNSUPPORTED for a name that is not one of these:
+ *
+ *   triangles at 0.005 m   tank 15 k, truck 16 k, helicopter 14 k, missile 550, carrier 11 k, launcher 14 k, aircraft
+ *                          12 k, ship 63 k, person 5 k, building 2 k, decoy 27 k, flare 136, unknown (a box with a
+ *                          label's worth of detail) 48, marker (for tests of the picture) 24
+ *   at 1e-5 m              tank 0.7 M, truck 3 M, helicopter 4 M, aircraft 3 M, ship 7 M, decoy 11 M, person 1.6 M, in
+ *                          one to twenty seconds */
 Status parametric_build(Model *out, const char *name, double sag_m);
 
 /* One builder a file; sag_m as above, already checked. */
@@ -16,5 +20,13 @@ Status parametric_tank(Model *out, double sag_m);
 Status parametric_truck(Model *out, double sag_m);
 Status parametric_helicopter(Model *out, double sag_m);
 Status parametric_missile(Model *out, double sag_m);
+Status parametric_carrier(Model *out, double sag_m);
+Status parametric_launcher(Model *out, double sag_m);
+Status parametric_aircraft(Model *out, double sag_m);
+Status parametric_ship(Model *out, double sag_m);
+Status parametric_person(Model *out, double sag_m);
+Status parametric_building(Model *out, double sag_m);
+Status parametric_decoy(Model *out, double sag_m);
+Status parametric_flare(Model *out, double sag_m);
 
 #endif

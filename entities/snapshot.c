@@ -176,7 +176,8 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
 
     const double forward_m = dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
     const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
-                              .distance_m = slot->distance_m + forward_m};
+                              .distance_m = slot->distance_m + forward_m,
+                              .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
     articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
                               slot->hold_s);
     model_pose(pose, model, joint_value);

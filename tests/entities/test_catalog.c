@@ -102,12 +102,20 @@ static void shipped_table(void **state)
         const char *model;
         Origin origin;
     } want[] = {
-        {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},        {{1, 1, 225, 2, 1, 0, 0}, "tank", ORIGIN_BASE},
+        {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},        {{1, 1, 225, 2, 1, 0, 0}, "carrier", ORIGIN_BASE},
         {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 6, 1, 0, 0}, "truck", ORIGIN_BASE},
         {{1, 1, 13, 82, 0, 0, 0}, "truck", ORIGIN_BASE},       {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
         {{1, 2, 225, 23, 7, 0, 0}, "helicopter", ORIGIN_BASE}, {{2, 2, 225, 1, 1, 3, 0}, "missile", ORIGIN_CENTRE},
-        {{2, 9, 222, 2, 5, 0, 0}, "missile", ORIGIN_CENTRE},   {{1, 2, 225, 1, 1, 0, 0}, "unknown", ORIGIN_BASE},
-        {{3, 1, 225, 1, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{2, 9, 222, 2, 5, 0, 0}, "missile", ORIGIN_CENTRE},   {{1, 2, 225, 1, 1, 0, 0}, "aircraft", ORIGIN_BASE},
+        {{3, 1, 225, 1, 0, 0, 0}, "person", ORIGIN_BASE},      {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{1, 1, 222, 28, 7, 1, 0}, "launcher", ORIGIN_BASE},   {{1, 1, 222, 4, 1, 0, 0}, "tank", ORIGIN_BASE},
+        {{1, 1, 222, 5, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 8, 1, 0, 0}, "carrier", ORIGIN_BASE},
+        {{1, 2, 225, 4, 1, 0, 0}, "aircraft", ORIGIN_BASE},    {{1, 2, 225, 26, 1, 0, 0}, "helicopter", ORIGIN_BASE},
+        {{1, 2, 225, 91, 1, 0, 0}, "helicopter", ORIGIN_BASE}, {{1, 3, 71, 50, 1, 0, 0}, "ship", ORIGIN_BASE},
+        {{1, 4, 222, 3, 1, 0, 0}, "ship", ORIGIN_BASE},        {{1, 5, 225, 11, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{5, 1, 225, 11, 0, 0, 0}, "building", ORIGIN_BASE},   {{8, 2, 225, 2, 0, 0, 0}, "flare", ORIGIN_CENTRE},
+        {{8, 2, 225, 1, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{8, 1, 225, 5, 0, 0, 0}, "decoy", ORIGIN_BASE},
+        {{8, 2, 225, 5, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{4, 1, 225, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
     };
     char path[512];
     Catalog *c;

@@ -475,6 +475,30 @@ static void rotors_spin_and_freeze(void **state)
     fixture_close(&f);
 }
 
+/* An aircraft that says nothing of its landing gear has it down on the apron and up at speed. */
+static void landing_gear_needs_no_report(void **state)
+{
+    (void)state;
+    Fixture f = fixture_open(NULL);
+    for (int fast = 0; fast < 2; fast++) {
+        DisEntityState pdu = report(1, (DisEntityType){1, 2, 225, 1, 1, 0, 0});
+        pdu.velocity_mps[2] = fast ? 200 : 0;
+        hear(&f, &pdu, fast);
+        const SnapshotEntity *e = seen_at(&f, 1, fast);
+        const Model *model = catalog_model(f.catalog, e->model);
+        assert_string_equal(model->name, "aircraft");
+        int wheels = 0;
+        for (int n = 0; n < model->node_count; n++) {
+            if (!(model->node[n].roll_radius_m > 0)) continue;
+            const double hub_m = -f.snapshot.node[e->first_node + n].p_body[2];
+            CHECK(fast ? hub_m > 1.2 : fabs(hub_m - model->node[n].roll_radius_m) < 1e-9);
+            wheels++;
+        }
+        assert_int_equal(wheels, 3);
+    }
+    fixture_close(&f);
+}
+
 static void articulation_and_heat_reach_the_snapshot(void **state)
 {
     (void)state;
@@ -654,6 +678,7 @@ int main(void)
         cmocka_unit_test(wheels_roll_with_the_way),
         cmocka_unit_test(rotors_spin_and_freeze),
         cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
+        cmocka_unit_test(landing_gear_needs_no_report),
         cmocka_unit_test(octets_are_checked_and_counted),
         cmocka_unit_test(mutated_octets_do_no_harm),
         cmocka_unit_test(a_recorded_exercise),

@@ -190,6 +190,65 @@ static void bad_tables_are_refused(void **state)
     log_set_sink(NULL, NULL);
 }
 
+/* A person is warm from the first report and cools when fatally injured; a house is lived in; neither has an engine. */
+static void what_lives_is_warm(void **state)
+{
+    (void)state;
+    const HeatTable table = shipped();
+    const HeatEvidence lives = {.type = {3, 1, 225, 1, 0, 0, 0}}, house = {.type = {5, 1, 225, 11, 0, 0, 0}};
+    const HeatEvidence dies = {.type = {3, 1, 225, 1, 0, 0, 0}, .appearance = 3 << 3};
+    const double tau_s = table.warm_up_s[HEAT_SKIN], cool_s = table.cool_down_s[HEAT_SKIN];
+    HeatState s;
+
+    heat_begin(&s, &table, &lives, 0, 1e6);
+    /* 305 K in air of 288 K */
+    CHECK_NEAR(288 + rise(&s, &table, HEAT_SKIN, 0), 305, 1e-4);
+    const double cloth_k = rise(&s, &table, HEAT_CLOTHING, 0);
+    CHECK(cloth_k > 3 && cloth_k < rise(&s, &table, HEAT_SKIN, 0));
+    CHECK(rise(&s, &table, HEAT_DWELLING, 0) > 0 && rise(&s, &table, HEAT_ENGINE_DECK, 0) == 0);
+    heat_report(&s, &table, &dies, 100);
+    CHECK_NEAR(rise(&s, &table, HEAT_SKIN, 100 + cool_s), 17 * exp(-1), 1e-4);
+
+    heat_begin(&s, &table, &lives, 0, tau_s);
+    CHECK_NEAR(rise(&s, &table, HEAT_SKIN, 0), 17 * (1 - exp(-1)), 1e-4);
+
+    heat_begin(&s, &table, &house, 0, 1e6);
+    CHECK_NEAR(rise(&s, &table, HEAT_DWELLING, 50), table.rise_k[HEAT_DWELLING], 1e-3);
+    CHECK(rise(&s, &table, HEAT_FLARE, 0) == 0);
+}
+
+/* A flare burns at 1500 .. 2000 K for four seconds from its first report, whatever is reported meanwhile. */
+static void a_flare_burns_four_seconds(void **state)
+{
+    (void)state;
+    const HeatTable table = shipped();
+    const HeatEvidence falls = {.type = {8, 2, 225, 2, 0, 0, 0}, .speed_mps = 60};
+    HeatState s;
+
+    heat_begin(&s, &table, &falls, 200, 1e6);
+    CHECK(rise(&s, &table, HEAT_FLARE, 200) == 0);
+    for (double t_s = 201; t_s <= 204; t_s += 0.5) {
+        heat_report(&s, &table, &falls, t_s);
+        const double temp_k = 288 + rise(&s, &table, HEAT_FLARE, t_s);
+        CHECK(temp_k > 1500 && temp_k < 2000);
+    }
+    const double burnt_k = table.rise_k[HEAT_FLARE] * (1 - exp(-4 / table.warm_up_s[HEAT_FLARE]));
+    CHECK_NEAR(rise(&s, &table, HEAT_FLARE, 204), burnt_k, 1e-3);
+    CHECK_NEAR(rise(&s, &table, HEAT_FLARE, 207), burnt_k * exp(-3 / table.cool_down_s[HEAT_FLARE]), 1e-2);
+    CHECK(rise(&s, &table, HEAT_FLARE, 240) < 1e-6);
+}
+
+/* The skin of an aircraft takes the recovery temperature, as a missile's nose does. */
+static void an_airframe_warms_by_its_speed(void **state)
+{
+    (void)state;
+    const HeatTable table = shipped();
+    const HeatEvidence flies = {.type = {1, 2, 225, 1, 0, 0, 0}, .speed_mps = 250};
+    HeatState s;
+    heat_begin(&s, &table, &flies, 0, 1e6);
+    CHECK_NEAR(rise(&s, &table, HEAT_AIRFRAME, 0), 0.85 * 250 * 250 / (2 * 1005), 1e-3); /* 26.4 K */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -197,6 +256,8 @@ int main(void)
         cmocka_unit_test(engine_is_inferred),                    cmocka_unit_test(flight_is_evidence),
         cmocka_unit_test(shots_add_up),                          cmocka_unit_test(a_missile_burns_and_its_nose_warms),
         cmocka_unit_test(only_roles_asked_for),                  cmocka_unit_test(bad_tables_are_refused),
+        cmocka_unit_test(what_lives_is_warm),                    cmocka_unit_test(a_flare_burns_four_seconds),
+        cmocka_unit_test(an_airframe_warms_by_its_speed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
