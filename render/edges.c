@@ -2,7 +2,7 @@
  *
  * A pixel is sampled again where it and a neighbour (left, right, above, below) show different entities, parts or
  * materials, surfaces that stand at an angle, one in shadow and one not, or a step in depth that neither's own plane
- * explains. What falls between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in
+ * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in
  * the boxes of targets that are too large for a footprint and small enough to have such parts are sampled again
  * whatever they show, and so is the ground where a small target's shadow falls. */
 #include "render/render_private.h"
@@ -13,13 +13,13 @@ static const double middling_px = 64;
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
 
-static void mark_box(Job *job, const double box[4])
+static void mark_box(Job *job, const double box[4], RefineFlag flag)
 {
     const View *view = &job->request->view;
     const int   x0 = (int)fmax(0, floor(box[0])), x1 = (int)fmin(view->width, ceil(box[2]));
     const int   y0 = (int)fmax(0, floor(box[1])), y1 = (int)fmin(view->height, ceil(box[3]));
     for (int y = y0; y < y1; y++)
-        for (int x = x0; x < x1; x++) job->refine[pixel_index(job, x, y)] = 1;
+        for (int x = x0; x < x1; x++) job->refine[pixel_index(job, x, y)] |= (uint8_t)flag;
 }
 
 /* Box of a sphere's image, generous; false: not before the eye. */
@@ -62,15 +62,15 @@ static bool shadow_box(double box[4], const Job *job, int index)
 
 void mark_boxes(Job *job)
 {
-    const bool shadows = wants(job->request, BAND_OPTICAL) || wants(job->request, BAND_MWIR);
+    const bool shadows = has_band(job->request->bands, BAND_OPTICAL) || has_band(job->request->bands, BAND_MWIR);
     for (int i = 0; i < job->snapshot->count; i++) {
         const TargetPixels *t = &job->boxes[i];
         double              shadow[4];
         if (!t->projected) continue;
         const double *box = t->projected_box;
-        if (!job->is_small[i] && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px) mark_box(job, box);
-        if (shadows && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px && shadow_box(shadow, job, i))
-            mark_box(job, shadow);
+        if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) continue;
+        if (!job->is_small[i]) mark_box(job, box, refine_all);
+        if (shadows && shadow_box(shadow, job, i)) mark_box(job, shadow, refine_sun);
     }
 }
 
@@ -96,37 +96,67 @@ static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, i
            !(fabs(plane_range(p, b, d_b, d_a) - p->range_m[a]) <= step * near_m);
 }
 
-enum { edge_none, edge_of_ground, edge_of_part };
-
-static int edge_between(const Job *job, int xa, int ya, int xb, int yb)
+static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
 {
     const Picture *p = job->picture;
     const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
     const bool     part = p->entity[a] || p->entity[b];
-    const int      edge = part ? edge_of_part : edge_of_ground;
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
-    if (sky_a && sky_b) return edge_none;
-    if (sky_a != sky_b) return edge_of_part; /* a horizon is as sharp as a part's outline */
-    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b] || p->material[a] != p->material[b]) return edge;
-    if (job->shadow[a] != job->shadow[b]) return edge;
+    if (sky_a && sky_b) return 0;
+    if (sky_a != sky_b) return refine_all; /* a horizon is as sharp as a part's outline */
+    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
-    if (!(cosine > sharp_cosine)) return edge;
-    return steps_in_depth(job, a, b, xa, ya, xb, yb, part ? step_part : step_ground) ? edge : edge_none;
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, part ? step_part : step_ground))
+        return part ? refine_all : refine_step;
+    if (part && other) return refine_all;
+    return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
 }
 
-int edge_samples_of(const Job *job, int x, int y)
+unsigned refine_flags(const Job *job, int x, int y)
 {
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
-    const RenderRequest *request = job->request;
-    int                  most = edge_none;
-    if (job->refine[pixel_index(job, x, y)]) return request->edge_samples;
-    for (int k = 0; k < 4 && most < edge_of_part; k++) {
+    const View      *view  = &job->request->view;
+    unsigned         flags = job->refine[pixel_index(job, x, y)];
+    for (int k = 0; k < 4 && !(flags & refine_all); k++) {
         const int xb = x + beside[k][0], yb = y + beside[k][1];
-        if (xb < 0 || yb < 0 || xb >= request->view.width || yb >= request->view.height) continue;
-        const int edge = edge_between(job, x, y, xb, yb);
-        if (edge > most) most = edge;
+        if (xb >= 0 && yb >= 0 && xb < view->width && yb < view->height) flags |= edge_between(job, x, y, xb, yb);
     }
-    if (most == edge_of_part) return request->edge_samples;
-    return most == edge_of_ground && request->samples < 2 ? 2 : 0;
+    if (job->request->samples > 1) flags &= ~(unsigned)(refine_step | refine_ground); /* they have no more to give */
+    return flags;
+}
+
+/* ---- ground --------------------------------------------------------------------------------- */
+
+void spread_ground(Scratch *s, const Job *job)
+{
+    const View    *view    = &job->request->view;
+    const Picture *p       = job->picture;
+    const Block   *block   = &s->block;
+    const int      samples = block->n * block->n;
+    s->hits.count = s->rays.count = block->pixels * samples;
+    for (int i = 0; i < s->hits.count; i++) {
+        const int    x = block->x[i / samples], y = block->y[i / samples];
+        const size_t px = pixel_index(job, x, y);
+        double       place[2], d_enu[3], d_centre[3];
+        sample_place(place, block->n, i % samples);
+        view_ray(d_enu, view, x + place[0], y + place[1]);
+        view_ray(d_centre, view, x + 0.5, y + 0.5);
+        double range_m = plane_range(p, px, d_centre, d_enu);
+        /* seen from along it a plane runs off; the ground does not */
+        if (!(range_m < 2 * p->range_m[px] && range_m > 0.5 * p->range_m[px])) range_m = p->range_m[px];
+        s->hits.range_m[i] = range_m;
+        s->hits.entity[i]  = 0;
+        s->hits.part[i] = s->hits.model[i] = 0;
+        s->rays.far_m[i] = INFINITY;
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][i] = view->p_enu[k];
+            s->rays.d_enu[k][i] = d_enu[k];
+            s->hits.p_enu[k][i] = view->p_enu[k] + range_m * d_enu[k];
+            s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
+        }
+        s->hits.surface[i] = (uint8_t)landscape_surface(job->world->landscape, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
+        s->shadow[i]       = job->shadow[px];
+    }
 }

@@ -265,6 +265,7 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
     s->visibility_s += wall_clock_s() - t0;
     keep_target(f, s, first_cell);
     if (s->hits.count == 0) return;
+    trace_shadows(s, job);
     shade_block(s, job);
     for (int i = 0; i < s->hits.count; i++) {
         const int cell = s->block.cell[i];
@@ -287,7 +288,7 @@ void footprint_task(void *user, int worker, int index)
     if (cells == 0) return;
     const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
                                                  f->box[2], f->box[3], job->request->hidden_entity);
-    s->block = (Block){.n = 1, .sign = 1, .footprint = f};
+    s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
     for (int cell = 0; cell < cells; cell += hits_capacity)
         sample_cells(f, s, job, cell, cells - cell < hits_capacity ? cells - cell : hits_capacity, listed);
 }

@@ -86,8 +86,9 @@ static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
     const World         *world   = job->world;
+    const unsigned       bands   = s->block.bands;
 
-    if (wants(request, BAND_OPTICAL)) {
+    if (has_band(bands, BAND_OPTICAL)) {
         static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
             optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
@@ -95,11 +96,11 @@ static void shade_bands(Scratch *s, const Job *job)
             deliver(s, job, picture_optical + c);
         }
     }
-    if (wants(request, BAND_MWIR) || wants(request, BAND_LWIR) || request->truth)
+    if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
                             s->material, s->texture);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
-        if (wants(request, band)) {
+        if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
                           s->shadow);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
@@ -144,20 +145,25 @@ static void shade_radar(Scratch *s, const Job *job)
     if (job->request->profile_bins > 0) add_to_profile(s, job);
 }
 
+void trace_shadows(Scratch *s, const Job *job)
+{
+    const double t0 = wall_clock_s();
+    if (has_band(s->block.bands, BAND_OPTICAL) || has_band(s->block.bands, BAND_MWIR))
+        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
+    else
+        memset(s->shadow, 0, sizeof s->shadow);
+    s->shadow_s += wall_clock_s() - t0;
+}
+
 void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
-    if (wants(job->request, BAND_OPTICAL) || wants(job->request, BAND_MWIR))
-        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
-    const double t1 = wall_clock_s();
     resolve_materials(s, job);
     shade_bands(s, job);
-    const double t2 = wall_clock_s();
-    if (wants(job->request, BAND_RADAR)) shade_radar(s, job);
-    const double t3 = wall_clock_s();
-    s->shadow_s += t1 - t0;
-    s->shade_s += t2 - t1;
-    s->radar_s += t3 - t2;
+    const double t1 = wall_clock_s();
+    if (has_band(s->block.bands, BAND_RADAR)) shade_radar(s, job);
+    s->shade_s += t1 - t0;
+    s->radar_s += wall_clock_s() - t1;
 }
 
 /* The sample nearest a pixel's centre; of equals, the first. */
@@ -218,7 +224,7 @@ static int list_entities(Scratch *s, const Job *job, const Tile *tile)
     return listed;
 }
 
-/* From the block's pixels to planes and sums. */
+/* From the block's pixels to planes and sums. pairs NULL: areas of targets are not counted. */
 static void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
 {
     const RenderRequest *request = job->request;
@@ -228,8 +234,9 @@ static void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs
                          &s->counters.visibility);
     s->counters.rays_primary += (uint64_t)s->rays.count;
     s->visibility_s += wall_clock_s() - t0;
+    trace_shadows(s, job);
     shade_block(s, job);
-    if (job->picture->target) count_targets(s, job, listed, pairs);
+    if (pairs) count_targets(s, job, listed, pairs);
 }
 
 static void render_tile(void *user, int worker, int task)
@@ -239,7 +246,7 @@ static void render_tile(void *user, int worker, int task)
     const Tile tile  = tile_of(job, task);
     Block     *block = &s->block;
 
-    *block = (Block){.n = job->request->samples, .sign = 1, .writes = true};
+    *block = (Block){.n = job->request->samples, .sign = 1, .writes = true, .bands = job->request->bands};
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
             block->x[block->pixels]   = (uint16_t)x;
@@ -249,54 +256,83 @@ static void render_tile(void *user, int worker, int task)
     s->counters.pixels += (uint64_t)block->pixels;
     s->counters.tiles++;
     s->counters.tiles_without_entities += listed == 0;
-    render_block(s, job, listed, job->pairs + (size_t)task * pairs_per_tile);
+    render_block(s, job, listed, job->picture->target ? job->pairs + (size_t)task * pairs_per_tile : NULL);
     if (job->picture->entity) write_truth(s, job);
 }
 
+/* One way to do better by a pixel, and whose turn it is. */
+typedef struct Refinement {
+    unsigned has, lacks; /* RefineFlag: pixels with all of these and none of those */
+    unsigned bands;
+    int      n;
+} Refinement;
+
 /* The block's pixels once more with n samples a side, in place of what they had. */
-static void refine_block(Scratch *s, const Job *job, int n, int listed, HiddenBy *pairs)
+static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
 {
     Block *block  = &s->block;
-    block->n      = n;
+    block->n      = how->n;
+    block->bands  = how->bands;
     block->sign   = 1;
     block->writes = true;
-    render_block(s, job, listed, pairs);
+    if (how->has & refine_ground) {
+        spread_ground(s, job);
+        shade_block(s, job);
+        return;
+    }
+    const bool areas = job->picture->target && !(how->has & refine_sun);
+    render_block(s, job, listed, areas ? pairs : NULL);
     s->counters.rays_edges += (uint64_t)s->rays.count;
     if (!job->picture->target && !job->picture->profile) return;
     block->n      = job->request->samples;
     block->sign   = -1;
     block->writes = false;
-    render_block(s, job, listed, pairs);
+    render_block(s, job, listed, areas ? pairs : NULL);
     s->counters.rays_edges += (uint64_t)s->rays.count;
 }
 
 static void refine_tile(void *user, int worker, int task)
 {
-    const Job *job   = user;
-    Scratch   *s     = job->scratch[worker];
-    const Tile tile  = tile_of(job, task);
-    HiddenBy  *pairs = job->pairs + (size_t)task * pairs_per_tile;
-    const int  most  = job->request->edge_samples;
-    int        listed = -1;
+    const Job     *job    = user;
+    Scratch       *s      = job->scratch[worker];
+    const Tile     tile   = tile_of(job, task);
+    HiddenBy      *pairs  = job->pairs + (size_t)task * pairs_per_tile;
+    const int      edge   = job->request->edge_samples;
+    const unsigned all    = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
+    const unsigned sunlit = all & (1u << BAND_OPTICAL | 1u << BAND_MWIR), lwir = all & 1u << BAND_LWIR;
+    unsigned       any    = 0;
 
+    const Refinement ways[] = {
+        {refine_all, 0, all, edge},
+        {refine_step, refine_all, all, 2},
+        {refine_sun, refine_all | refine_step, sunlit, edge},
+        {refine_ground, refine_all | refine_step | refine_sun, no_radar, 2},
+        {refine_ground | refine_sun, refine_all | refine_step, lwir, 2},
+    };
     for (int y = tile.y0; y < tile.y1; y++)
-        for (int x = tile.x0; x < tile.x1; x++)
-            job->refine[pixel_index(job, x, y)] = (uint8_t)edge_samples_of(job, x, y);
-    for (int n = 2; n <= most; n += most > 2 ? most - 2 : 1) {
-        const int room = hits_capacity / (n * n);
-        s->block       = (Block){0};
+        for (int x = tile.x0; x < tile.x1; x++) {
+            const unsigned flags = refine_flags(job, x, y);
+            job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
+            any |= flags;
+            s->counters.pixels_refined += flags != 0;
+        }
+    if (!any) return;
+    const int listed = list_entities(s, job, &tile);
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        const Refinement *how = &ways[k];
+        if ((any & how->has) != how->has || how->bands == 0) continue;
+        s->block = (Block){0};
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {
-                if (job->refine[pixel_index(job, x, y)] != n) continue;
-                if (listed < 0) listed = list_entities(s, job, &tile);
+                const unsigned flags = job->refine[pixel_index(job, x, y)];
+                if ((flags & how->has) != how->has || flags & how->lacks) continue;
                 s->block.x[s->block.pixels]   = (uint16_t)x;
                 s->block.y[s->block.pixels++] = (uint16_t)y;
-                s->counters.pixels_refined++;
-                if (s->block.pixels < room) continue;
-                refine_block(s, job, n, listed, pairs);
+                if ((s->block.pixels + 1) * how->n * how->n <= hits_capacity) continue;
+                refine_block(s, job, how, listed, pairs);
                 s->block.pixels = 0;
             }
-        if (s->block.pixels > 0) refine_block(s, job, n, listed, pairs);
+        if (s->block.pixels > 0) refine_block(s, job, how, listed, pairs);
     }
 }
 
@@ -309,12 +345,12 @@ static Status allocate_planes(Picture *picture, const RenderRequest *request, in
     picture->width  = request->view.width;
     picture->height = request->view.height;
 
-    if (wants(request, BAND_OPTICAL))
+    if (has_band(request->bands, BAND_OPTICAL))
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++)
             ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_RADAR)) {
+    if (has_band(request->bands, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
+    if (has_band(request->bands, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
+    if (has_band(request->bands, BAND_RADAR)) {
         ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
         if (request->profile_bins > 0)
             ok = (picture->profile = arena_alloc(arena, (size_t)request->profile_bins * radar_bounces,

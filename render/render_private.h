@@ -24,6 +24,7 @@ typedef struct Block {
     int      n, pixels;
     int      sign;                             /* -1: takes back from the sums what these samples gave before */
     bool     writes;                           /* into the planes */
+    unsigned bands;                            /* 1 << Band: those to shade */
     uint16_t x[hits_capacity], y[hits_capacity]; /* of each pixel */
     Footprint *footprint;                      /* NULL: pixels */
     int      cell[hits_capacity];              /* of each sample of a footprint: row * columns + column */
@@ -85,7 +86,7 @@ typedef struct Job {
     bool                *is_small;  /* [snapshot count]: left to its footprint; pixels do not see it */
     /* planes; NULL: none wanted */
     int32_t             *coverer;   /* snapshot index of the small target that covers most; where any does */
-    uint8_t             *refine;    /* pixels that get edge samples whatever their neighbours say */
+    uint8_t             *refine;    /* RefineFlag */
     uint8_t             *shadow;    /* of the sample that truth is of */
     int64_t              steps_per_px;
     /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
@@ -93,7 +94,7 @@ typedef struct Job {
     double               profile_limit, profile_quantum, radiance_limit, radiance_quantum;
 } Job;
 
-static inline bool wants(const RenderRequest *request, Band band) { return request->bands >> band & 1; }
+static inline bool has_band(unsigned bands, Band band) { return bands >> band & 1; }
 static inline bool looks_for_edges(const RenderRequest *request) { return request->edge_samples > request->samples; }
 static inline size_t pixel_index(const Job *job, int x, int y)
 {
@@ -105,7 +106,9 @@ double pixel_cosine3(const View *view, int x, int y);
 
 /* ---- render.c -------------------------------------------------------------------------------- */
 
-/* Shades the block's hits in every band, and gives each result to its pixels or its footprint. */
+/* Rays to the sun from the block's hits, where one of its bands shows shadows. */
+void trace_shadows(Scratch *s, const Job *job);
+/* Shades the block's hits in its bands, and gives each result to its pixels or its footprint. */
 void shade_block(Scratch *s, const Job *job);
 
 /* ---- render_targets.c ------------------------------------------------------------------------ */
@@ -121,11 +124,22 @@ void gather(Job *job, int workers);
 
 /* ---- edges.c --------------------------------------------------------------------------------- */
 
+/* What a pixel deserves. What only the bands that show shadows see must not touch the others, whose bits would then
+ * depend on what else is asked for; and bare ground must stay cheap. */
+typedef enum RefineFlag {
+    refine_all    = 1, /* edge_samples a side, every band */
+    refine_step   = 2, /* 2 a side, every band: a crest of the ground */
+    refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8, /* 2 a side on the plane of the hit there is, no ray; not the radar: another kind of ground */
+} RefineFlag;
+
 /* Marks what must be refined whoever stands beside it: boxes of targets of middling size, and where a target's
  * shadow falls. */
 void mark_boxes(Job *job);
-/* Samples a side that this pixel deserves; 0: as it is. Reads the truth planes and the shadow plane. */
-int  edge_samples_of(const Job *job, int x, int y);
+/* The flags of a pixel, those marked included. Reads the truth planes and the shadow plane. */
+unsigned refine_flags(const Job *job, int x, int y);
+/* The block's samples as places on the planes of their pixels' hits, which are of ground: rays, hits and shadow. */
+void spread_ground(Scratch *s, const Job *job);
 
 /* ---- footprint.c ----------------------------------------------------------------------------- */
 
