@@ -82,7 +82,7 @@ Config config_default(void)
     c.sensor.hfov_deg         = 6;
     c.sensor.samples          = 1;
     c.sensor.edge_samples     = 4;
-    c.sensor.target_samples   = 32;
+    c.sensor.target_samples   = 48; /* a sunlit crescent within 1 %: tests/render/test_small_targets.c */
     c.sensor.gimbal_limit_deg = 45;
     c.sensor.gimbal_rate_dps  = 60;
     c.sensor.gimbal_lag_s     = 0.03;
