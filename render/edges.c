@@ -103,8 +103,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     const bool     part = p->entity[a] || p->entity[b];
     const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
     if (sky_a && sky_b) return 0;
-    if (sky_a != sky_b) return refine_all; /* a horizon is as sharp as a part's outline */
     if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    if (sky_a != sky_b) return refine_step;
     const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];

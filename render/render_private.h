@@ -128,7 +128,7 @@ void gather(Job *job, int workers);
  * depend on what else is asked for; and bare ground must stay cheap. */
 typedef enum RefineFlag {
     refine_all    = 1, /* edge_samples a side, every band */
-    refine_step   = 2, /* 2 a side, every band: a crest of the ground */
+    refine_step   = 2, /* 2 a side, every band: a crest of the ground, the horizon */
     refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
     refine_ground = 8, /* 2 a side on the plane of the hit there is, no ray; not the radar: another kind of ground */
 } RefineFlag;

@@ -111,7 +111,7 @@ static void a_band_alone_is_the_band_in_company(void **state)
 static void refined_pixels_are_those_of_the_full_picture(void **state)
 {
     (void)state;
-    const View    view    = strew(24, 160, 120);
+    const View    view    = strew(60, 240, 160);
     RenderRequest request = request_of(&view);
     request.target_samples = 0;
     arena_reset(hand.arena);
@@ -144,6 +144,7 @@ static void refined_pixels_are_those_of_the_full_picture(void **state)
         }
     print_message("of %d pixels: %d as with 4 x 4, %d as with 2 x 2, %d spread ground, %d as they were\n",
                   view.width * view.height, of_full, of_half, of_ground, kept);
+    print_message("%d of %d at edges of entities\n", at_edge, edges);
     CHECK(edges > 300 && at_edge == edges);
     CHECK(of_ground > 100);
     /* the full picture and the adaptive one say the same of a target that lies in its refined box */
@@ -196,8 +197,8 @@ static void the_error_and_its_price(void **state)
         const double all = rms(&full, &best, planes[k], &most[2]);
         print_message("plane %d: rms off 8 x 8: %.4f with 1, %.4f adaptive, %.4f with 16; most %.3f %.3f %.3f\n", planes[k],
                       before, after, all, most[0], most[1], most[2]);
-        /* the bound of this priced skip: two thirds of the error are gone */
-        CHECK(after < 0.35 * before);
+        /* the bound of this priced skip: no more than half of the error is left (a third, as measured) */
+        CHECK(after < 0.5 * before);
     }
 }
 
