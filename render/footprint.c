@@ -359,10 +359,7 @@ static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
         for (int x = f->x0; x < f->x1; x++, k++) {
             if (!(f->area[k] > 0)) continue;
             grow_amodal(target->box, f, k, x, y, f->area[k]);
-            if (f->area[k] > target->peak_area) {
-                target->peak_area  = f->area[k];
-                target->peak_px[0] = x, target->peak_px[1] = y;
-            }
+            target->peak_area = fmax(target->peak_area, f->area[k]);
             for (int plane = 0; plane < picture_plane_count; plane++) {
                 if (!f->sum[plane]) continue;
                 target->radiance[plane] += f->sum[plane][k] * pixel_cosine3(&job->request->view, x, y);

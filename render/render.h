@@ -29,8 +29,7 @@ typedef struct TargetPixels {
     double radiance[picture_plane_count];
     bool   small;                 /* sampled over its own box: what follows is of its samples, too */
     double mean[picture_plane_count], variance[picture_plane_count]; /* of radiance over its visible area */
-    double peak_area;             /* of the pixel that it fills most; there */
-    int    peak_px[2];
+    double peak_area;             /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all its vertices, px, not clipped to the image; where `projected` */

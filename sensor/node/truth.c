@@ -136,9 +136,9 @@ static double intensity(const Target *t, const TargetPixels *px, const View *vie
 }
 
 /* What a band shows of a target and about it. A small target's pixels are part ground, and it may have none to call its
- * own: mean and variance are those of its own samples, and what it stands out by is what its fullest pixel does. */
+ * own: mean and variance are those of its own samples, for the caller to fill in. */
 typedef struct Look {
-    double mean, variance, stands_out; /* of the target; the last: by what is held against noise */
+    double mean, variance;
     double ring_mean, ring_variance;
 } Look;
 
@@ -147,18 +147,19 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
 {
     Moments target, ring;
     two_moments(&target, &ring, t, picture, value, user);
-    if (!(ring.n > 0) || !(px->small ? px->visible > 0 : target.n > 0)) return false;
-    look->ring_mean     = moments_mean(&ring);
-    look->ring_variance = moments_variance(&ring);
-    if (px->small) {
-        const size_t peak = (size_t)px->peak_px[1] * (size_t)picture->width + (size_t)px->peak_px[0];
-        look->stands_out  = value(user, peak) - look->ring_mean;
-    } else {
-        look->mean       = moments_mean(&target);
-        look->variance   = moments_variance(&target);
-        look->stands_out = look->mean - look->ring_mean;
-    }
+    if (!(ring.n > 0) || !(px->small || target.n > 0)) return false;
+    *look = (Look){.ring_mean = moments_mean(&ring), .ring_variance = moments_variance(&ring)};
+    if (px->small) return true;
+    look->mean     = moments_mean(&target);
+    look->variance = moments_variance(&target);
     return true;
+}
+
+/* A small target shows through its fullest pixel, by the share that it has of it. */
+static double to_noise(const Look *look, const TargetPixels *px, double noise_sigma)
+{
+    const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma);
+    return sigma > 0 ? (look->mean - look->ring_mean) * (px->small ? px->peak_area : 1) / sigma : NAN;
 }
 
 static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture, int plane,
@@ -174,10 +175,9 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
         const double slope = step > 0 ? (planck_table_temp(planck, mean + step) - look.mean) / step : 0;
         look.variance      = slope * slope * px->variance[plane];
     }
-    out->contrast_k    = look.mean - look.ring_mean;
-    out->dt_rss_k      = sqrt(out->contrast_k * out->contrast_k + look.variance);
-    const double sigma = sqrt(look.ring_variance + netd_k * netd_k);
-    if (sigma > 0) out->snr = look.stands_out / sigma;
+    out->contrast_k = look.mean - look.ring_mean;
+    out->dt_rss_k   = sqrt(out->contrast_k * out->contrast_k + look.variance);
+    out->snr        = to_noise(&look, px, netd_k);
 }
 
 /* planes: of which a pixel's value is the mean, from `plane` on. */
@@ -190,9 +190,8 @@ static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px,
         look.mean = 0;
         for (int k = 0; k < planes; k++) look.mean += px->mean[plane + k] / planes;
     }
-    const double sigma = sqrt(look.ring_variance + noise_sigma * noise_sigma);
     if (look.ring_mean > 0) out->contrast = (look.mean - look.ring_mean) / look.ring_mean;
-    if (sigma > 0) out->snr = look.stands_out / sigma;
+    out->snr = to_noise(&look, px, noise_sigma);
 }
 
 static void radiometry(Target *t, const TargetPixels *px, const Picture *picture, const World *world,

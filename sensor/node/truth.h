@@ -13,7 +13,7 @@ typedef struct TargetBand {
     double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
     double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
     double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
-                             * that of the pixel it fills most, as the picture shows it */
+                             * times the share it has of the pixel it fills most */
     double intensity_w_sr;  /* in-band, at the aperture: its own radiance by the area it fills, at its range */
 } TargetBand;
 
