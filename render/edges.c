@@ -10,6 +10,7 @@
 /* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
  * barrel is a sixtieth of its tank's length. */
 static const double middling_px = 64;
+static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
 
@@ -57,7 +58,7 @@ static bool shadow_box(double box[4], const Job *job, int index)
         box[k]     = fmin(foot[k], tip[k]);
         box[k + 2] = fmax(foot[k + 2], tip[k + 2]);
     }
-    return fmax(box[2] - box[0], box[3] - box[1]) <= middling_px;
+    return fmin(box[2] - box[0], box[3] - box[1]) <= thin_px && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px;
 }
 
 void mark_boxes(Job *job)

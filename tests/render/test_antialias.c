@@ -68,7 +68,7 @@ static void threads_and_skips_change_no_bit(void **state)
     RenderRequest request = request_of(&view);
     arena_reset(hand.arena);
     const Picture one = hand_render(&request, hand.pool);
-    CHECK(one.counters.small_targets > 8 && one.counters.rays_edges > 10000);
+    CHECK(one.counters.small_targets > 8 && one.counters.rays_edges > 5000);
     for (int threads = 1; threads <= 4; threads += threads) {
         Pool *pool = NULL;
         assert_int_equal(pool_create(&pool, threads), STATUS_OK);
