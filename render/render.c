@@ -1,91 +1,47 @@
 /* render/render.c: the frame, tile by tile: one set of eye rays, one set of sun rays, and every band that
- * somebody asked for from the same hits.
- *
- * Tiles write disjoint pixels. What is summed over tiles (pixels on target, the range profile) is summed in
- * integers, so the order in which threads finish cannot show. */
-#include "render/render.h"
+ * somebody asked for from the same hits. */
+#include "render/render_private.h"
 
 #include "render/optical.h"
 
-#include <stdlib.h>
-
-enum { tile_side_samples = 32, pairs_per_tile = 16 };
-
-typedef struct TargetCount {
-    int64_t visible, amodal, hidden_ground, hidden_entity;
-    int     box[4], amodal_box[4];
-} TargetCount;
-
-typedef struct HiddenBy {
-    int target, occluder; /* snapshot indices */
-    int samples;
-} HiddenBy;
-
-typedef struct Scratch {
-    Rays           rays, some;
-    Hits           hits;
-    RadarReturns   radar;
-    float          out[hits_capacity], temp_k[hits_capacity], texture[hits_capacity];
-    uint16_t       material[hits_capacity];
-    uint8_t        shadow[hits_capacity], meets[hits_capacity];
-    int            some_index[hits_capacity];
-    int           *list;    /* [snapshot count] */
-    TargetCount   *target;  /* [snapshot count] */
-    int64_t       *profile; /* [profile_bins][radar_bounces] */
-    RenderCounters counters;
-    double         visibility_s, shadow_s, shade_s, radar_s;
-} Scratch;
-
-typedef struct Job {
-    const World         *world;
-    const Snapshot      *snapshot;
-    const RenderRequest *request;
-    const Air           *air;
-    const Visibility    *visibility;
-    Picture             *picture;
-    Scratch            **scratch; /* a worker */
-    HiddenBy            *pairs;   /* [tiles][pairs_per_tile] */
-    int                  side_px, tiles_x, tiles_y;
-    /* fixed point of the range profile: fine enough to be exact in float's terms, coarse enough that all samples
-     * of a picture at the limit stay below 2^62 quanta */
-    double               profile_limit, profile_quantum;
-} Job;
-
-typedef struct Tile {
-    int x0, y0, x1, y1; /* px */
-    int samples, across; /* samples a side of a pixel; samples along a row of the tile */
-} Tile;
-
-static bool wants(const RenderRequest *request, Band band) { return request->bands >> band & 1; }
-
-/* Index of sample (sx, sy) of pixel (x, y). */
-static inline int sample_index(const Tile *tile, int x, int y, int sx, int sy)
+double pixel_cosine3(const View *view, int x, int y)
 {
-    return ((y - tile->y0) * tile->samples + sy) * tile->across + (x - tile->x0) * tile->samples + sx;
+    const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
+    const double v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
+    const double square = 1 / (1 + u * u + v * v);
+    return square * sqrt(square);
 }
 
-static void make_rays(Rays *rays, const Tile *tile, const View *view)
+float *picture_plane(const Picture *picture, int plane)
 {
-    const int    rows = (tile->y1 - tile->y0) * tile->samples;
-    const double step = 1.0 / tile->samples;
-    rays->count       = rows * tile->across;
-    for (int row = 0, i = 0; row < rows; row++)
-        for (int column = 0; column < tile->across; column++, i++) {
-            double d_enu[3];
-            view_ray(d_enu, view, tile->x0 + (column + 0.5) * step, tile->y0 + (row + 0.5) * step);
-            for (int k = 0; k < 3; k++) {
-                rays->o_enu[k][i] = view->p_enu[k];
-                rays->d_enu[k][i] = d_enu[k];
-            }
-            rays->far_m[i] = INFINITY;
+    if (plane == picture_mwir) return picture->mwir;
+    if (plane == picture_lwir) return picture->lwir;
+    if (plane == picture_radar) return picture->radar;
+    return picture->optical[plane - picture_optical];
+}
+
+static void make_rays(Rays *rays, const Block *block, const View *view)
+{
+    const int samples = block->n * block->n;
+    rays->count       = block->pixels * samples;
+    for (int i = 0; i < rays->count; i++) {
+        double    place[2], d_enu[3];
+        const int pixel = i / samples;
+        sample_place(place, block->n, i % samples);
+        view_ray(d_enu, view, block->x[pixel] + place[0], block->y[pixel] + place[1]);
+        for (int k = 0; k < 3; k++) {
+            rays->o_enu[k][i] = view->p_enu[k];
+            rays->d_enu[k][i] = d_enu[k];
         }
+        rays->far_m[i] = INFINITY;
+    }
 }
 
 /* What each hit is made of, and how bright the ground's own pattern is there. */
 static void resolve_materials(Scratch *s, const Job *job)
 {
     const World *world       = job->world;
-    const double px_per_m    = job->request->view.focal_px * job->request->samples;
+    const double px_per_m    = job->request->view.focal_px * s->block.n;
     for (int i = 0; i < s->hits.count; i++) {
         s->texture[i]  = 1;
         s->material[i] = 0;
@@ -104,42 +60,61 @@ static void resolve_materials(Scratch *s, const Job *job)
 }
 
 /* Mean over each pixel's samples, into a plane. */
-static void average(float *plane, const float *sample, const Tile *tile, int width)
+static void average(float *plane, const Scratch *s, const Job *job)
 {
-    const double weight = 1.0 / (tile->samples * tile->samples);
-    for (int y = tile->y0; y < tile->y1; y++)
-        for (int x = tile->x0; x < tile->x1; x++) {
-            double sum = 0;
-            for (int sy = 0; sy < tile->samples; sy++)
-                for (int sx = 0; sx < tile->samples; sx++) sum += sample[sample_index(tile, x, y, sx, sy)];
-            plane[(size_t)y * (size_t)width + (size_t)x] = (float)(sum * weight);
-        }
+    const Block *block = &s->block;
+    const int    samples = block->n * block->n;
+    for (int p = 0; p < block->pixels; p++) {
+        double sum = 0;
+        for (int k = 0; k < samples; k++) sum += s->out[p * samples + k];
+        plane[pixel_index(job, block->x[p], block->y[p])] = (float)(sum * (1.0 / samples));
+    }
 }
 
-static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
+/* What a band made of the block's samples (s->out), to whom it belongs. */
+static void deliver(Scratch *s, const Job *job, int plane)
+{
+    if (s->block.footprint) {
+        footprint_splat(s, plane);
+        return;
+    }
+    if (s->block.writes) average(picture_plane(job->picture, plane), s, job);
+    if (job->picture->target) add_radiance(s, job, plane);
+}
+
+static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
     const World         *world   = job->world;
-    Picture             *picture = job->picture;
-    const int            width   = picture->width;
+    const unsigned       bands   = s->block.bands;
 
-    if (wants(request, BAND_OPTICAL)) {
+    if (has_band(bands, BAND_OPTICAL)) {
         static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
             optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
                           &s->hits, &s->rays, s->material, s->texture, s->shadow);
-            average(picture->optical[c], s->out, tile, width);
+            deliver(s, job, picture_optical + c);
         }
     }
-    if (wants(request, BAND_MWIR) || wants(request, BAND_LWIR) || request->truth)
+    if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
                             s->material, s->texture);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
-        if (wants(request, band)) {
+        if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
                           s->shadow);
-            average(band == BAND_MWIR ? picture->mwir : picture->lwir, s->out, tile, width);
+            deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }
+}
+
+/* Of the picture's samples, those before which a small target stands count by what it leaves of their pixel. */
+static double sample_area(const Scratch *s, const Job *job, int i)
+{
+    const Block *block = &s->block;
+    if (block->footprint) return footprint_area(block->footprint, block->cell[i]);
+    const int    samples = block->n * block->n;
+    const size_t px      = pixel_index(job, block->x[i / samples], block->y[i / samples]);
+    return block->sign * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) / samples;
 }
 
 static void add_to_profile(Scratch *s, const Job *job)
@@ -151,14 +126,14 @@ static void add_to_profile(Scratch *s, const Job *job)
             if (!(power > 0)) continue;
             const double bin = floor((s->radar.slant_m[b][i] - request->profile_near_m) / request->profile_bin_m);
             if (!(bin >= 0 && bin < request->profile_bins)) continue;
-            s->profile[(int)bin * radar_bounces + b] += llrint(fmin(power, job->profile_limit) / job->profile_quantum);
+            s->profile[(int)bin * radar_bounces + b] +=
+                llrint(sample_area(s, job, i) * fmin(power, job->profile_limit) / job->profile_quantum);
         }
 }
 
-static void shade_radar(Scratch *s, const Job *job, const Tile *tile)
+static void shade_radar(Scratch *s, const Job *job)
 {
-    const World *world   = job->world;
-    Picture     *picture = job->picture;
+    const World *world = job->world;
     radar_shade(&s->radar, &world->radar, job->visibility, &world->materials, &s->hits, &s->rays, s->material,
                 job->request->hidden_entity, &s->counters.visibility);
     for (int i = 0; i < s->hits.count; i++) {
@@ -166,146 +141,199 @@ static void shade_radar(Scratch *s, const Job *job, const Tile *tile)
         for (int b = 0; b < radar_bounces; b++) sum += s->radar.power[b][i];
         s->out[i] = (float)sum;
     }
-    average(picture->radar, s->out, tile, picture->width);
+    deliver(s, job, picture_radar);
     if (job->request->profile_bins > 0) add_to_profile(s, job);
 }
 
-/* Truth of a pixel is that of the sample nearest its centre; of equals, the first. */
-static void write_truth(const Scratch *s, const Job *job, const Tile *tile)
+void trace_shadows(Scratch *s, const Job *job)
 {
-    Picture  *picture = job->picture;
-    const int centre  = (tile->samples - 1) / 2;
-    for (int y = tile->y0; y < tile->y1; y++)
-        for (int x = tile->x0; x < tile->x1; x++) {
-            const int    i  = sample_index(tile, x, y, centre, centre);
-            const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
-            picture->range_m[px]  = (float)s->hits.range_m[i];
-            picture->entity[px]   = s->hits.entity[i];
-            picture->part[px]     = s->hits.part[i];
-            picture->material[px] = s->material[i];
-            picture->temp_k[px]   = s->temp_k[i];
-            for (int k = 0; k < 3; k++) picture->normal[k][px] = s->hits.n_enu[k][i];
-        }
+    const double t0 = wall_clock_s();
+    if (has_band(s->block.bands, BAND_OPTICAL) || has_band(s->block.bands, BAND_MWIR))
+        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
+    else
+        memset(s->shadow, 0, sizeof s->shadow);
+    s->shadow_s += wall_clock_s() - t0;
 }
 
-static void grow_box(int box[4], int x, int y)
+void shade_block(Scratch *s, const Job *job)
 {
-    if (box[2] == 0) {
-        box[0] = x, box[1] = y, box[2] = x + 1, box[3] = y + 1;
-        return;
+    const double t0 = wall_clock_s();
+    resolve_materials(s, job);
+    shade_bands(s, job);
+    const double t1 = wall_clock_s();
+    if (has_band(s->block.bands, BAND_RADAR)) shade_radar(s, job);
+    s->shade_s += t1 - t0;
+    s->radar_s += wall_clock_s() - t1;
+}
+
+/* The sample nearest a pixel's centre; of equals, the first. */
+static int centre_sample(int n)
+{
+    int    best = 0;
+    double least = INFINITY;
+    for (int i = 0; i < n * n; i++) {
+        double place[2];
+        sample_place(place, n, i);
+        const double square = (place[0] - 0.5) * (place[0] - 0.5) + (place[1] - 0.5) * (place[1] - 0.5);
+        if (square < least) least = square, best = i;
     }
-    if (x < box[0]) box[0] = x;
-    if (y < box[1]) box[1] = y;
-    if (x + 1 > box[2]) box[2] = x + 1;
-    if (y + 1 > box[3]) box[3] = y + 1;
+    return best;
 }
 
-static void merge_box(int box[4], const int other[4])
+static void write_truth(const Scratch *s, const Job *job)
 {
-    if (other[2] == 0) return;
-    grow_box(box, other[0], other[1]);
-    grow_box(box, other[2] - 1, other[3] - 1);
-}
-
-static void note_hidden(HiddenBy *pairs, int target, int occluder)
-{
-    for (int k = 0; k < pairs_per_tile; k++) {
-        if (pairs[k].samples == 0) pairs[k] = (HiddenBy){target, occluder, 0};
-        if (pairs[k].target == target && pairs[k].occluder == occluder) {
-            pairs[k].samples++;
-            return;
-        }
+    Picture     *picture = job->picture;
+    const Block *block   = &s->block;
+    const int    centre  = centre_sample(block->n);
+    for (int p = 0; p < block->pixels; p++) {
+        const int    i  = p * block->n * block->n + centre;
+        const size_t px = pixel_index(job, block->x[p], block->y[p]);
+        picture->range_m[px]  = (float)s->hits.range_m[i];
+        picture->entity[px]   = s->hits.entity[i];
+        picture->part[px]     = s->hits.part[i];
+        picture->material[px] = s->material[i];
+        picture->temp_k[px]   = s->temp_k[i];
+        for (int k = 0; k < 3; k++) picture->normal[k][px] = s->hits.n_enu[k][i];
+        if (job->shadow) job->shadow[px] = s->shadow[i];
     }
 }
 
-/* Visible and amodal samples of every entity that this tile can show. */
-static void count_targets(Scratch *s, const Job *job, const Tile *tile, int listed, HiddenBy *pairs)
-{
-    for (int n = 0; n < listed; n++) {
-        const int      index = s->list[n];
-        const uint32_t id    = (uint32_t)index + 1;
-        TargetCount   *count = &s->target[index];
+/* ---- the tiles ------------------------------------------------------------------------------ */
 
-        s->some.count = 0;
-        for (int i = 0; i < s->hits.count; i++) {
-            if (s->hits.entity[i] == id) {
-                const int x = tile->x0 + i % tile->across / tile->samples;
-                const int y = tile->y0 + i / tile->across / tile->samples;
-                count->visible++;
-                count->amodal++;
-                grow_box(count->box, x, y);
-                grow_box(count->amodal_box, x, y);
-                continue;
-            }
-            const int to      = s->some.count++;
-            s->some_index[to] = i;
-            for (int k = 0; k < 3; k++) {
-                s->some.o_enu[k][to] = s->rays.o_enu[k][i];
-                s->some.d_enu[k][to] = s->rays.d_enu[k][i];
-            }
-            s->some.far_m[to] = INFINITY;
-        }
-        visibility_entity_only(s->meets, job->visibility, &s->some, index);
-        for (int k = 0; k < s->some.count; k++) {
-            if (!s->meets[k]) continue;
-            const int i = s->some_index[k];
-            count->amodal++;
-            grow_box(count->amodal_box, tile->x0 + i % tile->across / tile->samples,
-                     tile->y0 + i / tile->across / tile->samples);
-            if (s->hits.entity[i]) {
-                count->hidden_entity++;
-                note_hidden(pairs, index, (int)s->hits.entity[i] - 1);
-            } else {
-                count->hidden_ground++;
-            }
-        }
-    }
+typedef struct Tile {
+    int x0, y0, x1, y1; /* px */
+} Tile;
+
+static Tile tile_of(const Job *job, int task)
+{
+    const View *view = &job->request->view;
+    Tile        tile = {.x0 = task % job->tiles_x * job->side_px, .y0 = task / job->tiles_x * job->side_px};
+    tile.x1 = tile.x0 + job->side_px < view->width ? tile.x0 + job->side_px : view->width;
+    tile.y1 = tile.y0 + job->side_px < view->height ? tile.y0 + job->side_px : view->height;
+    return tile;
+}
+
+/* Entities that a tile's own samples may see: small targets are left to their footprints. */
+static int list_entities(Scratch *s, const Job *job, const Tile *tile)
+{
+    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, tile->x0, tile->y0,
+                                              tile->x1, tile->y1, job->request->hidden_entity);
+    int       listed = 0;
+    for (int k = 0; k < all; k++)
+        if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];
+    return listed;
+}
+
+/* From the block's pixels to planes and sums. pairs NULL: areas of targets are not counted. */
+static void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+{
+    const RenderRequest *request = job->request;
+    const double         t0 = wall_clock_s();
+    make_rays(&s->rays, &s->block, &request->view);
+    visibility_first_hit(&s->hits, job->visibility, &s->rays, s->list, listed, request->hidden_entity,
+                         &s->counters.visibility);
+    s->counters.rays_primary += (uint64_t)s->rays.count;
+    s->visibility_s += wall_clock_s() - t0;
+    trace_shadows(s, job);
+    shade_block(s, job);
+    if (pairs) count_targets(s, job, listed, pairs);
 }
 
 static void render_tile(void *user, int worker, int task)
 {
-    const Job           *job     = user;
-    const RenderRequest *request = job->request;
-    const View          *view    = &request->view;
-    Scratch             *s       = job->scratch[worker];
-    Tile                 tile    = {.samples = request->samples};
+    const Job *job   = user;
+    Scratch   *s     = job->scratch[worker];
+    const Tile tile  = tile_of(job, task);
+    Block     *block = &s->block;
 
-    tile.x0     = task % job->tiles_x * job->side_px;
-    tile.y0     = task / job->tiles_x * job->side_px;
-    tile.x1     = tile.x0 + job->side_px < view->width ? tile.x0 + job->side_px : view->width;
-    tile.y1     = tile.y0 + job->side_px < view->height ? tile.y0 + job->side_px : view->height;
-    tile.across = (tile.x1 - tile.x0) * tile.samples;
-
-    const double t0 = wall_clock_s();
-    make_rays(&s->rays, &tile, view);
-    const int listed = visibility_block_entities(s->list, job->visibility, view, tile.x0, tile.y0, tile.x1, tile.y1,
-                                                 request->hidden_entity);
-    visibility_first_hit(&s->hits, job->visibility, &s->rays, s->list, listed, request->hidden_entity,
-                         &s->counters.visibility);
-    s->counters.rays_primary += (uint64_t)s->rays.count;
+    *block = (Block){.n = job->request->samples, .sign = 1, .writes = true, .bands = job->request->bands};
+    for (int y = tile.y0; y < tile.y1; y++)
+        for (int x = tile.x0; x < tile.x1; x++) {
+            block->x[block->pixels]   = (uint16_t)x;
+            block->y[block->pixels++] = (uint16_t)y;
+        }
+    const int listed = list_entities(s, job, &tile);
+    s->counters.pixels += (uint64_t)block->pixels;
     s->counters.tiles++;
     s->counters.tiles_without_entities += listed == 0;
+    render_block(s, job, listed, job->picture->target ? job->pairs + (size_t)task * pairs_per_tile : NULL);
+    if (job->picture->entity) write_truth(s, job);
+}
 
-    const double t1 = wall_clock_s();
-    memset(s->shadow, 0, sizeof s->shadow);
-    if ((wants(request, BAND_OPTICAL) || wants(request, BAND_MWIR)) && job->air->sun_d_enu[2] > 0)
-        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
+/* One way to do better by a pixel, and whose turn it is. */
+typedef struct Refinement {
+    unsigned has, lacks; /* RefineFlag: pixels with all of these and none of those */
+    unsigned bands;
+    int      n;
+} Refinement;
 
-    const double t2 = wall_clock_s();
-    resolve_materials(s, job);
-    shade_bands(s, job, &tile);
-    if (request->truth) {
-        write_truth(s, job, &tile);
-        count_targets(s, job, &tile, listed, job->pairs + (size_t)task * pairs_per_tile);
+/* The block's pixels once more with n samples a side, in place of what they had. */
+static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
+{
+    Block *block  = &s->block;
+    block->n      = how->n;
+    block->bands  = how->bands;
+    block->sign   = 1;
+    block->writes = true;
+    if (how->has & refine_ground) {
+        spread_ground(s, job);
+        shade_block(s, job);
+        return;
     }
-    const double t3 = wall_clock_s();
-    if (wants(request, BAND_RADAR)) shade_radar(s, job, &tile);
-    const double t4 = wall_clock_s();
+    const bool areas = job->picture->target && !(how->has & refine_sun);
+    render_block(s, job, listed, areas ? pairs : NULL);
+    s->counters.rays_edges += (uint64_t)s->rays.count;
+    if (!job->picture->target && !job->picture->profile) return;
+    block->n      = job->request->samples;
+    block->sign   = -1;
+    block->writes = false;
+    render_block(s, job, listed, areas ? pairs : NULL);
+    s->counters.rays_edges += (uint64_t)s->rays.count;
+}
 
-    s->visibility_s += t1 - t0;
-    s->shadow_s += t2 - t1;
-    s->shade_s += t3 - t2;
-    s->radar_s += t4 - t3;
+static void refine_tile(void *user, int worker, int task)
+{
+    const Job     *job    = user;
+    Scratch       *s      = job->scratch[worker];
+    const Tile     tile   = tile_of(job, task);
+    HiddenBy      *pairs  = job->pairs + (size_t)task * pairs_per_tile;
+    const int      edge   = job->request->edge_samples;
+    const unsigned all    = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
+    const unsigned sunlit = all & (1u << BAND_OPTICAL | 1u << BAND_MWIR), lwir = all & 1u << BAND_LWIR;
+    unsigned       any    = 0;
+
+    const Refinement ways[] = {
+        {refine_all, 0, all, edge},
+        {refine_step, refine_all, all, 2},
+        {refine_sun, refine_all | refine_step, sunlit, edge},
+        {refine_ground, refine_all | refine_step | refine_sun, no_radar, 2},
+        {refine_ground | refine_sun, refine_all | refine_step, lwir, 2},
+    };
+    for (int y = tile.y0; y < tile.y1; y++)
+        for (int x = tile.x0; x < tile.x1; x++) {
+            const unsigned flags = refine_flags(job, x, y);
+            job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
+            any |= flags;
+            s->counters.pixels_refined += flags != 0;
+        }
+    if (!any) return;
+    const int listed = list_entities(s, job, &tile);
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        const Refinement *how = &ways[k];
+        if ((any & how->has) != how->has || how->bands == 0) continue;
+        s->block = (Block){0};
+        for (int y = tile.y0; y < tile.y1; y++)
+            for (int x = tile.x0; x < tile.x1; x++) {
+                const unsigned flags = job->refine[pixel_index(job, x, y)];
+                if ((flags & how->has) != how->has || flags & how->lacks) continue;
+                s->block.x[s->block.pixels]   = (uint16_t)x;
+                s->block.y[s->block.pixels++] = (uint16_t)y;
+                if ((s->block.pixels + 1) * how->n * how->n <= hits_capacity) continue;
+                refine_block(s, job, how, listed, pairs);
+                s->block.pixels = 0;
+            }
+        if (s->block.pixels > 0) refine_block(s, job, how, listed, pairs);
+    }
 }
 
 /* ---- the frame's memory --------------------------------------------------------------------- */
@@ -317,26 +345,26 @@ static Status allocate_planes(Picture *picture, const RenderRequest *request, in
     picture->width  = request->view.width;
     picture->height = request->view.height;
 
-    if (wants(request, BAND_OPTICAL))
+    if (has_band(request->bands, BAND_OPTICAL))
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++)
             ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
-    if (wants(request, BAND_RADAR)) {
+    if (has_band(request->bands, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
+    if (has_band(request->bands, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
+    if (has_band(request->bands, BAND_RADAR)) {
         ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
         if (request->profile_bins > 0)
             ok = (picture->profile = arena_alloc(arena, (size_t)request->profile_bins * radar_bounces,
                                                  sizeof(double))) && ok;
     }
-    if (request->truth) {
+    if (request->truth || looks_for_edges(request)) { /* edges are where truth changes */
         ok = (picture->range_m = arena_alloc(arena, px, sizeof(float))) && ok;
         ok = (picture->entity = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         ok = (picture->part = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         ok = (picture->material = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
         ok = (picture->temp_k = arena_alloc(arena, px, sizeof(float))) && ok;
         for (int k = 0; k < 3; k++) ok = (picture->normal[k] = arena_alloc(arena, px, sizeof(float))) && ok;
-        ok = (picture->target = arena_alloc(arena, (size_t)entities, sizeof(TargetPixels))) && ok;
     }
+    if (request->truth) ok = (picture->target = arena_alloc(arena, (size_t)entities, sizeof(TargetPixels))) && ok;
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
@@ -345,7 +373,15 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
     const size_t entities = (size_t)job->snapshot->count;
     job->scratch          = arena_alloc(arena, (size_t)workers, sizeof *job->scratch);
     job->pairs = arena_alloc(arena, (size_t)job->tiles_x * (size_t)job->tiles_y, pairs_per_tile * sizeof *job->pairs);
-    if (!job->scratch || !job->pairs) return STATUS_NO_MEMORY;
+    job->boxes    = arena_alloc(arena, entities, sizeof *job->boxes);
+    job->is_small = arena_alloc(arena, entities, sizeof *job->is_small);
+    if (!job->scratch || !job->pairs || !job->boxes || !job->is_small) return STATUS_NO_MEMORY;
+    if (looks_for_edges(job->request)) {
+        const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
+        job->refine     = arena_alloc(arena, px, sizeof *job->refine);
+        job->shadow     = arena_alloc(arena, px, sizeof *job->shadow);
+        if (!job->refine || !job->shadow) return STATUS_NO_MEMORY;
+    }
     for (int w = 0; w < workers; w++) {
         Scratch *s = job->scratch[w] = arena_alloc(arena, 1, sizeof *s);
         if (!s) return STATUS_NO_MEMORY;
@@ -357,126 +393,46 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
     return STATUS_OK;
 }
 
-/* ---- after the tiles ------------------------------------------------------------------------ */
-
-void render_counters_add(RenderCounters *sum, const RenderCounters *more)
+/* Planes that only the search for edges wanted. */
+static void forget_truth(Picture *picture)
 {
-    VisibilityCounters       *to   = &sum->visibility;
-    const VisibilityCounters *from = &more->visibility;
-    sum->rays_primary += more->rays_primary;
-    sum->tiles += more->tiles;
-    sum->tiles_without_entities += more->tiles_without_entities;
-    to->rays_ground += from->rays_ground;
-    to->rays_parts += from->rays_parts;
-    to->rays_sun_ground += from->rays_sun_ground;
-    to->rays_sun_parts += from->rays_sun_parts;
-    to->skipped_parts += from->skipped_parts;
-    to->skipped_sun_parts += from->skipped_sun_parts;
+    picture->range_m = picture->temp_k = NULL;
+    picture->entity = picture->part = picture->material = NULL;
+    for (int k = 0; k < 3; k++) picture->normal[k] = NULL;
 }
 
-static int compare_pairs(const void *a, const void *b)
+/* ---- the frame ------------------------------------------------------------------------------ */
+
+/* Quanta: areas divide evenly by both grids; nothing answers the radar with more than the peak of its lobe; and no
+ * radiance we can make passes 2^20 W/(m2 sr). Powers of two, so that scaling is exact. */
+static void choose_quanta(Job *job)
 {
-    const HiddenBy *p = a, *q = b;
-    if (p->target != q->target) return p->target < q->target ? -1 : 1;
-    return p->occluder < q->occluder ? -1 : p->occluder > q->occluder;
+    const RenderRequest *request = job->request;
+    const double         pixels  = (double)request->view.width * request->view.height;
+    const int            edge    = looks_for_edges(request) ? request->edge_samples : 1;
+    /* 2 x 2 is for the ground's own edges: at most 2^2 (16 x 16)^2 2^16 = 2^34 a pixel, of 2^26 */
+    job->steps_per_px     = (int64_t)4 * request->samples * request->samples * edge * edge << 16;
+    job->profile_limit    = exp2(ceil(log2(2 / (pi_rad * job->world->radar.lobe_rad * job->world->radar.lobe_rad))));
+    job->profile_quantum  = job->profile_limit * exp2(ceil(log2(pixels)) - 61);
+    job->radiance_limit   = exp2(20);
+    job->radiance_quantum = job->radiance_limit * exp2(ceil(log2(pixels)) - 61);
 }
 
-/* Who hides most of each target; of equals, the lowest id. Sorts the pairs. */
-static void name_occluders(TargetPixels *target, HiddenBy *pairs, size_t count)
+static bool request_is_good(const RenderRequest *r)
 {
-    size_t used = 0;
-    for (size_t i = 0; i < count; i++)
-        if (pairs[i].samples > 0) pairs[used++] = pairs[i];
-    if (used > 1) qsort(pairs, used, sizeof *pairs, compare_pairs);
-    int64_t most = 0;
-    for (size_t i = 0; i < used;) {
-        int64_t   samples = 0;
-        const int who = pairs[i].target, by = pairs[i].occluder;
-        if (i == 0 || pairs[i - 1].target != who) most = 0;
-        for (; i < used && pairs[i].target == who && pairs[i].occluder == by; i++) samples += pairs[i].samples;
-        if (samples > most) {
-            most                 = samples;
-            target[who].occluder = by;
-        }
-    }
-}
-
-/* Only those whose bounding sphere can show: a vertex is not looked at otherwise. */
-static void project_target(TargetPixels *target, const Job *job, int index)
-{
-    const View           *view   = &job->request->view;
-    const SnapshotEntity *entity = &job->snapshot->entity[index];
-    double                p_enu[3], offset_enu[3], p_cam[3];
-    if (index == job->request->hidden_entity) return;
-    enu_from_ecef(p_enu, &job->world->frame, entity->p_ecef);
-    v3_sub(offset_enu, p_enu, view->p_enu);
-    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
-    const double radius_m = catalog_model(job->world->catalog, entity->model)->radius_m;
-    if (!(p_cam[2] > -radius_m)) return;
-    /* half a picture and the sphere, in the plane of the sphere's far side: generous, never too tight */
-    const double depth_m = p_cam[2] + radius_m;
-    if (fabs(p_cam[0]) - radius_m > depth_m * 0.5 * view->width / view->focal_px ||
-        fabs(p_cam[1]) - radius_m > depth_m * 0.5 * view->height / view->focal_px)
-        return;
-    double box[4];
-    if (!visibility_project_box(box, job->visibility, view, index)) return;
-    if (!(box[2] > 0 && box[0] < view->width && box[3] > 0 && box[1] < view->height)) return;
-    target->projected = true;
-    memcpy(target->projected_box, box, sizeof box);
-}
-
-static void gather(Picture *picture, const Job *job, int workers)
-{
-    const double share = 1.0 / (job->request->samples * job->request->samples);
-
-    for (int w = 0; w < workers; w++) {
-        const Scratch *s = job->scratch[w];
-        render_counters_add(&picture->counters, &s->counters);
-        picture->times.visibility_ms += 1e3 * s->visibility_s;
-        picture->times.shadow_ms += 1e3 * s->shadow_s;
-        picture->times.shade_ms += 1e3 * s->shade_s;
-        picture->times.radar_ms += 1e3 * s->radar_s;
-    }
-    for (int i = 0; picture->target && i < job->snapshot->count; i++) {
-        TargetCount sum = {0};
-        for (int w = 0; w < workers; w++) {
-            const TargetCount *t = &job->scratch[w]->target[i];
-            sum.visible += t->visible;
-            sum.amodal += t->amodal;
-            sum.hidden_ground += t->hidden_ground;
-            sum.hidden_entity += t->hidden_entity;
-            merge_box(sum.box, t->box);
-            merge_box(sum.amodal_box, t->amodal_box);
-        }
-        TargetPixels *target    = &picture->target[i];
-        target->visible         = (double)sum.visible * share;
-        target->amodal          = (double)sum.amodal * share;
-        target->occluded_ground = (double)sum.hidden_ground * share;
-        target->occluded_entity = (double)sum.hidden_entity * share;
-        target->occluder        = -1;
-        memcpy(target->box, sum.box, sizeof sum.box);
-        memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
-    }
-    for (int i = 0; picture->target && i < job->snapshot->count; i++)
-        project_target(&picture->target[i], job, i);
-    if (picture->target)
-        name_occluders(picture->target, job->pairs,
-                       (size_t)job->tiles_x * (size_t)job->tiles_y * pairs_per_tile);
-    for (int i = 0; picture->profile && i < job->request->profile_bins * radar_bounces; i++) {
-        int64_t sum = 0;
-        for (int w = 0; w < workers; w++) sum += job->scratch[w]->profile[i];
-        picture->profile[i] = (double)sum * job->profile_quantum * share;
-    }
+    return r->samples >= 1 && r->samples <= 16 && r->edge_samples >= 0 && r->edge_samples <= 16 &&
+           (r->target_samples == 0 || (r->target_samples >= 8 && r->target_samples <= 256)) && r->view.width >= 1 &&
+           r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
+           v3_is_finite(r->view.p_enu) && r->profile_bins >= 0;
 }
 
 Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request, const Air *air,
               Pool *pool, Arena *arena)
 {
-    if (request->samples < 1 || request->samples > 16 || request->view.width < 1 || request->view.height < 1 ||
-        !(request->view.focal_px > 0) || !v3_is_finite(request->view.p_enu) || request->profile_bins < 0)
-        return STATUS_BAD_VALUE;
+    if (!request_is_good(request)) return STATUS_BAD_VALUE;
 
     const double start_s = wall_clock_s();
+    const int    workers = pool_threads(pool);
     Picture      picture = {0};
     Visibility  *visibility = NULL;
     Job          job = {.world = world, .snapshot = snapshot, .request = request, .air = air, .picture = &picture};
@@ -484,23 +440,31 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     job.side_px = tile_side_samples / request->samples;
     job.tiles_x = (request->view.width + job.side_px - 1) / job.side_px;
     job.tiles_y = (request->view.height + job.side_px - 1) / job.side_px;
-
-    /* nothing answers with more than the peak of its lobe; a power of two, so that scaling is exact */
-    const double samples = (double)request->view.width * request->view.height * request->samples * request->samples;
-    job.profile_limit    = exp2(ceil(log2(2 / (pi_rad * world->radar.lobe_rad * world->radar.lobe_rad))));
-    job.profile_quantum  = job.profile_limit * exp2(ceil(log2(samples)) - 61);
+    choose_quanta(&job);
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
-    if (status == STATUS_OK) status = allocate_job(&job, pool_threads(pool), arena);
+    if (status == STATUS_OK) status = allocate_job(&job, workers, arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,
                                    request->no_skip, arena);
     if (status != STATUS_OK) return status;
-    job.visibility          = visibility;
+    job.visibility = visibility;
+    if (request->truth || request->target_samples > 0 || looks_for_edges(request))
+        pool_run(pool, snapshot->count, project_target, &job);
+    if (request->target_samples > 0) status = footprints_plan(&job, arena);
+    if (status != STATUS_OK) return status;
+    if (looks_for_edges(request)) mark_boxes(&job);
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
 
+    if (job.footprints > 0) {
+        pool_run(pool, job.footprints, footprint_task, &job);
+        footprints_cover(&job);
+    }
     pool_run(pool, job.tiles_x * job.tiles_y, render_tile, &job);
-    gather(&picture, &job, pool_threads(pool));
+    if (looks_for_edges(request)) pool_run(pool, job.tiles_x * job.tiles_y, refine_tile, &job);
+    gather(&job, workers);
+    footprints_put_on(&job);
+    if (!request->truth) forget_truth(&picture);
     *out = picture;
     return STATUS_OK;
 }

@@ -18,9 +18,18 @@ typedef struct World {
     RadarConfig      radar;
 } World;
 
-/* What a target gave in this view, in units of pixels (samples / samples^2). */
+/* Planes that carry radiance. */
+enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, picture_radar, picture_plane_count };
+
+/* What a target gave in this view, in units of pixels: areas, which may be fractions. */
 typedef struct TargetPixels {
     double visible, amodal;
+    /* its own radiance at the aperture, by the area it fills, less by the cube of the cosine off the axis:
+     * over focal_px^2 and times range^2 this is its intensity. px W/(m2 sr); radar: relative */
+    double radiance[picture_plane_count];
+    bool   small;                 /* sampled over its own box: what follows is of its samples, too */
+    double mean[picture_plane_count], variance[picture_plane_count]; /* of radiance over its visible area */
+    double peak_area;             /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all its vertices, px, not clipped to the image; where `projected` */
@@ -31,7 +40,10 @@ typedef struct TargetPixels {
 
 typedef struct RenderCounters {
     VisibilityCounters visibility;
-    uint64_t rays_primary, tiles, tiles_without_entities;
+    uint64_t rays_primary;                 /* all from the eye; of these: */
+    uint64_t rays_edges, rays_small_targets;
+    uint64_t pixels, pixels_refined, small_targets;
+    uint64_t tiles, tiles_without_entities;
 } RenderCounters;
 
 void render_counters_add(RenderCounters *sum, const RenderCounters *more);
@@ -40,7 +52,10 @@ typedef struct RenderTimes {
     double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads but prepare */
 } RenderTimes;
 
-/* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena. */
+/* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena.
+ *
+ * Truth of a pixel is that of the sample nearest its centre; of a small target where it covers more than half of the
+ * pixel, and then that of the target's sample nearest the centre. */
 typedef struct Picture {
     int       width, height;
     float    *optical[3];           /* R G B, or [0] alone: W/(m2 sr) */
@@ -52,10 +67,14 @@ typedef struct Picture {
     uint32_t *part, *material;      /* + 1; 0: none */
     float    *temp_k;               /* NaN: sky */
     float    *normal[3];            /* ENU of the terrain origin */
+    float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels *target;           /* [snapshot count]; NULL without truth */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;
+
+/* One of the radiance planes; NULL where there is none. */
+float *picture_plane(const Picture *picture, int plane);
 
 /* frame: the landscape's, or any where there is none. */
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame, const char *isa);

@@ -34,7 +34,9 @@ typedef struct RenderRequest {
     unsigned bands;          /* 1 << Band, those somebody consumes */
     bool     truth;          /* id, part, material, range, normal, temperature planes and target counts */
     bool     optical_rgb;    /* else one panchromatic channel */
-    int      samples;        /* a side: samples^2 rays a pixel, on a regular grid, box-averaged. 1 .. 16 */
+    int      samples;        /* a side: samples^2 rays a pixel, on a turned grid, box-averaged. 1 .. 16 */
+    int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
+    int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as all */
     int      hidden_entity;  /* snapshot index whose parts the eye does not see (they cast shadows); -1: none */
     bool     no_skip;        /* compute everything that is skipped; must give the same bits */
     double   profile_near_m, profile_bin_m; /* radar range profile */

@@ -24,6 +24,9 @@ static const Key keys[] = {
     {"sensor.hfov_deg", KEY_DOUBLE, AT(sensor.hfov_deg), 0.01, 120, NULL, "deg", "horizontal field of view"},
     {"sensor.rate_hz", KEY_DOUBLE, AT(sensor.rate_hz), 0, 1000, NULL, "Hz", "frames a second; 0: 5 for a munition, 1 for an observer"},
     {"sensor.samples", KEY_INT, AT(sensor.samples), 1, 16, NULL, "", "rays a side of a pixel"},
+    {"sensor.antialias", KEY_TEXT, AT(sensor.antialias), 0, 0, "adaptive|off", "", "more rays at edges and over small targets, or not"},
+    {"sensor.edge_samples", KEY_INT, AT(sensor.edge_samples), 2, 16, NULL, "", "rays a side of a pixel where neighbours disagree; adaptive"},
+    {"sensor.target_samples", KEY_INT, AT(sensor.target_samples), 8, 256, NULL, "", "rays a side over a target of less than 16 px; adaptive"},
     {"sensor.bands", KEY_TEXT, AT(sensor.bands), 0, 0, NULL, "", "any of optical,mwir,lwir,radar"},
     {"sensor.optical", KEY_TEXT, AT(sensor.optical), 0, 0, "rgb|pan", "", "three channels or one"},
     {"sensor.gimbal_limit_deg", KEY_DOUBLE, AT(sensor.gimbal_limit_deg), 0, 180, NULL, "deg", "largest angle off the body axis"},
@@ -91,11 +94,14 @@ Config config_default(void)
     c.sensor.height_px        = 486;
     c.sensor.hfov_deg         = 6;
     c.sensor.samples          = 1;
+    c.sensor.edge_samples     = 4;
+    c.sensor.target_samples   = 48; /* a sunlit crescent within 1 %: tests/render/test_small_targets.c */
     c.sensor.gimbal_limit_deg = 45;
     c.sensor.gimbal_rate_dps  = 60;
     c.sensor.gimbal_lag_s     = 0.03;
     strcpy(c.sensor.bands, "optical,mwir,lwir,radar");
     strcpy(c.sensor.optical, "rgb");
+    strcpy(c.sensor.antialias, "adaptive");
     strcpy(c.detector.level, "auto");
     c.detector.bits                 = 8;
     c.detector.gain                 = 1;

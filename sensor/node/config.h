@@ -15,6 +15,8 @@ typedef struct Config {
         double hfov_deg;
         double rate_hz;            /* 0: chosen by what the host is */
         int    samples;            /* a side of a pixel */
+        char   antialias[12];      /* adaptive or off */
+        int    edge_samples, target_samples; /* a side: of a pixel with an edge; over a small target */
         char   bands[64];          /* comma separated */
         char   optical[8];         /* rgb or pan */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;

@@ -263,6 +263,10 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .optical_rgb = strcmp(config->sensor.optical, "rgb") == 0,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .no_skip = s->shared->no_skip};
+    if (strcmp(config->sensor.antialias, "adaptive") == 0) {
+        request->edge_samples   = config->sensor.edge_samples;
+        request->target_samples = config->sensor.target_samples;
+    }
     if (s->shared->bands >> BAND_RADAR & 1) {
         double to_aim[3], range_m = 1000;
         if (s->aim_known) {

@@ -89,7 +89,8 @@ static void ring_box(int ring[4], const Target *t, const Picture *picture)
     }
 }
 
-/* value(user, px): what is compared. Ring: pixels in the box that show neither this target nor another. */
+/* value(user, px): what is compared. Ring: pixels in the box that show neither this target nor another, nor part of a
+ * small one. */
 typedef double PixelValue(const void *user, size_t px);
 
 static void two_moments(Moments *target, Moments *ring, const Target *t, const Picture *picture, PixelValue *value,
@@ -104,7 +105,7 @@ static void two_moments(Moments *target, Moments *ring, const Target *t, const P
             const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
             if (picture->entity[px] == (uint32_t)t->index + 1)
                 moments_add(target, value(user, px));
-            else if (picture->entity[px] == 0)
+            else if (picture->entity[px] == 0 && !(picture->covered && picture->covered[px] > 0))
                 moments_add(ring, value(user, px));
         }
 }
@@ -128,65 +129,95 @@ static double luminance(const void *user, size_t px)
     return p->optical[1] ? (p->optical[0][px] + p->optical[1][px] + p->optical[2][px]) / 3.0 : p->optical[0][px];
 }
 
-/* Sum of radiance x solid angle x range^2 over the pixels that show the target. */
-static double intensity(const Target *t, const Picture *picture, const View *view, PixelValue *radiance, const void *user)
+/* Of the target's own radiance over the area it fills, whole pixels or parts of them. */
+static double intensity(const Target *t, const TargetPixels *px, const View *view, int plane)
 {
-    double sum = 0;
-    for (int y = t->box[1]; y < t->box[3]; y++)
-        for (int x = t->box[0]; x < t->box[2]; x++) {
-            const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
-            if (picture->entity[px] != (uint32_t)t->index + 1) continue;
-            const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
-            const double v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
-            const double c = 1 / sqrt(1 + u * u + v * v); /* cosine off the axis: a pixel is c^3 / f^2 steradians */
-            sum += radiance(user, px) * c * c * c / (view->focal_px * view->focal_px);
-        }
-    return sum * t->range_m * t->range_m;
+    return px->radiance[plane] / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
 }
 
-static void thermal_band(TargetBand *out, const Target *t, const Picture *picture, const View *view,
-                         const float *plane, const PlanckTable *planck, double netd_k)
-{
-    const ThermalPlane user = {plane, planck};
-    Moments            target, ring;
-    two_moments(&target, &ring, t, picture, apparent_temp, &user);
-    if (!(target.n > 0)) return;
-    out->intensity_w_sr = intensity(t, picture, view, plain_value, plane);
-    if (!(ring.n > 0)) return;
-    out->contrast_k    = moments_mean(&target) - moments_mean(&ring);
-    out->dt_rss_k      = sqrt(out->contrast_k * out->contrast_k + moments_variance(&target));
-    const double sigma = sqrt(moments_variance(&ring) + netd_k * netd_k);
-    if (sigma > 0) out->snr = out->contrast_k / sigma;
-}
+/* What a band shows of a target and about it. A small target's pixels are part ground, and it may have none to call its
+ * own: mean and variance are those of its own samples, for the caller to fill in. */
+typedef struct Look {
+    double mean, variance;
+    double ring_mean, ring_variance;
+} Look;
 
-static void plain_band(TargetBand *out, const Target *t, const Picture *picture, PixelValue *value, const void *user,
-                       double noise_sigma)
+static bool look_at(Look *look, const Target *t, const TargetPixels *px, const Picture *picture, PixelValue *value,
+                    const void *user)
 {
     Moments target, ring;
     two_moments(&target, &ring, t, picture, value, user);
-    if (!(target.n > 0) || !(ring.n > 0)) return;
-    const double mean = moments_mean(&ring), difference = moments_mean(&target) - mean;
-    const double sigma = sqrt(moments_variance(&ring) + noise_sigma * noise_sigma);
-    if (mean > 0) out->contrast = difference / mean;
-    if (sigma > 0) out->snr = difference / sigma;
+    if (!(ring.n > 0) || !(px->small || target.n > 0)) return false;
+    *look = (Look){.ring_mean = moments_mean(&ring), .ring_variance = moments_variance(&ring)};
+    if (px->small) return true;
+    look->mean     = moments_mean(&target);
+    look->variance = moments_variance(&target);
+    return true;
 }
 
-static void radiometry(Target *t, const Picture *picture, const World *world, const RenderRequest *request,
-                       const TruthNoise *noise)
+/* A small target shows through its fullest pixel, by the share that it has of it. */
+static double to_noise(const Look *look, const TargetPixels *px, double noise_sigma)
 {
-    if (t->box[2] == 0) return;
-    if (picture->optical[0]) {
-        /* the mean of three channels has a root of three less noise than one */
-        plain_band(&t->band[BAND_OPTICAL], t, picture, luminance, picture,
-                   noise->optical_w_m2_sr / (picture->optical[1] ? sqrt(3) : 1));
-        t->band[BAND_OPTICAL].intensity_w_sr = intensity(t, picture, &request->view, luminance, picture);
-        if (picture->optical[1]) t->band[BAND_OPTICAL].intensity_w_sr *= 3; /* the channels together: 0.4-0.7 um */
+    const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma);
+    return sigma > 0 ? (look->mean - look->ring_mean) * (px->small ? px->peak_area : 1) / sigma : NAN;
+}
+
+static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture, int plane,
+                         const PlanckTable *planck, double netd_k)
+{
+    const ThermalPlane user = {picture_plane(picture, plane), planck};
+    Look               look = {0};
+    if (!look_at(&look, t, px, picture, apparent_temp, &user)) return;
+    if (px->small) {
+        /* temperature is all but straight in radiance over a target: the slope at its mean will do */
+        const double mean = px->mean[plane], step = 1e-3 * mean;
+        look.mean          = planck_table_temp(planck, mean);
+        const double slope = step > 0 ? (planck_table_temp(planck, mean + step) - look.mean) / step : 0;
+        look.variance      = slope * slope * px->variance[plane];
     }
-    if (picture->mwir)
-        thermal_band(&t->band[BAND_MWIR], t, picture, &request->view, picture->mwir, world->planck_mwir, noise->netd_mwir_k);
-    if (picture->lwir)
-        thermal_band(&t->band[BAND_LWIR], t, picture, &request->view, picture->lwir, world->planck_lwir, noise->netd_lwir_k);
-    if (picture->radar) plain_band(&t->band[BAND_RADAR], t, picture, plain_value, picture->radar, 0);
+    out->contrast_k = look.mean - look.ring_mean;
+    out->dt_rss_k   = sqrt(out->contrast_k * out->contrast_k + look.variance);
+    out->snr        = to_noise(&look, px, netd_k);
+}
+
+/* planes: of which a pixel's value is the mean, from `plane` on. */
+static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture,
+                       PixelValue *value, const void *user, int plane, int planes, double noise_sigma)
+{
+    Look look = {0};
+    if (!look_at(&look, t, px, picture, value, user)) return;
+    if (px->small) {
+        look.mean = 0;
+        for (int k = 0; k < planes; k++) look.mean += px->mean[plane + k] / planes;
+    }
+    if (look.ring_mean > 0) out->contrast = (look.mean - look.ring_mean) / look.ring_mean;
+    out->snr = to_noise(&look, px, noise_sigma);
+}
+
+static void radiometry(Target *t, const TargetPixels *px, const Picture *picture, const World *world,
+                       const RenderRequest *request, const TruthNoise *noise)
+{
+    const View *view = &request->view;
+    if (!(px->visible > 0)) return;
+    if (picture->optical[0]) {
+        const int channels = picture->optical[1] ? 3 : 1;
+        /* the mean of three channels has a root of three less noise than one */
+        plain_band(&t->band[BAND_OPTICAL], t, px, picture, luminance, picture, picture_optical, channels,
+                   noise->optical_w_m2_sr / sqrt(channels));
+        t->band[BAND_OPTICAL].intensity_w_sr = 0; /* the channels together: 0.4-0.7 um */
+        for (int k = 0; k < channels; k++)
+            t->band[BAND_OPTICAL].intensity_w_sr += intensity(t, px, view, picture_optical + k);
+    }
+    if (picture->mwir) {
+        thermal_band(&t->band[BAND_MWIR], t, px, picture, picture_mwir, world->planck_mwir, noise->netd_mwir_k);
+        t->band[BAND_MWIR].intensity_w_sr = intensity(t, px, view, picture_mwir);
+    }
+    if (picture->lwir) {
+        thermal_band(&t->band[BAND_LWIR], t, px, picture, picture_lwir, world->planck_lwir, noise->netd_lwir_k);
+        t->band[BAND_LWIR].intensity_w_sr = intensity(t, px, view, picture_lwir);
+    }
+    if (picture->radar)
+        plain_band(&t->band[BAND_RADAR], t, px, picture, plain_value, picture->radar, picture_radar, 1, 0);
 }
 
 int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
@@ -208,7 +239,7 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
             t.occluder       = px->occluded_ground >= px->occluded_entity ? "ground" : "entity";
             t.occluder_index = px->occluded_ground >= px->occluded_entity ? -1 : px->occluder;
         }
-        radiometry(&t, picture, world, request, noise);
+        radiometry(&t, px, picture, world, request, noise);
         out[count++] = t;
     }
     return count;

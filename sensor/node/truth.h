@@ -6,12 +6,15 @@
 
 #include "render/render.h"
 
+/* The target's pixels are those whose truth it is. A small one (TargetPixels.small) has its own samples instead, and a
+ * ring of pixels that no small target touches. */
 typedef struct TargetBand {
     double contrast_k;      /* mean of the target's pixels less mean of a ring of its own area, apparent K */
     double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
     double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
-    double snr;             /* contrast over the ring's sigma and the detector's noise together */
-    double intensity_w_sr;  /* in-band, at the aperture: sum of radiance x the pixel's area at the target's range */
+    double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
+                             * times the share it has of the pixel it fills most */
+    double intensity_w_sr;  /* in-band, at the aperture: its own radiance by the area it fills, at its range */
 } TargetBand;
 
 typedef struct Target {
@@ -20,7 +23,7 @@ typedef struct Target {
     double los_az_rad, los_el_rad;          /* from the host, in its own ENU */
     double los_rate_rps[2];                 /* inertial; camera right and up */
     double boresight_error_rad[2];          /* camera right and up */
-    double pixels, visible_fraction;        /* visible_fraction NaN: no sample of it, hidden or not */
+    double pixels, visible_fraction;        /* areas, parts of pixels too; NaN: no sample of it, hidden or not */
     int    box[4];                          /* visible pixels; empty: all 0 */
     double amodal_box[4];                   /* of its vertices, not clipped to the image */
     const char *occluder;                   /* "ground", "entity" with occluder_index >= 0, or NULL */

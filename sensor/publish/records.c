@@ -195,6 +195,11 @@ static json_t *counters_json(const RunRecord *r)
     set_count(entities, "removed", r->entities_removed);
     json_object_set_new(counters, "entities", entities);
     set_count(counters, "rays_primary", r->render.rays_primary);
+    set_count(counters, "rays_edges", r->render.rays_edges);
+    set_count(counters, "rays_small_targets", r->render.rays_small_targets);
+    set_count(counters, "pixels", r->render.pixels);
+    set_count(counters, "pixels_refined", r->render.pixels_refined);
+    set_count(counters, "small_targets", r->render.small_targets);
     set_count(counters, "rays_ground", v->rays_ground);
     set_count(counters, "rays_parts", v->rays_parts);
     set_count(counters, "rays_sun_ground", v->rays_sun_ground);

@@ -289,6 +289,52 @@ static void every_set_of_instructions_agrees(void **state)
     hand_free(&model);
 }
 
+/* Two boxes with faces in one plane, of other triangles: the lower wins, whoever traces. */
+static void faces_in_one_place_are_the_lowest(void **state)
+{
+    (void)state;
+    static const char *const isa[3] = {"avx2", "sse4.2", ""};
+    Model        model;
+    Scene        s[3];
+    const double p[3] = {3000, -2000, 100};
+    double       r[9];
+    hand_model(&model, 1, 16, 24);
+    hand_box_into(&model, 0, (const double[3]){-1, -0.7, -0.9}, (const double[3]){1, 0.8, 1.1});
+    hand_box_into(&model, 0, (const double[3]){-0.6, -0.71, -0.9}, (const double[3]){1, 0.8, 0.3});
+    hand_rotation(r);
+    const NodePose pose = at_rest();
+    for (int k = 0; k < 3; k++) {
+        scene_open(&s[k], &model, isa[k]);
+        scene_pose(&s[k], &pose, p, r);
+    }
+    int shared = 0;
+    for (int n = 0; n < 100000; n++) {
+        double o[3], d[3], to[3];
+        hand_direction(d);
+        for (int c = 0; c < 3; c++) to[c] = p[c] + hand_uniform(-1, 1);
+        v3_add_scaled(o, to, -2000, d);
+        PartHit      hit[3] = {0};
+        const double want = parts_first_hit(&hit[0], &s[0].entity, o, d, INFINITY, false);
+        for (int k = 1; k < 3; k++) {
+            const double t = parts_first_hit(&hit[k], &s[k].entity, o, d, INFINITY, false);
+            CHECK(t == want && hit[k].triangle == hit[0].triangle);
+        }
+        if (!(want < INFINITY)) continue;
+        /* on the common part of a common plane no triangle of the second box is seen */
+        double at_enu[3], at[3];
+        for (int c = 0; c < 3; c++) at_enu[c] = o[c] + want * d[c] - p[c];
+        m3_tmul_v3(at, r, at_enu);
+        const bool on_x = fabs(at[0] - 1) < 1e-6 && at[1] > -0.69 && at[1] < 0.79 && at[2] > -0.89 && at[2] < 0.29;
+        const bool on_y = fabs(at[1] - 0.8) < 1e-6 && at[0] > -0.59 && at[0] < 0.99 && at[2] > -0.89 && at[2] < 0.29;
+        if (!on_x && !on_y) continue;
+        CHECK(hit[0].triangle < 12);
+        shared++;
+    }
+    CHECK(shared > 5000);
+    for (int k = 0; k < 3; k++) tracer_destroy(s[k].tracer);
+    hand_free(&model);
+}
+
 static void a_wrong_instruction_set_is_refused(void **state)
 {
     (void)state;
@@ -311,6 +357,7 @@ int main(void)
         cmocka_unit_test(nodes_are_where_their_poses_put_them),
         cmocka_unit_test(edge_on_stays_between_the_corners),
         cmocka_unit_test(every_set_of_instructions_agrees),
+        cmocka_unit_test(faces_in_one_place_are_the_lowest),
         cmocka_unit_test(a_wrong_instruction_set_is_refused),
     };
     thread_flush_denormals();

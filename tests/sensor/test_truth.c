@@ -168,6 +168,8 @@ static void contrast_is_the_temperature_difference_that_was_painted(void **state
         }
     f.pixels[1] = (TargetPixels){.visible = 60, .amodal = 80, .box = {20, 10, 30, 16}, .amodal_box = {20, 10, 30, 18},
                                  .occluded_ground = 20, .occluder = -1};
+    const double mean = 0.5 * (planck_band(8e-6, 12e-6, 303, NULL) + planck_band(8e-6, 12e-6, 309, NULL));
+    f.pixels[1].radiance[picture_lwir] = 60 * mean;
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
     CHECK_NEAR(t[0].visible_fraction, 0.75, 1e-12);
     assert_string_equal(t[0].occluder, "ground");
@@ -176,10 +178,50 @@ static void contrast_is_the_temperature_difference_that_was_painted(void **state
     CHECK_NEAR(b->contrast_k, 306 - 300.5, 1e-3);
     CHECK_NEAR(b->dt_rss_k, sqrt(5.5 * 5.5 + 9), 1e-3);
     CHECK_NEAR(b->snr, 5.5 / sqrt(0.25 + 0.05 * 0.05), 0.01);
-    /* 60 pixels of 1/500 rad at the range; corners of this narrow picture lose 1 % to the cosine cubed */
-    const double mean = 0.5 * (planck_band(8e-6, 12e-6, 303, NULL) + planck_band(8e-6, 12e-6, 309, NULL));
-    CHECK_NEAR(b->intensity_w_sr / (60 * mean * t[0].range_m * t[0].range_m / 250000), 1, 0.002);
+    /* 60 pixels of 1/500 rad at the range */
+    CHECK_NEAR(b->intensity_w_sr / (60 * mean * t[0].range_m * t[0].range_m / 250000), 1, 1e-12);
     CHECK(isnan(t[0].band[BAND_MWIR].contrast_k) && isnan(t[0].band[BAND_OPTICAL].snr)); /* not computed: absent */
+}
+
+/* A tenth of a pixel at 320 K, beside another's pixel: mean and variance are its own, the ratio is that of its pixel. */
+static void a_small_target_is_judged_by_its_samples(void **state)
+{
+    (void)state;
+    static float covered[width * height];
+    Target       t[2];
+    scene();
+    for (int i = 0; i < width * height; i++)
+        f.lwir[i] = (float)planck_band(8e-6, 12e-6, 300 + (i % width + i / width) % 2, NULL);
+    double       slope;
+    const double own = planck_band(8e-6, 12e-6, 320, &slope), ground = f.lwir[10 * width + 20];
+    f.lwir[10 * width + 20] = (float)(0.9 * ground + 0.1 * own);
+    f.lwir[10 * width + 21] = (float)own;
+    covered[10 * width + 20] = 0.1f;
+    covered[10 * width + 21] = 0.7f; /* somebody else's: no ring */
+    f.picture.covered = covered;
+    f.pixels[1] = (TargetPixels){.visible = 0.1, .amodal = 0.2, .box = {20, 10, 21, 11}, .amodal_box = {20, 10, 21, 11},
+                                 .occluder = -1, .small = true, .peak_area = 0.1};
+    f.pixels[1].radiance[picture_lwir] = 0.1 * own;
+    f.pixels[1].mean[picture_lwir]     = own;
+    f.pixels[1].variance[picture_lwir] = 9 * slope * slope; /* 3 K about the mean */
+    assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+    const TargetBand *b = &t[0].band[BAND_LWIR];
+    CHECK_NEAR(t[0].pixels, 0.1, 1e-12);
+    /* a ring of 7 pixels about 20, 10: 3 of 300 K (the other's is one of them and left out), 4 of 301 */
+    double ring = 0, square = 0;
+    int    n = 0;
+    for (int y = 9; y <= 11; y++)
+        for (int x = 19; x <= 21; x++)
+            if (!(covered[y * width + x] > 0)) {
+                const double k = 300 + (x + y) % 2;
+                ring += k, square += k * k, n++;
+            }
+    ring /= n;
+    assert_int_equal(n, 7);
+    CHECK_NEAR(b->contrast_k, 320 - ring, 1e-3); /* float radiance, as above */
+    CHECK_NEAR(b->dt_rss_k, sqrt((320 - ring) * (320 - ring) + 9), 0.01); /* the slope changes by 0.1 % over its step */
+    CHECK_NEAR(b->snr, 0.1 * (320 - ring) / sqrt(square / n - ring * ring + 0.05 * 0.05), 1e-3);
+    CHECK_NEAR(b->intensity_w_sr / (0.1 * own * t[0].range_m * t[0].range_m / 250000), 1, 1e-12);
 }
 
 static void hidden_targets_are_listed_and_the_host_never(void **state)
@@ -204,6 +246,7 @@ int main(void)
         cmocka_unit_test(line_of_sight_and_its_rate_agree_with_differences),
         cmocka_unit_test(azimuth_elevation_and_aspect_have_the_stated_senses),
         cmocka_unit_test(contrast_is_the_temperature_difference_that_was_painted),
+        cmocka_unit_test(a_small_target_is_judged_by_its_samples),
         cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),
     };
     return cmocka_run_group_tests(tests, open_fixture, close_fixture);

@@ -1,0 +1,163 @@
+/* render/edges.c: where one sample does not speak for its pixel.
+ *
+ * A pixel is sampled again where it and a neighbour (left, right, above, below) show different entities, parts or
+ * materials, surfaces that stand at an angle, one in shadow and one not, or a step in depth that neither's own plane
+ * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in
+ * the boxes of targets that are too large for a footprint and small enough to have such parts are sampled again
+ * whatever they show, and so is the ground where a small target's shadow falls. */
+#include "render/render_private.h"
+
+/* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
+ * barrel is a sixtieth of its tank's length. */
+static const double middling_px = 64;
+static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
+static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
+static const double step_part = 0.05, step_ground = 0.5; /* of the range */
+
+static void mark_box(Job *job, const double box[4], RefineFlag flag)
+{
+    const View *view = &job->request->view;
+    const int   x0 = (int)fmax(0, floor(box[0])), x1 = (int)fmin(view->width, ceil(box[2]));
+    const int   y0 = (int)fmax(0, floor(box[1])), y1 = (int)fmin(view->height, ceil(box[3]));
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) job->refine[pixel_index(job, x, y)] |= (uint8_t)flag;
+}
+
+/* Box of a sphere's image, generous; false: not before the eye. */
+static bool sphere_box(double box[4], const View *view, const double centre_enu[3], double radius_m)
+{
+    double offset_enu[3], p_cam[3];
+    v3_sub(offset_enu, centre_enu, view->p_enu);
+    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
+    if (!(p_cam[2] > 2 * radius_m)) return false;
+    const double column = 0.5 * view->width + view->focal_px * p_cam[0] / p_cam[2];
+    const double row    = 0.5 * view->height + view->focal_px * p_cam[1] / p_cam[2];
+    const double half_px = view->focal_px * radius_m / (p_cam[2] - radius_m);
+    box[0] = column - half_px, box[1] = row - half_px, box[2] = column + half_px, box[3] = row + half_px;
+    return true;
+}
+
+/* From the target's foot to where its top's shadow falls on level ground. */
+static bool shadow_box(double box[4], const Job *job, int index)
+{
+    const SnapshotEntity *entity = &job->snapshot->entity[index];
+    const Model          *model  = catalog_model(job->world->catalog, entity->model);
+    const double         *sun    = job->air->sun_d_enu;
+    double                foot_enu[3], tip_enu[3], foot[4], tip[4];
+    if (!job->world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
+    enu_from_ecef(foot_enu, &job->world->frame, entity->p_ecef);
+    /* a flying one's shadow is elsewhere, and as faint as it is far */
+    const double above_m = foot_enu[2] - elevation_height(&job->world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
+    if (!(fabs(above_m) < model->height_m)) return false;
+    v3_add_scaled(tip_enu, foot_enu, -model->height_m / sun[2], sun);
+    tip_enu[2] = foot_enu[2];
+    if (!sphere_box(foot, &job->request->view, foot_enu, 0.5 * model->radius_m) ||
+        !sphere_box(tip, &job->request->view, tip_enu, 0.5 * model->radius_m))
+        return false;
+    for (int k = 0; k < 2; k++) {
+        box[k]     = fmin(foot[k], tip[k]);
+        box[k + 2] = fmax(foot[k + 2], tip[k + 2]);
+    }
+    return fmin(box[2] - box[0], box[3] - box[1]) <= thin_px && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px;
+}
+
+void mark_boxes(Job *job)
+{
+    const bool shadows = has_band(job->request->bands, BAND_OPTICAL) || has_band(job->request->bands, BAND_MWIR);
+    for (int i = 0; i < job->snapshot->count; i++) {
+        const TargetPixels *t = &job->boxes[i];
+        double              shadow[4];
+        if (!t->projected) continue;
+        const double *box = t->projected_box;
+        if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) continue;
+        if (!job->is_small[i]) mark_box(job, box, refine_all);
+        if (shadows && shadow_box(shadow, job, i)) mark_box(job, shadow, refine_sun);
+    }
+}
+
+/* ---- neighbours ------------------------------------------------------------------------------- */
+
+/* Range at which a ray meets the plane of another pixel's hit; the eye is the origin. NaN: never. */
+static double plane_range(const Picture *p, size_t at, const double d_at[3], const double d[3])
+{
+    const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
+    const double range_m = p->range_m[at] * v3_dot(n, d_at) / v3_dot(n, d);
+    return range_m > 0 && range_m < INFINITY ? range_m : NAN;
+}
+
+static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step)
+{
+    const Picture *p = job->picture;
+    const double   near_m = fmin(p->range_m[a], p->range_m[b]), far_m = fmax(p->range_m[a], p->range_m[b]);
+    double         d_a[3], d_b[3];
+    if (far_m - near_m <= step * near_m) return false;
+    view_ray(d_a, &job->request->view, xa + 0.5, ya + 0.5);
+    view_ray(d_b, &job->request->view, xb + 0.5, yb + 0.5);
+    return !(fabs(plane_range(p, a, d_a, d_b) - p->range_m[b]) <= step * near_m) &&
+           !(fabs(plane_range(p, b, d_b, d_a) - p->range_m[a]) <= step * near_m);
+}
+
+static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
+{
+    const Picture *p = job->picture;
+    const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
+    const bool     part = p->entity[a] || p->entity[b];
+    const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
+    if (sky_a && sky_b) return 0;
+    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    if (sky_a != sky_b) return refine_step;
+    const bool   other = p->material[a] != p->material[b];
+    const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
+                          p->normal[2][a] * p->normal[2][b];
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, part ? step_part : step_ground))
+        return part ? refine_all : refine_step;
+    if (part && other) return refine_all;
+    return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
+}
+
+unsigned refine_flags(const Job *job, int x, int y)
+{
+    static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    const View      *view  = &job->request->view;
+    unsigned         flags = job->refine[pixel_index(job, x, y)];
+    for (int k = 0; k < 4 && !(flags & refine_all); k++) {
+        const int xb = x + beside[k][0], yb = y + beside[k][1];
+        if (xb >= 0 && yb >= 0 && xb < view->width && yb < view->height) flags |= edge_between(job, x, y, xb, yb);
+    }
+    if (job->request->samples > 1) flags &= ~(unsigned)(refine_step | refine_ground); /* they have no more to give */
+    return flags;
+}
+
+/* ---- ground --------------------------------------------------------------------------------- */
+
+void spread_ground(Scratch *s, const Job *job)
+{
+    const View    *view    = &job->request->view;
+    const Picture *p       = job->picture;
+    const Block   *block   = &s->block;
+    const int      samples = block->n * block->n;
+    s->hits.count = s->rays.count = block->pixels * samples;
+    for (int i = 0; i < s->hits.count; i++) {
+        const int    x = block->x[i / samples], y = block->y[i / samples];
+        const size_t px = pixel_index(job, x, y);
+        double       place[2], d_enu[3], d_centre[3];
+        sample_place(place, block->n, i % samples);
+        view_ray(d_enu, view, x + place[0], y + place[1]);
+        view_ray(d_centre, view, x + 0.5, y + 0.5);
+        double range_m = plane_range(p, px, d_centre, d_enu);
+        /* seen from along it a plane runs off; the ground does not */
+        if (!(range_m < 2 * p->range_m[px] && range_m > 0.5 * p->range_m[px])) range_m = p->range_m[px];
+        s->hits.range_m[i] = range_m;
+        s->hits.entity[i]  = 0;
+        s->hits.part[i] = s->hits.model[i] = 0;
+        s->rays.far_m[i] = INFINITY;
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][i] = view->p_enu[k];
+            s->rays.d_enu[k][i] = d_enu[k];
+            s->hits.p_enu[k][i] = view->p_enu[k] + range_m * d_enu[k];
+            s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
+        }
+        s->hits.surface[i] = (uint8_t)landscape_surface(job->world->landscape, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
+        s->shadow[i]       = job->shadow[px];
+    }
+}

@@ -1,0 +1,159 @@
+/* render/render_private.h: what the files of one frame share: blocks of samples, footprints of small targets, sums.
+ *
+ * A frame goes in passes over a pool, each of tasks that write to places of their own:
+ *   boxes       every entity's box on the image                          render_targets.c
+ *   footprints  small targets, sampled over their own boxes              footprint.c
+ *   base        every pixel, small targets taken away                    render.c
+ *   edges       pixels whose neighbours disagree, again with more rays   edges.c decides, render.c shades
+ *   put on      the footprints, over the pixels                          footprint.c
+ * What is summed over tiles (pixels on target, radiance of targets, the range profile) is summed in integers, so the
+ * order in which threads finish cannot show. */
+#ifndef RENDER_RENDER_PRIVATE_H
+#define RENDER_RENDER_PRIVATE_H
+
+#include "render/render.h"
+
+enum { tile_side_samples = 32, pairs_per_tile = 16 };
+
+/* ---- a block of samples ---------------------------------------------------------------------- */
+
+typedef struct Footprint Footprint;
+
+/* Pixels of n x n samples, all samples of a pixel together; or the cells of a footprint that met their target. */
+typedef struct Block {
+    int      n, pixels;
+    int      sign;                             /* -1: takes back from the sums what these samples gave before */
+    bool     writes;                           /* into the planes */
+    unsigned bands;                            /* 1 << Band: those to shade */
+    uint16_t x[hits_capacity], y[hits_capacity]; /* of each pixel */
+    Footprint *footprint;                      /* NULL: pixels */
+    int      cell[hits_capacity];              /* of each sample of a footprint: row * columns + column */
+} Block;
+
+/* Place of sample s of n x n in its pixel, 0 .. 1. A grid turned by atan(1 / n), so that an edge along the rows or
+ * columns is met in n^2 steps and not in n; the one sample of n = 1 is the centre. */
+static inline void sample_place(double place[2], int n, int s)
+{
+    const int column = s % n, row = s / n;
+    place[0] = (column + (row + 0.5) / n) / n;
+    place[1] = (row + (n - column - 0.5) / n) / n;
+}
+
+/* ---- sums over samples ----------------------------------------------------------------------- */
+
+/* Areas in steps of 1 / Job.steps_per_px of a pixel, powers in steps of the job's quanta. */
+typedef struct TargetCount {
+    int64_t visible, amodal, hidden_ground, hidden_entity;
+    int64_t radiance[picture_plane_count];
+    int     box[4], amodal_box[4];
+} TargetCount;
+
+typedef struct HiddenBy {
+    bool    used;
+    int     target, occluder; /* snapshot indices */
+    int64_t area;
+} HiddenBy;
+
+typedef struct Scratch {
+    Block          block;
+    Rays           rays, some;
+    Hits           hits, all;
+    RadarReturns   radar;
+    float          out[hits_capacity], temp_k[hits_capacity], texture[hits_capacity];
+    uint16_t       material[hits_capacity];
+    uint8_t        shadow[hits_capacity], meets[hits_capacity];
+    int            some_index[hits_capacity];
+    int           *list;    /* [snapshot count] */
+    TargetCount   *target;  /* [snapshot count] */
+    int64_t       *profile; /* [profile_bins][radar_bounces] */
+    RenderCounters counters;
+    double         visibility_s, shadow_s, shade_s, radar_s;
+} Scratch;
+
+typedef struct Job {
+    const World         *world;
+    const Snapshot      *snapshot;
+    const RenderRequest *request;
+    const Air           *air;
+    const Visibility    *visibility;
+    Picture             *picture;   /* truth planes where asked for or where edges are looked for */
+    Scratch            **scratch;   /* a worker */
+    HiddenBy            *pairs;     /* [tiles][pairs_per_tile] */
+    int                  side_px, tiles_x, tiles_y;
+    TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
+    Footprint           *footprint; /* [footprints], by entity */
+    int                  footprints;
+    bool                *is_small;  /* [snapshot count]: left to its footprint; pixels do not see it */
+    /* planes; NULL: none wanted */
+    int32_t             *coverer;   /* snapshot index of the small target that covers most; where any does */
+    uint8_t             *refine;    /* RefineFlag */
+    uint8_t             *shadow;    /* of the sample that truth is of */
+    int64_t              steps_per_px;
+    /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
+     * limit stay below 2^62 quanta */
+    double               profile_limit, profile_quantum, radiance_limit, radiance_quantum;
+} Job;
+
+static inline bool has_band(unsigned bands, Band band) { return bands >> band & 1; }
+static inline bool looks_for_edges(const RenderRequest *request) { return request->edge_samples > request->samples; }
+static inline size_t pixel_index(const Job *job, int x, int y)
+{
+    return (size_t)y * (size_t)job->picture->width + (size_t)x;
+}
+
+/* cos^3 of the angle off the axis at a pixel's centre: what its solid angle has less than 1 / focal_px^2. */
+double pixel_cosine3(const View *view, int x, int y);
+
+/* ---- render.c -------------------------------------------------------------------------------- */
+
+/* Rays to the sun from the block's hits, where one of its bands shows shadows. */
+void trace_shadows(Scratch *s, const Job *job);
+/* Shades the block's hits in its bands, and gives each result to its pixels or its footprint. */
+void shade_block(Scratch *s, const Job *job);
+
+/* ---- render_targets.c ------------------------------------------------------------------------ */
+
+/* Whole box of entity `index` on the image; a pool task. */
+void project_target(void *job, int worker, int index);
+/* Visible and amodal area of every entity that the block can show. */
+void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs);
+/* The block's own radiance, weighted by area, to the targets that it shows. */
+void add_radiance(Scratch *s, const Job *job, int plane);
+/* Sums over workers and footprints, into the picture. */
+void gather(Job *job, int workers);
+
+/* ---- edges.c --------------------------------------------------------------------------------- */
+
+/* What a pixel deserves. What only the bands that show shadows see must not touch the others, whose bits would then
+ * depend on what else is asked for; and bare ground must stay cheap. */
+typedef enum RefineFlag {
+    refine_all    = 1, /* edge_samples a side, every band */
+    refine_step   = 2, /* 2 a side, every band: a crest of the ground, the horizon */
+    refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
+    refine_ground = 8, /* 2 a side on the plane of the hit there is, no ray; not the radar: another kind of ground */
+} RefineFlag;
+
+/* Marks what must be refined whoever stands beside it: boxes of targets of middling size, and where a target's
+ * shadow falls. */
+void mark_boxes(Job *job);
+/* The flags of a pixel, those marked included. Reads the truth planes and the shadow plane. */
+unsigned refine_flags(const Job *job, int x, int y);
+/* The block's samples as places on the planes of their pixels' hits, which are of ground: rays, hits and shadow. */
+void spread_ground(Scratch *s, const Job *job);
+
+/* ---- footprint.c ----------------------------------------------------------------------------- */
+
+/* Which targets are small, and room for their footprints. */
+Status footprints_plan(Job *job, Arena *arena);
+void   footprint_task(void *job, int worker, int index);
+/* After all tasks: which pixels they cover. */
+void   footprints_cover(Job *job);
+/* Gives the block's samples of a plane (s->out) to its footprint. */
+void   footprint_splat(Scratch *s, int plane);
+/* Area of a sample within the image, px. */
+double footprint_area(const Footprint *f, int cell);
+/* Over the finished pixels, in order of entity. */
+void   footprints_put_on(Job *job);
+void   footprints_gather(const Job *job);
+
+#endif

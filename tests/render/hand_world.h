@@ -1,0 +1,180 @@
+/* tests/render/hand_world.h: a world of hand-made models whose light has answers on paper: no air, a sun, no sky. */
+#ifndef TESTS_RENDER_HAND_WORLD_H
+#define TESTS_RENDER_HAND_WORLD_H
+
+#include "tests/render/hand_models.h"
+
+#include "render/render.h"
+
+enum { hand_plate_model, hand_sphere_model, hand_mast_model, hand_models, hand_most_entities = 64 };
+
+static const double hand_plate_y_m = 1, hand_plate_z_m = 1, hand_sphere_m = 1;
+static const float  hand_rho = 0.5f, hand_rho_ir = 0.2f;
+
+typedef struct HandWorld {
+    Landscape      landscape;
+    Catalog       *catalog;
+    World          world;
+    Pool          *pool;
+    Arena         *arena;
+    int            model[hand_models]; /* of the catalog */
+    SnapshotEntity entity[hand_most_entities];
+    NodePose       pose[hand_most_entities];
+    Snapshot       snapshot;
+    Air            air;
+} HandWorld;
+
+static HandWorld hand;
+
+/* Puts a hand-made model in the place of a built-in one. */
+static inline int hand_replace(int index, const Model *model)
+{
+    Model *m = (Model *)catalog_model(hand.catalog, index); /* the catalog's own, in memory that may be written */
+    model_destroy(m);
+    *m = *model;
+    for (int n = 0; n < m->node_count; n++) strcpy(m->node[n].name, "node"), m->node[n].low = 1;
+    for (int p = 0; p < m->part_count; p++) strcpy(m->part[p].name, "part"), strcpy(m->part[p].material, "brick_red");
+    model_measure(m);
+    return index;
+}
+
+static inline int hand_open(bool with_ground)
+{
+    char            path[text_file_size];
+    LocalFrame      frame;
+    const Geodetic  origin = {0.6, -1.9, 700};
+    LandscapeConfig config = landscape_default_config();
+    Model           model;
+    text_file(path, "type,model,origin\n1,tank,base\n2,missile,base\n3,marker,base\n");
+    const Status status = catalog_open(&hand.catalog, path, 0.01);
+    remove(path);
+    if (status != STATUS_OK || catalog_model_count(hand.catalog) < 1 + hand_models) return -1;
+    hand_plate(&model, hand_plate_y_m, hand_plate_z_m);
+    hand.model[hand_plate_model] = hand_replace(1, &model);
+    hand_sphere(&model, hand_sphere_m, 48);
+    hand.model[hand_sphere_model] = hand_replace(2, &model);
+    hand_box(&model, (const double[3]){-0.03, -0.03, -8}, (const double[3]){0.03, 0.03, 0});
+    hand.model[hand_mast_model] = hand_replace(3, &model);
+
+    config.half_width_m = 500;
+    config.horizon_m    = 20000;
+    if (local_frame_at(&frame, &origin) != STATUS_OK) return -1;
+    if (with_ground && landscape_create(&hand.landscape, &config, &frame, NULL, 0, NULL, 0) != STATUS_OK) return -1;
+    if (world_open(&hand.world, hand.catalog, with_ground ? &hand.landscape : NULL, &frame, "avx2") != STATUS_OK) return -1;
+    const int brick = materials_find(&hand.world.materials, "brick_red");
+    Material *m = &hand.world.materials.material[brick];
+    for (int c = 0; c < optical_channel_count; c++) m->rho[c] = hand_rho, hand.world.materials.ground_rho[c] = 0;
+    m->rho_mwir = m->rho_lwir = hand_rho_ir;
+    m->gloss = 0;
+    m->metal = 1;
+    hand.arena = arena_create();
+    return hand.arena && pool_create(&hand.pool, 2) == STATUS_OK ? 0 : -1;
+}
+
+static inline int hand_close(void **state)
+{
+    (void)state;
+    pool_destroy(hand.pool);
+    world_close(&hand.world);
+    if (hand.world.landscape || hand.landscape.cover) landscape_destroy(&hand.landscape);
+    catalog_close(hand.catalog);
+    arena_destroy(hand.arena);
+    return 0;
+}
+
+static inline void hand_clear(void)
+{
+    hand.snapshot = (Snapshot){.entity = hand.entity, .node = hand.pose};
+}
+
+static inline int hand_add(int model, const double p_enu[3], const double r_enu_from_body[9])
+{
+    const int       k = hand.snapshot.count++;
+    SnapshotEntity *e = &hand.entity[k];
+    *e = (SnapshotEntity){.id = {1, 1, (uint16_t)(k + 1)}, .model = hand.model[model], .first_node = k};
+    ecef_from_enu(e->p_ecef, &hand.world.frame, p_enu);
+    m3_mul(e->r_ecef_from_body, hand.world.frame.r_ecef_from_enu, r_enu_from_body);
+    hand.pose[k] = (NodePose){{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    hand.snapshot.node_count = hand.snapshot.count;
+    return k;
+}
+
+/* Body axes: forward in the plane of east and north at this angle from east, then turned down by dive. */
+static inline void hand_attitude(double r[9], double from_east_rad, double dive_rad)
+{
+    const double c = cos(from_east_rad), s = sin(from_east_rad), cd = cos(dive_rad), sd = sin(dive_rad);
+    const double x[3] = {c * cd, s * cd, -sd}, y[3] = {s, -c, 0};
+    double       z[3];
+    v3_cross(z, x, y);
+    for (int k = 0; k < 3; k++) r[3 * k] = x[k], r[3 * k + 1] = y[k], r[3 * k + 2] = z[k];
+}
+
+/* Looks from p_enu along d_enu, columns level. */
+static inline View hand_view(const double p_enu[3], const double d_enu[3], int width, int height, double focal_px)
+{
+    View   view = {.width = width, .height = height, .focal_px = focal_px};
+    double x[3], y[3], z[3];
+    v3_normalize(z, d_enu);
+    v3_cross(x, z, (const double[3]){0, 0, 1});
+    v3_normalize(x, x);
+    v3_cross(y, z, x);
+    for (int k = 0; k < 3; k++) {
+        view.p_enu[k] = p_enu[k];
+        view.r_enu_from_cam[3 * k]     = x[k];
+        view.r_enu_from_cam[3 * k + 1] = y[k];
+        view.r_enu_from_cam[3 * k + 2] = z[k];
+    }
+    return view;
+}
+
+/* A sun, and nothing else that shines, warms, cools, dims or glows. */
+static inline void hand_air_off(const double sun_enu[3])
+{
+    Sun           sun = {.elevation_rad = 0.8, .distance_au = 1};
+    const Weather weather = weather_default();
+    Air          *a = &hand.air;
+    memcpy(sun.d_enu, sun_enu, sizeof sun.d_enu);
+    air_at(a, &weather, &sun, hand.world.planck_mwir, hand.world.planck_lwir);
+    for (int c = 0; c < optical_channel_count; c++) a->sky_w_m2[c] = a->extinction_per_m[c] = a->sky_scale[c] = 0;
+    a->extinction_mwir_per_m = a->extinction_lwir_per_m = a->saturating_mwir = a->saturating_lwir = 0;
+    a->sun_mwir_w_m2 = a->ground_mwir_w_m2_sr = a->ground_lwir_w_m2_sr = 0;
+    a->sky_mean_mwir_w_m2_sr = a->sky_mean_lwir_w_m2_sr = 0;
+    a->solar_direct_w_m2 = a->solar_diffuse_w_m2 = a->longwave_loss_w_m2 = 0;
+    memset(a->sky_mwir_w_m2_sr, 0, sizeof a->sky_mwir_w_m2_sr);
+    memset(a->sky_lwir_w_m2_sr, 0, sizeof a->sky_lwir_w_m2_sr);
+}
+
+/* What a part of brick sends out by itself, W/(m2 sr): it is as warm as the air. */
+static inline double hand_emitted(Band band)
+{
+    const bool mwir = band == BAND_MWIR;
+    return (1 - hand_rho_ir) * planck_band(mwir ? 3.4e-6 : 8e-6, mwir ? 4.8e-6 : 12e-6, hand.air.weather.air_temp_k, NULL);
+}
+
+static inline RenderRequest hand_request(const View *view)
+{
+    return (RenderRequest){.view = *view, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR, .truth = true,
+                           .samples = 1, .edge_samples = 4, .target_samples = 48, .hidden_entity = -1};
+}
+
+static inline Picture hand_render(const RenderRequest *request, Pool *pool)
+{
+    Picture picture;
+    assert_int_equal(render(&picture, &hand.world, &hand.snapshot, request, &hand.air, pool, hand.arena), STATUS_OK);
+    return picture;
+}
+
+/* Sum over the picture of (radiance - even background) x solid angle, W/m2 at the eye. */
+static inline double hand_irradiance(const Picture *p, const View *view, int plane, double background_w_m2_sr)
+{
+    double sum = 0;
+    for (int y = 0; y < p->height; y++)
+        for (int x = 0; x < p->width; x++) {
+            const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px, v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
+            sum += (picture_plane(p, plane)[y * p->width + x] - background_w_m2_sr) /
+                   (pow(1 + u * u + v * v, 1.5) * view->focal_px * view->focal_px);
+        }
+    return sum;
+}
+
+#endif

@@ -1,0 +1,263 @@
+/* Adaptive antialiasing against the picture that has all the rays everywhere: the same bits where it refined, close
+ * elsewhere, few rays on bare ground, and the same picture for any number of threads, with and without skips, and
+ * whatever else was asked for. labels: threads */
+#include "tests/render/hand_world.h"
+
+static const double sun_enu[3] = {-0.48, 0.36, 0.8};
+
+static int open_world(void **state)
+{
+    (void)state;
+    return hand_open(true);
+}
+
+static double ground_at(double x, double y) { return elevation_height(&hand.landscape.elevation, x, y, NULL); }
+
+/* Real light, and the hand-made things strewn over the ground from 60 m to 3 km before the eye. */
+static View strew(int things, int width, int height)
+{
+    const double  eye_enu[3] = {-400, 0, ground_at(-400, 0) + 40}, ahead[3] = {1, 0, -0.09};
+    const Weather weather = weather_default();
+    Sun           sun = {.elevation_rad = 0.9, .distance_au = 1};
+    memcpy(sun.d_enu, sun_enu, sizeof sun_enu);
+    air_at(&hand.air, &weather, &sun, hand.world.planck_mwir, hand.world.planck_lwir);
+    hand_clear();
+    hand_draw = 77;
+    for (int k = 0; k < things; k++) {
+        const double ahead_m = 60 * pow(50, (k + 0.5) / things), aside_m = hand_uniform(-0.2, 0.2) * ahead_m;
+        double       p_enu[3] = {eye_enu[0] + ahead_m, eye_enu[1] + aside_m, 0}, r[9];
+        p_enu[2] = ground_at(p_enu[0], p_enu[1]) + (k % hand_models == hand_sphere_model ? 0.9 : 0);
+        hand_attitude(r, hand_uniform(0, 6), 0);
+        hand_add(k % hand_models, p_enu, r);
+    }
+    return hand_view(eye_enu, ahead, width, height, width * 2.2);
+}
+
+static RenderRequest request_of(const View *view)
+{
+    RenderRequest request = hand_request(view);
+    request.bands         = 15;
+    request.profile_bins  = 600;
+    request.profile_bin_m = 1;
+    return request;
+}
+
+static void same_planes(const Picture *a, const Picture *b, unsigned bands)
+{
+    const size_t n = (size_t)a->width * (size_t)a->height;
+    static const Band band_of[picture_plane_count] = {BAND_OPTICAL, BAND_OPTICAL, BAND_OPTICAL, BAND_MWIR, BAND_LWIR, BAND_RADAR};
+    for (int plane = 0; plane < picture_plane_count; plane++)
+        if (picture_plane(a, plane) && bands >> band_of[plane] & 1)
+            assert_memory_equal(picture_plane(a, plane), picture_plane(b, plane), n * sizeof(float));
+    assert_memory_equal(a->entity, b->entity, n * sizeof *a->entity);
+    assert_memory_equal(a->range_m, b->range_m, n * sizeof *a->range_m);
+    assert_memory_equal(a->material, b->material, n * sizeof *a->material);
+    for (int i = 0; i < hand.snapshot.count; i++) {
+        const TargetPixels *s = &a->target[i], *t = &b->target[i];
+        CHECK(s->visible == t->visible && s->amodal == t->amodal && s->occluder == t->occluder && s->small == t->small);
+        CHECK(s->occluded_ground == t->occluded_ground && s->occluded_entity == t->occluded_entity);
+        CHECK(s->radiance[picture_lwir] == t->radiance[picture_lwir]);
+        assert_memory_equal(s->box, t->box, sizeof s->box);
+    }
+}
+
+static void threads_and_skips_change_no_bit(void **state)
+{
+    (void)state;
+    const View    view    = strew(40, 200, 140);
+    RenderRequest request = request_of(&view);
+    arena_reset(hand.arena);
+    const Picture one = hand_render(&request, hand.pool);
+    CHECK(one.counters.small_targets > 8 && one.counters.rays_edges > 5000);
+    for (int threads = 1; threads <= 4; threads += threads) {
+        Pool *pool = NULL;
+        assert_int_equal(pool_create(&pool, threads), STATUS_OK);
+        for (int no_skip = 0; no_skip < (threads == 1 ? 2 : 1); no_skip++) {
+            request.no_skip = no_skip;
+            const Picture other = hand_render(&request, pool);
+            same_planes(&one, &other, 15);
+            assert_memory_equal(one.profile, other.profile, 600 * radar_bounces * sizeof *one.profile);
+        }
+        pool_destroy(pool);
+    }
+}
+
+/* No band's bits hang on what other bands were asked for: shadows show in two of them only. */
+static void a_band_alone_is_the_band_in_company(void **state)
+{
+    (void)state;
+    const View    view    = strew(30, 160, 120);
+    RenderRequest request = request_of(&view);
+    arena_reset(hand.arena);
+    const Picture all = hand_render(&request, hand.pool);
+    for (int b = 0; b < BAND_COUNT; b++) {
+        request.bands = 1u << b;
+        const Picture alone = hand_render(&request, hand.pool);
+        const size_t  n = (size_t)(view.width * view.height);
+        for (int plane = 0; plane < picture_plane_count; plane++)
+            if (picture_plane(&alone, plane))
+                assert_memory_equal(picture_plane(&all, plane), picture_plane(&alone, plane), n * sizeof(float));
+    }
+    /* and truth may be left out */
+    request.bands = 15;
+    request.truth = false;
+    const Picture untold = hand_render(&request, hand.pool);
+    CHECK(!untold.entity && !untold.range_m && !untold.target);
+    assert_memory_equal(all.lwir, untold.lwir, (size_t)(view.width * view.height) * sizeof(float));
+    assert_memory_equal(all.radar, untold.radar, (size_t)(view.width * view.height) * sizeof(float));
+}
+
+/* Bodies only, no small targets: the refined pixels are those of the picture with 4 x 4 everywhere, to the bit. */
+static void refined_pixels_are_those_of_the_full_picture(void **state)
+{
+    (void)state;
+    const View    view    = strew(60, 240, 160);
+    RenderRequest request = request_of(&view);
+    request.target_samples = 0;
+    arena_reset(hand.arena);
+    const Picture adaptive = hand_render(&request, hand.pool);
+    request.edge_samples = 0;
+    const Picture plain = hand_render(&request, hand.pool);
+    request.samples = 4;
+    const Picture full = hand_render(&request, hand.pool);
+    request.samples = 2;
+    const Picture half = hand_render(&request, hand.pool);
+    int of_full = 0, of_half = 0, of_ground = 0, kept = 0, at_edge = 0, edges = 0;
+    for (int y = 0; y < view.height; y++)
+        for (int x = 0; x < view.width; x++) {
+            const int i = y * view.width + x;
+            /* radar: no ground is spread for it */
+            if (adaptive.radar[i] == full.radar[i] && adaptive.lwir[i] == full.lwir[i]) of_full++;
+            else if (adaptive.radar[i] == half.radar[i] && adaptive.lwir[i] == half.lwir[i]) of_half++;
+            else if (adaptive.radar[i] == plain.radar[i] && adaptive.lwir[i] == plain.lwir[i]) kept++;
+            else if (adaptive.radar[i] == plain.radar[i] && !adaptive.entity[i]) of_ground++;
+            else fail_msg("pixel %d, %d is neither as it was nor refined", x, y);
+            /* every pixel where an entity begins or ends is refined */
+            for (int k = 0; k < 4; k++) {
+                const int xb = x + (k == 0) - (k == 1), yb = y + (k == 2) - (k == 3);
+                if (xb < 0 || yb < 0 || xb >= view.width || yb >= view.height ||
+                    plain.entity[i] == plain.entity[yb * view.width + xb])
+                    continue;
+                edges++;
+                at_edge += adaptive.lwir[i] == full.lwir[i] && adaptive.optical[0][i] == full.optical[0][i];
+            }
+        }
+    print_message("of %d pixels: %d as with 4 x 4, %d as with 2 x 2, %d spread ground, %d as they were\n",
+                  view.width * view.height, of_full, of_half, of_ground, kept);
+    print_message("%d of %d at edges of entities\n", at_edge, edges);
+    CHECK(edges > 300 && at_edge == edges);
+    CHECK(of_ground > 100);
+    /* the full picture and the adaptive one say the same of a target that lies in its refined box */
+    int compared = 0;
+    for (int i = 0; i < hand.snapshot.count; i++) {
+        const double *box = adaptive.target[i].projected_box;
+        if (!adaptive.target[i].projected || fmax(box[2] - box[0], box[3] - box[1]) > 60 || box[0] < 1 || box[1] < 1 ||
+            box[2] > view.width - 1 || box[3] > view.height - 1)
+            continue;
+        CHECK_NEAR(adaptive.target[i].visible, full.target[i].visible, 1e-9);
+        CHECK_NEAR(adaptive.target[i].amodal, full.target[i].amodal, 1e-9);
+        compared += full.target[i].visible > 0;
+    }
+    CHECK(compared > 5);
+}
+
+static double rms(const Picture *a, const Picture *b, int plane, double *most)
+{
+    double    sum = 0;
+    const int n = a->width * a->height;
+    *most = 0;
+    for (int i = 0; i < n; i++) {
+        const double e = picture_plane(a, plane)[i] - picture_plane(b, plane)[i];
+        sum += e * e;
+        *most = fmax(*most, fabs(e));
+    }
+    return sqrt(sum / n);
+}
+
+/* What the saving costs: rms against 8 x 8 rays everywhere, of one ray, of the adaptive picture, of 4 x 4. */
+static void the_error_and_its_price(void **state)
+{
+    (void)state;
+    const View    view    = strew(40, 160, 120);
+    RenderRequest request = request_of(&view);
+    arena_reset(hand.arena);
+    const Picture adaptive = hand_render(&request, hand.pool);
+    request.edge_samples = request.target_samples = 0;
+    const Picture plain = hand_render(&request, hand.pool);
+    request.samples = 4;
+    const Picture full = hand_render(&request, hand.pool);
+    request.samples = 8;
+    const Picture best = hand_render(&request, hand.pool);
+    static const int planes[] = {picture_optical, picture_mwir, picture_lwir};
+    const double     pixels = view.width * view.height;
+    print_message("rays a pixel: 1, %.2f adaptive, 16\n", (double)adaptive.counters.rays_primary / pixels);
+    for (int k = 0; k < 3; k++) {
+        double       most[3];
+        const double before = rms(&plain, &best, planes[k], &most[0]), after = rms(&adaptive, &best, planes[k], &most[1]);
+        const double all = rms(&full, &best, planes[k], &most[2]);
+        print_message("plane %d: rms off 8 x 8: %.4f with 1, %.4f adaptive, %.4f with 16; most %.3f %.3f %.3f\n", planes[k],
+                      before, after, all, most[0], most[1], most[2]);
+        /* the bound of this priced skip: no more than half of the error is left (a third, as measured) */
+        CHECK(after < 0.5 * before);
+    }
+}
+
+/* Ground and sky alone, to the horizon: less than a tenth more rays. */
+static void bare_ground_stays_cheap(void **state)
+{
+    (void)state;
+    const View          view    = strew(0, 240, 160);
+    const RenderRequest request = request_of(&view);
+    arena_reset(hand.arena);
+    const Picture       picture = hand_render(&request, hand.pool);
+    const double        ratio   = (double)picture.counters.rays_primary / (double)picture.counters.pixels;
+    print_message("bare ground: %.3f rays a pixel, %.1f %% of pixels refined\n", ratio,
+                  100 * (double)picture.counters.pixels_refined / (double)picture.counters.pixels);
+    CHECK(ratio < 1.1 && picture.counters.pixels_refined > picture.counters.pixels / 50);
+}
+
+/* A mast of 6 cm, a sixth of a pixel, at every place between two columns: no row of it is lost. */
+static void a_mast_between_the_pixels_is_seen(void **state)
+{
+    (void)state;
+    const double eye_enu[3] = {0, 0, 3000}, ahead[3] = {1, 0, 0};
+    const View   view = hand_view(eye_enu, ahead, 64, 64, 500);
+    RenderRequest request = hand_request(&view);
+    double        r[9], worst = 0;
+    hand_air_off(sun_enu);
+    hand_attitude(r, 0, 0);
+    request.target_samples = 0; /* by its box alone */
+    int missed = 0;
+    for (int k = 0; k < 40; k++) {
+        const double p_enu[3] = {180, -k / 40.0 * 180 / 500, 3000 - 4};
+        hand_clear();
+        hand_add(hand_mast_model, p_enu, r);
+        arena_reset(hand.arena);
+        RenderRequest one = request;
+        one.edge_samples  = 0;
+        const Picture picture = hand_render(&request, hand.pool), plain = hand_render(&one, hand.pool);
+        double        area = 0, by_one = 0;
+        for (int i = 0; i < 64 * 64; i++) area += picture.lwir[i] > 0, by_one += plain.lwir[i] > 0;
+        CHECK(area >= 20); /* 22 rows, the ends by parts */
+        missed += by_one == 0;
+        const double want = 0.06 * 8 * 500 * 500 / (180.0 * 180.0);
+        worst = fmax(worst, fabs(hand_irradiance(&picture, &view, picture_lwir, 0) * 250000 / hand_emitted(BAND_LWIR) / want - 1));
+    }
+    print_message("mast: area off by up to %.1f %%; one ray a pixel misses it at %d of 40 places\n", 100 * worst, missed);
+    CHECK(missed > 20);
+    CHECK(worst < 0.5); /* one of sixteen columns of samples more or less, of 2.7: 37 %; and its nearer face is wider */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(threads_and_skips_change_no_bit),
+        cmocka_unit_test(a_band_alone_is_the_band_in_company),
+        cmocka_unit_test(refined_pixels_are_those_of_the_full_picture),
+        cmocka_unit_test(the_error_and_its_price),
+        cmocka_unit_test(bare_ground_stays_cheap),
+        cmocka_unit_test(a_mast_between_the_pixels_is_seen),
+    };
+    thread_flush_denormals();
+    return cmocka_run_group_tests(tests, open_world, hand_close);
+}
