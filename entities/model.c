@@ -7,7 +7,7 @@ const char *heat_role_name(HeatRole role)
 {
     static const char *const name[HEAT_ROLE_COUNT] = {
         "passive", "hull", "turret", "engine_deck", "exhaust", "gun", "track",
-        "wheel", "cabin", "rotor", "turbine", "motor", "nose",
+        "wheel", "cabin", "rotor", "turbine", "motor", "nose", "wreck",
     };
     return (unsigned)role < HEAT_ROLE_COUNT ? name[role] : "?";
 }

@@ -22,6 +22,7 @@ typedef enum HeatRole {
     HEAT_TURBINE,      /* flight: turbine casing and exhaust */
     HEAT_MOTOR,        /* burn: rocket motor and nozzle, after launch */
     HEAT_NOSE,         /* speed: aerodynamic heating */
+    HEAT_WRECK,        /* burning: all of a destroyed or flaming platform, on top of the others; no part has it */
     HEAT_ROLE_COUNT
 } HeatRole;
 

@@ -27,7 +27,8 @@ enum { site = 1, application = 3001, tank_count = 3, vehicle_count = 5, target_v
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0}, truck_type = {1, 1, 222, 7, 1, 0, 0},
                            helicopter_type = {1, 2, 225, 20, 1, 0, 0}, missile_type = {2, 2, 225, 1, 1, 3, 0};
 
-/* Appearance bits of IEEE 1278.1: land 15 flaming, 3-4 damage, 5-6 smoke, 22 power plant; 23 deactivated. */
+/* Appearance bits of IEEE 1278.1: land 15 flaming, 3-4 damage, 5-6 smoke, 7-8 dust, 22 power plant; 23 deactivated. */
+static const uint32_t small_trail = 1u << 7, medium_trail = 2u << 7;
 static const uint32_t deactivated = 1u << 23, engine_on = 1u << 22, wrecked = 1u << 15 | 3u << 3 | 1u << 5;
 
 typedef struct Options {
@@ -431,7 +432,8 @@ static void send_pdu(Sender *sender, double t_s, const uint8_t *bytes, size_t co
 static uint32_t appearance_of(const Scene *scene, int entity, double t_s)
 {
     if (entity == target_vehicle && t_s >= scene->impact_s) return wrecked;
-    if (entity < helicopter) return engine_on;
+    if (entity < tank_count) return engine_on | medium_trail;
+    if (entity < helicopter) return engine_on | small_trail;
     if (entity == missile) return t_s < fire_s + 0.5 ? 1u << 16 : 0; /* launch flash */
     return engine_on;
 }

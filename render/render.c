@@ -5,6 +5,7 @@
  * integers, so the order in which threads finish cannot show. */
 #include "render/render.h"
 
+#include "render/effects.h"
 #include "render/optical.h"
 
 #include <stdlib.h>
@@ -29,6 +30,8 @@ typedef struct Scratch {
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     int            some_index[hits_capacity];
+    VeilRays       veil;
+    int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
     int64_t       *profile; /* [profile_bins][radar_bounces] */
@@ -42,6 +45,7 @@ typedef struct Job {
     const RenderRequest *request;
     const Air           *air;
     const Visibility    *visibility;
+    EffectScene          effects; /* smoke, dust, flames and bursts */
     Picture             *picture;
     Scratch            **scratch; /* a worker */
     HiddenBy            *pairs;   /* [tiles][pairs_per_tile] */
@@ -57,6 +61,17 @@ typedef struct Tile {
 } Tile;
 
 static bool wants(const RenderRequest *request, Band band) { return request->bands >> band & 1; }
+
+/* Bands of veil.h that somebody consumes. */
+static unsigned veil_wanted(const RenderRequest *request)
+{
+    static const unsigned rgb = 1u << effect_band_b | 1u << effect_band_g | 1u << effect_band_r;
+    unsigned bands = 0;
+    if (wants(request, BAND_OPTICAL)) bands |= request->optical_rgb ? rgb : 1u << effect_band_pan;
+    if (wants(request, BAND_MWIR)) bands |= 1u << effect_band_mwir;
+    if (wants(request, BAND_LWIR)) bands |= 1u << effect_band_lwir;
+    return bands;
+}
 
 /* Index of sample (sx, sy) of pixel (x, y). */
 static inline int sample_index(const Tile *tile, int x, int y, int sx, int sy)
@@ -91,6 +106,8 @@ static void resolve_materials(Scratch *s, const Job *job)
         s->material[i] = 0;
         if (s->hits.entity[i]) {
             s->material[i] = (uint16_t)world->materials.part[s->hits.model[i]][s->hits.part[i] - 1];
+            if (world->materials.burnt && snapshot_is_wreck(&job->snapshot->entity[s->hits.entity[i] - 1]))
+                s->material[i] = (uint16_t)world->materials.burnt;
         } else if (s->hits.surface[i]) {
             const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
             s->material[i]             = (uint16_t)world->materials.surface[surface];
@@ -128,6 +145,7 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
             optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
                           &s->hits, &s->rays, s->material, s->texture, s->shadow);
+            veil_apply(s->out, &s->veil, request->optical_rgb ? rgb[c] : optical_channel_pan, s->hits.count);
             average(picture->optical[c], s->out, tile, width);
         }
     }
@@ -138,6 +156,7 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
         if (wants(request, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
                           s->shadow);
+            veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             average(band == BAND_MWIR ? picture->mwir : picture->lwir, s->out, tile, width);
         }
 }
@@ -293,6 +312,9 @@ static void render_tile(void *user, int worker, int task)
 
     const double t2 = wall_clock_s();
     resolve_materials(s, job);
+    const int volumes = veil_block(s->veil_list, job->effects.volume, job->effects.count, view, tile.x0, tile.y0,
+                                   tile.x1, tile.y1);
+    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, veil_wanted(request));
     shade_bands(s, job, &tile);
     if (request->truth) {
         write_truth(s, job, &tile);
@@ -350,9 +372,10 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
         Scratch *s = job->scratch[w] = arena_alloc(arena, 1, sizeof *s);
         if (!s) return STATUS_NO_MEMORY;
         s->list    = arena_alloc(arena, entities, sizeof *s->list);
+        s->veil_list = arena_alloc(arena, (size_t)job->effects.count + 1, sizeof *s->veil_list);
         s->target  = arena_alloc(arena, entities, sizeof *s->target);
         s->profile = arena_alloc(arena, (size_t)job->request->profile_bins * radar_bounces, sizeof *s->profile);
-        if (!s->list || !s->target || !s->profile) return STATUS_NO_MEMORY;
+        if (!s->list || !s->veil_list || !s->target || !s->profile) return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
 }
@@ -491,6 +514,9 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     job.profile_quantum  = job.profile_limit * exp2(ceil(log2(samples)) - 61);
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
+    if (status == STATUS_OK)
+        status = effects_scene(&job.effects, snapshot, &world->frame, &request->view, air, world->materials.ground_rho,
+                               veil_wanted(request), arena);
     if (status == STATUS_OK) status = allocate_job(&job, pool_threads(pool), arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,

@@ -196,7 +196,8 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
                                     .air_temp_k = config->weather.air_temp_k,
                                     .relative_humidity = config->weather.relative_humidity,
                                     .pressure_mbar = config->weather.pressure_mbar,
-                                    .wind_mps = config->weather.wind_mps};
+                                    .wind_mps = config->weather.wind_mps,
+                                    .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
     Geodetic place;
     double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status   status = geodetic_from_ecef(&place, eye->state.p_ecef);
