@@ -269,7 +269,7 @@ static void put_shot(PuffList *list, const EffectEvent *e, double t_s)
 static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 {
     *interval_s = 0.25, *full_s = 2;
-    if (kind == EFFECT_FLAME) *interval_s = 0.07, *full_s = 1e9;
+    if (kind == EFFECT_FLAME) *interval_s = 0.04, *full_s = 1e9;
     if (kind == EFFECT_MOTOR_SMOKE) *interval_s = 0.04, *full_s = 0.6;
     if (kind == EFFECT_ENGINE_SMOKE) *interval_s = 0.15;
     if (kind == EFFECT_CONTRAIL) *full_s = 3;
@@ -323,6 +323,10 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
         puff.along_m = source->speed_mps * interval_s * together;
+        if (source->kind == EFFECT_FLAME) { /* tongues */
+            memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);
+            puff.along_m = 0.8 * source->scale * (1 + 0.5 * draw(seed, 2, 1));
+        }
         /* eddies: each puff a little to a side of its own, and some stronger than others */
         for (int i = 0; i < 3; i++) puff.throw_mps[i] = 0.5 * source->scale * draw(seed, 1, i);
         const double strength = source->kind == EFFECT_FLAME ? 0.4 + 0.6 * (1 + draw(seed, 2, 0)) : 1;

@@ -85,25 +85,33 @@ static float lattice_noise(const double p[3])
     return plane[0] + f[2] * (plane[1] - plane[0]);
 }
 
-/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. */
+/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. Each octave has
+ * axes of its own: lattices that lie over each other show as squares. */
 static double billows(const double p[3])
 {
-    double at[3] = {1.7 * p[0], 1.7 * p[1], 1.7 * p[2]};
+    static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
+    double at[3], turned[3];
+    m3_mul_v3(turned, turn, p);
+    v3_scale(at, 1.7, turned);
     double sum = lattice_noise(at);
     for (int octave = 0; octave < 2; octave++) {
-        for (int k = 0; k < 3; k++) at[k] = 2.17 * at[k] + 11.3;
+        m3_mul_v3(turned, turn, at);
+        for (int k = 0; k < 3; k++) at[k] = 2.17 * turned[k] + 11.3;
         sum += (octave ? 0.4 : 0.7) * (0.62 - 1.9 * fabs((double)lattice_noise(at)));
     }
     return sum;
 }
 
-/* The factor on a ray's whole column: at the rim the pattern eats through, so that no silhouette is an ellipse. */
-static double pattern_factor(const VeilVolume *v, const double nearest[3], double q2)
+/* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is stretched
+ * by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up for what the
+ * stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
+static double pattern_stretch(double *factor, const VeilVolume *v, const double nearest[3], double q2)
 {
     double p[3];
     v3_add(p, nearest, v->pattern);
-    const double f = 1 + v->billow * billows(p) * (0.7 + 2.2 * q2);
-    return f > 0 ? f : 0;
+    const double n = billows(p), f = 1 + v->billow * n * (0.7 + 1.2 * q2);
+    *factor = (1 + 0.75 * v->billow) * fmax(f, 0);
+    return 1 + 0.38 * v->billow * clamp(0.6 - n, 0, 1.6);
 }
 
 /* ---- a ray -------------------------------------------------------------------------------- */
@@ -234,8 +242,13 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
             if (v->billow > 0) {
                 double nearest[3];
                 v3_add_scaled(nearest, o, c->chord.middle_m, d);
-                c->factor = pattern_factor(v, nearest, c->chord.q2);
-                if (!(c->factor > 0)) continue;
+                const double stretch = pattern_stretch(&c->factor, v, nearest, c->chord.q2);
+                v3_scale(o, stretch, o);
+                v3_scale(d, stretch, d);
+                if (!(c->factor > 0) || !chord_of(&c->chord, o, d)) continue;
+                c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
+                c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m[r]);
+                if (!(c->to_m > c->from_m)) continue;
             }
             light_crossing(c, o, d, bands);
             crossed++;
