@@ -110,7 +110,7 @@ static double pattern_stretch(double *factor, const VeilVolume *v, const double 
     double p[3];
     v3_add(p, nearest, v->pattern);
     const double n = billows(p), f = 1 + v->billow * n * (0.7 + 1.2 * q2);
-    *factor = (1 + 0.75 * v->billow) * fmax(f, 0);
+    *factor = (1 + 0.42 * v->billow) * fmax(f, 0);
     return 1 + 0.38 * v->billow * clamp(0.6 - n, 0, 1.6);
 }
 
