@@ -14,6 +14,7 @@ enum { tile_side_samples = 32, pairs_per_tile = 16 };
 
 typedef struct TargetCount {
     int64_t visible, amodal, hidden_ground, hidden_entity;
+    int64_t veiled[BAND_COUNT]; /* sum of what the veil takes, in parts of 2^20 */
     int     box[4], amodal_box[4];
 } TargetCount;
 
@@ -237,6 +238,15 @@ static void note_hidden(HiddenBy *pairs, int target, int occluder)
     }
 }
 
+static void count_veil(TargetCount *count, const VeilRays *veil, const RenderRequest *request, int sample)
+{
+    const int band[BAND_COUNT] = {[BAND_OPTICAL] = request->optical_rgb ? effect_band_g : effect_band_pan,
+                                  [BAND_MWIR] = effect_band_mwir, [BAND_LWIR] = effect_band_lwir, [BAND_RADAR] = -1};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (band[b] >= 0 && wants(request, (Band)b))
+            count->veiled[b] += llrint((1 - (double)veil->transmittance[band[b]][sample]) * 0x1p20);
+}
+
 /* Visible and amodal samples of every entity that this tile can show. */
 static void count_targets(Scratch *s, const Job *job, const Tile *tile, int listed, HiddenBy *pairs)
 {
@@ -252,6 +262,7 @@ static void count_targets(Scratch *s, const Job *job, const Tile *tile, int list
                 const int y = tile->y0 + i / tile->across / tile->samples;
                 count->visible++;
                 count->amodal++;
+                if (s->veil.any) count_veil(count, &s->veil, job->request, i);
                 grow_box(count->box, x, y);
                 grow_box(count->amodal_box, x, y);
                 continue;
@@ -468,6 +479,7 @@ static void gather(Picture *picture, const Job *job, int workers)
             sum.amodal += t->amodal;
             sum.hidden_ground += t->hidden_ground;
             sum.hidden_entity += t->hidden_entity;
+            for (int b = 0; b < BAND_COUNT; b++) sum.veiled[b] += t->veiled[b];
             merge_box(sum.box, t->box);
             merge_box(sum.amodal_box, t->amodal_box);
         }
@@ -477,6 +489,8 @@ static void gather(Picture *picture, const Job *job, int workers)
         target->occluded_ground = (double)sum.hidden_ground * share;
         target->occluded_entity = (double)sum.hidden_entity * share;
         target->occluder        = -1;
+        for (int b = 0; b < BAND_COUNT && sum.visible > 0; b++)
+            target->veiled[b] = (double)sum.veiled[b] * 0x1p-20 / (double)sum.visible;
         memcpy(target->box, sum.box, sizeof sum.box);
         memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
     }

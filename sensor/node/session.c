@@ -419,6 +419,7 @@ Status session_run(SessionResult *result, const SessionShared *shared, const Hos
     Status status = open_session(&s);
     if (status == STATUS_OK) status = run_frames(result, &s);
     if (s.table) result->entities = *entity_table_counters(s.table);
+    if (s.table) result->effects = *entity_table_effect_counters(s.table);
     if (s.truth && fclose(s.truth) != 0 && status == STATUS_OK) {
         log_error("replay: cannot write truth.jsonl: %s", strerror(errno));
         status = STATUS_IO;

@@ -11,6 +11,7 @@ typedef struct TargetBand {
     double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
     double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
     double snr;             /* contrast over the ring's sigma and the detector's noise together */
+    double veil_transmittance; /* of smoke and dust before it, mean over its visible pixels; 1: none */
     double intensity_w_sr;  /* in-band, at the aperture: sum of radiance x the pixel's area at the target's range */
 } TargetBand;
 

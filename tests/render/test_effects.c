@@ -233,7 +233,10 @@ static void without_smoke_no_bit_changes(void **state)
     int changed = 0;
     for (int i = 0; i < side * side; i++) changed += id[i] == 1 && red[i] != picture.optical[0][i];
     CHECK(changed > seen / 2 && memcmp(id, picture.entity, sizeof id) == 0);
+    CHECK(picture.target[0].veiled[BAND_OPTICAL] > 0.9 && picture.target[0].veiled[BAND_RADAR] == 0);
+    CHECK(picture.target[0].veiled[BAND_LWIR] < picture.target[0].veiled[BAND_OPTICAL]);
     picture = picture_of(&after, 1);
+    CHECK(picture.target[0].veiled[BAND_OPTICAL] == 0);
     int sky = 0;
     for (int i = 0; i < side * side; i++) {
         if (id[i] == 1) CHECK(red[i] == picture.optical[0][i] && lwir[i] == picture.lwir[i]);
