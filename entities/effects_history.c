@@ -311,7 +311,11 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         if (!(let_go_s >= source->from_s && let_go_s < source->to_s) || let_go_s > t_s) continue;
         puff.age_s = t_s - let_go_s;
         const double share = share_of(k, puff.age_s, full_s, &together);
-        if (!(share > 0)) continue;
+        if (!(share > 0) || !(puff.age_s < life_s)) continue;
+        if (list->count >= list->capacity) { /* counted only */
+            list->count++;
+            continue;
+        }
 
         const uint64_t seed = mix(source->key ^ mix((uint64_t)k + ((uint64_t)source->kind << 56)));
         Motion         motion;
@@ -339,6 +343,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
 size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *h, double t_s)
 {
     PuffList list = {out, capacity, 0, &h->table};
+    if (!(fabs(t_s) < effect_latest_s)) return 0;
     const uint64_t events = h->events < effect_event_capacity ? h->events : effect_event_capacity;
     const uint64_t sources = h->sources < effect_source_capacity ? h->sources : effect_source_capacity;
 

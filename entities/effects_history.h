@@ -32,6 +32,9 @@ typedef struct EffectCounters {
     uint64_t sources_dropped;
 } EffectCounters;
 
+/* Instants beyond show nothing: intervals are counted in 64 bits. */
+static const double effect_latest_s = 1e12;
+
 typedef struct EffectHistory EffectHistory;
 
 /* path: etc/effects.csv. */

@@ -56,8 +56,8 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     const double below_m = base_below_m(slot, model), top_m = below_m - model->height_m;
     EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
                            .to_s = slot->stopped ? INFINITY : slot->report_s + slot->timeout_s,
-                           .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s, .hold_s = slot->hold_s,
-                           .scale = size_of(model)};
+                           .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
+                           .hold_s = slot->hold_s, .scale = size_of(model)};
     if (stands) {
         Motion motion;
         dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
@@ -117,8 +117,9 @@ static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *
     const uint64_t key = entity_key(e->id);
 
     for (int k = 0; k < 2; k++) {
-        const double share = k ? at - floor_at : 1 - (at - floor_at);
-        length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, (uint64_t)(int64_t)floor_at + (uint64_t)k));
+        const double   share = k ? at - floor_at : 1 - (at - floor_at);
+        const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
+        length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
     }
     *out = (EffectPuff){.kind = kind, .group = (uint32_t)(key * 31 + kind), .seed = (uint32_t)(int64_t)floor_at,
                         .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
@@ -138,6 +139,7 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
     const Model       *model = catalog_model(table->catalog, entity->model);
     const EffectTable *effects = effect_history_table(table->effects);
 
+    if (!(fabs(t_s) < effect_latest_s)) return false;
     if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
         return plume_behind(out, entity, model, EFFECT_MOTOR_PLUME, effects, fmax(1.25 * model->length_m, 0.5),
                             clamp(model->width_m / 0.3, 0.5, 4), t_s);

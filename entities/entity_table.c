@@ -51,7 +51,8 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     status = heat_table_open(&table->heat, heat_path);
     if (status != STATUS_OK) goto fail;
     char path[4096];
-    status = etc_path(path, sizeof path, "effects.csv") ? effect_history_create(&table->effects, path) : STATUS_BAD_VALUE;
+    status = STATUS_BAD_VALUE;
+    if (etc_path(path, sizeof path, "effects.csv")) status = effect_history_create(&table->effects, path);
     if (status != STATUS_OK) goto fail;
     for (int m = 0; m < catalog_model_count(catalog); m++)
         table->model_roles[m] = heat_roles(catalog_model(catalog, m), &table->heat);

@@ -1,8 +1,8 @@
 /* render/effects.c: the light of a puff: its own by Planck, the sun's and the surroundings' by its albedo.
  *
  * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean of what arrives. The sun arrives with a
- * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in veil_orders orders, each with
- * half the share, half the asymmetry and half the depth of the one before (Wrenninge, Kulla, Lundqvist 2013): an
+ * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in veil_orders orders, each
+ * with half the share, half the asymmetry and half the depth of the one before (Wrenninge, Kulla, Lundqvist 2013): an
  * approximation for pictures, that leaves a thick white cloud lit from behind the eye at a reflectance of about 0.4. */
 #include "render/effects.h"
 

@@ -85,8 +85,8 @@ static float lattice_noise(const double p[3])
     return plane[0] + f[2] * (plane[1] - plane[0]);
 }
 
-/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. Each octave has
- * axes of its own: lattices that lie over each other show as squares. */
+/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. Each octave
+ * has axes of its own: lattices that lie over each other show as squares. */
 static double billows(const double p[3])
 {
     static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
@@ -102,9 +102,9 @@ static double billows(const double p[3])
     return sum;
 }
 
-/* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is stretched
- * by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up for what the
- * stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
+/* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is
+ * stretched by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up
+ * for what the stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
 static double pattern_stretch(double *factor, const VeilVolume *v, const double nearest[3], double q2)
 {
     double p[3];

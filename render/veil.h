@@ -46,6 +46,7 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
 void veil_apply(float *radiance, const VeilRays *veil, int band, int count);
 
 /* Column of a volume of unit peak density between two distances along o + s d, m; no pattern. */
-double veil_column_m(const VeilVolume *volume, const double o_enu[3], const double d_enu[3], double from_m, double to_m);
+double veil_column_m(const VeilVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
+                     double to_m);
 
 #endif
