@@ -159,7 +159,7 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     EffectPuff *puff = arena_alloc(arena, count, sizeof *puff);
     if (!puff) return STATUS_NO_MEMORY;
     const size_t first = (size_t)carried_count < count ? (size_t)carried_count : count;
-    memcpy(puff, carried, first * sizeof *puff);
+    if (first > 0) memcpy(puff, carried, first * sizeof *puff);
     if (count > first) effect_history_puffs(puff + first, count - first, table->effects, snapshot->t_s);
     snapshot->puff = puff;
     snapshot->puff_count = (int)count;
