@@ -50,6 +50,10 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
     if (status != STATUS_OK) goto fail;
     status = heat_table_open(&table->heat, heat_path);
     if (status != STATUS_OK) goto fail;
+    char path[4096];
+    status = STATUS_BAD_VALUE;
+    if (etc_path(path, sizeof path, "effects.csv")) status = effect_history_create(&table->effects, path);
+    if (status != STATUS_OK) goto fail;
     for (int m = 0; m < catalog_model_count(catalog); m++)
         table->model_roles[m] = heat_roles(catalog_model(catalog, m), &table->heat);
 
@@ -65,6 +69,7 @@ void entity_table_destroy(EntityTable *table)
 {
     if (!table) return;
     entity_index_destroy(&table->index);
+    effect_history_destroy(table->effects);
     free(table->slot);
     free(table->free_slot);
     free(table->model_roles);
@@ -102,6 +107,7 @@ static void remove_slot(EntityTable *table, EntitySlot *slot, double t_s, uint64
 {
     table->grave[table->grave_next++ % entity_grave_count] =
         (EntityGrave){entity_key(slot->id) + 1, t_s, counter == &table->counters.detonated};
+    entity_effects_end(table, slot, t_s);
     entity_index_remove(&table->index, entity_key(slot->id));
     slot->generation++;
     table->free_slot[table->free_count++] = (int)(slot - table->slot);
@@ -140,6 +146,11 @@ bool entity_table_alive(const EntityTable *table, EntityHandle handle)
 }
 
 const EntityCounters *entity_table_counters(const EntityTable *table) { return &table->counters; }
+
+const EffectCounters *entity_table_effect_counters(const EntityTable *table)
+{
+    return effect_history_counters(table->effects);
+}
 
 /* ---- what a report means ------------------------------------------------------------------ */
 
@@ -235,6 +246,7 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
 
     table->counters.unknown_articulation +=
         (uint64_t)articulation_report(&slot->articulation, record, record_count, t_s, slot->hold_s);
+    entity_effects_report(table, slot, t_s);
 }
 
 static bool same_type(DisEntityType a, DisEntityType b)
@@ -313,6 +325,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
 
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
+    effect_history_fire(table->effects, pdu, t_s);
     EntitySlot *firing = find_slot(table, pdu->firing), *munition = find_slot(table, pdu->munition);
     if (firing) heat_fire(&firing->heat, &table->heat, t_s);
     if (munition && munition->type.kind == dis_kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
@@ -322,6 +335,7 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
  * detonates things that are no munition and may stay. */
 void entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
 {
+    effect_history_detonation(table->effects, pdu, t_s);
     EntitySlot *munition = find_slot(table, pdu->munition);
     if (!munition || munition->type.kind != dis_kind_munition || t_s < munition->created_s) return;
     remove_slot(table, munition, t_s, &table->counters.detonated);
@@ -367,6 +381,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
         slot->stopped = true;
+        entity_effects_report(table, slot, stop_s);
     }
 }
 
@@ -379,6 +394,7 @@ void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_
         slot->paused_s += fmax(0, t_s - slot->stop_s);
         slot->spin_from_s = fmax(t_s, slot->stop_s);
         slot->stopped = false;
+        entity_effects_report(table, slot, fmax(t_s, slot->stop_s));
     }
 }
 

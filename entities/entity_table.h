@@ -1,5 +1,5 @@
 /* entities/entity_table.h: who is out there: one slot an entity, handles with a generation, the last report
- * of each, and what its history implies (heat, distance travelled).
+ * of each, and what its history implies (heat, distance travelled, smoke left behind).
  *
  * Fed PDUs in the order of exercise time; asked for a Snapshot at any t at or after the last of them. */
 #ifndef ENTITIES_ENTITY_TABLE_H
@@ -9,6 +9,7 @@
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
 #include "entities/catalog.h"
+#include "entities/effects_history.h"
 #include "entities/snapshot.h"
 
 typedef struct EntityTable EntityTable;
@@ -39,7 +40,7 @@ typedef struct EntityCounters {
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
-/* The catalog must outlive the table. heat_path: etc/heat.csv. */
+/* The catalog must outlive the table. heat_path: etc/heat.csv. Reads etc/effects.csv too. */
 Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
                            const char *heat_path);
 void   entity_table_destroy(EntityTable *table);
@@ -68,6 +69,7 @@ int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
 bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
 const EntityCounters *entity_table_counters(const EntityTable *table);
+const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 
 /* One entity's pose and motion at t_s, the same as in a snapshot; no parts, no heat. False when it is not there. */
 bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s);

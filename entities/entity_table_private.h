@@ -5,9 +5,12 @@
 #include "dis/enumerations.h"
 #include "entities/articulation.h"
 #include "entities/dead_reckoning.h"
+#include "entities/effects_history.h"
 #include "entities/entity_index.h"
 #include "entities/entity_table.h"
 #include "entities/heat.h"
+
+enum { entity_effect_places = 4 }; /* flame, smoke, engine smoke, trail */
 
 typedef struct EntitySlot {
     uint32_t      generation; /* odd while somebody lives here */
@@ -30,6 +33,7 @@ typedef struct EntitySlot {
     Kinematics    reported;   /* as believed: entity_table.c */
     HeatState     heat;
     Articulation  articulation;
+    uint64_t      effect[entity_effect_places]; /* what it gives off now: handles of effects_history.h */
 } EntitySlot;
 
 /* Who went lately: a late report must not bring them back. */
@@ -52,6 +56,7 @@ struct EntityTable {
     EntityGrave       grave[entity_grave_count];
     unsigned          grave_next;
     EntityCounters    counters;
+    EffectHistory    *effects;
 };
 
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
@@ -79,5 +84,15 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
 double entity_slot_spin(const EntitySlot *slot, double t_s);
 /* Forward way from the report to a pose reached by dead reckoning. */
 double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9]);
+
+/* entity_effects.c: after every change of a slot's motion or appearance; and when it ends. */
+void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
+void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);
+/* What it carries along at t_s: the flame behind a motor. False: nothing. */
+bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const EntitySlot *slot,
+                            const SnapshotEntity *entity, double t_s);
+Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
+                               int carried_count, Arena *arena);
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot);
 
 #endif

@@ -20,7 +20,7 @@ static bool driver_by_name(HeatDriver *out, const char *name)
 {
     static const char *const names[HEAT_DRIVER_COUNT] = {"none",   "engine", "motion", "firing",
                                                          "flight", "burn",   "speed",  "life",
-                                                         "pyrotechnic"};
+                                                         "pyrotechnic", "burning"};
     for (int d = 0; d < HEAT_DRIVER_COUNT; d++) {
         if (strcmp(names[d], name) == 0) {
             *out = (HeatDriver)d;
@@ -58,7 +58,7 @@ static Status read_row(HeatTable *heat, bool seen[HEAT_ROLE_COUNT], const Table 
     seen[role] = true;
     if (!driver_by_name(&heat->driver[role], driver_name)) {
         log_error("heat: no such driver: file=%s line=%d driver=\"%s\" want=none, engine, motion, firing, flight, "
-                  "burn, speed, life or pyrotechnic", table->path, line, driver_name);
+                  "burn, speed, life, pyrotechnic or burning", table->path, line, driver_name);
         return STATUS_BAD_VALUE;
     }
     Status status = table_number(&heat->rise_k[role], table, row, column[2], 0, 2000);
@@ -134,6 +134,9 @@ static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_
     /* in kelvin here: each role's rise_k turns it into a level */
     const double recovery_k = recovery * evidence->speed_mps * evidence->speed_mps / (2 * cp_air_j_kg_k);
     drive[HEAT_DRIVER_SPEED] = (HeatDrive){recovery_k, INFINITY};
+    const bool flames = platform && evidence->appearance >> dis_appearance_flaming_bit & 1;
+    drive[HEAT_DRIVER_BURNING] = (HeatDrive){flames, INFINITY};
+    state->destroyed = !alive;
 }
 
 static double drive_level(const HeatTable *table, int role, double value)
@@ -189,7 +192,10 @@ void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *ev
 void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s)
 {
     advance(state, table, t_s);
+    const bool was_destroyed = state->destroyed;
     set_drives(state, evidence, t_s);
+    /* destroyed before our eyes: hot at once; repaired: cold */
+    if (state->destroyed != was_destroyed) state->level[HEAT_WRECK] = state->destroyed;
 }
 
 void heat_fire(HeatState *state, const HeatTable *table, double t_s)
@@ -213,6 +219,8 @@ void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTa
         rise_k[role] = 0;
         if (roles >> role & 1) rise_k[role] = (float)(table->rise_k[role] * level_at(state, table, role, at_s));
     }
+    const double wreck_k = table->rise_k[HEAT_WRECK] * level_at(state, table, HEAT_WRECK, at_s);
+    for (int role = 0; wreck_k > 0 && role < HEAT_ROLE_COUNT; role++) rise_k[role] += (float)wreck_k;
 }
 
 uint32_t heat_roles(const Model *model, const HeatTable *table)

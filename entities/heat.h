@@ -20,6 +20,7 @@ typedef enum HeatDriver {
     HEAT_DRIVER_SPEED,  /* recovery rise r v^2 / (2 cp) over the role's rise_k, at most 1 */
     HEAT_DRIVER_LIFE,   /* 1 for a life form that lives and a building that stands */
     HEAT_DRIVER_PYROTECHNIC, /* 1 for an expendable's first four seconds */
+    HEAT_DRIVER_BURNING,/* 1 while flaming */
     HEAT_DRIVER_COUNT
 } HeatDriver;
 
@@ -42,7 +43,7 @@ typedef struct HeatState {
     double    level[HEAT_ROLE_COUNT]; /* 0 .. 1 at t_s */
     HeatDrive drive[HEAT_DRIVER_COUNT];
     double    moved_s; /* when it was last known to move; -INFINITY: never */
-    bool      moving;
+    bool      moving, destroyed;
 } HeatState;
 
 /* What one report says. */
@@ -52,8 +53,8 @@ typedef struct HeatEvidence {
     double        speed_mps; /* as reported; 0 when frozen */
 } HeatEvidence;
 
-/* First report: taken to have been in that state for ambient_s. Munitions and
- * expendables begin cold, and with their motor or grain lit. */
+/* First report: taken to have been in that state for ambient_s: a wreck that does not flame is a cold one. Munitions
+ * and expendables begin cold, and with their motor or grain lit. */
 void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s, double ambient_s);
 void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s);
 /* It fired; or it is the munition that was fired. */
@@ -61,7 +62,7 @@ void heat_fire(HeatState *state, const HeatTable *table, double t_s);
 void heat_launch(HeatState *state, const HeatTable *table, double t_s);
 
 /* Temperature above a passive part at t_s (at or after the last report; earlier counts as that), K. Only roles of
- * the mask (1 << role) are computed; others are 0. */
+ * the mask (1 << role) are computed; others are 0. What a wreck has of HEAT_WRECK is added to every role. */
 void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTable *table, uint32_t roles, double t_s);
 /* Roles that a model's parts have and something drives. */
 uint32_t heat_roles(const Model *model, const HeatTable *table);

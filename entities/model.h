@@ -34,6 +34,7 @@ typedef enum HeatRole {
     HEAT_WINDOW,       /* life: its panes */
     HEAT_FLUE,         /* life: chimney */
     HEAT_FLARE,        /* pyrotechnic: burning since it appeared */
+    HEAT_WRECK,        /* burning: all of a destroyed or flaming platform, on top of the others; no part has it */
     HEAT_ROLE_COUNT
 } HeatRole;
 

@@ -30,6 +30,12 @@ int snapshot_find(const Snapshot *snapshot, DisEntityId id)
     return -1;
 }
 
+bool snapshot_is_wreck(const SnapshotEntity *entity)
+{
+    return entity->type.kind == dis_kind_platform &&
+           (entity->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
+}
+
 /* ---- order -------------------------------------------------------------------------------- */
 
 typedef struct Ordered {
@@ -180,9 +186,30 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
                               .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
     articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
                               slot->hold_s);
+    entity_effects_wreck_joints(joint_value, model, slot);
     model_pose(pose, model, joint_value);
 
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
+}
+
+/* What entities carry first, then what they and the shots have let go. */
+static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
+{
+    EffectPuff *carried = NULL, one;
+    int         count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        const int found = count;
+        if (pass == 1 && found == 0) break;
+        if (pass == 1 && !(carried = arena_alloc(arena, (size_t)found, sizeof *carried))) return STATUS_NO_MEMORY;
+        count = 0;
+        for (int e = 0; e < snapshot->count; e++) {
+            EffectPuff *to = pass ? carried + count : &one;
+            if (entity_effects_carried(to, table, table->slot + order[e].slot, snapshot->entity + e, snapshot->t_s))
+                count++;
+            if (pass == 1 && count == found) break;
+        }
+    }
+    return entity_effects_snapshot(snapshot, table, carried, count, arena);
 }
 
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
@@ -224,8 +251,9 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
             finish_entity(entity, pose, joint_value, table, table->slot + order[e].slot, t_s);
         }
     }
-    *out = snapshot;
-    return STATUS_OK;
+    const Status status = add_puffs(&snapshot, table, order, arena);
+    if (status == STATUS_OK) *out = snapshot;
+    return status;
 }
 
 bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s)

@@ -4,6 +4,7 @@
 #define ENTITIES_SNAPSHOT_H
 
 #include "dis/pdu.h"
+#include "entities/effects.h"
 #include "entities/model.h"
 
 typedef struct SnapshotEntity {
@@ -20,7 +21,8 @@ typedef struct SnapshotEntity {
     double        age_s;           /* since the report it was extrapolated from */
     double        position_error_m;/* estimate: snapshot_position_error_m */
     int           first_node;      /* into Snapshot.node */
-    float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks */
+    float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks, unless
+                                    * it is a warm wreck */
 } SnapshotEntity;
 
 typedef struct Snapshot {
@@ -28,7 +30,14 @@ typedef struct Snapshot {
     int             count, node_count;
     SnapshotEntity *entity; /* sorted by id */
     NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1 */
+    int             puff_count;
+    EffectPuff     *puff;   /* what burns, smokes and bursts */
+    int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    const EffectTable *effect_table; /* NULL where there are no puffs */
 } Snapshot;
+
+/* A platform that its sender calls destroyed. */
+bool snapshot_is_wreck(const SnapshotEntity *entity);
 
 /* How far from the truth an extrapolated position may be: nothing at its report, growing evenly to the standard's
  * threshold of 1 m at the sender's heartbeat, and from there as an unreported acceleration of 1 m/s2 would carry

@@ -19,6 +19,7 @@
 
 static const double duration_s = 30, tick_s = 1 / 60.0, fire_s = 12;
 static const double heartbeat_s = 5, threshold_m = 1, threshold_rad = 3 * 0.017453292519943295769;
+static const double first_round_s = 4, between_rounds_s = 6, round_flight_s = 0.6;
 static const double stand_off_m = 2500, hover_m = 90, spacing_m = 40;
 
 enum { site = 1, application = 3001, tank_count = 3, vehicle_count = 5, target_vehicle = 4, helicopter = 5, missile = 6,
@@ -27,7 +28,8 @@ enum { site = 1, application = 3001, tank_count = 3, vehicle_count = 5, target_v
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0}, truck_type = {1, 1, 222, 7, 1, 0, 0},
                            helicopter_type = {1, 2, 225, 20, 1, 0, 0}, missile_type = {2, 2, 225, 1, 1, 3, 0};
 
-/* Appearance bits of IEEE 1278.1: land 15 flaming, 3-4 damage, 5-6 smoke, 22 power plant; 23 deactivated. */
+/* Appearance bits of IEEE 1278.1: land 15 flaming, 3-4 damage, 5-6 smoke, 7-8 dust, 22 power plant; 23 deactivated. */
+static const uint32_t small_trail = 1u << 7, medium_trail = 2u << 7;
 static const uint32_t deactivated = 1u << 23, engine_on = 1u << 22, wrecked = 1u << 15 | 3u << 3 | 1u << 5;
 
 typedef struct Options {
@@ -298,6 +300,7 @@ static void turret_at(double value[4], const Scene *scene, int k, double t_s)
 
 static bool has_vehicles(const Scene *scene) { return strcmp(scene->options.name, "no-vehicles") != 0; }
 static bool has_missile(const Scene *scene) { return strcmp(scene->options.name, "no-missile") != 0; }
+static bool has_guns(const Scene *scene) { return strcmp(scene->options.name, "guns") == 0; }
 
 static bool alive(const Scene *scene, int entity, double t_s)
 {
@@ -431,7 +434,8 @@ static void send_pdu(Sender *sender, double t_s, const uint8_t *bytes, size_t co
 static uint32_t appearance_of(const Scene *scene, int entity, double t_s)
 {
     if (entity == target_vehicle && t_s >= scene->impact_s) return wrecked;
-    if (entity < helicopter) return engine_on;
+    if (entity < tank_count) return engine_on | medium_trail;
+    if (entity < helicopter) return engine_on | small_trail;
     if (entity == missile) return t_s < fire_s + 0.5 ? 1u << 16 : 0; /* launch flash */
     return engine_on;
 }
@@ -541,6 +545,41 @@ static void send_shot(Sender *sender, bool fire, double t_s)
     if (!(sender->scene->options.silent_s > 0)) send_entity(sender, missile, &k, deactivated, t_s);
 }
 
+/* A round of the first tank's gun: 0.6 s to a place 600 m to the side of the road. No Entity State of its own. */
+static void send_round(Sender *sender, int number, bool fire, double t_s)
+{
+    static DisDetonation detonation;
+    static uint8_t       bytes[512];
+    static const DisEntityType round_type = {2, 2, 225, 2, 1, 1, 0};
+    static const double  muzzle_mps = 1000, barrel_m = 6, trunnion_m = 2;
+    const Scene         *scene = sender->scene;
+    const double         fired_s = fire ? t_s : t_s - round_flight_s, along = scene->heading_rad + 0.5 * pi_rad;
+    const DisEventId     event = {site, application, (uint16_t)(100 + number)};
+    const DisDescriptor  descriptor = {round_type, 1000, 1000, 1, 0};
+    double               muzzle[3], end[3], way[3], xy_m[2], up[3];
+    Kinematics           tank;
+
+    kinematics_at(&tank, scene, 0, fired_s);
+    road(xy_m, scene, way_m(scene, 0, fired_s));
+    ground_point(end, scene, xy_m[0] + 600 * cos(along) + 30 * number, xy_m[1] + 600 * sin(along), 0);
+    up_at(up, tank.p_ecef);
+    v3_add_scaled(muzzle, tank.p_ecef, trunnion_m, up);
+    v3_sub(way, end, muzzle);
+    v3_normalize(way, way);
+    v3_add_scaled(muzzle, muzzle, barrel_m, way);
+    if (fire) {
+        DisFire pdu = {.header = header_of(scene, dis_pdu_fire, 2, t_s), .firing = id_of(0), .event = event,
+                       .descriptor = descriptor, .range_m = 600};
+        for (int i = 0; i < 3; i++) pdu.p_ecef[i] = muzzle[i], pdu.velocity_mps[i] = (float)(muzzle_mps * way[i]);
+        send_pdu(sender, t_s, bytes, dis_encode_fire(bytes, sizeof bytes, &pdu));
+        return;
+    }
+    detonation = (DisDetonation){.header = header_of(scene, dis_pdu_detonation, 2, t_s), .firing = id_of(0),
+                                 .event = event, .descriptor = descriptor, .result = dis_result_ground_impact};
+    for (int i = 0; i < 3; i++) detonation.p_ecef[i] = end[i], detonation.velocity_mps[i] = (float)(muzzle_mps * way[i]);
+    send_pdu(sender, t_s, bytes, dis_encode_detonation(bytes, sizeof bytes, &detonation));
+}
+
 static void send_start(Sender *sender)
 {
     uint8_t bytes[64];
@@ -604,6 +643,7 @@ static void play(Sender *sender)
     const Scene *scene = sender->scene;
     const bool   bad = strcmp(scene->options.name, "bad-pdus") == 0;
     bool         fired = false, burst = false;
+    int          rounds = 0, landed = 0;
     if (!isnan(scene->options.clock_unix_s)) send_start(sender);
     for (int tick = 0; tick * tick_s <= duration_s; tick++) {
         const double t_s = tick * tick_s;
@@ -615,6 +655,9 @@ static void play(Sender *sender)
             send_shot(sender, false, scene->impact_s);
             burst = true;
         }
+        if (has_guns(scene) && t_s >= first_round_s + rounds * between_rounds_s) send_round(sender, rounds++, true, t_s);
+        if (landed < rounds && t_s >= first_round_s + landed * between_rounds_s + round_flight_s)
+            send_round(sender, landed++, false, t_s);
         for (int entity = 0; entity < entity_count; entity++) {
             if (!alive(scene, entity, t_s)) continue;
             if (entity == missile && t_s > scene->impact_s - scene->options.silent_s) continue;
@@ -635,6 +678,7 @@ static const char help[] =
     "  demo          a column of 3 tanks and 2 trucks; a helicopter hits the last truck with a missile\n"
     "  no-vehicles   the helicopter and its missile, which hits the ground\n"
     "  no-missile    nobody fires\n"
+    "  guns          demo, and the first tank fires at the ground beside the road every 6 s\n"
     "  bad-pdus      demo, with malformed PDUs in between\n"
     "  empty         a capture without a packet\n"
     "options\n"
@@ -684,7 +728,7 @@ static bool read_options(Options *o, int argc, char **argv)
     if (argc - optind != 2) return false;
     o->name = argv[optind];
     o->path = argv[optind + 1];
-    static const char *const names[] = {"demo", "no-vehicles", "no-missile", "bad-pdus", "empty"};
+    static const char *const names[] = {"demo", "no-vehicles", "no-missile", "guns", "bad-pdus", "empty"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (strcmp(o->name, names[i]) == 0) return true;
     return false;

@@ -31,6 +31,7 @@ struct Footprint {
     FootprintTruth *truth;             /* a pixel; NULL: not wanted */
     /* over the target, px within the image */
     double  visible, amodal, hidden_ground, hidden_entity;
+    double  veiled[BAND_COUNT];          /* area x what the veil takes */
     double  square[picture_plane_count]; /* area x radiance^2 */
     double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
     int     amodal_box[4];
@@ -105,6 +106,8 @@ static double overlap(Span a, double low, double high)
     const double length = fmin(a.high, high) - fmax(a.low, low);
     return length > 0 ? length : 0;
 }
+
+void footprint_box(double box_px[4], const Footprint *f) { memcpy(box_px, f->box, sizeof f->box); }
 
 double footprint_area(const Footprint *f, int cell)
 {
@@ -270,6 +273,7 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
     for (int i = 0; i < s->hits.count; i++) {
         const int cell = s->block.cell[i];
         f->visible += footprint_area(f, cell);
+        for (int b = 0; b < BAND_COUNT; b++) f->veiled[b] += footprint_area(f, cell) * veil_taken(s, job, (Band)b, i);
         over_pixels(f, cell, add_area, NULL);
         if (!f->truth) continue;
         TruthSample truth = {.s = s, .sample = i};
@@ -351,6 +355,7 @@ static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
     target->amodal          = f->amodal;
     target->occluded_ground = f->hidden_ground;
     target->occluded_entity = f->hidden_entity;
+    for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
     memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
     double most = 0;
     for (int i = 0; i < job->snapshot->count; i++)

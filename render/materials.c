@@ -213,6 +213,7 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
 {
     Materials m = {0};
     Status status = read_materials(&m, path);
+    if (status == STATUS_OK) m.burnt = materials_find(&m, "burnt") > 0 ? materials_find(&m, "burnt") : 0;
     if (status == STATUS_OK) status = read_surfaces(&m, surfaces_path);
     if (status == STATUS_OK) status = read_ground_heat(&m);
     if (status == STATUS_OK && catalog) status = resolve_parts(&m, catalog, path);

@@ -24,6 +24,7 @@ typedef struct Materials {
     int       count;
     Material *material;              /* [0] is "none", black */
     int       surface[SURFACE_COUNT];/* material of each surface class */
+    int       burnt;                 /* row of what a wreck's parts look like; 0: as ever */
     int     **part;                  /* [model][part] */
     int       model_count;
     /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that

@@ -4,6 +4,43 @@
 
 #include "render/optical.h"
 
+/* Bands of veil.h that somebody consumes. */
+static unsigned veil_wanted(const RenderRequest *request)
+{
+    static const unsigned rgb = 1u << effect_band_b | 1u << effect_band_g | 1u << effect_band_r;
+    unsigned bands = 0;
+    if (has_band(request->bands, BAND_OPTICAL)) bands |= request->optical_rgb ? rgb : 1u << effect_band_pan;
+    if (has_band(request->bands, BAND_MWIR)) bands |= 1u << effect_band_mwir;
+    if (has_band(request->bands, BAND_LWIR)) bands |= 1u << effect_band_lwir;
+    return bands;
+}
+
+double veil_taken(const Scratch *s, const Job *job, Band band, int sample)
+{
+    const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical_rgb ? effect_band_g : effect_band_pan,
+                                [BAND_MWIR] = effect_band_mwir, [BAND_LWIR] = effect_band_lwir, [BAND_RADAR] = -1};
+    if (!s->veil.any || of[band] < 0 || !has_band(job->request->bands, band)) return 0;
+    return 1 - (double)s->veil.transmittance[of[band]][sample];
+}
+
+/* What stands in the air before the block's hits. */
+static void trace_veils(Scratch *s, const Job *job)
+{
+    const Block *block = &s->block;
+    double       box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    if (block->footprint) {
+        footprint_box(box, block->footprint);
+    } else {
+        for (int p = 0; p < block->pixels; p++) {
+            box[0] = fmin(box[0], block->x[p]), box[2] = fmax(box[2], block->x[p] + 1.0);
+            box[1] = fmin(box[1], block->y[p]), box[3] = fmax(box[3], block->y[p] + 1.0);
+        }
+    }
+    const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
+                                                                 &job->request->view, box[0], box[1], box[2], box[3]);
+    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, veil_wanted(job->request));
+}
+
 double pixel_cosine3(const View *view, int x, int y)
 {
     const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
@@ -47,6 +84,8 @@ static void resolve_materials(Scratch *s, const Job *job)
         s->material[i] = 0;
         if (s->hits.entity[i]) {
             s->material[i] = (uint16_t)world->materials.part[s->hits.model[i]][s->hits.part[i] - 1];
+            if (world->materials.burnt && snapshot_is_wreck(&job->snapshot->entity[s->hits.entity[i] - 1]))
+                s->material[i] = (uint16_t)world->materials.burnt;
         } else if (s->hits.surface[i]) {
             const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
             s->material[i]             = (uint16_t)world->materials.surface[surface];
@@ -93,6 +132,7 @@ static void shade_bands(Scratch *s, const Job *job)
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
             optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
                           &s->hits, &s->rays, s->material, s->texture, s->shadow);
+            veil_apply(s->out, &s->veil, request->optical_rgb ? rgb[c] : optical_channel_pan, s->hits.count);
             deliver(s, job, picture_optical + c);
         }
     }
@@ -103,6 +143,7 @@ static void shade_bands(Scratch *s, const Job *job)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
                           s->shadow);
+            veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }
 }
@@ -159,6 +200,7 @@ void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
     resolve_materials(s, job);
+    trace_veils(s, job);
     shade_bands(s, job);
     const double t1 = wall_clock_s();
     if (has_band(s->block.bands, BAND_RADAR)) shade_radar(s, job);
@@ -388,7 +430,8 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
         s->list    = arena_alloc(arena, entities, sizeof *s->list);
         s->target  = arena_alloc(arena, entities, sizeof *s->target);
         s->profile = arena_alloc(arena, (size_t)job->request->profile_bins * radar_bounces, sizeof *s->profile);
-        if (!s->list || !s->target || !s->profile) return STATUS_NO_MEMORY;
+        s->veil_list = arena_alloc(arena, (size_t)job->effects.count + 1, sizeof *s->veil_list);
+        if (!s->list || !s->veil_list || !s->target || !s->profile) return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
 }
@@ -443,6 +486,9 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     choose_quanta(&job);
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
+    if (status == STATUS_OK)
+        status = effects_scene(&job.effects, snapshot, &world->frame, &request->view, air, world->materials.ground_rho,
+                               veil_wanted(request), arena);
     if (status == STATUS_OK) status = allocate_job(&job, workers, arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,

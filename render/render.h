@@ -35,6 +35,7 @@ typedef struct TargetPixels {
     double projected_box[4];      /* of all its vertices, px, not clipped to the image; where `projected` */
     double occluded_ground;       /* pixels that the ground hides, and other entities */
     double occluded_entity;
+    double veiled[BAND_COUNT];    /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
     int    occluder;              /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
 

@@ -11,6 +11,7 @@
 #ifndef RENDER_RENDER_PRIVATE_H
 #define RENDER_RENDER_PRIVATE_H
 
+#include "render/effects.h"
 #include "render/render.h"
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
@@ -45,6 +46,7 @@ static inline void sample_place(double place[2], int n, int s)
 typedef struct TargetCount {
     int64_t visible, amodal, hidden_ground, hidden_entity;
     int64_t radiance[picture_plane_count];
+    int64_t veiled[BAND_COUNT]; /* area times the share of its light that the veil takes */
     int     box[4], amodal_box[4];
 } TargetCount;
 
@@ -63,6 +65,8 @@ typedef struct Scratch {
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     int            some_index[hits_capacity];
+    VeilRays       veil;
+    int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
     int64_t       *profile; /* [profile_bins][radar_bounces] */
@@ -76,6 +80,7 @@ typedef struct Job {
     const RenderRequest *request;
     const Air           *air;
     const Visibility    *visibility;
+    EffectScene          effects;   /* smoke, dust, flames and bursts */
     Picture             *picture;   /* truth planes where asked for or where edges are looked for */
     Scratch            **scratch;   /* a worker */
     HiddenBy            *pairs;     /* [tiles][pairs_per_tile] */
@@ -110,6 +115,8 @@ double pixel_cosine3(const View *view, int x, int y);
 void trace_shadows(Scratch *s, const Job *job);
 /* Shades the block's hits in its bands, and gives each result to its pixels or its footprint. */
 void shade_block(Scratch *s, const Job *job);
+/* Share of a sample's light that the block's veil takes in a band, 0 .. 1; 0 for the radar. */
+double veil_taken(const Scratch *s, const Job *job, Band band, int sample);
 
 /* ---- render_targets.c ------------------------------------------------------------------------ */
 
@@ -150,6 +157,8 @@ void   footprint_task(void *job, int worker, int index);
 void   footprints_cover(Job *job);
 /* Gives the block's samples of a plane (s->out) to its footprint. */
 void   footprint_splat(Scratch *s, int plane);
+/* All that its samples may meet, px: columns and rows from, to. */
+void   footprint_box(double box_px[4], const Footprint *f);
 /* Area of a sample within the image, px. */
 double footprint_area(const Footprint *f, int cell);
 /* Over the finished pixels, in order of entity. */

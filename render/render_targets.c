@@ -72,12 +72,16 @@ static int64_t sample_steps(int64_t *seen, const Scratch *s, const Job *job, siz
     return whole;
 }
 
-static void count_seen(TargetCount *count, int index, const Scratch *s, const Job *job, HiddenBy *pairs, int x, int y)
+/* One sample that shows the target. */
+static void count_seen(TargetCount *count, int index, const Scratch *s, const Job *job, HiddenBy *pairs, int sample)
 {
+    const int     pixel = sample / (s->block.n * s->block.n), x = s->block.x[pixel], y = s->block.y[pixel];
     const size_t  px = pixel_index(job, x, y);
     int64_t       seen;
     const int64_t whole = sample_steps(&seen, s, job, px);
     count->visible += seen;
+    for (int b = 0; b < BAND_COUNT; b++)
+        count->veiled[b] += llrint((double)seen * veil_taken(s, job, (Band)b, sample));
     count->amodal += whole;
     grow_box(count->box, x, y);
     grow_box(count->amodal_box, x, y);
@@ -98,7 +102,7 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
         s->some.count = 0;
         for (int i = 0; i < s->hits.count; i++) {
             if (s->hits.entity[i] == id) {
-                count_seen(count, index, s, job, pairs, block->x[i / samples], block->y[i / samples]);
+                count_seen(count, index, s, job, pairs, i);
                 continue;
             }
             const int to      = s->some.count++;
@@ -202,6 +206,7 @@ static void gather_target(TargetPixels *target, const Job *job, int index, int w
         sum.hidden_ground += t->hidden_ground;
         sum.hidden_entity += t->hidden_entity;
         for (int k = 0; k < picture_plane_count; k++) sum.radiance[k] += t->radiance[k];
+        for (int b = 0; b < BAND_COUNT; b++) sum.veiled[b] += t->veiled[b];
         merge_box(sum.box, t->box);
         merge_box(sum.amodal_box, t->amodal_box);
     }
@@ -213,6 +218,8 @@ static void gather_target(TargetPixels *target, const Job *job, int index, int w
     target->occluder        = -1;
     for (int k = 0; k < picture_plane_count; k++)
         target->radiance[k] = (double)sum.radiance[k] * job->radiance_quantum;
+    for (int b = 0; b < BAND_COUNT; b++)
+        target->veiled[b] = sum.visible > 0 ? (double)sum.veiled[b] / (double)sum.visible : 0;
     memcpy(target->box, sum.box, sizeof sum.box);
     memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
 }

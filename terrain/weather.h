@@ -10,12 +10,14 @@ typedef struct Weather {
     double relative_humidity; /* 0 .. 1 */
     double pressure_mbar;
     double wind_mps;
+    double wind_from_rad;     /* where it comes from, clockwise from north */
 } Weather;
 
 static inline Weather weather_default(void)
 {
     return (Weather){.visibility_m = 23000, .air_temp_k = 288.15, .relative_humidity = 0.5,
-                     .pressure_mbar = 1013.25, .wind_mps = 3};
+                     .pressure_mbar = 1013.25, .wind_mps = 3,
+                     .wind_from_rad = 270 * 0.017453292519943295769};
 }
 
 #endif

@@ -72,6 +72,7 @@ static const Key keys[] = {
     {"weather.relative_humidity", KEY_DOUBLE, AT(weather.relative_humidity), 0, 1, NULL, "", ""},
     {"weather.pressure_mbar", KEY_DOUBLE, AT(weather.pressure_mbar), 300, 1100, NULL, "mbar", ""},
     {"weather.wind_mps", KEY_DOUBLE, AT(weather.wind_mps), 0, 60, NULL, "m/s", ""},
+    {"weather.wind_from_deg", KEY_DOUBLE, AT(weather.wind_from_deg), 0, 360, NULL, "deg", "where the wind comes from, clockwise from north"},
     {"terrain.relief_m", KEY_DOUBLE, AT(terrain.relief_m), 0, 200, NULL, "m", "rms height of the invented hills"},
     {"terrain.spacing_m", KEY_DOUBLE, AT(terrain.spacing_m), 1, 30, NULL, "m", "between elevation posts"},
     {"observer.range_m", KEY_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m", "of the stand-off observer, along the ground"},
@@ -131,6 +132,7 @@ Config config_default(void)
     c.weather.relative_humidity     = 0.5;
     c.weather.pressure_mbar         = 1013.25;
     c.weather.wind_mps              = 3;
+    c.weather.wind_from_deg         = 270;
     c.terrain.relief_m              = 15;
     c.terrain.spacing_m             = 4;
     c.observer.range_m              = 600;

@@ -49,7 +49,7 @@ typedef struct Config {
         double from_s, to_s;       /* exercise time; NaN: whole */
     } exercise;
     struct {
-        double visibility_m, air_temp_k, relative_humidity, pressure_mbar, wind_mps;
+        double visibility_m, air_temp_k, relative_humidity, pressure_mbar, wind_mps, wind_from_deg;
     } weather;
     struct {
         double relief_m, spacing_m;

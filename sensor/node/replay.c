@@ -266,7 +266,7 @@ static Status write_run(const Run *run, const char *out, const HostPlan *plan, c
               .link_dropped = link->other_protocol + link->other_port + link->cut_short + link->bad_fragment,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
-              .render = result->counters, .stage_count = session_stages, .stage = session_stage_name,
+              .effects = result->effects, .render = result->counters, .stage_count = session_stages, .stage = session_stage_name,
               .stage_ms = stage_ms};
     const Status status = record_write_run(path, &record);
     free(hash);

@@ -228,7 +228,8 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
                                     .air_temp_k = config->weather.air_temp_k,
                                     .relative_humidity = config->weather.relative_humidity,
                                     .pressure_mbar = config->weather.pressure_mbar,
-                                    .wind_mps = config->weather.wind_mps};
+                                    .wind_mps = config->weather.wind_mps,
+                                    .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
     Geodetic place;
     double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status   status = geodetic_from_ecef(&place, eye->state.p_ecef);
@@ -466,6 +467,7 @@ Status session_run(SessionResult *result, const SessionShared *shared, const Hos
     Status status = open_session(&s);
     if (status == STATUS_OK) status = run_frames(result, &s);
     if (s.table) result->entities = *entity_table_counters(s.table);
+    if (s.table) result->effects = *entity_table_effect_counters(s.table);
     if (s.truth && fclose(s.truth) != 0 && status == STATUS_OK) {
         log_error("replay: cannot write truth.jsonl: %s", strerror(errno));
         status = STATUS_IO;

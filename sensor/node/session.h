@@ -34,6 +34,7 @@ typedef struct SessionResult {
     double (*stage_ms)[session_stages]; /* [frames] */
     RenderCounters counters;
     EntityCounters entities;
+    EffectCounters effects;
 } SessionResult;
 
 /* Renders the plan into `out` (frames, profiles, truth.jsonl). Progress on stderr when it is a terminal.

@@ -230,7 +230,9 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .occluder_index = -1};
         t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
         for (int b = 0; b < BAND_COUNT; b++)
-            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN};
+            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN};
+        for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
+            if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
         if (px->amodal > 0) t.visible_fraction = px->visible / px->amodal;
         memcpy(t.box, px->box, sizeof t.box);

@@ -89,6 +89,7 @@ static json_t *bands_json(const Target *t)
         set_number(band, "dt_rss_k", v->dt_rss_k);
         set_number(band, "contrast", v->contrast);
         set_number(band, "snr", v->snr);
+        set_number(band, "veil_transmittance", v->veil_transmittance);
         set_number(band, "intensity_w_sr", v->intensity_w_sr);
         if (json_object_size(band) > 0)
             json_object_set_new(bands, band_name((Band)b), band);
@@ -175,7 +176,7 @@ static void set_count(json_t *object, const char *key, uint64_t count)
 static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
-    json_t *entities = json_object();
+    json_t *entities = json_object(), *effects = json_object();
     char    type[16];
     const VisibilityCounters *v = &r->render.visibility;
 
@@ -194,6 +195,11 @@ static json_t *counters_json(const RunRecord *r)
     set_count(entities, "deactivated", r->entities_deactivated);
     set_count(entities, "removed", r->entities_removed);
     json_object_set_new(counters, "entities", entities);
+    set_count(effects, "events_refused", r->effects.refused);
+    set_count(effects, "events_repeated", r->effects.repeated);
+    set_count(effects, "events_dropped", r->effects.events_dropped);
+    set_count(effects, "trails_dropped", r->effects.sources_dropped);
+    json_object_set_new(counters, "effects", effects);
     set_count(counters, "rays_primary", r->render.rays_primary);
     set_count(counters, "rays_edges", r->render.rays_edges);
     set_count(counters, "rays_small_targets", r->render.rays_small_targets);

@@ -3,6 +3,7 @@
 #define SENSOR_PUBLISH_RECORDS_H
 
 #include "entities/dead_reckoning.h"
+#include "entities/effects_history.h"
 #include "sensor/node/truth.h"
 #include "terrain/sun.h"
 
@@ -38,6 +39,7 @@ typedef struct RunRecord {
     const DisCounters *dis;
     uint64_t    link_dropped;         /* packets of the capture that gave no datagram */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
+    EffectCounters effects;
     RenderCounters render;
     int         stage_count;          /* timings */
     const char *const *stage;

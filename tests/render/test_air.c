@@ -408,7 +408,7 @@ static void extremes_are_finite(void **state)
     static const double visibility[] = {100, 1000, 3e5}, temp[] = {220, 330}, humidity[] = {0, 1};
     for (int i = 0; i < 3 * 2 * 2; i++)
         for (double e = -90; e <= 90; e += 15) {
-            const Weather weather = {visibility[i / 4], temp[i / 2 % 2], humidity[i % 2], 1013.25, 0};
+            const Weather weather = {visibility[i / 4], temp[i / 2 % 2], humidity[i % 2], 1013.25, 0, 0};
             const Air air = air_of(&weather, e);
             const double d_enu[3] = {0.6, 0, 0.8}, down_enu[3] = {0, 0, -1};
             for (int c = 0; c < optical_channel_count; c++) {

@@ -1,0 +1,258 @@
+/* Puffs in the picture: what a flash shines with, what a cloud hides, and that nothing changes where there is none. */
+#include "tests/check.h"
+
+#include "render/effects.h"
+#include "render/render.h"
+
+static Catalog    *catalog;
+static World       world;
+static Pool       *pool;
+static Arena      *arena;
+static EffectTable effects;
+
+static int open_world(void **state)
+{
+    (void)state;
+    char           path[512], hand[text_file_size];
+    LocalFrame     frame;
+    const Geodetic origin = {0.6, -2.1, 0};
+    text_file(hand, "type,model,origin\n*.*.*.*.*.*.*,marker,base\n");
+    const Status status = catalog_open(&catalog, hand, 0.01);
+    remove(hand);
+    arena = arena_create();
+    return status == STATUS_OK && arena && local_frame_at(&frame, &origin) == STATUS_OK &&
+                   etc_path(path, sizeof path, "effects.csv") && effect_table_open(&effects, path) == STATUS_OK &&
+                   world_open(&world, catalog, NULL, &frame, "avx2") == STATUS_OK && pool_create(&pool, 2) == STATUS_OK
+               ? 0
+               : -1;
+}
+
+static int close_world(void **state)
+{
+    (void)state;
+    pool_destroy(pool);
+    world_close(&world);
+    catalog_close(catalog);
+    arena_destroy(arena);
+    return 0;
+}
+
+static Air air_when(double elevation_deg)
+{
+    const double  e = elevation_deg * rad_per_deg;
+    const Sun     sun = {.elevation_rad = e, .distance_au = 1, .d_enu = {0, -cos(e), sin(e)}};
+    const Weather weather = weather_default();
+    Air           air;
+    air_at(&air, &weather, &sun, world.planck_mwir, world.planck_lwir);
+    return air;
+}
+
+static EffectPuff puff_at(EffectKind kind, double north_m, double age_s, double mass_kg)
+{
+    EffectPuff   puff = {.kind = kind, .age_s = age_s, .throw_s = 1, .scale = 2, .mass_kg = mass_kg};
+    const double p_enu[3] = {0, north_m, 0};
+    ecef_from_enu(puff.p_ecef, &world.frame, p_enu);
+    for (int i = 0; i < 3; i++) puff.up_ecef[i] = puff.axis_ecef[i] = world.frame.r_ecef_from_enu[3 * i + 2];
+    return puff;
+}
+
+/* Towards north from the origin. */
+static View view_north(int side_px)
+{
+    return (View){.width = side_px, .height = side_px, .focal_px = 20 * side_px,
+                  .r_enu_from_cam = {1, 0, 0, 0, 0, 1, 0, -1, 0}};
+}
+
+static const unsigned all_bands = (1u << effect_band_count) - 1;
+
+/* Transmittance and added radiance along the boresight. */
+static void boresight(double transmittance[effect_band_count], double added[effect_band_count], EffectPuff *puff,
+                      const Air *air)
+{
+    static Rays     rays;
+    static VeilRays out;
+    Snapshot        snapshot = {.puff_count = 1, .puff = puff, .effect_table = &effects};
+    const View      view = view_north(64);
+    EffectScene     scene;
+    const int       first = 0;
+    const double    far_m = INFINITY;
+
+    arena_reset(arena);
+    const float ground_rho[optical_channel_count] = {0};
+    CHECK(effects_scene(&scene, &snapshot, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
+    CHECK(scene.count == 1);
+    scene.volume[0].billow = 0;
+    rays.count = 1;
+    for (int k = 0; k < 3; k++) rays.o_enu[k][0] = 0;
+    /* through its centre, wherever wind and rise have put it */
+    double d[3];
+    CHECK(v3_normalize(d, scene.volume[0].p_enu));
+    for (int k = 0; k < 3; k++) rays.d_enu[k][0] = d[k];
+    veil_rays(&out, scene.volume, &first, 1, &rays, &far_m, all_bands);
+    for (int b = 0; b < effect_band_count; b++) {
+        transmittance[b] = out.any ? out.transmittance[b][0] : 1;
+        added[b] = out.any ? out.added[b][0] : 0;
+    }
+}
+
+/* A muzzle flash at night: (1 - exp(-depth)) (1 - albedo) Planck(T(age)), through the air of the way; the peak comes
+ * first and the red outlasts the blue. */
+static void flash_follows_its_closed_form(void **state)
+{
+    (void)state;
+    static const double low_m[] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6}, high_m[] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6};
+    const Air        air = air_when(-30);
+    const EffectLaw *law = &effects.law[EFFECT_MUZZLE_FLASH];
+    const double     kg = law->mass_kg * 8, scale = 2, range_m = 700;
+    double           first_colour = 0;
+    for (double age_s = 0; age_s < 0.119; age_s += 0.017) {
+        EffectPuff puff = puff_at(EFFECT_MUZZLE_FLASH, range_m, age_s, kg);
+        double     tau[effect_band_count], added[effect_band_count];
+        boresight(tau, added, &puff, &air);
+        const double grown = 1 - exp(-age_s / (law->grow_s * scale)), lived = age_s / (law->life_s * scale);
+        const double radius_m = scale * (law->radius_start_m + (law->radius_end_m - law->radius_start_m) * grown);
+        const double thin = (1 - lived * lived) * (1 - lived * lived);
+        const double temp_k = 288.15 + law->temp_rise_k * exp(-age_s / (law->cool_s * scale));
+        /* through the centre of (1 - q^2)^2: 16/15 of the radius at the peak, and the peak is 35/8 of the mean */
+        const double depth = law->extinction_m2_kg[effect_band_g] * kg * thin / (4.0 / 3 * pi_rad * pow(radius_m, 3)) *
+                             35.0 / 8 * 16.0 / 15 * radius_m;
+        CHECK_NEAR(tau[effect_band_g], exp(-depth), 2e-6); /* a float, over a centre moved by the wind */
+        for (int b = 0; b <= effect_band_pan; b++) {
+            const Veil   path = air_veil_optical(&air, b, range_m);
+            const double night = air.sky_w_m2[b] / pi_rad; /* starlight from above: of no account */
+            const double want = (1 - exp(-depth)) * (path.added_w_m2_sr + path.transmittance * 0.95 *
+                                                     planck_band(low_m[b], high_m[b], temp_k, NULL));
+            CHECK_NEAR(added[b], want, 1e-5 * want + night);
+        }
+        const double colour = added[effect_band_b] / added[effect_band_r];
+        if (age_s == 0) first_colour = colour;
+        else CHECK(colour < first_colour);
+    }
+}
+
+/* Thick and of one temperature, in LWIR: Planck(T) of its own through the air between, for what it does not scatter. */
+static void thick_smoke_reads_its_temperature(void **state)
+{
+    (void)state;
+    Air air = air_when(-30);
+    for (double range_m = 200; range_m <= 5000; range_m *= 5) {
+        EffectPuff   puff = puff_at(EFFECT_BURST_SMOKE, range_m, 0, 50);
+        double       tau[effect_band_count], added[effect_band_count];
+        const double temp_k = 288.15 + effects.law[EFFECT_BURST_SMOKE].temp_rise_k, albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
+        /* surroundings as warm as it is: then what it scatters is the same */
+        air.sky_mean_lwir_w_m2_sr = air.ground_lwir_w_m2_sr = planck_table_radiance(air.planck_lwir, temp_k);
+        boresight(tau, added, &puff, &air);
+        const Veil path = air_veil_lwir(&air, range_m);
+        CHECK(tau[effect_band_lwir] < 1e-6 && albedo > 0);
+        CHECK_NEAR(added[effect_band_lwir],
+                   path.transmittance * planck_table_radiance(air.planck_lwir, temp_k) + path.added_w_m2_sr, 1e-5);
+    }
+}
+
+/* Air, sky, ground and smoke at one temperature: the smoke cannot be seen. */
+static void cavity_hides_it(void **state)
+{
+    (void)state;
+    Air          air = air_when(-30);
+    EffectPuff   puff = puff_at(EFFECT_DUST, 900, 2, 0.03); /* dust is as warm as the air */
+    double       tau[effect_band_count], added[effect_band_count];
+    const double want = planck_table_radiance(air.planck_lwir, air.weather.air_temp_k);
+    air.sky_mean_lwir_w_m2_sr = air.ground_lwir_w_m2_sr = air.air_lwir_w_m2_sr = want;
+    boresight(tau, added, &puff, &air);
+    CHECK(tau[effect_band_lwir] > 0.1 && tau[effect_band_lwir] < 0.9);
+    CHECK_NEAR(want * tau[effect_band_lwir] + added[effect_band_lwir], want, 1e-6 * want);
+}
+
+/* Oil smoke blinds the eye and not the infrared; dust blinds both. */
+static void bands_differ_as_the_stuff_does(void **state)
+{
+    (void)state;
+    Air        air = air_when(40);
+    double     tau[effect_band_count], added[effect_band_count];
+    EffectPuff smoke = puff_at(EFFECT_SMOKE, 500, 10, 0.06), dust = puff_at(EFFECT_DUST, 500, 4, 0.05);
+    boresight(tau, added, &smoke, &air);
+    CHECK(log(tau[effect_band_pan]) < 5 * log(tau[effect_band_lwir]));
+    for (int c = 0; c < optical_channel_count; c++) air.sky_w_m2[c] = air.horizon_w_m2_sr[c] = 0; /* both blue */
+    boresight(tau, added, &dust, &air);
+    CHECK_NEAR(log(tau[effect_band_lwir]) / log(tau[effect_band_pan]), 1, 0.3);
+    CHECK(added[effect_band_r] > added[effect_band_b] * air.sun_w_m2[effect_band_r] / air.sun_w_m2[effect_band_b]); /* brown */
+}
+
+/* ---- the picture -------------------------------------------------------------------------- */
+
+enum { side = 96 };
+
+static Picture picture_of(EffectPuff *puff, int count)
+{
+    static SnapshotEntity entity;
+    static NodePose       node;
+    const double          p_enu[3] = {0, 400, -1};
+    const Air             air = air_when(35);
+    Picture               picture;
+
+    entity       = (SnapshotEntity){.id = {1, 1, 1}};
+    entity.model = catalog_find(catalog, entity.type, &(Origin){ORIGIN_BASE}, NULL);
+    model_pose(&node, catalog_model(catalog, entity.model), NULL);
+    ecef_from_enu(entity.p_ecef, &world.frame, p_enu);
+    for (int i = 0; i < 3; i++) {
+        entity.r_ecef_from_body[3 * i]     = world.frame.r_ecef_from_enu[3 * i + 1];
+        entity.r_ecef_from_body[3 * i + 1] = world.frame.r_ecef_from_enu[3 * i];
+        entity.r_ecef_from_body[3 * i + 2] = -world.frame.r_ecef_from_enu[3 * i + 2];
+    }
+    const Snapshot snapshot = {.count = 1, .node_count = 1, .entity = &entity, .node = &node, .puff_count = count,
+                               .puff = puff, .effect_table = count ? &effects : NULL};
+    const RenderRequest request = {.view = view_north(side), .samples = 1, .hidden_entity = -1, .truth = true,
+                                   .optical_rgb = true, .bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND_LWIR};
+    arena_reset(arena);
+    assert_int_equal(render(&picture, &world, &snapshot, &request, &air, pool, arena), STATUS_OK);
+    return picture;
+}
+
+static void without_smoke_no_bit_changes(void **state)
+{
+    (void)state;
+    static float    lwir[side * side], red[side * side];
+    static uint32_t id[side * side];
+    Picture picture = picture_of(NULL, 0);
+    memcpy(lwir, picture.lwir, sizeof lwir);
+    memcpy(red, picture.optical[0], sizeof red);
+    memcpy(id, picture.entity, sizeof id);
+    int seen = 0;
+    for (int i = 0; i < side * side; i++) seen += id[i] == 1;
+    CHECK(seen > 20);
+
+    EffectPuff behind = puff_at(EFFECT_SMOKE, -200, 5, 1), beyond = puff_at(EFFECT_SMOKE, 200, 1000, 1);
+    picture = picture_of(&behind, 1); /* behind the eye; and long gone */
+    CHECK(memcmp(lwir, picture.lwir, sizeof lwir) == 0 && memcmp(red, picture.optical[0], sizeof red) == 0);
+    picture = picture_of(&beyond, 1);
+    CHECK(memcmp(lwir, picture.lwir, sizeof lwir) == 0 && memcmp(red, picture.optical[0], sizeof red) == 0);
+
+    /* before the target: other radiances, the same truth. Behind it: the target's own stay */
+    EffectPuff before = puff_at(EFFECT_SMOKE, 300, 0, 0.3), after = puff_at(EFFECT_SMOKE, 450, 0, 0.3);
+    picture = picture_of(&before, 1);
+    int changed = 0;
+    for (int i = 0; i < side * side; i++) changed += id[i] == 1 && red[i] != picture.optical[0][i];
+    CHECK(changed > seen / 2 && memcmp(id, picture.entity, sizeof id) == 0);
+    CHECK(picture.target[0].veiled[BAND_OPTICAL] > 0.9 && picture.target[0].veiled[BAND_RADAR] == 0);
+    CHECK(picture.target[0].veiled[BAND_LWIR] < picture.target[0].veiled[BAND_OPTICAL]);
+    picture = picture_of(&after, 1);
+    CHECK(picture.target[0].veiled[BAND_OPTICAL] == 0);
+    int sky = 0;
+    for (int i = 0; i < side * side; i++) {
+        if (id[i] == 1) CHECK(red[i] == picture.optical[0][i] && lwir[i] == picture.lwir[i]);
+        sky += red[i] != picture.optical[0][i];
+    }
+    CHECK(sky > 20);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(flash_follows_its_closed_form),
+        cmocka_unit_test(thick_smoke_reads_its_temperature),
+        cmocka_unit_test(cavity_hides_it),
+        cmocka_unit_test(bands_differ_as_the_stuff_does),
+        cmocka_unit_test(without_smoke_no_bit_changes),
+    };
+    return cmocka_run_group_tests(tests, open_world, close_world);
+}

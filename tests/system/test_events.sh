@@ -1,0 +1,32 @@
+#!/usr/bin/env bash
+# A gun fires, a missile strikes, a truck burns: seen by the helicopter that fired, the same to the bit from wherever
+# and however it is asked for, and told in the truth. labels: small
+. "$(dirname "$0")/common.sh"
+
+exercise guns "$tmp/guns.pcap"
+watch=(--host 1:3001:31 --set exercise.aim=1:3001:22 --set sensor.hfov_deg=1.2 --rate 2 --from 1369 --to 1375 --no-png)
+replay "$tmp/guns.pcap" "$tmp/one" "${watch[@]}" --threads 1
+check "a replay" [ "$code" = 0 ]
+check "13 frames" [ "$(frames "$tmp/one")" = 13 ]
+replay "$tmp/guns.pcap" "$tmp/two" "${watch[@]}" --threads 2
+check "2 threads, same bits" same_hashes "$tmp/one" "$tmp/two"
+replay "$tmp/guns.pcap" "$tmp/noskip" "${watch[@]}" --no-skip
+check "no skips, same bits" same_hashes "$tmp/one" "$tmp/noskip"
+replay "$tmp/guns.pcap" "$tmp/late" "${watch[@]}" --from 1373
+list() { hashes "$1" | grep -oE '[0-9a-f]{64}'; }
+check "from the middle: the same last frames" [ "$(list "$tmp/late")" = "$(list "$tmp/one" | tail -n 5)" ]
+exercise guns "$tmp/v5.pcap" --version 5 --bundle
+replay "$tmp/v5.pcap" "$tmp/v5" "${watch[@]}"
+check "version 5, bundled: same bits" same_hashes "$tmp/one" "$tmp/v5"
+replay "$tmp/guns.pcap" "$tmp/wind" "${watch[@]}" --set weather.wind_from_deg=90
+differ() { ! same_hashes "$@"; }
+check "another wind, other bits" differ "$tmp/one" "$tmp/wind"
+
+# band FILE LINE BAND KEY: of truck 22
+band() { sed -n "$2p" "$1/truth.jsonl" | grep -oE '"entity": *"1:3001:22".*' | grep -oE "\"$3\": *\{[^}]*\}" | head -n 1 | grep -oE "\"$4\": *-?[0-9.eE+-]+" | sed 's/.*: *//'; }
+# the burst is at 1370.13 s: line 3 is before it, line 8 is 2.4 s after
+check "hotter after the hit" is "$(band "$tmp/one" 8 lwir contrast_k)" '>' "$(awk -v a="$(band "$tmp/one" 3 lwir contrast_k)" 'BEGIN { print a + 40 }')"
+check "smoke takes from the visible" is "$(band "$tmp/one" 8 optical veil_transmittance)" '<' 1
+check "and less from LWIR" is "$(band "$tmp/one" 8 lwir veil_transmittance)" '>' "$(band "$tmp/one" 8 optical veil_transmittance)"
+check "counted" grep -q '"effects"' "$tmp/one/run.json"
+finish
