@@ -2,7 +2,7 @@
 #ifndef DIS_ENUMERATIONS_H
 #define DIS_ENUMERATIONS_H
 
-enum { dis_kind_platform = 1, dis_kind_munition = 2 };
+enum { dis_kind_platform = 1, dis_kind_munition = 2, dis_kind_life_form = 3 };
 enum { dis_domain_land = 1, dis_domain_air = 2, dis_domain_space = 5 };
 
 /* Appearance: bits that platforms of every domain share, and those of land platforms. */

@@ -25,7 +25,8 @@ typedef struct Scratch {
     Rays           rays, some;
     Hits           hits;
     RadarReturns   radar;
-    float          out[hits_capacity], temp_k[hits_capacity], texture[hits_capacity];
+    float          out[hits_capacity], temp_k[hits_capacity];
+    float          texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground, a channel */
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     int            some_index[hits_capacity];
@@ -81,13 +82,20 @@ static void make_rays(Rays *rays, const Tile *tile, const View *view)
         }
 }
 
+/* What a photograph says of a channel: its own colour, or the brightness of all three. */
+static int albedo_of_channel(int channel)
+{
+    return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
+         : channel == optical_channel_b ? albedo_blue : albedo_all;
+}
+
 /* What each hit is made of, and how bright the ground's own pattern is there. */
 static void resolve_materials(Scratch *s, const Job *job)
 {
     const World *world       = job->world;
     const double px_per_m    = job->request->view.focal_px * job->request->samples;
     for (int i = 0; i < s->hits.count; i++) {
-        s->texture[i]  = 1;
+        for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = 1;
         s->material[i] = 0;
         if (s->hits.entity[i]) {
             s->material[i] = (uint16_t)world->materials.part[s->hits.model[i]][s->hits.part[i] - 1];
@@ -97,8 +105,12 @@ static void resolve_materials(Scratch *s, const Job *job)
             /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
             double graze = 0;
             for (int k = 0; k < 3; k++) graze -= s->hits.n_geo[k][i] * s->rays.d_enu[k][i];
-            s->texture[i] = (float)landscape_texture(world->landscape, surface, s->hits.p_enu[0][i], s->hits.p_enu[1][i],
-                                                     s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01)));
+            const double x_m = s->hits.p_enu[0][i], y_m = s->hits.p_enu[1][i];
+            const double footprint_m = s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01));
+            const float  texture = (float)landscape_texture(world->landscape, surface, x_m, y_m, footprint_m);
+            float        albedo[albedo_channels];
+            landscape_albedo(albedo, world->landscape, surface, x_m, y_m, footprint_m);
+            for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = texture * albedo[albedo_of_channel(c)];
         }
     }
 }
@@ -126,14 +138,15 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
     if (wants(request, BAND_OPTICAL)) {
         static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
-            optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
-                          &s->hits, &s->rays, s->material, s->texture, s->shadow);
+            const int channel = request->optical_rgb ? rgb[c] : optical_channel_pan;
+            optical_shade(s->out, channel, job->air, &world->materials, &s->hits, &s->rays, s->material,
+                          s->texture[channel], s->shadow);
             average(picture->optical[c], s->out, tile, width);
         }
     }
     if (wants(request, BAND_MWIR) || wants(request, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
-                            s->material, s->texture);
+                            s->material, s->texture[optical_channel_pan]);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (wants(request, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
