@@ -2,6 +2,7 @@
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
+#include "terrain/probe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -12,6 +13,7 @@ static const struct ProbeList {
     const Probe *probe;
     const int   *count;
 } probe_lists[] = {
+    {terrain_probes, &terrain_probe_count},
     {render_probes, &render_probe_count},
 };
 

@@ -218,10 +218,11 @@ static Status say_contact(Choices *choices, bool clamp, const Landscape *landsca
     if (count > 0) {
         qsort(off_m, count, sizeof *off_m, by_value);
         const double median_m = off_m[count / 2];
-        choice_add(choices, "contact: land entities %s; their senders put them %.2f m (median), at most %.1f m off it, on the "
-                   "whole %s (terrain.ground)%s", clamp ? "are set onto the ground" : "stay where their senders put them", median_m,
-                   off_m[count - 1], sum > 0 ? "above" : "below",
-                   clamp && median_m > 20 ? "; the exercise was run over other ground: terrain.ground: fit" : "");
+        choice_add(choices, "contact: land entities %s; they were sent %.2f m (median), at most %.1f m %s it (terrain.ground)",
+                   clamp ? "are set onto the ground" : "stay where they were sent", median_m, off_m[count - 1],
+                   sum > 0 ? "mostly above" : "mostly below");
+        if (clamp && median_m > 20)
+            choice_add(choices, "contact: the exercise was run over other ground; terrain.ground: fit leads this one through it");
     }
     free(off_m);
     return STATUS_OK;
