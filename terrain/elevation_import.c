@@ -22,7 +22,7 @@ typedef struct Sight {
 typedef struct Grid {
     const Raster *raster;
     bool          ellipsoidal;
-    double        blend_m;       /* beyond its edge it fades out over this */
+    double        short_m, long_m; /* beyond its edge it fades out over this: into another grid, into nothing */
     double        units[2];      /* metres a pixel, x and y */
     Patch         patch;
     Sight         sight;
@@ -133,6 +133,15 @@ static void plan_levels(Import *m)
     double low[2], high[2];
     int    first[2], last[2];
     grid_box(low, high, raster, m->frame);
+    for (int k = 0; k < m->grids; k++) { /* neighbours of about the same posting belong to it */
+        double other_low[2], other_high[2];
+        if (fmin(m->grid[k].units[0], m->grid[k].units[1]) > 2 * s || k == m->main) continue;
+        grid_box(other_low, other_high, m->grid[k].raster, m->frame);
+        for (int c = 0; c < 2; c++) {
+            low[c]  = fmin(low[c], other_low[c]);
+            high[c] = fmax(high[c], other_high[c]);
+        }
+    }
     const int half = round_out(0.5 * sqrt((double)most_posts_0) - level_ratio);
     for (int c = 0; c < 2; c++) {
         const double a = fmin(low[c] / s, 0) - margin, b = fmax(high[c] / s, 0) + margin;
@@ -207,8 +216,8 @@ static void free_lattice(Import *m)
 static Status look_out(Import *m, const Field *z)
 {
     m->stride     = z->spacing_m * 16 >= 128 ? 16 : (int)(128 / z->spacing_m);
-    m->lattice_nx = (z->nx - 2) / m->stride + 2;
-    m->lattice_ny = (z->ny - 2) / m->stride + 2;
+    m->lattice_nx = (z->nx - 1) / m->stride + 2; /* one more than the last post stands on */
+    m->lattice_ny = (z->ny - 1) / m->stride + 2;
     const int    nodes = m->lattice_nx * m->lattice_ny;
     const size_t size = (size_t)nodes * sizeof(double);
     double      *lon = malloc(size), *lat = malloc(size);
@@ -266,7 +275,7 @@ static Status read_patches(Import *m, const Field *z)
         int          from[2], to[2];
         bool         near = true;
         for (int c = 0; c < 2; c++) {
-            const double reach = g->blend_m / g->units[c];
+            const double reach = g->long_m / g->units[c];
             if (!(high[c] > -reach && low[c] < size[c] + reach)) near = false;
             from[c] = (int)clamp(floor(low[c]) - 2, 0, size[c] - 2);
             to[c]   = (int)clamp(ceil(high[c]) + 3, from[c] + 2, size[c]);
@@ -284,46 +293,69 @@ static Status read_patches(Import *m, const Field *z)
 
 /* ---- heights -------------------------------------------------------------------------------- */
 
-/* One grid at a place in its pixels: height as the file has it, and how much it counts there: 1 within its outermost
- * posts, then less and less, as it is held at its edge ever more broadly averaged. */
-static double grid_at(double *share, const Grid *g, double x, double y)
+/* One grid at a place in its pixels: height above the ellipsoid, and how far it is beyond its outermost posts; there it
+ * is held at its edge, ever more broadly averaged. False: too far to count. */
+static bool grid_at(double *h_m, double *out_m, const Grid *g, double x, double y, double n_m)
 {
-    *share = 0;
-    if (g->patch.mips == 0 || !isfinite(x) || !isfinite(y)) return 0;
+    if (g->patch.mips == 0 || !isfinite(x) || !isfinite(y)) return false;
     const double w = g->raster->width - 0.5, h = g->raster->height - 0.5;
     const double out_x = (x < 0.5 ? 0.5 - x : x > w ? x - w : 0) * g->units[0];
     const double out_y = (y < 0.5 ? 0.5 - y : y > h ? y - h : 0) * g->units[1];
     double       mip = 0;
+    *out_m = 0;
     if (out_x > 0 || out_y > 0) {
-        const double out_m = hypot(out_x, out_y), posting_m = fmin(g->units[0], g->units[1]);
-        if (out_m >= g->blend_m) return 0;
-        *share = 1 - smooth_step(0, g->blend_m, out_m);
-        mip    = log2((posting_m + 0.5 * out_m) / (posting_m * g->patch.factor));
-    } else {
-        *share = 1;
+        const double posting_m = fmin(g->units[0], g->units[1]);
+        *out_m = hypot(out_x, out_y);
+        if (*out_m >= g->long_m) return false;
+        mip = log2((posting_m + 0.5 * *out_m) / (posting_m * g->patch.factor));
     }
-    return patch_at(&g->patch, x, y, mip) * g->raster->metres_per_unit;
+    *h_m = patch_at(&g->patch, x, y, mip) * g->raster->metres_per_unit + (g->ellipsoidal ? 0 : n_m);
+    return true;
 }
 
-/* Height above the ellipsoid of all grids together: the finest that has something to say, then the next. */
+/* All grids together: the finest that holds the place, led over to by finer ones near by; between and beyond all of
+ * them the edges, the nearest first, and farther out the plain. */
+static double composed(const Import *m, const double *x, const double *y, double n_m)
+{
+    double h_m[most_grids], out_m[most_grids], sum = 0, left = 1, weights = 0, cover = 0;
+    int    at = 0;
+    for (; at < m->grids; at++) {
+        if (!grid_at(&h_m[at], &out_m[at], &m->grid[at], x[at], y[at], n_m)) out_m[at] = INFINITY;
+        else if (out_m[at] == 0) break;
+    }
+    if (at < m->grids) {
+        for (int k = 0; k < at; k++) {
+            if (!(out_m[k] < m->grid[k].short_m)) continue;
+            const double share = 1 - smooth_step(0, m->grid[k].short_m, out_m[k]);
+            sum += left * share * h_m[k];
+            left *= 1 - share;
+        }
+        return sum + left * h_m[at];
+    }
+    for (int k = 0; k < m->grids; k++) {
+        if (!(out_m[k] < m->grid[k].long_m)) continue;
+        const double share = 1 - smooth_step(0, m->grid[k].long_m, out_m[k]), near = out_m[k] + 0.1 * m->grid[k].units[0];
+        weights += share / (near * near);
+        sum += share / (near * near) * h_m[k];
+        cover = fmax(cover, share);
+    }
+    return weights > 0 ? cover * sum / weights + (1 - cover) * m->base_h_m : m->base_h_m;
+}
+
+/* Where the vertical line of the ENU plane, which leans against the grids' own verticals, meets them. */
 static double height_at(const Import *m, const double *x0, const double *y0, const double *dx, const double *dy, double n_m,
                         double guess_m)
 {
-    double h_m = guess_m;
+    double h_m = guess_m, lean = 0;
+    for (int k = 0; k < m->grids; k++) lean = fmax(lean, fmax(fabs(dx[k]), fabs(dy[k])));
     for (int iteration = 0; iteration < 8; iteration++) {
-        double sum = 0, left = 1, lean = 0;
-        for (int k = 0; k < m->grids && left > 0; k++) {
-            const Grid  *g = &m->grid[k];
-            double       share;
-            const double value = grid_at(&share, g, x0[k] + h_m * dx[k], y0[k] + h_m * dy[k]);
-            if (!(share > 0)) continue;
-            sum += left * share * (value + (g->ellipsoidal ? 0 : n_m));
-            left *= 1 - share;
-            lean = fmax(lean, fmax(fabs(dx[k]), fabs(dy[k])));
+        double x[most_grids], y[most_grids];
+        for (int k = 0; k < m->grids; k++) {
+            x[k] = x0[k] + h_m * dx[k];
+            y[k] = y0[k] + h_m * dy[k];
         }
-        sum += left * m->base_h_m;
-        const double moved_px = fabs(sum - h_m) * lean;
-        h_m = sum;
+        const double next_m = composed(m, x, y, n_m), moved_px = fabs(next_m - h_m) * lean;
+        h_m = next_m;
         if (moved_px < 1e-4) break; /* of a pixel: a tenth of a millimetre on a slope of 1 at 1 m posts */
     }
     return h_m;
@@ -360,30 +392,31 @@ static void find_posts(const Import *m, Field *z)
     }
 }
 
-/* Mean and spread of the coarsest grid's outline: what lies beyond it. */
-static bool measure_edge(Import *m, double geoid_m)
+/* Mean and spread of each grid's outline: how gently to lead on from it, and what lies beyond the coarsest. */
+static bool measure_edges(Import *m, double geoid_m)
 {
-    const Grid  *g = NULL;
-    for (int k = 0; k < m->grids; k++)
-        if (m->grid[k].patch.mips > 0) g = &m->grid[k];
-    if (!g) return false;
-    const Patch *p = &g->patch;
-    const int    nx = p->nx[0], ny = p->ny[0];
-    double       sum = 0, low = INFINITY, high = -INFINITY;
-    long         count = 0;
-    for (int j = 0; j < ny; j++)
-        for (int i = 0; i < nx; i++) {
-            if (j > 0 && j < ny - 1 && i > 0 && i < nx - 1) i = nx - 1;
-            const double h_m = p->v[0][(size_t)j * (size_t)nx + (size_t)i] * g->raster->metres_per_unit;
-            sum += h_m;
-            low  = fmin(low, h_m);
-            high = fmax(high, h_m);
-            count++;
-        }
-    m->base_h_m = sum / (double)count + (g->ellipsoidal ? 0 : geoid_m);
-    for (int k = 0; k < m->grids; k++) /* a slope of one in fifteen, as far as half an hour's walk or a day's */
-        if (k == m->grids - 1) m->grid[k].blend_m = clamp(15 * (high - low), 2000, 30000);
-    return true;
+    bool any = false;
+    for (int k = 0; k < m->grids; k++) {
+        Grid        *g = &m->grid[k];
+        const Patch *p = &g->patch;
+        const int    nx = p->nx[0], ny = p->ny[0];
+        double       sum = 0, low = INFINITY, high = -INFINITY;
+        long         count = 0;
+        if (p->mips == 0) continue;
+        for (int j = 0; j < ny; j++)
+            for (int i = 0; i < nx; i++) {
+                if (j > 0 && j < ny - 1 && i > 0 && i < nx - 1) i = nx - 1;
+                const double h_m = p->v[0][(size_t)j * (size_t)nx + (size_t)i] * g->raster->metres_per_unit;
+                sum += h_m;
+                low  = fmin(low, h_m);
+                high = fmax(high, h_m);
+                count++;
+            }
+        m->base_h_m = sum / (double)count + (g->ellipsoidal ? 0 : geoid_m);
+        g->long_m   = clamp(15 * (high - low), 2000, 30000); /* a slope of one in fifteen */
+        any         = true;
+    }
+    return any;
 }
 
 /* ---- correction to fixes -------------------------------------------------------------------- */
@@ -417,7 +450,7 @@ static Status correct(Import *m, const GroundFix *fix, int fix_count, double *la
     status = STATUS_OK;
     if (count == 0) goto done;
 
-    const double least_m = fmax(32, 4 * m->spacing_m[0]), half_m = fmin(reach_m + 2 * widest_m, m->files->horizon_m);
+    const double least_m = fmax(8, 4 * m->spacing_m[0]), half_m = fmin(reach_m + 2 * widest_m, m->files->horizon_m);
     double       spacing_m = widest_m;
     int          half = (int)ceil(half_m / spacing_m) + margin;
     status = field_create(&spline, spacing_m, -half, -half, 2 * half + 1, 2 * half + 1);
@@ -545,7 +578,8 @@ static Status open_files(Import *m)
         g->ellipsoidal = m->files->vertical == ELEVATION_BY_FILE ? raster->ellipsoidal : m->files->vertical == ELEVATION_ELLIPSOID;
         wants_geoid |= !g->ellipsoidal;
         /* into the coarser grid around: some of its posts */
-        g->blend_m = k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 30000;
+        g->short_m = k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
+        g->long_m  = 30000; /* until its edge has been seen */
     }
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
 }
@@ -558,7 +592,7 @@ static Status make_level(Import *m, int k, double geoid_m, Patch *kept, long *vo
     if (status == STATUS_OK) status = look_out(m, z);
     if (status == STATUS_OK) status = read_patches(m, z);
     if (status == STATUS_OK) {
-        if (level->outermost && !measure_edge(m, geoid_m)) {
+        if (level->outermost && !measure_edges(m, geoid_m)) {
             log_error("%s: no post of the named files holds a height; gdalinfo -mm says what they hold", key);
             status = STATUS_BAD_VALUE;
         } else {
@@ -606,7 +640,7 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
     r.spacing_m   = m.spacing_m[0];
     r.width_m[0]  = (m.level[0].z.nx - 1) * m.spacing_m[0];
     r.width_m[1]  = (m.level[0].z.ny - 1) * m.spacing_m[0];
-    r.blend_m     = m.grid[m.grids - 1].blend_m;
+    r.blend_m     = m.grid[m.grids - 1].long_m;
     r.beyond_h_m  = m.base_h_m;
     r.ellipsoidal = main_grid->ellipsoidal;
     if (r.ellipsoidal) r.geoid_m = 0;
