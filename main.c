@@ -5,6 +5,7 @@
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
+#include "terrain/probe.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -15,6 +16,7 @@ static const struct ProbeList {
     const Probe *probe;
     const int   *count;
 } probe_lists[] = {
+    {terrain_probes, &terrain_probe_count},
     {entities_probes, &entities_probe_count},
     {render_probes, &render_probe_count},
     {sensor_probes, &sensor_probe_count},

@@ -109,6 +109,8 @@ int text_split(char **cell, int capacity, char *line);
 /* Whole string as a finite double / integer; false otherwise (`1,5`, `3x`, empty, out of range). */
 bool text_to_double(double *out, const char *text);
 bool text_to_long(long long *out, const char *text);
+/* UTC as 2026-06-21T10:00:00Z, seconds with or without a fraction, 1900 .. 2100, to Unix time. */
+bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 

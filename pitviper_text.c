@@ -244,3 +244,28 @@ Status table_number(double *out, const Table *table, int row, int column, double
     *out = value;
     return STATUS_OK;
 }
+
+/* Days since 1970-01-01 of a proleptic Gregorian date. Source: Hinnant, "chrono-compatible low-level date
+ * algorithms", by the count of days in 400-year eras. */
+static long long days_from_date(int year, int month, int day)
+{
+    const long long y   = month <= 2 ? year - 1 : year;
+    const long long era = (y >= 0 ? y : y - 399) / 400;
+    const long long yoe = y - era * 400;
+    const long long doy = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
+    return era * 146097 + yoe * 365 + yoe / 4 - yoe / 100 + doy - 719468;
+}
+
+bool text_to_unix_s(double *unix_s, const char *text)
+{
+    static const int days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
+    int    year, month, day, hour, minute, used = 0;
+    double second;
+    if (sscanf(text, "%4d-%2d-%2dT%2d:%2d:%lfZ%n", &year, &month, &day, &hour, &minute, &second, &used) != 6 ||
+        text[used] || year < 1900 || year > 2100 || month < 1 || month > 12 || day < 1 ||
+        day > days[month - 1] + (month == 2 && year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)) || hour < 0 ||
+        hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 60))
+        return false;
+    *unix_s = (double)days_from_date(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
+    return true;
+}

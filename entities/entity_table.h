@@ -9,6 +9,7 @@
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
 #include "entities/catalog.h"
+#include "entities/contact.h"
 #include "entities/effects_history.h"
 #include "entities/snapshot.h"
 
@@ -27,6 +28,7 @@ typedef struct EntityTableConfig {
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
     double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
+    ContactGround ground;         /* land vehicles are set onto it in every pose handed out; none: they are not */
 } EntityTableConfig;
 
 /* Why entities came and went, and what was not believed, how many. */

@@ -136,7 +136,7 @@ static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_
     drive[HEAT_DRIVER_SPEED] = (HeatDrive){recovery_k, INFINITY};
     const bool flames = platform && evidence->appearance >> dis_appearance_flaming_bit & 1;
     drive[HEAT_DRIVER_BURNING] = (HeatDrive){flames, INFINITY};
-    state->destroyed = !alive;
+    state->destroyed = platform && !alive; /* only machines burn out */
 }
 
 static double drive_level(const HeatTable *table, int role, double value)

@@ -154,12 +154,13 @@ static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const
 
 /* ---- the rest of an entity ---------------------------------------------------------------- */
 
-/* From here on p is the model's origin, the centre of the base; z points down. */
+/* From here on p is the model's origin, the centre of the base, on the ground where it is set onto it; z points down. */
 static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
 {
     const double height_m = catalog_model(table->catalog, slot->model)->height_m;
     if (slot->origin == ORIGIN_CENTRE)
         for (int i = 0; i < 3; i++) e->p_ecef[i] += e->r_ecef_from_body[3 * i + 2] * 0.5 * height_m;
+    contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
 static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value, const EntityTable *table,

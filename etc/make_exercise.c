@@ -37,7 +37,7 @@ typedef struct Options {
     int         version;
     const char *datagrams; /* folder; NULL: none */
     bool        bundle, absolute;
-    double      lat_deg, lon_deg, silent_s, stamp_s, clock_unix_s;
+    double      lat_deg, lon_deg, height_m, silent_s, stamp_s, clock_unix_s;
     uint64_t    seed;
 } Options;
 
@@ -126,7 +126,7 @@ typedef struct Scene {
  * down at 3.6 % (90 m from 2500 m) is never masked. */
 static double ground_height(const Scene *scene, double x_m, double y_m)
 {
-    return 120 + 1.5 * sin(x_m / 66 + scene->phase[0]) * cos(y_m / 95 + scene->phase[1]);
+    return scene->options.height_m + 1.5 * sin(x_m / 66 + scene->phase[0]) * cos(y_m / 95 + scene->phase[1]);
 }
 
 /* `above_m` over the ground at (x, y) of the tangent plane. */
@@ -313,7 +313,7 @@ static bool scene_build(Scene *scene, const Options *options)
 {
     *scene = (Scene){.options = *options, .impact_s = INFINITY};
     scene->ground_impact = !has_vehicles(scene);
-    const Geodetic origin = {options->lat_deg * rad_per_deg, options->lon_deg * rad_per_deg, 120};
+    const Geodetic origin = {options->lat_deg * rad_per_deg, options->lon_deg * rad_per_deg, options->height_m};
     if (local_frame_at(&scene->frame, &origin) != STATUS_OK) return false;
     for (uint64_t i = 0; i < 8; i++) scene->phase[i] = 2 * pi_rad * random_uniform(options->seed, 1, 0, i);
     scene->heading_rad = 2 * pi_rad * random_uniform(options->seed, 2, 0, 0);
@@ -689,6 +689,7 @@ static const char help[] =
     "  --clock UNIX_S    a Start/Resume PDU first, with this simulation time\n"
     "  --lat DEG         -89 .. 89 (36)\n"
     "  --lon DEG         -180 .. 180 (-123)\n"
+    "  --height M        of its ground above the ellipsoid, -400 .. 8000 (120)\n"
     "  --seed N          another road, another place to fire from (1)\n"
     "  --silent S        the missile sends no Entity State in its last S seconds, 0 .. 8 (0)\n"
     "  --datagrams DIR   each datagram as a file in DIR, too\n";
@@ -704,9 +705,9 @@ static bool read_options(Options *o, int argc, char **argv)
 {
     static const struct option options[] = {{"version", 1, 0, 'v'}, {"bundle", 0, 0, 'b'}, {"absolute", 0, 0, 'a'},
                                             {"stamp", 1, 0, 's'},   {"clock", 1, 0, 'c'},  {"lat", 1, 0, 'y'},
-                                            {"lon", 1, 0, 'x'},     {"silent", 1, 0, 'q'},  {"seed", 1, 0, 'r'},   {"datagrams", 1, 0, 'd'},
+                                            {"lon", 1, 0, 'x'},     {"height", 1, 0, 'h'},  {"silent", 1, 0, 'q'},  {"seed", 1, 0, 'r'},   {"datagrams", 1, 0, 'd'},
                                             {0, 0, 0, 0}};
-    *o = (Options){.version = 7, .lat_deg = 36, .lon_deg = -123, .stamp_s = 1350, .clock_unix_s = NAN, .seed = 1};
+    *o = (Options){.version = 7, .lat_deg = 36, .lon_deg = -123, .height_m = 120, .stamp_s = 1350, .clock_unix_s = NAN, .seed = 1};
     for (int c, at = 0; (c = getopt_long(argc, argv, "", options, &at)) != -1;) {
         double value = 0;
         if (c == '?') return false;
@@ -720,6 +721,7 @@ static bool read_options(Options *o, int argc, char **argv)
         case 'c': o->clock_unix_s = value; if (!in_range("clock", value, 0, 4e9)) return false; break;
         case 'y': o->lat_deg = value; if (!in_range("lat", value, -89, 89)) return false; break;
         case 'x': o->lon_deg = value; if (!in_range("lon", value, -180, 180)) return false; break;
+        case 'h': o->height_m = value; if (!in_range("height", value, -400, 8000)) return false; break;
         case 'q': o->silent_s = value; if (!in_range("silent", value, 0, 8)) return false; break;
         case 'r': if (!in_range("seed", value, 0, 1e15)) return false; o->seed = (uint64_t)value; break;
         }

@@ -140,7 +140,7 @@ static Status read_surfaces(Materials *m, const char *path)
     int land = 0;
     double sum[optical_channel_count] = {0};
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
-        if (s == SURFACE_WATER) continue;
+        if (s >= SURFACE_WATER) continue; /* the common land: neither water nor what only cover files know */
         for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
         land++;
     }

@@ -74,13 +74,20 @@ static void make_rays(Rays *rays, const Block *block, const View *view)
     }
 }
 
+/* What a photograph says of a channel: its own colour, or the brightness of all three. */
+static int albedo_of_channel(int channel)
+{
+    return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
+         : channel == optical_channel_b ? albedo_blue : albedo_all;
+}
+
 /* What each hit is made of, and how bright the ground's own pattern is there. */
 static void resolve_materials(Scratch *s, const Job *job)
 {
     const World *world       = job->world;
     const double px_per_m    = job->request->view.focal_px * s->block.n;
     for (int i = 0; i < s->hits.count; i++) {
-        s->texture[i]  = 1;
+        for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = 1;
         s->material[i] = 0;
         if (s->hits.entity[i]) {
             s->material[i] = (uint16_t)world->materials.part[s->hits.model[i]][s->hits.part[i] - 1];
@@ -92,8 +99,12 @@ static void resolve_materials(Scratch *s, const Job *job)
             /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
             double graze = 0;
             for (int k = 0; k < 3; k++) graze -= s->hits.n_geo[k][i] * s->rays.d_enu[k][i];
-            s->texture[i] = (float)landscape_texture(world->landscape, surface, s->hits.p_enu[0][i], s->hits.p_enu[1][i],
-                                                     s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01)));
+            const double x_m = s->hits.p_enu[0][i], y_m = s->hits.p_enu[1][i];
+            const double footprint_m = s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01));
+            const float  texture = (float)landscape_texture(world->landscape, surface, x_m, y_m, footprint_m);
+            float        albedo[albedo_channels];
+            landscape_albedo(albedo, world->landscape, surface, x_m, y_m, footprint_m);
+            for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = texture * albedo[albedo_of_channel(c)];
         }
     }
 }
@@ -130,15 +141,16 @@ static void shade_bands(Scratch *s, const Job *job)
     if (has_band(bands, BAND_OPTICAL)) {
         static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
         for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
-            optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
-                          &s->hits, &s->rays, s->material, s->texture, s->shadow);
-            veil_apply(s->out, &s->veil, request->optical_rgb ? rgb[c] : optical_channel_pan, s->hits.count);
+            const int channel = request->optical_rgb ? rgb[c] : optical_channel_pan;
+            optical_shade(s->out, channel, job->air, &world->materials, &s->hits, &s->rays, s->material,
+                          s->texture[channel], s->shadow);
+            veil_apply(s->out, &s->veil, channel, s->hits.count);
             deliver(s, job, picture_optical + c);
         }
     }
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
-                            s->material, s->texture);
+                            s->material, s->texture[optical_channel_pan]);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,

@@ -61,7 +61,8 @@ typedef struct Scratch {
     Rays           rays, some;
     Hits           hits, all;
     RadarReturns   radar;
-    float          out[hits_capacity], temp_k[hits_capacity], texture[hits_capacity];
+    float          out[hits_capacity], temp_k[hits_capacity];
+    float          texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground, a channel */
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     int            some_index[hits_capacity];

@@ -1,7 +1,9 @@
-/* terrain/landscape.h: the ground when nobody gave any: an invented landscape fitted to what the exercise
- * says of it.
+/* terrain/landscape.h: the ground: of files (terrain/landscape_import.h), or when nobody gave any an invented landscape
+ * fitted to what the exercise says of it. Surface, texture and albedo are asked here for both.
  *
- * It passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
+ * The invented one:
+ *
+ * it passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
  * paths, and the sight lines of shots that hit), has relief, fields, tracks and at least five surface
  * classes, and reaches the horizon without edge or hole. A pure function of its inputs. */
 #ifndef TERRAIN_LANDSCAPE_H
@@ -59,5 +61,11 @@ SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_
 /* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
  * footprint_m and larger so that it neither aliases nor shimmers. */
 double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
+/* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
+ * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. Texture
+ * then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
+enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
+void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
+                        double y_m, double footprint_m);
 
 #endif

@@ -1,6 +1,9 @@
-/* terrain/landscape_cover.c: what grows and lies on the invented ground: irregular fields, tracks and hedges
- * between some of them, scrub and rock where it is steep or nobody ploughs. Pure functions of the place. */
+/* terrain/landscape_cover.c: what grows and lies on the ground. Invented: irregular fields, tracks and hedges between
+ * some of them, scrub and rock where it is steep or nobody ploughs. Real: what the cover files say, else the same in
+ * the lowlands and woods on the slopes. Pure functions of the place. */
 #include "terrain/landscape_private.h"
+
+#include <stdlib.h>
 
 /* ---- noise -------------------------------------------------------------------------------- */
 
@@ -100,11 +103,10 @@ static double slope_about(const Elevation *elevation, double x_m, double y_m)
     return isfinite(slope) ? slope : 0;
 }
 
-SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
+static SurfaceClass invented_surface(const Landscape *landscape, double x_m, double y_m)
 {
     static const double track_half_m = 2, hedge_half_m = 1.5;
     const Cover        *cover = landscape->cover;
-    if (!cover || !isfinite(elevation_height(&landscape->elevation, x_m, y_m, NULL))) return SURFACE_NONE;
     const uint64_t seed = cover->seed;
     const double   steep = slope_about(&landscape->elevation, x_m, y_m);
 
@@ -125,6 +127,54 @@ SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_
     return crop_of_field(plot.id, noise_at(seed + 13, plot.x_m, plot.y_m, 1900) > -0.15);
 }
 
+/* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
+ * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. */
+static SurfaceClass unmapped_surface(const Landscape *landscape, double x_m, double y_m, double z_m)
+{
+    const Cover   *cover = landscape->cover;
+    const uint64_t seed = cover->seed;
+    const double   far_m = sqrt(x_m * x_m + y_m * y_m);
+    const double   slope = fmax(slope_about(&landscape->elevation, x_m, y_m) - far_m / 6371e3, 0);
+    double         ellipsoid_m, dz_per_h;
+    curve_at(&cover->curve, x_m, y_m, &ellipsoid_m, &dz_per_h);
+    const double h_msl_m = (z_m - ellipsoid_m) / dz_per_h - cover->geoid_m;
+    if (fabs(h_msl_m) < 1 + 5e-5 * far_m && slope < 0.002) return SURFACE_WATER; /* the geoid tilts by so much */
+
+    const double patchy = noise_at(seed + 14, x_m, y_m, 700) + 0.6 * noise_at(seed + 15, x_m, y_m, 190) +
+                          0.3 * noise_at(seed + 16, x_m, y_m, 41);
+    if (slope + 0.12 * patchy > 0.84) return SURFACE_ROCK;
+    const double above_m = h_msl_m - cover->treeline_m + 150 * patchy;
+    if (above_m > 700) return SURFACE_ROCK;
+    if (above_m > 0) return patchy > 0.4 ? SURFACE_ROCK : SURFACE_DRY_GRASS;
+    if (slope + 0.08 * patchy > 0.16) {
+        if (patchy < -0.75) return SURFACE_DRY_GRASS;
+        if (patchy < -0.5) return SURFACE_SCRUB;
+        return above_m > -1200 + 500 * noise_at(seed + 17, x_m, y_m, 2300) ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
+    }
+    return invented_surface(landscape, x_m, y_m);
+}
+
+SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
+{
+    const Cover *cover = landscape->cover;
+    const double z_m = cover ? elevation_height(&landscape->elevation, x_m, y_m, NULL) : NAN;
+    if (!isfinite(z_m)) return SURFACE_NONE;
+    if (!cover->real) return invented_surface(landscape, x_m, y_m);
+    if (cover->grid[0].surface || cover->grid[1].surface) {
+        /* borders of coarse cells wander by half a cell, as nothing in the country runs in stairs of 30 m */
+        const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
+        double       dx = 0, dy = 0;
+        for (int octave = 0; away_m > 0 && octave < 3; octave++) {
+            const double wave_m = cell_m * exp2(-octave), share = 0.57 * exp2(-octave);
+            dx += share * noise_at(cover->seed + 40 + (uint64_t)octave, x_m, y_m, wave_m);
+            dy += share * noise_at(cover->seed + 50 + (uint64_t)octave, x_m, y_m, wave_m);
+        }
+        const SurfaceClass surface = cover_grid_at(cover->grid, x_m + away_m * dx, y_m + away_m * dy);
+        if (surface != SURFACE_NONE) return surface;
+    }
+    return unmapped_surface(landscape, x_m, y_m, z_m);
+}
+
 /* ---- texture ------------------------------------------------------------------------------ */
 
 static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
@@ -143,6 +193,13 @@ static const float amplitude[SURFACE_COUNT][octave_count] = {
     [SURFACE_ROCK] = {.08f, .09f, .09f, .08f, .06f, .04f, .02f},
     [SURFACE_SCRUB] = {.09f, .10f, .11f, .09f, .05f, .03f, .02f},
     [SURFACE_WATER] = {.01f, .01f, .01f, .01f, .01f, .01f, .01f},
+    [SURFACE_FOREST_BROADLEAF] = {.06f, .08f, .10f, .12f, .12f, .04f, .03f},
+    [SURFACE_FOREST_CONIFER] = {.06f, .08f, .12f, .14f, .10f, .04f, .03f},
+    [SURFACE_BUILT] = {.03f, .04f, .06f, .10f, .14f, .10f, .04f},
+    [SURFACE_ROAD] = {.03f, .03f, .03f, .03f, .02f, .02f, .02f},
+    [SURFACE_SAND] = {.04f, .04f, .03f, .03f, .03f, .04f, .04f},
+    [SURFACE_SNOW] = {.01f, .01f, .02f, .02f, .02f, .02f, .02f},
+    [SURFACE_WETLAND] = {.08f, .08f, .07f, .07f, .08f, .07f, .05f},
 };
 
 /* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
@@ -163,6 +220,12 @@ static double rows_at(uint64_t seed, double x_m, double y_m, double apart_m)
     return 2 * t * t * (3 - 2 * t) - 1;
 }
 
+static bool photo_covers(const Photo *photo, double x_m, double y_m)
+{
+    double linear[photo_channels];
+    return photo->mips > 0 && photo_at(linear, photo, x_m, y_m, photo->cell_m) > 0.5;
+}
+
 double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m)
 {
     static const double crop_rows_m = 0.75, furrows_m = 1.1;
@@ -171,16 +234,79 @@ double landscape_texture(const Landscape *landscape, SurfaceClass surface, doubl
 
     const uint64_t seed = cover->seed + 20;
     footprint_m = footprint_m > 0 ? footprint_m : 0;
-    double sum = 1;
+    /* what the photograph shows already is not invented once more */
+    const double seen_m = photo_covers(&cover->photo, x_m, y_m) ? 2 * cover->photo.cell_m : INFINITY;
+    double       sum = 1;
     for (int n = octave_count - 1; n >= 0; n--) {
         const double share = fade(octave_m[n], footprint_m);
+        if (octave_m[n] >= seen_m) continue;
         if (!(share > 0)) break; /* the shorter ones are gone too */
         sum += share * amplitude[surface][n] * noise_at(seed + (uint64_t)n, x_m, y_m, octave_m[n]);
     }
     const double row_m = surface == SURFACE_CROP ? crop_rows_m : surface == SURFACE_PLOUGHED ? furrows_m : 0;
-    if (row_m > 0) {
+    if (row_m > 0 && row_m < seen_m) {
         const double share = fade(row_m, footprint_m);
         if (share > 0) sum += 0.08 * share * rows_at(cover->seed, x_m, y_m, row_m);
     }
     return clamp(sum, 0.6, 1.4);
+}
+
+/* ---- photograph ----------------------------------------------------------------------------- */
+
+void cover_measure_photo(Landscape *landscape)
+{
+    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would blow up the others */
+    static const double enough = 200, most = 400e3;
+    Cover *cover = landscape->cover;
+    Photo *p = &cover->photo;
+    if (p->mips == 0) return;
+    int k = 0;
+    while (k < p->mips - 1 && (double)p->nx[k] * p->ny[k] > most) k++;
+    const double cell_m = p->cell_m * exp2(k);
+    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0}, total = 0;
+    for (int j = 0; j < p->ny[k]; j++)
+        for (int i = 0; i < p->nx[k]; i++) {
+            const double x_m = p->x0_m + (i + 0.5) * cell_m, y_m = p->y0_m + (j + 0.5) * cell_m;
+            double       linear[photo_channels];
+            const double share = photo_at(linear, p, x_m, y_m, cell_m);
+            if (!(share > 0)) continue;
+            const SurfaceClass surface = landscape_surface(landscape, x_m, y_m);
+            for (int c = 0; c < photo_channels; c++) {
+                sum[surface][c] += share * linear[c];
+                all[c] += share * linear[c];
+            }
+            count[surface] += share;
+            total += share;
+        }
+    for (int s = 0; s < SURFACE_COUNT; s++)
+        for (int c = 0; c < photo_channels; c++) {
+            const double mean_all = total > 0 ? all[c] / total : 1;
+            p->mean[s][c] = (float)fmax((sum[s][c] + enough * mean_all) / (count[s] + enough), 1e-4);
+        }
+}
+
+void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m,
+                      double footprint_m)
+{
+    static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
+    const Cover *cover = landscape->cover;
+    double       linear[photo_channels], share = 0, all = 0;
+    for (int c = 0; c < albedo_channels; c++) factor[c] = 1;
+    if (!cover || cover->photo.mips == 0 || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return;
+    share = photo_at(linear, &cover->photo, x_m, y_m, footprint_m);
+    if (!(share > 0)) return;
+    for (int c = 0; c < photo_channels; c++) {
+        const double ratio = fmin(linear[c] / (double)cover->photo.mean[surface][c], brightest);
+        factor[c] = (float)(1 + share * (ratio - 1));
+        all += factor[c] / photo_channels;
+    }
+    factor[albedo_all] = (float)all;
+}
+
+void cover_free(Cover *cover)
+{
+    if (!cover) return;
+    cover_grid_free(cover->grid);
+    photo_free(&cover->photo);
+    free(cover);
 }

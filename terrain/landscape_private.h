@@ -1,14 +1,16 @@
 /* terrain/landscape_private.h: what the files of the invented landscape share.
  *
  * landscape.c        plan of the levels, and the order of the work
+ * landscape_levels.c curvature, joining, quantisation: also for ground from files
  * landscape_field.c  smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
  * landscape_fit.c    which fixes to believe, and the last centimetres on the posts themselves
  * landscape_clear.c  what clear lines allow
  * landscape_near.c   points by place
- * landscape_cover.c  fields, tracks and texture */
+ * landscape_cover.c  fields, tracks, texture; what cover files and photographs say */
 #ifndef TERRAIN_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_PRIVATE_H
 
+#include "terrain/ground_image.h"
 #include "terrain/landscape.h"
 
 /* ---- integer hash ------------------------------------------------------------------------- */
@@ -167,10 +169,30 @@ void curve_of_frame(Curve *out, const LocalFrame *frame);
 /* z = *z_m + h * *dz_per_h within h^2 lean^2 / 2R: 0.1 mm at 6 km, 2 cm at 400 km and h = 9 km. */
 void curve_at(const Curve *curve, double x_m, double y_m, double *z_m, double *dz_per_h);
 
+/* ---- levels ------------------------------------------------------------------------------- */
+
+enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
+
+/* Turns heights above the ellipsoid into ENU z, in place. */
+Status levels_bend(Field *posts, const Curve *curve);
+/* Leads the posts within `band` of the outline over to the surface of the level around, on which the outline lies. */
+void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
+/* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation.h on seams. */
+Status levels_store(Elevation *out, const WorkLevel *level, int count);
+
 /* ---- cover -------------------------------------------------------------------------------- */
 
 typedef struct Cover {
-    uint64_t seed;
+    uint64_t  seed;
+    bool      real;              /* elevation from files: no fields on steep slopes, woods instead */
+    Curve     curve;             /* real: heights above the sea are asked for */
+    double    geoid_m, treeline_m;
+    CoverGrid grid[cover_windows];
+    Photo     photo;
 } Cover;
+
+/* Means of the photograph over each class, once the classes are known. */
+void cover_measure_photo(Landscape *landscape);
+void cover_free(Cover *cover);   /* accepts NULL */
 
 #endif

@@ -17,12 +17,12 @@ void choice_add(Choices *choices, const char *format, ...)
     va_end(arguments);
 }
 
-static bool is_land(const Track *track)
+bool choice_is_land(const Track *track)
 {
     return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_land;
 }
 
-static bool flies(const Track *track)
+bool choice_flies(const Track *track)
 {
     return track->type.kind == dis_kind_munition ||
            (track->type.kind == dis_kind_platform && track->type.domain == dis_domain_air);
@@ -39,7 +39,7 @@ static double path_m(const Track *track)
     return sum;
 }
 
-static const Shot *shot_of(const Survey *survey, DisEntityId munition)
+const Shot *choice_shot_of(const Survey *survey, DisEntityId munition)
 {
     for (int i = 0; i < survey->shot_count; i++)
         if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return &survey->shot[i];
@@ -103,7 +103,7 @@ static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], 
 static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, const Config *config)
 {
     char        name[who_size];
-    const Shot *shot = shot_of(survey, plan->host);
+    const Shot *shot = choice_shot_of(survey, plan->host);
     if (*config->exercise.aim) {
         dis_entity_id_parse(&plan->aim, config->exercise.aim);
         return;
@@ -155,7 +155,7 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
         return STATUS_BAD_VALUE;
     }
     HostPlan    plan = {.host = host, .munition = track->type.kind == dis_kind_munition};
-    const Shot *shot = plan.munition ? shot_of(survey, host) : NULL;
+    const Shot *shot = plan.munition ? choice_shot_of(survey, host) : NULL;
     plan.start_s     = track->point[0].t_s;
     plan.end_s       = track->point[track->count - 1].t_s;
     if (shot && isfinite(shot->detonation_s) && shot->detonation_s > plan.start_s) plan.end_s = shot->detonation_s;
@@ -171,7 +171,7 @@ static const Track *longest_flight(const Survey *survey, bool impact)
     double       most_s  = 0;
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
-        const Shot  *shot  = shot_of(survey, track->id);
+        const Shot  *shot  = choice_shot_of(survey, track->id);
         if (track->type.kind != dis_kind_munition) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s
@@ -193,7 +193,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
     double       most_m = -1;
 
     for (int i = 0; i < survey->track_count; i++) /* land first, then anybody; who went farthest */
-        if (is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
+        if (choice_is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
             target = &survey->track[i];
             most_m = path_m(target);
         }
@@ -251,36 +251,11 @@ void choose_rate(HostPlan *plan, Choices *choices, const Config *config)
 
 /* ---- time of day ---------------------------------------------------------------------------- */
 
-/* Days since 1970-01-01 of a proleptic Gregorian date. Source: Hinnant, "chrono-compatible low-level date
- * algorithms", by the count of days in 400-year eras. */
-static long long days_from_date(int year, int month, int day)
-{
-    const long long y   = month <= 2 ? year - 1 : year;
-    const long long era = (y >= 0 ? y : y - 399) / 400;
-    const long long yoe = y - era * 400;
-    const long long doy = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-    return era * 146097 + yoe * 365 + yoe / 4 - yoe / 100 + doy - 719468;
-}
-
-static bool parse_utc(double *unix_s, const char *text)
-{
-    static const int days[12] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    int    year, month, day, hour, minute, used = 0;
-    double second;
-    if (sscanf(text, "%4d-%2d-%2dT%2d:%2d:%lfZ%n", &year, &month, &day, &hour, &minute, &second, &used) != 6 ||
-        text[used] || year < 1900 || year > 2100 || month < 1 || month > 12 || day < 1 ||
-        day > days[month - 1] + (month == 2 && year % 4 == 0 && (year % 100 != 0 || year % 400 == 0)) || hour < 0 ||
-        hour > 23 || minute < 0 || minute > 59 || !(second >= 0 && second < 60))
-        return false;
-    *unix_s = (double)days_from_date(year, month, day) * 86400 + hour * 3600 + minute * 60 + second;
-    return true;
-}
-
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame)
 {
     double first_unix_s;
     if (*config->exercise.utc) {
-        if (!parse_utc(&first_unix_s, config->exercise.utc)) {
+        if (!text_to_unix_s(&first_unix_s, config->exercise.utc)) {
             log_error("replay: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
                       config->exercise.utc);
             return STATUS_BAD_VALUE;
@@ -294,7 +269,8 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
         choice_add(choices, "time of day: absolute time stamps and the date of the capture (exercise.utc)");
     } else {
         /* mean solar time: 86400 s for 2 pi of longitude */
-        const double ten_local_s = (double)days_from_date(2026, 6, 21) * 86400 + 10 * 3600;
+        double ten_local_s = 0;
+        text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
         *unix_s = ten_local_s - frame->origin.lon_rad / (2 * pi_rad) * 86400 - survey->first_s;
         choice_add(choices, "time of day: local solar 10:00 on 21 June, the log does not say (exercise.utc)");
     }
@@ -316,114 +292,4 @@ Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
     if (status != STATUS_OK) return status;
     place.h_m = 0;
     return local_frame_at(out, &place);
-}
-
-typedef struct Evidence {
-    GroundFix *fix;
-    ClearLine *line;
-    int        fixes, lines, vehicles, impacts;
-} Evidence;
-
-/* Places far outside the landscape say nothing about it. */
-static const double evidence_reach_m = 60000;
-
-static void add_fix(Evidence *e, const LocalFrame *frame, const double p_ecef[3])
-{
-    GroundFix fix;
-    enu_from_ecef(fix.p_enu, frame, p_ecef);
-    if (hypot(fix.p_enu[0], fix.p_enu[1]) < evidence_reach_m) e->fix[e->fixes++] = fix;
-}
-
-static void add_line(Evidence *e, const LocalFrame *frame, const double a_ecef[3], const double b_ecef[3])
-{
-    ClearLine line;
-    double    d[3];
-    enu_from_ecef(line.a_enu, frame, a_ecef);
-    enu_from_ecef(line.b_enu, frame, b_ecef);
-    v3_sub(d, line.b_enu, line.a_enu);
-    if (v3_length(d) < evidence_reach_m && hypot(line.a_enu[0], line.a_enu[1]) < evidence_reach_m)
-        e->line[e->lines++] = line;
-}
-
-/* A vehicle's base at its reports. */
-static void add_vehicle(Evidence *e, const LocalFrame *frame, const Track *track, double base_below_m)
-{
-    for (int i = 0; i < track->count; i++) {
-        const TrackPoint *point = &track->point[i];
-        double            base_ecef[3];
-        for (int k = 0; k < 3; k++) /* third column: body z, down */
-            base_ecef[k] = point->p_ecef[k] + base_below_m * point->r_ecef_from_body[3 * k + 2];
-        add_fix(e, frame, base_ecef);
-    }
-}
-
-static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *survey, const Track *track,
-                       const HostPlan *plan)
-{
-    const Shot  *shot   = track->type.kind == dis_kind_munition ? shot_of(survey, track->id) : NULL;
-    const Track *target = shot ? survey_track(survey, shot->hit) : NULL;
-    /* a hit that names nobody: what the host's own was found to have hit */
-    if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, plan->host) == 0)
-        target = survey_track(survey, plan->aim);
-    for (int i = 0; i + 1 < track->count; i++)
-        add_line(e, frame, track->point[i].p_ecef, track->point[i + 1].p_ecef);
-    /* a shot that hit saw its target all the way */
-    for (int i = 0; target && i < track->count; i++) {
-        TrackPose pose;
-        double    centre_ecef[3];
-        track_at(&pose, target, track->point[i].t_s);
-        for (int k = 0; k < 3; k++) centre_ecef[k] = pose.p_ecef[k] - pose.r_ecef_from_body[3 * k + 2];
-        add_line(e, frame, track->point[i].p_ecef, centre_ecef);
-    }
-}
-
-Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, const Config *config,
-                     const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
-{
-    LandscapeConfig land = landscape_default_config();
-    Evidence        e    = {0};
-    size_t          points = (size_t)survey->shot_count;
-    for (int i = 0; i < survey->track_count; i++) points += (size_t)survey->track[i].count;
-
-    Status status = STATUS_NO_MEMORY;
-    e.fix         = calloc(points + 1, sizeof *e.fix);
-    e.line        = calloc(2 * points + (size_t)survey->track_count + 1, sizeof *e.line);
-    if (!e.fix || !e.line) goto done;
-
-    for (int i = 0; i < survey->track_count; i++) {
-        const Track *track = &survey->track[i];
-        if (is_land(track)) {
-            Origin       origin;
-            const int    model        = catalog_find(catalog, track->type, &origin, NULL);
-            const double base_below_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(catalog, model)->height_m : 0;
-            add_vehicle(&e, frame, track, base_below_m);
-            e.vehicles++;
-        } else if (flies(track)) {
-            add_flight(&e, frame, survey, track, plan);
-        }
-    }
-    for (int i = 0; i < survey->shot_count; i++)
-        if (survey->shot[i].result == dis_result_ground_impact && isfinite(survey->shot[i].detonation_s)) {
-            add_fix(&e, frame, survey->shot[i].p_burst_ecef);
-            e.impacts++;
-        }
-
-    land.seed      = (uint64_t)config->seed;
-    land.relief_m  = config->terrain.relief_m;
-    land.spacing_m = config->terrain.spacing_m;
-    status         = landscape_create(out, &land, frame, e.fix, e.fixes, e.line, e.lines);
-    if (status != STATUS_OK) {
-        log_error("replay: no landscape could be made: %s", status_name(status));
-        goto done;
-    }
-    choice_add(choices, "ground: invented, fitted to %d land entities and %d ground impacts within %.2f m (terrain.*)",
-               e.vehicles, e.impacts, out->fit_worst_m);
-    if (out->fixes_dropped > 0)
-        choice_add(choices, "ground: %d of %d places contradict others or a flight path and were left out", out->fixes_dropped,
-                   e.fixes);
-
-done:
-    free(e.fix);
-    free(e.line);
-    return status;
 }

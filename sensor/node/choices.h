@@ -41,8 +41,14 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
-/* The invented landscape, fitted to the log. */
-Status choose_ground(Landscape *out, Choices *choices, const Survey *survey, const Config *config,
+/* The ground: of the files of terrain.*, else the invented landscape, fitted to the log. clamp: whether land vehicles
+ * are set onto it (terrain.ground). */
+Status choose_ground(Landscape *out, bool *clamp, Choices *choices, const Survey *survey, const Config *config,
                      const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
+
+/* Shared by the files of choices. */
+bool        choice_is_land(const Track *track);
+bool        choice_flies(const Track *track);
+const Shot *choice_shot_of(const Survey *survey, DisEntityId munition); /* NULL: none heard */
 
 #endif

@@ -74,7 +74,15 @@ static const Key keys[] = {
     {"weather.wind_mps", KEY_DOUBLE, AT(weather.wind_mps), 0, 60, NULL, "m/s", ""},
     {"weather.wind_from_deg", KEY_DOUBLE, AT(weather.wind_from_deg), 0, 360, NULL, "deg", "where the wind comes from, clockwise from north"},
     {"terrain.relief_m", KEY_DOUBLE, AT(terrain.relief_m), 0, 200, NULL, "m", "rms height of the invented hills"},
-    {"terrain.spacing_m", KEY_DOUBLE, AT(terrain.spacing_m), 1, 30, NULL, "m", "between elevation posts"},
+    {"terrain.spacing_m", KEY_DOUBLE, AT(terrain.spacing_m), 0, 1000, NULL, "m", "between elevation posts; 0: 4 invented, else the files' own"},
+    {"terrain.elevation", KEY_TEXT, AT(terrain.elevation), 0, 0, NULL, "", "elevation files or folders, separated by commas; empty: invented ground"},
+    {"terrain.vertical", KEY_TEXT, AT(terrain.vertical), 0, 0, "auto|geoid|ellipsoid", "", "what their heights are above; auto: as their CRS says, else the geoid"},
+    {"terrain.geoid", KEY_TEXT, AT(terrain.geoid), 0, 0, NULL, "", "a .gtx grid; empty: EGM96 of proj-data"},
+    {"terrain.cover", KEY_TEXT, AT(terrain.cover), 0, 0, NULL, "", "ground cover files or folders; empty: by slope and height"},
+    {"terrain.cover_table", KEY_TEXT, AT(terrain.cover_table), 0, 0, NULL, "", "worldcover, nlcd, fbfm40 or a CSV of code, surface; empty: by the codes met"},
+    {"terrain.cover_band", KEY_INT, AT(terrain.cover_band), 0, 1000, NULL, "", "band of the cover files; 0: 4 of landscape files (8 bands), else 1"},
+    {"terrain.orthophoto", KEY_TEXT, AT(terrain.orthophoto), 0, 0, NULL, "", "photographs of the ground from above, files or folders"},
+    {"terrain.ground", KEY_TEXT, AT(terrain.ground), 0, 0, "auto|clamp|trust|fit", "", "set land vehicles on the ground, leave them, or lead the ground through them; auto: fit invented ground, clamp to real"},
     {"observer.range_m", KEY_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m", "of the stand-off observer, along the ground"},
     {"observer.height_m", KEY_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m", "above what it looks at"},
     {"observer.rate_dps", KEY_DOUBLE, AT(observer.rate_dps), -60, 60, NULL, "deg/s", "of its circle, clockwise from above"},
@@ -134,7 +142,8 @@ Config config_default(void)
     c.weather.wind_mps              = 3;
     c.weather.wind_from_deg         = 270;
     c.terrain.relief_m              = 15;
-    c.terrain.spacing_m             = 4;
+    strcpy(c.terrain.vertical, "auto");
+    strcpy(c.terrain.ground, "auto");
     c.observer.range_m              = 600;
     c.observer.height_m             = 250;
     c.observer.rate_dps             = 2;
@@ -338,6 +347,16 @@ Status config_check(const Config *config)
             log_error("config: %s: needs a sensor to change; choose one with sensor.preset", of_preset[i]);
             return STATUS_BAD_VALUE;
         }
+    if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
+        !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
+        log_error("config: terrain.spacing_m: %g is not 0 or 1 .. 30 m for invented ground", config->terrain.spacing_m);
+        return STATUS_BAD_VALUE;
+    }
+    if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
+        log_error("config: terrain.%s needs terrain.elevation: on invented ground it would lie on other country's hills",
+                  *config->terrain.cover ? "cover" : "orthophoto");
+        return STATUS_BAD_VALUE;
+    }
     if (config->exercise.from_s > config->exercise.to_s) {
         log_error("config: exercise.from_s: %g is after exercise.to_s: %g", config->exercise.from_s,
                   config->exercise.to_s);

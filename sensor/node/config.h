@@ -53,6 +53,11 @@ typedef struct Config {
     } weather;
     struct {
         double relief_m, spacing_m;
+        char   elevation[1024], vertical[16], geoid[256];
+        char   cover[1024], cover_table[256];
+        int    cover_band;
+        char   orthophoto[1024];
+        char   ground[8];
     } terrain;
     struct {
         double range_m, height_m, rate_dps; /* the stand-off observer */

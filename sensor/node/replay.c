@@ -285,6 +285,7 @@ static Status run_host(Run *run, const char *host_text)
     World         *world     = &run->world;
     SessionResult  result    = {0};
     double         unix_s    = 0;
+    bool           clamp     = false;
     char           out[path_size];
     DisEntityId    host;
     Status         status;
@@ -298,7 +299,7 @@ static Status run_host(Run *run, const char *host_text)
     status = choose_frame(&frame, &run->survey, &plan);
     if (status == STATUS_OK) status = choose_time(&unix_s, &choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = choose_ground(&landscape, &choices, &run->survey, &o->config, &frame, run->catalog, &plan);
+        status = choose_ground(&landscape, &clamp, &choices, &run->survey, &o->config, &frame, run->catalog, &plan);
     if (status == STATUS_OK) status = world_open(world, run->catalog, &landscape, &frame, o->isa);
     if (status != STATUS_OK) goto done;
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
@@ -314,7 +315,7 @@ static Status run_host(Run *run, const char *host_text)
                                   .catalog = run->catalog, .world = world, .pool = run->pool, .unix_s = unix_s,
                                   .bands = run->bands, .exercise = run->exercise, .png = o->png,
                                   .no_skip = o->no_skip, .speed = o->speed, .sensors = &run->sensors,
-                                  .config_sha256 = run->config_sha256};
+                                   .clamp = clamp, .config_sha256 = run->config_sha256};
     status = session_run(&result, &shared, &plan, out);
     if (result.frames > 0) { /* what could be shown is recorded, even when it stopped early */
         const Status written = write_run(run, out, &plan, &choices, &result);

@@ -376,6 +376,8 @@ static Status open_session(Session *s)
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
+    if (shared->clamp)
+        table.ground = (ContactGround){&shared->world->frame, &shared->world->landscape->elevation};
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s};

@@ -20,6 +20,7 @@ typedef struct SessionShared {
     unsigned       bands;
     int            exercise;  /* identifier; -1: all */
     bool           png, no_skip;
+    bool           clamp;     /* land vehicles are set onto the world's ground */
     double         speed;     /* exercise seconds a second; INFINITY: as fast as it goes */
     const char    *config_sha256;
     const Sensors *sensors;

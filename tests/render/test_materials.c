@@ -32,7 +32,9 @@ static const char header[] = "name,rho_b,rho_g,rho_r,rho_pan,rho_mwir,rho_lwir,s
 static const char rows[] = "turf,0.04,0.09,0.06,0.0625,0.015,0.019,0.73,0,1,0,0.1,test\n"
                            "steel,0.2,0.2,0.3,0.25,0.3,0.2,0.8,0.5,0.2,1,0.02,test\n";
 static const char surfaces[] = "surface,material\ngrass,turf\ndry_grass,turf\ncrop,turf\nbare_soil,turf\n"
-                               "ploughed,turf\ntrack,turf\nrock,turf\nscrub,turf\nwater,steel\n";
+                               "ploughed,turf\ntrack,turf\nrock,turf\nscrub,turf\nwater,steel\n"
+                               "forest_broadleaf,turf\nforest_conifer,turf\nbuilt,steel\nroad,steel\nsand,turf\n"
+                               "snow,turf\nwetland,turf\n";
 
 static Status open_texts(Materials *out, const char *table, const char *surface_table)
 {

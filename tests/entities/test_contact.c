@@ -1,0 +1,170 @@
+/* tests/entities/test_contact.c: land vehicles set onto the ground: on planes, where every answer is on paper, and far
+ * from the origin, where the local vertical leans. */
+#include "entities/contact.h"
+#include "tests/entities/entity_fixture.h"
+
+/* One level of 2 m posts, z = base + slope_x x + slope_y y; slopes in eighths are exact in steps of 1/64 m. */
+static Elevation plane(double half_m, double spacing_m, double base_m, double slope_x, double slope_y)
+{
+    Elevation    ground = {0};
+    const int    n = (int)(2 * half_m / spacing_m) + 1;
+    const double step_m = 1.0 / 64, z0_m = base_m - 500;
+    assert_int_equal(elevation_level_create(&ground, 0, n, n, -half_m, -half_m, spacing_m, z0_m, step_m), STATUS_OK);
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            const double z_m = base_m + slope_x * (i * spacing_m - half_m) + slope_y * (j * spacing_m - half_m);
+            ground.level[0].post[(size_t)j * (size_t)n + (size_t)i] = (uint16_t)lrint((z_m - z0_m) / step_m);
+        }
+    elevation_build_pyramids(&ground);
+    return ground;
+}
+
+static LocalFrame frame_at(double lat_deg, double lon_deg)
+{
+    LocalFrame     frame;
+    const Geodetic place = {lat_deg * rad_per_deg, lon_deg * rad_per_deg, 0};
+    assert_int_equal(local_frame_at(&frame, &place), STATUS_OK);
+    return frame;
+}
+
+/* At an ENU place, level there or not, heading clockwise from north. */
+static SnapshotEntity entity_at(const LocalFrame *frame, DisEntityType type, double x_m, double y_m, double z_m, double heading_rad)
+{
+    SnapshotEntity e = {.type = type};
+    const double   p_enu[3] = {x_m, y_m, z_m}, s = sin(heading_rad), c = cos(heading_rad);
+    const double   r_enu_from_body[9] = {s, c, 0, c, -s, 0, 0, 0, -1}; /* columns: forward, right, down */
+    const double   v_enu[3] = {10 * s, 10 * c, 0};
+    ecef_from_enu(e.p_ecef, frame, p_enu);
+    m3_mul(e.r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
+    m3_mul_v3(e.v_ecef_mps, frame->r_ecef_from_enu, v_enu);
+    return e;
+}
+
+static const Model box = {.box_low = {-3, -1.5, -2}, .box_high = {5, 1.5, 0}}; /* its gun reaches 2 m beyond the bow */
+
+static void it_lies_on_a_slope_as_paper_says(void **state)
+{
+    (void)state;
+    const LocalFrame frame = frame_at(44, -123);
+    Elevation        ground = plane(200, 2, 30, 0.125, -0.25);
+    const ContactGround contact = {&frame, &ground};
+    for (int n = 0; n < 24; n++) {
+        const double heading_rad = 0.26 * n, x_m = 3 * n - 40, y_m = 25 - 2 * n;
+        SnapshotEntity e = entity_at(&frame, tank_type, x_m, y_m, 37, heading_rad);
+        double p_enu[3], r_enu_from_body[9], v_enu[3];
+        contact_set(&e, &contact, &box);
+        enu_from_ecef(p_enu, &frame, e.p_ecef);
+        m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, e.r_ecef_from_body);
+        m3_tmul_v3(v_enu, frame.r_ecef_from_enu, e.v_ecef_mps);
+        /* 50 m from the origin the vertical leans 8e-6: 0.1 mm of 10 m, and 1e-5 in direction */
+        CHECK_NEAR(p_enu[0], x_m, 1e-3);
+        CHECK_NEAR(p_enu[1], y_m, 1e-3);
+        CHECK_NEAR(p_enu[2], 30 + 0.125 * p_enu[0] - 0.25 * p_enu[1], 1e-4);
+        const double climb = 0.125 * sin(heading_rad) - 0.25 * cos(heading_rad), length = sqrt(1 + climb * climb);
+        CHECK_NEAR(r_enu_from_body[0], sin(heading_rad) / length, 2e-5);
+        CHECK_NEAR(r_enu_from_body[3], cos(heading_rad) / length, 2e-5);
+        CHECK_NEAR(r_enu_from_body[6], climb / length, 2e-5);
+        /* down is against the plane's normal (-1/8, 1/4, 1) */
+        const double normal = sqrt(1 + 0.125 * 0.125 + 0.25 * 0.25);
+        CHECK_NEAR(r_enu_from_body[2], 0.125 / normal, 2e-5);
+        CHECK_NEAR(r_enu_from_body[5], -0.25 / normal, 2e-5);
+        CHECK_NEAR(r_enu_from_body[8], -1 / normal, 2e-5);
+        CHECK_NEAR(v_enu[2], 10 * climb, 1e-3);
+        CHECK_NEAR(hypot(v_enu[0], v_enu[1]), 10, 1e-3);
+        CHECK_NEAR(contact_above_m(&contact, e.p_ecef), 0, 1e-6);
+    }
+    elevation_destroy(&ground);
+}
+
+/* 8 km out the vertical leans 1.25 mrad against ENU: a drop of 400 m is 0.5 m sideways. */
+static void it_moves_along_the_local_vertical(void **state)
+{
+    (void)state;
+    const LocalFrame frame = frame_at(44, -123);
+    Elevation        ground = plane(8200, 16, -20, 0, 0);
+    const ContactGround contact = {&frame, &ground};
+    SnapshotEntity      e = entity_at(&frame, truck_type, 8000, 0, 380, 0);
+    const SnapshotEntity before = e;
+    double   moved[3], r_ecef_from_enu[9], p_ecef[3], p_enu[3];
+    Geodetic place;
+    contact_set(&e, &contact, &box);
+    v3_sub(moved, before.p_ecef, e.p_ecef);
+    enu_from_ecef(p_enu, &frame, e.p_ecef);
+    CHECK_NEAR(p_enu[2], -20, 1e-6);
+    CHECK_NEAR(p_enu[0], 8000 - 400 * 8000 / 6.387e6, 0.01); /* radius of the parallel's normal section at 44 degrees */
+    assert_int_equal(geodetic_from_ecef(&place, before.p_ecef), STATUS_OK);
+    assert_int_equal(ecef_from_geodetic(p_ecef, r_ecef_from_enu, &place), STATUS_OK);
+    double up = 0;
+    for (int k = 0; k < 3; k++) up += moved[k] / v3_length(moved) * r_ecef_from_enu[3 * k + 2];
+    CHECK_NEAR(up, 1, 1e-12);
+    elevation_destroy(&ground);
+}
+
+static void who_does_not_stand_stays(void **state)
+{
+    (void)state;
+    const LocalFrame frame = frame_at(44, -123);
+    Elevation        ground = plane(100, 2, 30, 0.125, 0);
+    const ContactGround contact = {&frame, &ground}, none = {&frame, NULL};
+    SnapshotEntity      e = entity_at(&frame, helicopter_type, 0, 0, 90, 1), before = e;
+    contact_set(&e, &contact, &box);
+    assert_memory_equal(&e, &before, sizeof e);
+    e = before = entity_at(&frame, missile_type, 0, 0, 90, 1);
+    contact_set(&e, &contact, &box);
+    assert_memory_equal(&e, &before, sizeof e);
+    e = before = entity_at(&frame, tank_type, 500, 0, 90, 1); /* beyond the ground */
+    contact_set(&e, &contact, &box);
+    assert_memory_equal(&e, &before, sizeof e);
+    e = before = entity_at(&frame, tank_type, 0, 0, 90, 1);
+    contact_set(&e, &none, &box);
+    assert_memory_equal(&e, &before, sizeof e);
+    CHECK(isnan(contact_above_m(&none, e.p_ecef)));
+
+    /* on his back: down to the ground, but still on his back */
+    e = entity_at(&frame, tank_type, 0, 0, 90, 1);
+    for (int k = 0; k < 3; k++)
+        for (int c = 1; c < 3; c++) e.r_ecef_from_body[3 * k + c] *= -1;
+    before = e;
+    contact_set(&e, &contact, &box);
+    assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
+    CHECK_NEAR(contact_above_m(&contact, e.p_ecef), 0, 1e-6);
+    elevation_destroy(&ground);
+}
+
+/* Snapshot, single pose and so the aim agree to the bit, and stand on the ground. */
+static void every_pose_handed_out_stands(void **state)
+{
+    (void)state;
+    const LocalFrame  frame = frame_at(0, 0);
+    Elevation         ground = plane(200, 2, 7, 0.125, 0.125);
+    EntityTableConfig config = entity_table_default_config();
+    config.ground = (ContactGround){&frame, &ground};
+    Fixture        f = fixture_open(&config);
+    DisEntityState tank = report(1, tank_type), flyer = report(2, helicopter_type);
+    tank.velocity_mps[2] = 5;
+    hear(&f, &tank, 0);
+    hear(&f, &flyer, 0);
+    for (double t_s = 0; t_s < 3; t_s += 0.7) {
+        SnapshotEntity pose;
+        const SnapshotEntity *e = seen_at(&f, 1, t_s);
+        CHECK(e && entity_table_pose(&pose, f.table, entity_table_find(f.table, entity_id(1)), t_s));
+        CHECK_NEAR(contact_above_m(&config.ground, e->p_ecef), 0, 1e-6);
+        assert_memory_equal(pose.p_ecef, e->p_ecef, sizeof e->p_ecef);
+        assert_memory_equal(pose.r_ecef_from_body, e->r_ecef_from_body, sizeof e->r_ecef_from_body);
+        e = seen_at(&f, 2, t_s);
+        CHECK(e && fabs(e->p_ecef[0] - earth_radius_m) < 1e-6);
+    }
+    fixture_close(&f);
+    elevation_destroy(&ground);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(it_lies_on_a_slope_as_paper_says),
+        cmocka_unit_test(it_moves_along_the_local_vertical),
+        cmocka_unit_test(who_does_not_stand_stays),
+        cmocka_unit_test(every_pose_handed_out_stands),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# An exercise over real elevation, cover and photograph: it says what it took, vehicles stand on the ground, and the
+# bits do not depend on threads. labels: small
+. "$(dirname "$0")/common.sh"
+data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
+[ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }
+
+exercise demo "$tmp/demo.pcap" --lat 44.0565 --lon -123.0690 --height 106
+cat >"$tmp/ground.yaml" <<EOF
+terrain:
+  elevation: $data/autzen_dtm_1m.tif
+  cover: $data/autzen_cover_1m.tif
+  orthophoto: $data/autzen_rgb_1m.tif
+EOF
+few=(--config "$tmp/ground.yaml" --rate 0.4 --no-png)
+replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1
+check "a replay" [ "$code" = 0 ]
+for line in 'posts 1 m apart' 'above the geoid, which lies -22\.4' 'resampling left 0\.01 m rms' 'table worldcover' \
+    'photograph: 1 m' 'are set onto the ground'; do
+    check "it says: $line" said "$line"
+done
+replay "$tmp/demo.pcap" "$tmp/two" "${few[@]}" --threads 3
+check "3 threads, same bits" same_hashes "$tmp/one" "$tmp/two"
+
+differ() { ! same_hashes "$@"; }
+replay "$tmp/demo.pcap" "$tmp/trust" "${few[@]}" --set terrain.ground=trust
+check "trust: they stay" said 'stay where they were sent'
+check "trust: other bits" differ "$tmp/one" "$tmp/trust"
+replay "$tmp/demo.pcap" "$tmp/fit" "${few[@]}" --set terrain.ground=fit
+check "fit: a correction" said 'smooth correction of at most'
+# the fit leads the ground through what was sent: what is left is centimetres
+left=$(grep -oE 'they were sent [0-9.]+ m' "$tmp/stdout" | grep -oE '[0-9.]+')
+check "fit: within 0.2 m (median), not ${left:-nothing}" is "$left" '<' 0.2
+
+replay "$tmp/demo.pcap" "$tmp/none" --config "$tmp/ground.yaml" --set terrain.elevation=/nowhere.tif
+check "a missing file ends it" [ "$code" = 1 ]
+check "and says which, and what to do" complained 'terrain\.elevation: cannot read /nowhere\.tif.*gdalinfo'
+replay "$tmp/demo.pcap" "$tmp/none" --set "terrain.cover=$data/autzen_cover_1m.tif"
+check "cover without elevation is refused" complained 'terrain\.cover needs terrain\.elevation'
+finish
