@@ -5,6 +5,7 @@
  * integers, so the order in which threads finish cannot show. */
 #include "render/render.h"
 
+#include "render/gather.h"
 #include "render/optical.h"
 
 #include <stdlib.h>
@@ -28,6 +29,7 @@ typedef struct Scratch {
     float          out[hits_capacity], temp_k[hits_capacity], texture[hits_capacity];
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
+    Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
@@ -116,6 +118,37 @@ static void average(float *plane, const float *sample, const Tile *tile, int wid
         }
 }
 
+/* The optical channels that somebody wants, in the picture's order; returns how many. */
+static int optical_channels(int channel[3], unsigned bands, OpticalChannels optical)
+{
+    static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
+    if (!(bands >> BAND_OPTICAL & 1)) return 0;
+    if (optical == OPTICAL_RGB) {
+        memcpy(channel, rgb, sizeof rgb);
+        return 3;
+    }
+    channel[0] = optical == OPTICAL_NIR ? optical_channel_nir : optical_channel_pan;
+    return 1;
+}
+
+unsigned render_air_bands(unsigned bands, OpticalChannels optical)
+{
+    int      channel[3];
+    unsigned air = 0;
+    for (int c = optical_channels(channel, bands, optical) - 1; c >= 0; c--) air |= 1u << channel[c];
+    if (bands >> BAND_MWIR & 1) air |= 1u << AIR_MWIR;
+    if (bands >> BAND_LWIR & 1) air |= 1u << AIR_LWIR;
+    return air;
+}
+
+static void gather_around(Scratch *s, const Job *job, int task)
+{
+    const RenderRequest *request = job->request;
+    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog, job->snapshot};
+    gather_light(&s->gathered, &scene, &s->hits, render_air_bands(request->bands, request->optical),
+                 request->sky_samples, (uint64_t)task, &s->counters.visibility);
+}
+
 static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
 {
     const RenderRequest *request = job->request;
@@ -123,13 +156,13 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
     Picture             *picture = job->picture;
     const int            width   = picture->width;
 
-    if (wants(request, BAND_OPTICAL)) {
-        static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
-        for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
-            optical_shade(s->out, request->optical_rgb ? rgb[c] : optical_channel_pan, job->air, &world->materials,
-                          &s->hits, &s->rays, s->material, s->texture, s->shadow);
-            average(picture->optical[c], s->out, tile, width);
-        }
+    const bool gathered = request->sky_samples > 0;
+    int        channel[3];
+    const int  channels = optical_channels(channel, request->bands, request->optical);
+    for (int c = 0; c < channels; c++) {
+        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material, s->texture,
+                      s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL);
+        average(picture->optical[c], s->out, tile, width);
     }
     if (wants(request, BAND_MWIR) || wants(request, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
@@ -137,7 +170,7 @@ static void shade_bands(Scratch *s, const Job *job, const Tile *tile)
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (wants(request, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow);
+                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL);
             average(band == BAND_MWIR ? picture->mwir : picture->lwir, s->out, tile, width);
         }
 }
@@ -293,6 +326,7 @@ static void render_tile(void *user, int worker, int task)
 
     const double t2 = wall_clock_s();
     resolve_materials(s, job);
+    if (request->sky_samples > 0) gather_around(s, job, task);
     shade_bands(s, job, &tile);
     if (request->truth) {
         write_truth(s, job, &tile);
@@ -317,9 +351,9 @@ static Status allocate_planes(Picture *picture, const RenderRequest *request, in
     picture->width  = request->view.width;
     picture->height = request->view.height;
 
-    if (wants(request, BAND_OPTICAL))
-        for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++)
-            ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
+    int channel[3];
+    for (int c = optical_channels(channel, request->bands, request->optical) - 1; c >= 0; c--)
+        ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
     if (wants(request, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
     if (wants(request, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
     if (wants(request, BAND_RADAR)) {
@@ -473,7 +507,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
               Pool *pool, Arena *arena)
 {
     if (request->samples < 1 || request->samples > 16 || request->view.width < 1 || request->view.height < 1 ||
-        !(request->view.focal_px > 0) || !v3_is_finite(request->view.p_enu) || request->profile_bins < 0)
+        !(request->view.focal_px > 0) || !v3_is_finite(request->view.p_enu) || request->profile_bins < 0 ||
+        request->sky_samples < 0 || request->sky_samples > gather_samples_limit)
         return STATUS_BAD_VALUE;
 
     const double start_s = wall_clock_s();
@@ -532,6 +567,7 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
 
 void world_close(World *world)
 {
+    atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);
     planck_table_destroy(world->planck_mwir);
     materials_close(&world->materials);

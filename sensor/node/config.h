@@ -14,7 +14,8 @@ typedef struct Config {
         double rate_hz;            /* 0: chosen by what the host is */
         int    samples;            /* a side of a pixel */
         char   bands[64];          /* comma separated */
-        char   optical[8];         /* rgb or pan */
+        char   optical[8];         /* rgb, pan or nir */
+        int    sky_samples;        /* directions a hit; 0: the quick form */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
     } sensor;
     struct {
@@ -39,7 +40,8 @@ typedef struct Config {
         double from_s, to_s;       /* exercise time; NaN: whole */
     } exercise;
     struct {
-        double visibility_m, air_temp_k, relative_humidity, pressure_mbar, wind_mps;
+        char   atmosphere[32];     /* a folder of etc/atmosphere */
+        double visibility_m, air_temp_k, pressure_mbar, wind_mps; /* air_temp_k NaN: the atmosphere's */
     } weather;
     struct {
         double relief_m, spacing_m;
