@@ -166,54 +166,88 @@ static void light_planes(Air *air, unsigned bands)
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
+/* The sky is asked for at every second height and azimuth, and drawn between them by cubics. */
+enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
+
+typedef struct AskedSky {
+    double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
+} AskedSky;
+
 typedef struct SkyJob {
     Air              *air;
     const Atmosphere *atmosphere;
     unsigned          bands;
+    bool              eye_on_ground;
     double            day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
+    AskedSky          asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
 } SkyJob;
 
-/* One band: the sky as the tables have it, from the ground and from the eye, then scaled to add up. */
-static void fill_sky(void *user, int worker, int task)
+/* One height of one band's sky, from the ground or the eye. */
+static void ask_sky(void *user, int worker, int task)
 {
     (void)worker;
-    const SkyJob *job = user;
-    Air *air = job->air;
-    const AirBand band = (AirBand)task;
-    if (!(job->bands >> band & 1)) return;
+    SkyJob *job = user;
+    const int i = task % (asked_ups + 1), from_eye = task / (asked_ups + 1) % 2, b = task / (asked_ups + 1) / 2;
+    if (!(job->bands >> b & 1) || (from_eye && job->eye_on_ground)) return;
+    const double u = (double)i / asked_ups, zenith_rad = acos(u * u);
+    const int azimuths = b == AIR_LWIR || i == asked_ups ? 0 : asked_azimuths; /* even about; the zenith has none */
+    for (int a = 0; a <= azimuths; a++) {
+        SkyAir sky;
+        atmosphere_sky(&sky, job->atmosphere, job->air->weather.visibility_m, (AirBand)b,
+                       from_eye ? job->air->eye_height_m : 0, zenith_rad, job->day_zenith_rad,
+                       a * pi_rad / asked_azimuths);
+        job->asked[b][from_eye].scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * job->scattered_scale;
+        job->asked[b][from_eye].thermal_w_m2_sr[i] = b >= AIR_MWIR ? sky.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
+    }
+    for (int a = azimuths + 1; a <= asked_azimuths; a++)
+        job->asked[b][from_eye].scattered_w_m2_sr[i][a] = job->asked[b][from_eye].scattered_w_m2_sr[i][0];
+}
 
-    const bool is_thermal = band >= AIR_MWIR;
-    const double warm = is_thermal ? job->thermal_scale[band - AIR_MWIR] : 1;
+static double at_clamped(const double *value, int count, int i)
+{
+    return value[i < 0 ? 0 : i >= count ? count - 1 : i];
+}
+
+/* Scattered and thermal light in full resolution; mirrored at both ends of azimuth, as the sky is. */
+static void draw_sky(AirSky *scattered, double thermal[air_sky_ups + 1], const AskedSky *asked)
+{
+    double along[asked_ups + 1][air_sky_azimuths + 1];
+    for (int i = 0; i <= asked_ups; i++)
+        for (int a = 0; a <= air_sky_azimuths; a++) {
+            const double *v = asked->scattered_w_m2_sr[i];
+            const int low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
+            const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
+            along[i][a] = cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
+        }
+    for (int i = 0; i <= air_sky_ups; i++) {
+        const int low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
+        const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+        const double t = (double)(i - low * sky_stride) / sky_stride;
+        for (int a = 0; a <= air_sky_azimuths; a++)
+            scattered->radiance_w_m2_sr[i][a] = (float)fmax(
+                cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
+        const double *v = asked->thermal_w_m2_sr;
+        thermal[i] = cubic_between(at_clamped(v, asked_ups + 1, low - 1), v[low], v[low + 1],
+                                   at_clamped(v, asked_ups + 1, low + 2), t);
+    }
+}
+
+/* One band: from the ground and from the eye, scaled to add up. */
+static void fill_sky(SkyJob *job, AirBand band)
+{
+    Air *air = job->air;
     AirSky scattered[2];
     double thermal[2][air_sky_ups + 1];
-    for (int from_eye = 0; from_eye < 2; from_eye++)
-        for (int i = 0; i <= air_sky_ups; i++) {
-            const double u = (double)i / air_sky_ups, zenith_rad = acos(u * u);
-            for (int a = 0; a <= air_sky_azimuths; a++) {
-                SkyAir sky;
-                /* straight up there is no azimuth; the mean of all is taken below */
-                atmosphere_sky(&sky, job->atmosphere, air->weather.visibility_m, band,
-                               from_eye ? air->eye_height_m : 0, zenith_rad, job->day_zenith_rad,
-                               a * pi_rad / air_sky_azimuths);
-                scattered[from_eye].radiance_w_m2_sr[i][a] = (float)(sky.scattered_w_m2_sr * job->scattered_scale);
-                thermal[from_eye][i] = sky.thermal_w_m2_sr * warm;
-            }
-        }
-    for (int from_eye = 0; from_eye < 2; from_eye++) {
-        float *up = scattered[from_eye].radiance_w_m2_sr[air_sky_ups];
-        double mean = 0;
-        for (int a = 0; a <= air_sky_azimuths; a++) mean += (double)up[a] / (air_sky_azimuths + 1);
-        for (int a = 0; a <= air_sky_azimuths; a++) up[a] = (float)mean;
-    }
+    for (int k = 0; k < 2; k++) draw_sky(&scattered[k], thermal[k], &job->asked[band][k && !job->eye_on_ground]);
     const double adds_up_to = on_level_plane(&scattered[0]);
     const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 0;
     for (int i = 0; i <= air_sky_ups; i++)
         for (int a = 0; a <= air_sky_azimuths; a++) {
-            air->sky[band].radiance_w_m2_sr[i][a] =
-                (float)(scale * scattered[0].radiance_w_m2_sr[i][a] + thermal[0][i]);
+            air->sky[band].radiance_w_m2_sr[i][a] = (float)(scale * scattered[0].radiance_w_m2_sr[i][a] + thermal[0][i]);
             air->sky_eye[band].radiance_w_m2_sr[i][a] =
                 (float)(scale * scattered[1].radiance_w_m2_sr[i][a] + thermal[1][i]);
         }
+    air->sky_scale[band] = scale;
     air->sky_w_m2[band] = on_level_plane(&air->sky[band]);
 }
 
@@ -238,44 +272,75 @@ static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_te
     air->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air->planck_lwir, ground_temp_k);
 }
 
-Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, double eye_height_m,
-              unsigned bands, Pool *pool, Arena *arena)
+/* Azimuths from the sun's that a view can show: its border is where they end, unless it holds a pole of the sky. */
+static void view_azimuths(double *low_rad, double *high_rad, const View *view, const double sun_d_enu[3])
+{
+    *low_rad = 0, *high_rad = pi_rad;
+    if (!view) return;
+    double low = pi_rad, high = 0;
+    enum { along = 8 };
+    for (int k = 0; k <= along; k++)
+        for (int m = 0; m <= along; m++) {
+            double d_enu[3];
+            view_ray(d_enu, view, (double)k / along * view->width, (double)m / along * view->height);
+            if (fabs(d_enu[2]) > 0.8) return;
+            const double azimuth = acos_quick(cos_azimuth(d_enu, sun_d_enu));
+            low = fmin(low, azimuth), high = fmax(high, azimuth);
+        }
+    /* between two points of the raster a view of 120 degrees turns by less than this, also about a pole 37 degrees off */
+    const double margin_rad = fmax(0.5 * (high - low), 0.05);
+    *low_rad = fmax(low - margin_rad, 0), *high_rad = fmin(high + margin_rad, pi_rad);
+}
+
+Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
+              Arena *arena)
 {
     const Atmosphere *atmosphere = source->atmosphere;
     const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
     *out = (Air){.weather = *weather, .planck_mwir = source->planck_mwir, .planck_lwir = source->planck_lwir,
-                 .eye_height_m = clamp(eye_height_m, 0, air_top_m)};
+                 .eye_height_m = clamp(eye->height_m, 0, air_top_m)};
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
     if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
-    bands |= 1 << AIR_PAN;
 
-    SkyJob job = {.air = out, .atmosphere = atmosphere, .bands = bands};
+    SkyJob *job = arena_alloc(arena, 1, sizeof *job);
+    if (!job) return STATUS_NO_MEMORY;
+    /* ten metres of air under the eye are nothing to the sky above it */
+    *job = (SkyJob){.air = out, .atmosphere = atmosphere, .bands = eye->bands, .eye_on_ground = out->eye_height_m < 10};
     const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
     for (int k = 0; k < 2; k++)
-        job.thermal_scale[k] = planck_table_radiance(planck[k], out->weather.air_temp_k) /
-                               planck_table_radiance(planck[k], model_temp_k);
+        job->thermal_scale[k] = planck_table_radiance(planck[k], out->weather.air_temp_k) /
+                                planck_table_radiance(planck[k], model_temp_k);
     const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
-    job.day_zenith_rad  = fmin(zenith_rad, 85 * rad_per_deg);
-    job.scattered_scale = per_au2 * twilight(sun->elevation_rad);
+    job->day_zenith_rad  = fmin(zenith_rad, 85 * rad_per_deg);
+    job->scattered_scale = per_au2 * twilight(sun->elevation_rad);
 
+    const double above = per_au2 * disc_above(sun->elevation_rad), low_rad = fmin(zenith_rad, 0.5 * pi_rad);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(bands >> b & 1)) continue;
-        SunAir ground, eye, day;
-        const double above = per_au2 * disc_above(sun->elevation_rad), low_rad = fmin(zenith_rad, 0.5 * pi_rad);
-        atmosphere_sun(&ground, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
-        atmosphere_sun(&eye, atmosphere, weather->visibility_m, (AirBand)b, out->eye_height_m, low_rad);
-        atmosphere_sun(&day, atmosphere, weather->visibility_m, (AirBand)b, 0, job.day_zenith_rad);
-        out->sun_w_m2[b]     = ground.direct_normal_w_m2 * above;
-        out->sun_eye_w_m2[b] = eye.direct_normal_w_m2 * above;
-        job.diffuse_w_m2[b]  = day.diffuse_horizontal_w_m2 * job.scattered_scale;
+        if (!((eye->bands | 1 << AIR_PAN) >> b & 1)) continue;
+        SunAir from_ground, from_eye, day;
+        atmosphere_sun(&from_ground, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
+        atmosphere_sun(&from_eye, atmosphere, weather->visibility_m, (AirBand)b, out->eye_height_m, low_rad);
+        atmosphere_sun(&day, atmosphere, weather->visibility_m, (AirBand)b, 0, job->day_zenith_rad);
+        out->sun_w_m2[b]     = from_ground.direct_normal_w_m2 * above;
+        out->sun_eye_w_m2[b] = from_eye.direct_normal_w_m2 * above;
+        job->diffuse_w_m2[b] = day.diffuse_horizontal_w_m2 * job->scattered_scale;
     }
-    if (pool) pool_run(pool, AIR_BAND_COUNT, fill_sky, &job);
+    /* sunlight for temperatures, also where nobody looks at it */
+    out->sky_w_m2[AIR_PAN] = job->diffuse_w_m2[AIR_PAN];
+    const int tasks = AIR_BAND_COUNT * 2 * (asked_ups + 1);
+    if (pool) pool_run(pool, tasks, ask_sky, job);
     else
-        for (int b = 0; b < AIR_BAND_COUNT; b++) fill_sky(&job, 0, b);
-    light_planes(out, bands);
+        for (int i = 0; i < tasks; i++) ask_sky(job, 0, i);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (eye->bands >> b & 1) fill_sky(job, (AirBand)b);
+    light_planes(out, eye->bands);
     heat_balance(out, atmosphere, model_temp_k);
-    return air_tables_fill(out, atmosphere, job.day_zenith_rad, job.thermal_scale, job.scattered_scale, bands, pool,
-                           arena);
+
+    TableInput input = {.atmosphere = atmosphere, .sun_zenith_rad = job->day_zenith_rad, .bands = eye->bands,
+                        .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
+                        .scattered_scale = job->scattered_scale};
+    view_azimuths(&input.azimuth_low_rad, &input.azimuth_high_rad, eye->view, out->sun_d_enu);
+    return air_tables_fill(out, &input, pool, arena);
 }
 
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],

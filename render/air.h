@@ -15,6 +15,7 @@
 #include "render/hits.h"
 #include "render/materials.h"
 #include "render/planck.h"
+#include "render/view.h"
 #include "terrain/sun.h"
 #include "terrain/weather.h"
 
@@ -33,6 +34,7 @@ typedef struct Air {
     double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
     double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
     double  sun_eye_w_m2[AIR_BAND_COUNT];  /* the same at the eye: what its disc is seen by */
+    double  sky_scale[AIR_BAND_COUNT];     /* put on its scattered light so that it adds up to the tables' irradiance */
     double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane: its radiance, added up */
     double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground that things see from below, and of ground beyond
                                             * the terrain's edge. Others: 0, since it depends on the materials */
@@ -54,11 +56,17 @@ typedef struct AirSource {
     const PlanckTable *planck_mwir, *planck_lwir;
 } AirSource;
 
-/* bands: 1 << AirBand, those that somebody asks for; AIR_PAN is always there (temperatures need its sunlight).
- * weather->air_temp_k: NaN for the model's own; the Air's is then filled in. eye_height_m: clamped to the tables.
- * pool: may be NULL. The tables live in the arena. STATUS_NO_MEMORY when that is out. */
-Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, double eye_height_m,
-              unsigned bands, Pool *pool, Arena *arena);
+/* Who looks. */
+typedef struct AirEye {
+    double      height_m; /* clamped to the tables */
+    unsigned    bands;    /* 1 << AirBand, those that somebody asks for; air_veils answers no others */
+    const View *view;     /* where to, so that only its azimuths are filled in; NULL: all round */
+} AirEye;
+
+/* weather->air_temp_k: NaN for the model's own; the Air's is then filled in. pool: may be NULL. The tables live in the
+ * arena. STATUS_NO_MEMORY when that is out. Some milliseconds. */
+Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
+              Arena *arena);
 
 /* A world with answers on paper: sun_w_m2 from sun_d_enu, everything else, path included, of the one radiance
  * sky_w_m2_sr[band]; even_per_m 0: nothing in between. No tables, no arena. */

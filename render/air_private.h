@@ -7,14 +7,15 @@
 /* Paths from one eye: by the far end's height, h = air_top_m (i / air_heights)^2, and by ln(range).
  * Kept as what varies slowly: extinction -ln(tau) / range, which is constant in a grey and even air, and the path's
  * radiance over 1 - tau, its mean source. */
-enum { air_heights = 20, air_ranges = 64, air_temps = 5, air_path_azimuths = 12 };
+enum { air_heights = 20, air_ranges = 40, air_temps = 5, air_path_azimuths = 12 };
 enum { air_nodes = (air_heights + 1) * (air_ranges + 1) };
 
-static const double air_top_m = 30e3, air_near_m = 1, air_far_m = 400e3;
+static const double air_top_m = 30e3, air_near_m = 50, air_far_m = 250e3;
 static const double earth_radius_m = 6371e3;
 
 struct AirTable {
     bool  thermal, scattered;
+    int   azimuth_low, azimuth_high;                   /* planes of scattered light that are filled; the nearest counts */
     float extinction_temp_per_m[air_temps][air_nodes]; /* of emission at each temperature; thermal bands only */
     float extinction_air_per_m[air_nodes];             /* of emission at the air's own; thermal bands only */
     float extinction_sun_per_m[air_nodes];
@@ -22,10 +23,20 @@ struct AirTable {
     float scattered_w_m2_sr[air_path_azimuths + 1][air_nodes]; /* over 1 - tau of the sun */
 };
 
-/* Fills air->table for the bands given. thermal_scale: for air of another temperature than the model's; scattered_scale:
- * twilight and the sun's distance. */
-Status air_tables_fill(Air *air, const Atmosphere *atmosphere, double sun_zenith_rad, const double thermal_scale[2],
-                       double scattered_scale, unsigned bands, Pool *pool, Arena *arena);
+/* Fills air->table for the bands given, and of scattered light what is needed between two azimuths from the sun.
+ * thermal_scale: for air of another temperature than the model's; scattered_scale: twilight and the sun's distance. */
+typedef struct TableInput {
+    const Atmosphere *atmosphere;
+    double            sun_zenith_rad, thermal_scale[2], scattered_scale, azimuth_low_rad, azimuth_high_rad;
+    unsigned          bands;
+} TableInput;
+Status air_tables_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena);
+
+/* Straight-on cubic through four points a step apart, at t of the middle step. */
+static inline double cubic_between(double a, double b, double c, double d, double t)
+{
+    return b + t * (c - b) + t * (t - 1) / 6 * ((2 - t) * (a - 2 * b + c) + (1 + t) * (b - 2 * c + d));
+}
 
 /* Sky radiance of a table towards a unit direction. */
 double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double d_enu[3]);

@@ -15,10 +15,15 @@ static double node_range_m(int i) { return air_near_m * pow(air_far_m / air_near
 
 /* ---- once a frame -------------------------------------------------------------------------- */
 
+/* Scattered light is asked for at every second height and every fourth range, since each answer is an integral along
+ * the path, and drawn between them by cubics. */
+enum { height_stride = 2, range_stride = 4, coarse_heights = air_heights / height_stride,
+       coarse_ranges = air_ranges / range_stride };
+
 typedef struct TableJob {
-    Air              *air;
-    const Atmosphere *atmosphere;
-    double            sun_zenith_rad, thermal_scale[2], scattered_scale;
+    Air        *air;
+    TableInput  in;
+    float     (*coarse)[air_path_azimuths + 1][coarse_heights + 1][coarse_ranges + 1]; /* [AIR_BAND_COUNT] */
 } TableJob;
 
 static double extinction(double transmittance, double range_m)
@@ -27,36 +32,52 @@ static double extinction(double transmittance, double range_m)
 }
 
 /* Radiance over what the path takes away; a clear path has no source. */
-static float source(double radiance_w_m2_sr, double transmittance)
+static double mean_source(double radiance_w_m2_sr, double transmittance)
 {
-    return transmittance < 1 - 1e-12 ? (float)(radiance_w_m2_sr / (1 - transmittance)) : 0;
+    return transmittance < 1 - 1e-12 ? radiance_w_m2_sr / (1 - transmittance) : 0;
+}
+
+static AirPath path_to(const TableJob *job, int height, int range)
+{
+    AirPath path = {.observer_m = job->air->eye_height_m, .target_m = node_height_m(height),
+                    .sun_zenith_rad = job->in.sun_zenith_rad};
+    /* shorter than straight up or down there is no path: the nodes hold that one */
+    path.range_m = fmax(node_range_m(range), fabs(path.target_m - path.observer_m) * 1.0001);
+    return path;
 }
 
 static void fill_node(AirTable *table, const TableJob *job, AirBand band, int height, int range)
 {
     const Air *air = job->air;
     const int  node = height * (air_ranges + 1) + range;
-    AirPath    path = {.observer_m = air->eye_height_m, .target_m = node_height_m(height),
-                       .sun_zenith_rad = job->sun_zenith_rad};
-    /* shorter than straight up or down there is no path: the nodes hold that one */
-    path.range_m = fmax(node_range_m(range), fabs(path.target_m - path.observer_m) * 1.0001);
-    PathAir here;
-
-    for (int a = 0; a <= (table->scattered ? air_path_azimuths : 0); a++) {
-        path.rel_azimuth_rad = a * pi_rad / air_path_azimuths;
-        atmosphere_path(&here, job->atmosphere, air->weather.visibility_m, band, &path, air->weather.air_temp_k);
-        table->scattered_w_m2_sr[a][node] =
-            source(here.scattered_w_m2_sr * job->scattered_scale, here.sun_transmittance);
-    }
+    AirPath    path = path_to(job, height, range);
+    PathAir    here;
+    path.sun_zenith_rad = pi_rad; /* its scattered light is not asked for */
+    atmosphere_path(&here, job->in.atmosphere, air->weather.visibility_m, band, &path, air->weather.air_temp_k);
     table->extinction_sun_per_m[node] = (float)extinction(here.sun_transmittance, path.range_m);
     if (!table->thermal) return;
     table->extinction_air_per_m[node] = (float)extinction(here.transmittance, path.range_m);
     table->thermal_w_m2_sr[node] =
-        source(here.thermal_w_m2_sr * job->thermal_scale[band - AIR_MWIR], here.transmittance);
+        (float)mean_source(here.thermal_w_m2_sr * job->in.thermal_scale[band - AIR_MWIR], here.transmittance);
     for (int t = 0; t < air_temps; t++) {
-        atmosphere_path(&here, job->atmosphere, air->weather.visibility_m, band, &path, emitter_temp_k[t]);
+        atmosphere_path(&here, job->in.atmosphere, air->weather.visibility_m, band, &path, emitter_temp_k[t]);
         table->extinction_temp_per_m[t][node] = (float)extinction(here.transmittance, path.range_m);
     }
+}
+
+/* A node too near for its height holds the same path as the next one that is. */
+static bool too_near(const Air *air, int height, int range)
+{
+    return node_range_m(range) < fabs(node_height_m(height) - air->eye_height_m) * 1.0001;
+}
+
+static void copy_node(AirTable *table, int to, int from)
+{
+    table->extinction_sun_per_m[to] = table->extinction_sun_per_m[from];
+    table->extinction_air_per_m[to] = table->extinction_air_per_m[from];
+    table->thermal_w_m2_sr[to] = table->thermal_w_m2_sr[from];
+    for (int t = 0; t < air_temps; t++)
+        table->extinction_temp_per_m[t][to] = table->extinction_temp_per_m[t][from];
 }
 
 /* One height of one band. */
@@ -64,28 +85,96 @@ static void fill_row(void *user, int worker, int task)
 {
     (void)worker;
     const TableJob *job = user;
+    const int       height = task % (air_heights + 1);
     const AirBand   band = (AirBand)(task / (air_heights + 1));
     AirTable       *table = job->air->table[band];
     if (!table) return;
-    for (int r = 0; r <= air_ranges; r++) fill_node(table, job, band, task % (air_heights + 1), r);
+    for (int r = 0; r <= air_ranges; r++) {
+        if (r > 0 && too_near(job->air, height, r) && too_near(job->air, height, r - 1))
+            copy_node(table, height * (air_ranges + 1) + r, height * (air_ranges + 1) + r - 1);
+        else
+            fill_node(table, job, band, height, r);
+    }
+    if (!table->scattered || height % height_stride) return;
+    float(*coarse)[coarse_heights + 1][coarse_ranges + 1] = job->coarse[band];
+    for (int a = table->azimuth_low; a <= table->azimuth_high; a++)
+        for (int c = 0; c <= coarse_ranges; c++) {
+            float *at = &coarse[a][height / height_stride][c];
+            if (c > 0 && too_near(job->air, height, c * range_stride) &&
+                too_near(job->air, height, (c - 1) * range_stride)) {
+                *at = at[-1];
+                continue;
+            }
+            AirPath path = path_to(job, height, c * range_stride);
+            path.rel_azimuth_rad = a * pi_rad / air_path_azimuths;
+            PathAir here;
+            atmosphere_path(&here, job->in.atmosphere, job->air->weather.visibility_m, band, &path,
+                            job->air->weather.air_temp_k);
+            *at = (float)mean_source(here.scattered_w_m2_sr * job->in.scattered_scale, here.sun_transmittance);
+        }
 }
 
-Status air_tables_fill(Air *air, const Atmosphere *atmosphere, double sun_zenith_rad, const double thermal_scale[2],
-                       double scattered_scale, unsigned bands, Pool *pool, Arena *arena)
+/* The four points about fine step i, at the ends straight on, and the share. */
+static double four_about(int at[4], int i, int stride, int steps)
 {
-    TableJob job = {.air = air, .atmosphere = atmosphere, .sun_zenith_rad = sun_zenith_rad,
-                    .thermal_scale = {thermal_scale[0], thermal_scale[1]}, .scattered_scale = scattered_scale};
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(bands >> b & 1)) continue;
-        air->table[b] = arena_alloc(arena, 1, sizeof *air->table[b]);
-        if (!air->table[b]) return STATUS_NO_MEMORY;
-        air->table[b]->thermal   = b >= AIR_MWIR;
-        air->table[b]->scattered = b != AIR_LWIR; /* sunlight is below a thousandth of what 8-12 um emits */
+    const int low = i / stride < steps ? i / stride : steps - 1;
+    for (int k = 0; k < 4; k++) at[k] = low - 1 + k < 0 ? 0 : low - 1 + k > steps ? steps : low - 1 + k;
+    return (double)(i - low * stride) / stride;
+}
+
+/* One azimuth of one band, from coarse to fine. Heights are equal steps of their root here. */
+static void refine_plane(void *user, int worker, int task)
+{
+    (void)worker;
+    const TableJob *job = user;
+    const int       a = task % (air_path_azimuths + 1);
+    AirTable       *table = job->air->table[task / (air_path_azimuths + 1)];
+    if (!table || !table->scattered || a < table->azimuth_low || a > table->azimuth_high) return;
+    const float(*coarse)[coarse_ranges + 1] = (const float(*)[coarse_ranges + 1])job->coarse[task / (air_path_azimuths + 1)][a];
+    for (int h = 0; h <= air_heights; h++) {
+        int rows[4];
+        const double th = four_about(rows, h, height_stride, coarse_heights);
+        for (int r = 0; r <= air_ranges; r++) {
+            int columns[4];
+            const double tr = four_about(columns, r, range_stride, coarse_ranges);
+            double along[4];
+            for (int k = 0; k < 4; k++) {
+                const float *row = coarse[rows[k]];
+                along[k] = cubic_between(row[columns[0]], row[columns[1]], row[columns[2]], row[columns[3]], tr);
+            }
+            const double value = cubic_between(along[0], along[1], along[2], along[3], th);
+            table->scattered_w_m2_sr[a][h * (air_ranges + 1) + r] = (float)fmax(value, 0);
+        }
     }
-    const int tasks = AIR_BAND_COUNT * (air_heights + 1);
-    if (pool) pool_run(pool, tasks, fill_row, &job);
+}
+
+static void run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool) pool_run(pool, count, task, user);
     else
-        for (int i = 0; i < tasks; i++) fill_row(&job, 0, i);
+        for (int i = 0; i < count; i++) task(user, 0, i);
+}
+
+Status air_tables_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena)
+{
+    TableJob job = {.air = air, .in = *input};
+    job.coarse = arena_alloc(arena, AIR_BAND_COUNT, sizeof *job.coarse);
+    if (!job.coarse) return STATUS_NO_MEMORY;
+    const double per_rad = air_path_azimuths / pi_rad;
+    const int    low = (int)clamp(floor(input->azimuth_low_rad * per_rad), 0, air_path_azimuths - 1);
+    const int    high = (int)clamp(ceil(input->azimuth_high_rad * per_rad), low + 1, air_path_azimuths);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!(input->bands >> b & 1)) continue;
+        AirTable *table = air->table[b] = arena_alloc(arena, 1, sizeof *table);
+        if (!table) return STATUS_NO_MEMORY;
+        table->thermal = b >= AIR_MWIR;
+        /* sunlight is below a thousandth of what 8-12 um emits */
+        table->scattered    = b != AIR_LWIR && input->scattered_scale > 0;
+        table->azimuth_low  = low;
+        table->azimuth_high = high;
+    }
+    run(pool, AIR_BAND_COUNT * (air_heights + 1), fill_row, &job);
+    run(pool, AIR_BAND_COUNT * (air_path_azimuths + 1), refine_plane, &job);
     return STATUS_OK;
 }
 
@@ -138,8 +227,10 @@ static float ground_beyond(double eye_m, double climb, double bend_per_m)
     return disc >= 0 ? (float)(2 * eye_m / (-climb + sqrt(disc))) : INFINITY;
 }
 
-static void find_places(Places *p, float *range_m, const Air *air, const Hits *hits, const Rays *rays, int count)
+static void find_places(Places *p, float *range_m, const Air *air, const AirTable *table, const Hits *hits,
+                        const Rays *rays, int count)
 {
+    const float azimuth_low = (float)table->azimuth_low, azimuth_high = (float)table->azimuth_high - 1e-3f;
     const float height_steps = (float)(air_heights / sqrt(air_top_m));
     const float range_steps = (float)(air_ranges * log(2) / log(air_far_m / air_near_m));
     const float range_origin = (float)(log2(air_near_m) * range_steps);
@@ -175,7 +266,8 @@ static void find_places(Places *p, float *range_m, const Air *air, const Hits *h
         p->range[i]  = rs - (float)ri;
 
         const float c = (dx * sun_east + dy * sun_north) / sqrtf(fmaxf(flat2, 1e-12f));
-        const float as = fminf(acos_quick(c) * (float)(air_path_azimuths / 3.14159265), (float)air_path_azimuths - 1e-3f);
+        const float as =
+            fminf(fmaxf(acos_quick(c) * (float)(air_path_azimuths / 3.14159265), azimuth_low), azimuth_high);
         p->turn[i]    = (int)as * air_nodes;
         p->azimuth[i] = as - (float)(int)as;
     }
@@ -240,7 +332,7 @@ void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const
     }
     if (count <= 0) return;
     Places p;
-    find_places(&p, out->range_m, air, hits, rays, count);
+    find_places(&p, out->range_m, air, table, hits, rays, count);
 
     transmit(out->sun_transmittance, table->extinction_sun_per_m, &p, out->range_m, count);
     if (table->scattered) {

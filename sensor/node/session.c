@@ -222,8 +222,8 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
-    const unsigned    bands = render_air_bands(shared->bands, optical_of(config));
-    return air_at(air, &source, &weather, &local, eye_height_m, bands, shared->pool, s->frame_arena);
+    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, optical_of(config)), &eye->view};
+    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, s->frame_arena);
 }
 
 /* Products give normals in the host's own ENU. */

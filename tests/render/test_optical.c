@@ -88,7 +88,8 @@ static Air clear_day_at(double elevation_deg, double eye_m)
     const Sun sun = {.elevation_rad = e, .azimuth_rad = 0.5 * pi_rad, .distance_au = 1, .d_enu = {cos(e), 0, sin(e)}};
     const AirSource source = {atmosphere, mwir, lwir};
     Air air;
-    CHECK(air_at(&air, &source, &weather, &sun, eye_m, 0x1f, NULL, arena) == STATUS_OK);
+    const AirEye eye = {eye_m, 0x1f, NULL};
+    CHECK(air_at(&air, &source, &weather, &sun, &eye, NULL, arena) == STATUS_OK);
     return air;
 }
 

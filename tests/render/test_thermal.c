@@ -74,7 +74,8 @@ static Air air_when(const Weather *weather, double elevation_deg)
     const AirSource source = {atmosphere, mwir, lwir};
     Air air;
     arena_reset(arena);
-    CHECK(air_at(&air, &source, weather, &sun, 2, 1 << AIR_MWIR | 1 << AIR_LWIR, NULL, arena) == STATUS_OK);
+    const AirEye eye = {2, 1 << AIR_MWIR | 1 << AIR_LWIR, NULL};
+    CHECK(air_at(&air, &source, weather, &sun, &eye, NULL, arena) == STATUS_OK);
     return air;
 }
 
