@@ -2,9 +2,7 @@
  * the sky by direction and what it gives to a plane. The paths are air_table.c's.
  *
  * The tables know the sun above the horizon only. Below 5 degrees the sky keeps the shape it has there and loses
- * brightness as twilight does. Its radiance is scaled so that it adds up, exactly, to the diffuse irradiance that the
- * tables give for a level plane; the scale is within 15 % of one (tests/render/test_air.c), and is what interpolating
- * the bright ring about the sun costs. */
+ * brightness as twilight does. */
 #include "render/air_private.h"
 
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
@@ -68,17 +66,28 @@ static inline double split(int *at, double x, int steps)
 
 double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double d_enu[3])
 {
-    int i, a;
+    int i, a, k;
     const double fi = split(&i, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
     const double fa = split(&a, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
-    const float *low = sky->radiance_w_m2_sr[i], *high = sky->radiance_w_m2_sr[i + 1];
+    /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
+    double chord[3];
+    v3_sub(chord, d_enu, sun_d_enu);
+    const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
+    const double fk = split(&k, air_sky_angles * sqrt(angle / pi_rad), air_sky_angles);
+    const float *low = sky->scattered_w_m2_sr[i], *high = sky->scattered_w_m2_sr[i + 1], *around = &sky->around_sun[k];
     const double l = low[a] + fa * (low[a + 1] - low[a]), h = high[a] + fa * (high[a + 1] - high[a]);
-    return l + fi * (h - l);
+    return sky->thermal_w_m2_sr[i] + fi * (sky->thermal_w_m2_sr[i + 1] - sky->thermal_w_m2_sr[i]) +
+           (l + fi * (h - l)) * (around[0] + fk * (around[1] - around[0]));
 }
 
 double air_sky(const Air *air, AirBand band, const double d_enu[3])
 {
     return air_sky_table(&air->sky[band], air->sun_d_enu, d_enu);
+}
+
+double air_sky_light(const Air *air, AirBand band, const double d_enu[3])
+{
+    return air_sky_table(&air->sky_light[band], air->sun_d_enu, d_enu);
 }
 
 double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
@@ -92,81 +101,111 @@ double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
     return l + fi * (h - l);
 }
 
-/* Irradiance on a level plane of a table that is bilinear in u = sqrt(d_up) and azimuth: d_up d_solid_angle =
- * 2 u^3 du d_azimuth, and the integral of u^3 times a straight line is exact. */
-static double on_level_plane(const AirSky *sky)
+/* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
+ * and 48 azimuths; and rings about the sun, dense at its middle, which take over from the grid there by a weight that
+ * goes smoothly from one to nothing. */
+enum { lamp_ups = 24, lamp_azimuths = 48, lamp_rings = 20, lamp_spokes = 24,
+       lamps = lamp_ups * lamp_azimuths + lamp_rings * lamp_spokes };
+static const double rings_rad = 0.7, rings_only_rad = 0.2;
+
+typedef struct Lamps {
+    float d[3][lamps], solid_angle[lamps];
+} Lamps;
+
+/* Share of the rings at an angle from the sun. */
+static double rings_share(double angle_rad)
 {
-    double sum = 0;
-    for (int i = 0; i < air_sky_ups; i++) {
-        double low = 0, high = 0;
-        for (int a = 0; a <= air_sky_azimuths; a++) {
-            const double w = a == 0 || a == air_sky_azimuths ? 0.5 : 1;
-            low += w * sky->radiance_w_m2_sr[i][a], high += w * sky->radiance_w_m2_sr[i + 1][a];
-        }
-        const double u0 = (double)i / air_sky_ups, u1 = (i + 1.0) / air_sky_ups;
-        const double m3 = (u1 * u1 * u1 * u1 - u0 * u0 * u0 * u0) / 4;
-        const double m4 = (u1 * u1 * u1 * u1 * u1 - u0 * u0 * u0 * u0 * u0) / 5;
-        const double upper = (m4 - u0 * m3) / (u1 - u0); /* of the weight, to the upper node */
-        sum += low * (m3 - upper) + high * upper;
-    }
-    return sum * 2 * 2 * pi_rad / air_sky_azimuths;
+    const double t = clamp((rings_rad - angle_rad) / (rings_rad - rings_only_rad), 0, 1);
+    return t * t * (3 - 2 * t);
 }
 
-/* The sky's directions as a set of lamps, for planes that are not level: the cells of a grid, the same for all
- * bands. 24 heights of equal steps in u, 48 azimuths over the circle. */
-enum { lamp_ups = 24, lamp_azimuths = 48, lamps = lamp_ups * lamp_azimuths };
+static void set_lamp(Lamps *out, int k, const double d_enu[3], double solid_angle)
+{
+    for (int c = 0; c < 3; c++) out->d[c][k] = (float)d_enu[c];
+    out->solid_angle[k] = d_enu[2] > 0 ? (float)solid_angle : 0;
+}
 
-static void light_planes(Air *air, unsigned bands)
+static void place_lamps(Lamps *out, const double sun_d_enu[3])
 {
     static const double step_rad = 2 * 3.14159265358979323846 / lamp_azimuths;
-    float d[3][lamps], weight[lamps], radiance[lamps], east[lamp_azimuths], north[lamp_azimuths];
+    int k = 0;
+    for (int i = 0; i < lamp_ups; i++) {
+        const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
+        const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
+        for (int a = 0; a < lamp_azimuths; a++) {
+            const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
+            const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
+            set_lamp(out, k++, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
+        }
+    }
+    double east[3] = {0}, other[3];
+    east[fabs(sun_d_enu[0]) < 0.6 ? 0 : 1] = 1;
+    v3_add_scaled(east, east, -v3_dot(east, sun_d_enu), sun_d_enu);
+    v3_normalize(east, east);
+    v3_cross(other, sun_d_enu, east);
+    for (int r = 0; r < lamp_rings; r++) {
+        const double a0 = rings_rad * r * r / (lamp_rings * lamp_rings);
+        const double a1 = rings_rad * (r + 1) * (r + 1) / (lamp_rings * lamp_rings), angle = 0.5 * (a0 + a1);
+        for (int p = 0; p < lamp_spokes; p++) {
+            const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes;
+            double d[3];
+            for (int c = 0; c < 3; c++)
+                d[c] = cos(angle) * sun_d_enu[c] + sin(angle) * (cos(turn) * east[c] + sin(turn) * other[c]);
+            set_lamp(out, k++, d, (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle));
+        }
+    }
+}
+
+/* Irradiance of each lamp facing it. */
+static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky, const double sun_d_enu[3])
+{
+    for (int k = 0; k < lamps; k++) {
+        const double d_enu[3] = {lamp->d[0][k], lamp->d[1][k], lamp->d[2][k]};
+        w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)air_sky_table(sky, sun_d_enu, d_enu) : 0;
+    }
+}
+
+/* What they give to a plane: a fixed order of sums, eight at a time. */
+static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double n_enu[3])
+{
+    const float n0 = (float)n_enu[0], n1 = (float)n_enu[1], n2 = (float)n_enu[2];
+    float part[8] = {0};
+    for (int k = 0; k < lamps; k += 8)
+        for (int j = 0; j < 8; j++) {
+            const float cosine = n0 * lamp->d[0][k + j] + n1 * lamp->d[1][k + j] + n2 * lamp->d[2][k + j];
+            part[j] += w_m2[k + j] * (cosine > 0 ? cosine : 0);
+        }
+    double sum = 0;
+    for (int j = 0; j < 8; j++) sum += (double)part[j];
+    return sum;
+}
+
+static void light_planes(Air *air, AirBand band, const float w_m2[lamps], const Lamps *lamp)
+{
     const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
     const double sun_east = level > 1e-10 ? air->sun_d_enu[0] / level : 1;
     const double sun_north = level > 1e-10 ? air->sun_d_enu[1] / level : 0;
-    for (int a = 0; a < lamp_azimuths; a++) {
-        const double c = cos((a + 0.5) * step_rad), s = sin((a + 0.5) * step_rad);
-        east[a] = (float)(c * sun_east - s * sun_north), north[a] = (float)(c * sun_north + s * sun_east);
-    }
-    for (int i = 0; i < lamp_ups; i++)
-        for (int a = 0; a < lamp_azimuths; a++) {
-            const int k = i * lamp_azimuths + a;
-            const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
-            const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
-            d[0][k] = (float)(flat * east[a]), d[1][k] = (float)(flat * north[a]), d[2][k] = (float)up;
-            weight[k] = (float)((u1 * u1 - u0 * u0) * step_rad); /* solid angle */
+    for (int i = 0; i <= air_plane_ups; i++) {
+        const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
+        for (int p = 0; p <= air_plane_azimuths; p++) {
+            const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
+            const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
+            air->plane_w_m2[band][i][p] = (float)on_plane(w_m2, lamp, n_enu);
         }
+    }
+}
 
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(bands >> b & 1)) continue;
-        for (int k = 0; k < lamps; k++) {
-            const double d_enu[3] = {d[0][k], d[1][k], d[2][k]};
-            radiance[k] = weight[k] * (float)air_sky_table(&air->sky[b], air->sun_d_enu, d_enu);
-        }
-        double scale = 1; /* so that the level plane, the first one done, has what the sky adds up to */
-        for (int i = air_plane_ups; i >= 0; i--) {
-            const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
-            for (int p = 0; p <= air_plane_azimuths; p++) {
-                const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
-                const float n0 = (float)(c * sun_east - s * sun_north), n1 = (float)(c * sun_north + s * sun_east);
-                const float n2 = (float)up;
-                float part[8] = {0}; /* fixed order of sums, eight at a time */
-                for (int k = 0; k < lamps; k += 8)
-                    for (int j = 0; j < 8; j++) {
-                        const float cosine = n0 * d[0][k + j] + n1 * d[1][k + j] + n2 * d[2][k + j];
-                        part[j] += radiance[k + j] * (cosine > 0 ? cosine : 0);
-                    }
-                double sum = 0;
-                for (int j = 0; j < 8; j++) sum += (double)part[j];
-                if (i == air_plane_ups && p == 0) scale = sum > 0 ? air->sky_w_m2[b] / sum : 1;
-                air->plane_w_m2[b][i][p] = (float)(sum * scale);
-            }
-        }
-    }
+static void run_all(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool) pool_run(pool, count, task, user);
+    else
+        for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-/* The sky is asked for at every second height and azimuth, and drawn between them by cubics. */
+/* The sky is asked for at every second height and azimuth, over its brightness around the sun, and drawn between them
+ * by cubics. */
 enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
 
 typedef struct AskedSky {
@@ -180,7 +219,32 @@ typedef struct SkyJob {
     bool              eye_on_ground;
     double            day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
     AskedSky          asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
+    Lamps             lamp;
 } SkyJob;
+
+static double height_of(const SkyJob *job, int from_eye) { return from_eye ? job->air->eye_height_m : 0; }
+
+/* How bright the sky is by angle from the sun: from it up over the zenith and down to the horizon behind, and beyond
+ * that as there. */
+static void ask_around_sun(void *user, int worker, int task)
+{
+    (void)worker;
+    SkyJob *job = user;
+    const int from_eye = task % 2, b = task / 2;
+    if (!(job->bands >> b & 1)) return;
+    AirSky *sky = from_eye ? &job->air->sky_eye[b] : &job->air->sky[b];
+    const int asked_eye = from_eye && !job->eye_on_ground;
+    for (int k = 0; k <= air_sky_angles; k++) {
+        const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
+        const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad);
+        SkyAir seen = {0};
+        if (b != AIR_LWIR)
+            atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, asked_eye),
+                           fabs(zenith_rad), job->day_zenith_rad, zenith_rad < 0 ? pi_rad : 0);
+        sky->around_sun[k] = seen.scattered_w_m2_sr > 0 ? (float)seen.scattered_w_m2_sr : 1;
+    }
+    sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
+}
 
 /* One height of one band's sky, from the ground or the eye. */
 static void ask_sky(void *user, int worker, int task)
@@ -189,27 +253,31 @@ static void ask_sky(void *user, int worker, int task)
     SkyJob *job = user;
     const int i = task % (asked_ups + 1), from_eye = task / (asked_ups + 1) % 2, b = task / (asked_ups + 1) / 2;
     if (!(job->bands >> b & 1) || (from_eye && job->eye_on_ground)) return;
-    const double u = (double)i / asked_ups, zenith_rad = acos(u * u);
+    const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up), zenith_rad = acos(up);
+    AskedSky *asked = &job->asked[b][from_eye];
+    /* a sky of one everywhere but for the ring says what the ring is at each place */
+    AirSky ring = from_eye ? job->air->sky_eye[b] : job->air->sky[b];
+    for (int m = 0; m <= air_sky_ups; m++) {
+        ring.thermal_w_m2_sr[m] = 0;
+        for (int a = 0; a <= air_sky_azimuths; a++) ring.scattered_w_m2_sr[m][a] = 1;
+    }
+    const double sun[3] = {sin(job->day_zenith_rad), 0, cos(job->day_zenith_rad)};
     const int azimuths = b == AIR_LWIR || i == asked_ups ? 0 : asked_azimuths; /* even about; the zenith has none */
     for (int a = 0; a <= azimuths; a++) {
-        SkyAir sky;
-        atmosphere_sky(&sky, job->atmosphere, job->air->weather.visibility_m, (AirBand)b,
-                       from_eye ? job->air->eye_height_m : 0, zenith_rad, job->day_zenith_rad,
-                       a * pi_rad / asked_azimuths);
-        job->asked[b][from_eye].scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * job->scattered_scale;
-        job->asked[b][from_eye].thermal_w_m2_sr[i] = b >= AIR_MWIR ? sky.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
+        const double azimuth_rad = a * pi_rad / asked_azimuths;
+        const double d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
+        SkyAir seen;
+        atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, from_eye),
+                       zenith_rad, job->day_zenith_rad, azimuth_rad);
+        asked->scattered_w_m2_sr[i][a] =
+            b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / air_sky_table(&ring, sun, d);
+        asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? seen.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
     }
-    for (int a = azimuths + 1; a <= asked_azimuths; a++)
-        job->asked[b][from_eye].scattered_w_m2_sr[i][a] = job->asked[b][from_eye].scattered_w_m2_sr[i][0];
+    for (int a = azimuths + 1; a <= asked_azimuths; a++) asked->scattered_w_m2_sr[i][a] = asked->scattered_w_m2_sr[i][0];
 }
 
-static double at_clamped(const double *value, int count, int i)
-{
-    return value[i < 0 ? 0 : i >= count ? count - 1 : i];
-}
-
-/* Scattered and thermal light in full resolution; mirrored at both ends of azimuth, as the sky is. */
-static void draw_sky(AirSky *scattered, double thermal[air_sky_ups + 1], const AskedSky *asked)
+/* In full resolution; mirrored at both ends of azimuth, as the sky is. */
+static void draw_sky(AirSky *sky, const AskedSky *asked)
 {
     double along[asked_ups + 1][air_sky_azimuths + 1];
     for (int i = 0; i <= asked_ups; i++)
@@ -219,36 +287,41 @@ static void draw_sky(AirSky *scattered, double thermal[air_sky_ups + 1], const A
             const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
             along[i][a] = cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
         }
+    const double *v = asked->thermal_w_m2_sr;
     for (int i = 0; i <= air_sky_ups; i++) {
         const int low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
         const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
         const double t = (double)(i - low * sky_stride) / sky_stride;
         for (int a = 0; a <= air_sky_azimuths; a++)
-            scattered->radiance_w_m2_sr[i][a] = (float)fmax(
+            sky->scattered_w_m2_sr[i][a] = (float)fmax(
                 cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
-        const double *v = asked->thermal_w_m2_sr;
-        thermal[i] = cubic_between(at_clamped(v, asked_ups + 1, low - 1), v[low], v[low + 1],
-                                   at_clamped(v, asked_ups + 1, low + 2), t);
+        sky->thermal_w_m2_sr[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
     }
 }
 
-/* One band: from the ground and from the eye, scaled to add up. */
-static void fill_sky(SkyJob *job, AirBand band)
+/* One band: drawn, scaled to add up as light, and what it gives to planes. */
+static void fill_sky(void *user, int worker, int task)
 {
+    (void)worker;
+    SkyJob *job = user;
     Air *air = job->air;
-    AirSky scattered[2];
-    double thermal[2][air_sky_ups + 1];
-    for (int k = 0; k < 2; k++) draw_sky(&scattered[k], thermal[k], &job->asked[band][k && !job->eye_on_ground]);
-    const double adds_up_to = on_level_plane(&scattered[0]);
-    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 0;
-    for (int i = 0; i <= air_sky_ups; i++)
-        for (int a = 0; a <= air_sky_azimuths; a++) {
-            air->sky[band].radiance_w_m2_sr[i][a] = (float)(scale * scattered[0].radiance_w_m2_sr[i][a] + thermal[0][i]);
-            air->sky_eye[band].radiance_w_m2_sr[i][a] =
-                (float)(scale * scattered[1].radiance_w_m2_sr[i][a] + thermal[1][i]);
-        }
-    air->sky_scale[band] = scale;
-    air->sky_w_m2[band] = on_level_plane(&air->sky[band]);
+    if (!(job->bands >> task & 1)) return;
+    AirSky *sky = &air->sky[task], *sky_light = &air->sky_light[task];
+    static const double up_enu[3] = {0, 0, 1};
+    float w_m2[lamps];
+    draw_sky(sky, &job->asked[task][0]);
+    draw_sky(&air->sky_eye[task], &job->asked[task][!job->eye_on_ground]);
+    AirSky scattered = *sky;
+    memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
+    light_lamps(w_m2, &job->lamp, &scattered, air->sun_d_enu);
+    const double adds_up_to = on_plane(w_m2, &job->lamp, up_enu);
+    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[task] / adds_up_to : 0;
+    *sky_light = *sky;
+    for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
+    light_lamps(w_m2, &job->lamp, sky_light, air->sun_d_enu);
+    light_planes(air, (AirBand)task, w_m2, &job->lamp);
+    air->sky_scale[task] = scale;
+    air->sky_w_m2[task] = air->plane_w_m2[task][air_plane_ups][0];
 }
 
 /* For temperatures: all wavelengths. */
@@ -272,24 +345,28 @@ static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_te
     air->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air->planck_lwir, ground_temp_k);
 }
 
-/* Azimuths from the sun's that a view can show: its border is where they end, unless it holds a pole of the sky. */
-static void view_azimuths(double *low_rad, double *high_rad, const View *view, const double sun_d_enu[3])
+/* Azimuths from the sun's, and slopes, that a view can show. */
+static void look_where(TableInput *input, const View *view, const double sun_d_enu[3])
 {
-    *low_rad = 0, *high_rad = pi_rad;
+    input->azimuth_low_rad = 0, input->azimuth_high_rad = pi_rad;
+    input->slope_low = -1, input->slope_high = 1;
     if (!view) return;
-    double low = pi_rad, high = 0;
+    double low = pi_rad, high = 0, down = 1, up = -1;
     enum { along = 8 };
     for (int k = 0; k <= along; k++)
         for (int m = 0; m <= along; m++) {
             double d_enu[3];
             view_ray(d_enu, view, (double)k / along * view->width, (double)m / along * view->height);
-            if (fabs(d_enu[2]) > 0.8) return;
-            const double azimuth = acos_quick(cos_azimuth(d_enu, sun_d_enu));
-            low = fmin(low, azimuth), high = fmax(high, azimuth);
+            const double azimuth_rad = acos_quick(cos_azimuth(d_enu, sun_d_enu));
+            low = fmin(low, azimuth_rad), high = fmax(high, azimuth_rad);
+            down = fmin(down, d_enu[2]), up = fmax(up, d_enu[2]);
         }
-    /* between two points of the raster a view of 120 degrees turns by less than this, also about a pole 37 degrees off */
-    const double margin_rad = fmax(0.5 * (high - low), 0.05);
-    *low_rad = fmax(low - margin_rad, 0), *high_rad = fmin(high + margin_rad, pi_rad);
+    /* what the raster misses; and the round Earth falls away from under a long path: by 0.02 over its 250 km */
+    const double slope_margin = 0.1 * (up - down) + 1e-3;
+    input->slope_low = fmax(down - slope_margin, -1), input->slope_high = fmin(up + slope_margin + 0.02, 1);
+    if (down < -0.8 || up > 0.8) return; /* a pole may be in it, where all azimuths meet */
+    const double margin_rad = fmax(0.25 * (high - low), 0.02);
+    input->azimuth_low_rad = fmax(low - margin_rad, 0), input->azimuth_high_rad = fmin(high + margin_rad, pi_rad);
 }
 
 Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
@@ -327,19 +404,16 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     }
     /* sunlight for temperatures, also where nobody looks at it */
     out->sky_w_m2[AIR_PAN] = job->diffuse_w_m2[AIR_PAN];
-    const int tasks = AIR_BAND_COUNT * 2 * (asked_ups + 1);
-    if (pool) pool_run(pool, tasks, ask_sky, job);
-    else
-        for (int i = 0; i < tasks; i++) ask_sky(job, 0, i);
-    for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (eye->bands >> b & 1) fill_sky(job, (AirBand)b);
-    light_planes(out, eye->bands);
+    place_lamps(&job->lamp, out->sun_d_enu);
+    run_all(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
+    run_all(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
+    run_all(pool, AIR_BAND_COUNT, fill_sky, job);
     heat_balance(out, atmosphere, model_temp_k);
 
     TableInput input = {.atmosphere = atmosphere, .sun_zenith_rad = job->day_zenith_rad, .bands = eye->bands,
                         .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
                         .scattered_scale = job->scattered_scale};
-    view_azimuths(&input.azimuth_low_rad, &input.azimuth_high_rad, eye->view, out->sun_d_enu);
+    look_where(&input, eye->view, out->sun_d_enu);
     return air_tables_fill(out, &input, pool, arena);
 }
 
@@ -353,8 +427,7 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
         out->sky_w_m2[b] = pi_rad * sky_w_m2_sr[b];
         if (b >= AIR_MWIR) out->ground_w_m2_sr[b] = sky_w_m2_sr[b];
         for (int i = 0; i <= air_sky_ups; i++)
-            for (int a = 0; a <= air_sky_azimuths; a++)
-                out->sky[b].radiance_w_m2_sr[i][a] = out->sky_eye[b].radiance_w_m2_sr[i][a] = (float)sky_w_m2_sr[b];
+            out->sky[b].thermal_w_m2_sr[i] = out->sky_light[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
         for (int i = 0; i <= air_plane_ups; i++)
             for (int a = 0; a <= air_plane_azimuths; a++)
                 out->plane_w_m2[b][i][a] = (float)(out->sky_w_m2[b] * i / air_plane_ups);

@@ -19,12 +19,15 @@
 #include "terrain/sun.h"
 #include "terrain/weather.h"
 
-/* Sky radiance by height and by angle from the sun's azimuth: d_up = (i / air_sky_ups)^2, dense at the horizon, and
- * equal steps of azimuth, 0 .. pi. Light on a plane: by its normal's height, -1 .. 1, and azimuth. */
-enum { air_sky_ups = 24, air_sky_azimuths = 12, air_plane_ups = 16, air_plane_azimuths = 12 };
+/* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
+ * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
+ * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: by its normal's height, -1 .. 1,
+ * and azimuth. */
+enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
 
 typedef struct AirSky {
-    float radiance_w_m2_sr[air_sky_ups + 1][air_sky_azimuths + 1]; /* of air: thermal and scattered; not the sun's disc */
+    float thermal_w_m2_sr[air_sky_ups + 1], scattered_w_m2_sr[air_sky_ups + 1][air_sky_azimuths + 1];
+    float around_sun[air_sky_angles + 2]; /* one to spare at the end */
 } AirSky;
 
 typedef struct AirTable AirTable; /* one band's paths from this eye */
@@ -34,11 +37,14 @@ typedef struct Air {
     double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
     double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
     double  sun_eye_w_m2[AIR_BAND_COUNT];  /* the same at the eye: what its disc is seen by */
-    double  sky_scale[AIR_BAND_COUNT];     /* put on its scattered light so that it adds up to the tables' irradiance */
+    /* The tables' radiance and irradiance of a sky are two computations and do not quite agree: what is seen, also in a
+     * mirror, is the radiance, and what lights a surface is that times this, so that it adds up to the irradiance. */
+    double  sky_scale[AIR_BAND_COUNT];
     double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane: its radiance, added up */
     double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground that things see from below, and of ground beyond
                                             * the terrain's edge. Others: 0, since it depends on the materials */
-    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what lights the scene and is mirrored in it */
+    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
+    AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
     AirSky  sky_eye[AIR_BAND_COUNT];       /* from the eye */
     float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* of the sky on a tilted plane */
     const PlanckTable *planck_mwir, *planck_lwir;
@@ -75,13 +81,16 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
 
 /* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
 double air_sky(const Air *air, AirBand band, const double d_enu[3]);
+/* The same as it lights a surface: it adds up to air_sky_on_plane. */
+double air_sky_light(const Air *air, AirBand band, const double d_enu[3]);
 /* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
 double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3]);
 /* Share of the direct sun's irradiance that arrives from a direction, 1/sr: its disc has one brightness. */
 double air_sun_disc(const Air *air, const double d_enu[3]);
 
 /* What the path does to what is behind it: seen = emitted * transmittance + sunlight reflected * sun_transmittance +
- * air's light reflected * air_transmittance + added. Outside the thermal bands the three are one.
+ * air's light reflected * air_transmittance + added. Outside the thermal bands the three are one; at night, and always
+ * in LWIR, sun_transmittance is the air's.
  * A ray that met nothing ends on the ground beyond the terrain's edge, when it goes down far enough to reach the round
  * Earth (its range is then in range_m), or in the sky: transmittance 0, and added is the sky's radiance. */
 typedef struct Veils {

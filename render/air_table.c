@@ -5,6 +5,8 @@
  * are linear between nodes; tests/render/test_air.c holds the sum of it against atmosphere_path(). */
 #include "render/air_private.h"
 
+#include <immintrin.h>
+
 /* Temperatures of emitters for which transmittance is kept; between them it is linear in temperature, outside the nearest
  * counts. */
 static const double emitter_temp_k[air_temps] = {250, 300, 400, 600, 1000};
@@ -15,15 +17,17 @@ static double node_range_m(int i) { return air_near_m * pow(air_far_m / air_near
 
 /* ---- once a frame -------------------------------------------------------------------------- */
 
-/* Scattered light is asked for at every second height and every fourth range, since each answer is an integral along
- * the path, and drawn between them by cubics. */
-enum { height_stride = 2, range_stride = 4, coarse_heights = air_heights / height_stride,
-       coarse_ranges = air_ranges / range_stride };
+/* Scattered light is asked for at every second slope and share of the way, since each answer is an integral along the
+ * path, and drawn between them by cubics. */
+enum { slope_stride = 2, share_stride = 2, coarse_slopes = air_slopes / slope_stride,
+       coarse_shares = air_shares / share_stride };
+/* Ways are at least this long, also from an eye on the ground. */
+static const double shortest_way_m = 10;
 
 typedef struct TableJob {
     Air        *air;
     TableInput  in;
-    float     (*coarse)[air_path_azimuths + 1][coarse_heights + 1][coarse_ranges + 1]; /* [AIR_BAND_COUNT] */
+    float     (*coarse)[air_path_azimuths + 1][coarse_slopes + 1][coarse_shares + 1]; /* [AIR_BAND_COUNT] */
 } TableJob;
 
 static double extinction(double transmittance, double range_m)
@@ -95,22 +99,34 @@ static void fill_row(void *user, int worker, int task)
         else
             fill_node(table, job, band, height, r);
     }
-    if (!table->scattered || height % height_stride) return;
-    float(*coarse)[coarse_heights + 1][coarse_ranges + 1] = job->coarse[band];
-    for (int a = table->azimuth_low; a <= table->azimuth_high; a++)
-        for (int c = 0; c <= coarse_ranges; c++) {
-            float *at = &coarse[a][height / height_stride][c];
-            if (c > 0 && too_near(job->air, height, c * range_stride) &&
-                too_near(job->air, height, (c - 1) * range_stride)) {
-                *at = at[-1];
-                continue;
-            }
-            AirPath path = path_to(job, height, c * range_stride);
-            path.rel_azimuth_rad = a * pi_rad / air_path_azimuths;
+}
+
+/* One slope of one band's scattered light. */
+static void fill_slope(void *user, int worker, int task)
+{
+    (void)worker;
+    const TableJob *job = user;
+    const int       i = task % (coarse_slopes + 1);
+    const AirBand   band = (AirBand)(task / (coarse_slopes + 1));
+    const AirTable *table = job->air->table[band];
+    if (!table || !table->scattered) return;
+    const double eye_m = job->air->eye_height_m, s = (double)(table->slope_low + (float)(i * slope_stride) / table->slope_steps);
+    const double slope = clamp(s * fabs(s), -1, 1);
+    /* to the ground, or out of the tables' air; never quite nothing */
+    const double rise_m = slope < 0 ? -eye_m : air_top_m - eye_m;
+    const double end_m = clamp(rise_m / (fabs(slope) > 1e-9 ? slope : copysign(1e-9, slope)), shortest_way_m, air_far_m);
+    for (int a = 0; a <= table->azimuth_planes; a++)
+        for (int c = 0; c <= coarse_shares; c++) {
+            float *at = &job->coarse[band][a][i][c];
+            const double share = fmax((double)c / coarse_shares, 0.01); /* not quite nothing */
+            AirPath path = {.observer_m = eye_m, .range_m = share * share * end_m,
+                            .sun_zenith_rad = job->in.sun_zenith_rad,
+                            .rel_azimuth_rad = (double)(table->azimuth_low_rad + a / table->azimuth_planes_per_rad)};
+            path.target_m = clamp(eye_m + slope * path.range_m, 0, air_top_m);
             PathAir here;
             atmosphere_path(&here, job->in.atmosphere, job->air->weather.visibility_m, band, &path,
                             job->air->weather.air_temp_k);
-            *at = (float)mean_source(here.scattered_w_m2_sr * job->in.scattered_scale, here.sun_transmittance);
+            *at = (float)log(fmax(mean_source(here.scattered_w_m2_sr * job->in.scattered_scale, here.sun_transmittance), 1e-30));
         }
 }
 
@@ -122,28 +138,28 @@ static double four_about(int at[4], int i, int stride, int steps)
     return (double)(i - low * stride) / stride;
 }
 
-/* One azimuth of one band, from coarse to fine. Heights are equal steps of their root here. */
+/* One azimuth of one band, from coarse to fine. */
 static void refine_plane(void *user, int worker, int task)
 {
     (void)worker;
     const TableJob *job = user;
     const int       a = task % (air_path_azimuths + 1);
     AirTable       *table = job->air->table[task / (air_path_azimuths + 1)];
-    if (!table || !table->scattered || a < table->azimuth_low || a > table->azimuth_high) return;
-    const float(*coarse)[coarse_ranges + 1] = (const float(*)[coarse_ranges + 1])job->coarse[task / (air_path_azimuths + 1)][a];
-    for (int h = 0; h <= air_heights; h++) {
+    if (!table || !table->scattered || a > table->azimuth_planes) return;
+    const float(*coarse)[coarse_shares + 1] = (const float(*)[coarse_shares + 1])job->coarse[task / (air_path_azimuths + 1)][a];
+    for (int h = 0; h <= air_slopes; h++) {
         int rows[4];
-        const double th = four_about(rows, h, height_stride, coarse_heights);
-        for (int r = 0; r <= air_ranges; r++) {
+        const double th = four_about(rows, h, slope_stride, coarse_slopes);
+        for (int r = 0; r <= air_shares; r++) {
             int columns[4];
-            const double tr = four_about(columns, r, range_stride, coarse_ranges);
+            const double tr = four_about(columns, r, share_stride, coarse_shares);
             double along[4];
             for (int k = 0; k < 4; k++) {
                 const float *row = coarse[rows[k]];
                 along[k] = cubic_between(row[columns[0]], row[columns[1]], row[columns[2]], row[columns[3]], tr);
             }
             const double value = cubic_between(along[0], along[1], along[2], along[3], th);
-            table->scattered_w_m2_sr[a][h * (air_ranges + 1) + r] = (float)fmax(value, 0);
+            table->ln_scattered[a][h * (air_shares + 1) + r] = (float)value;
         }
     }
 }
@@ -160,9 +176,11 @@ Status air_tables_fill(Air *air, const TableInput *input, Pool *pool, Arena *are
     TableJob job = {.air = air, .in = *input};
     job.coarse = arena_alloc(arena, AIR_BAND_COUNT, sizeof *job.coarse);
     if (!job.coarse) return STATUS_NO_MEMORY;
-    const double per_rad = air_path_azimuths / pi_rad;
-    const int    low = (int)clamp(floor(input->azimuth_low_rad * per_rad), 0, air_path_azimuths - 1);
-    const int    high = (int)clamp(ceil(input->azimuth_high_rad * per_rad), low + 1, air_path_azimuths);
+    const double slope_low = copysign(sqrt(fabs(input->slope_low)), input->slope_low);
+    const double slope_high = fmax(copysign(sqrt(fabs(input->slope_high)), input->slope_high), slope_low + 1e-3);
+    /* a step of 15 degrees at most, of a third of the view at least */
+    const double span_rad = fmax(input->azimuth_high_rad - input->azimuth_low_rad, 1e-3);
+    const int    planes = (int)clamp(ceil(span_rad * air_path_azimuths / pi_rad - 1e-9), 3, air_path_azimuths);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(input->bands >> b & 1)) continue;
         AirTable *table = air->table[b] = arena_alloc(arena, 1, sizeof *table);
@@ -170,52 +188,76 @@ Status air_tables_fill(Air *air, const TableInput *input, Pool *pool, Arena *are
         table->thermal = b >= AIR_MWIR;
         /* sunlight is below a thousandth of what 8-12 um emits */
         table->scattered    = b != AIR_LWIR && input->scattered_scale > 0;
-        table->azimuth_low  = low;
-        table->azimuth_high = high;
+        table->slope_low              = (float)slope_low;
+        table->slope_steps            = (float)(air_slopes / (slope_high - slope_low));
+        table->azimuth_planes         = planes;
+        table->azimuth_low_rad        = (float)input->azimuth_low_rad;
+        table->azimuth_planes_per_rad = (float)(planes / span_rad);
     }
     run(pool, AIR_BAND_COUNT * (air_heights + 1), fill_row, &job);
+    run(pool, AIR_BAND_COUNT * (coarse_slopes + 1), fill_slope, &job);
     run(pool, AIR_BAND_COUNT * (air_path_azimuths + 1), refine_plane, &job);
     return STATUS_OK;
 }
 
-/* ---- thousands of times a frame: loops that vectorise ---------------------------------------- */
+/* ---- thousands of times a frame: eight paths at once ----------------------------------------- */
 
-/* e^x for x <= 0, relative error below 2e-7 (Cephes expf's polynomial); 0 below -87. */
-static inline float exp_quick(float x)
+typedef __m256 Eight;
+
+static inline Eight all(double x) { return _mm256_set1_ps((float)x); }
+static inline Eight mul(Eight a, Eight b) { return _mm256_mul_ps(a, b); }
+static inline Eight add(Eight a, Eight b) { return _mm256_add_ps(a, b); }
+static inline Eight sub(Eight a, Eight b) { return _mm256_sub_ps(a, b); }
+static inline Eight between(Eight a, Eight b, Eight t) { return add(a, mul(t, sub(b, a))); }
+/* NaN, as the unused end of a block may hold, becomes low. */
+static inline Eight within(Eight x, Eight low, Eight high) { return _mm256_min_ps(_mm256_max_ps(x, low), high); }
+
+static inline Eight narrow(const double *p)
 {
-    const float floor_x = x > -87.0f ? x : -87.0f;
-    const float n = (float)(int)(floor_x * 1.44269504f - 0.5f); /* to the nearest, since x <= 0 */
-    const float r = floor_x - n * 0.693359375f + n * 2.12194440e-4f;
-    const float p = ((((1.9875691500e-4f * r + 1.3981999507e-3f) * r + 8.3334519073e-3f) * r + 4.1665795894e-2f) * r +
-                     1.6666665459e-1f) * r + 5.0000001201e-1f;
-    union { int32_t i; float f; } two_n = {.i = ((int32_t)n + 127) << 23};
-    return (p * r * r + r + 1) * two_n.f;
+    return _mm256_set_m128(_mm256_cvtpd_ps(_mm256_loadu_pd(p + 4)), _mm256_cvtpd_ps(_mm256_loadu_pd(p)));
 }
 
-/* log2 of a positive normal float, absolute error below 2e-5: exponent, and 2 atanh((m - 1) / (m + 1)) / ln 2. */
-static inline float log2_quick(float x)
+/* e^x for x < 88, relative error below 2e-7 (Cephes expf's polynomial); below -87 as there. */
+static inline Eight exp_eight(Eight x)
 {
-    union { float f; int32_t i; } bits = {.f = x};
-    const int32_t shifted = bits.i - 0x3f3504f3; /* mantissa into sqrt(1/2) .. sqrt(2) */
-    const float   exponent = (float)(shifted >> 23);
-    union { int32_t i; float f; } mantissa = {.i = (shifted & 0x007fffff) + 0x3f3504f3};
-    const float s = (mantissa.f - 1) / (mantissa.f + 1), s2 = s * s;
-    return exponent + s * (2.8853901f + s2 * (0.96179670f + s2 * 0.5770780f));
+    x = _mm256_max_ps(x, all(-87));
+    const Eight n = _mm256_round_ps(mul(x, all(1.44269504088896)), _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC);
+    const Eight r = add(sub(x, mul(n, all(0.693359375))), mul(n, all(2.12194440e-4)));
+    Eight p = add(mul(all(1.9875691500e-4), r), all(1.3981999507e-3));
+    p = add(mul(p, r), all(8.3334519073e-3));
+    p = add(mul(p, r), all(4.1665795894e-2));
+    p = add(mul(p, r), all(1.6666665459e-1));
+    p = add(mul(p, r), all(5.0000001201e-1));
+    const __m256i power = _mm256_slli_epi32(_mm256_add_epi32(_mm256_cvtps_epi32(n), _mm256_set1_epi32(127)), 23);
+    return mul(add(add(mul(p, mul(r, r)), r), all(1)), _mm256_castsi256_ps(power));
 }
 
-static inline float acos_quick(float c)
+/* log2 of positive normal numbers, absolute error below 2e-5: exponent, and 2 atanh((m - 1) / (m + 1)) / ln 2 with the
+ * mantissa m in sqrt(1/2) .. sqrt(2). */
+static inline Eight log2_eight(Eight x)
 {
-    const float x = fminf(fabsf(c), 1);
-    const float a = sqrtf(1 - x) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - x * 0.0187293f)));
-    return c < 0 ? 3.14159265f - a : a;
+    const __m256i root = _mm256_set1_epi32(0x3f3504f3), shifted = _mm256_sub_epi32(_mm256_castps_si256(x), root);
+    const Eight   exponent = _mm256_cvtepi32_ps(_mm256_srai_epi32(shifted, 23));
+    const Eight   m = _mm256_castsi256_ps(
+        _mm256_add_epi32(_mm256_and_si256(shifted, _mm256_set1_epi32(0x007fffff)), root));
+    const Eight s = _mm256_div_ps(sub(m, all(1)), add(m, all(1))), s2 = mul(s, s);
+    return add(exponent, mul(s, add(all(2.8853901), mul(s2, add(all(0.96179670), mul(s2, all(0.5770780)))))));
 }
 
-/* Where every path of a block ends, in the tables' own steps. */
+/* Abramowitz & Stegun 4.4.45, within 7e-5 rad. */
+static inline Eight acos_eight(Eight c)
+{
+    const Eight sign = _mm256_and_ps(c, all(-0.0)), x = _mm256_min_ps(_mm256_andnot_ps(all(-0.0), c), all(1));
+    const Eight p = add(all(1.5707288), mul(x, add(all(-0.2121144), mul(x, sub(all(0.0742610), mul(x, all(0.0187293)))))));
+    const Eight a = mul(_mm256_sqrt_ps(sub(all(1), x)), p);
+    return _mm256_blendv_ps(a, sub(all(3.14159265358979), a), sign);
+}
+
+/* Where eight paths end, in the tables' own steps. */
 typedef struct Places {
-    int32_t node[hits_capacity];                               /* lower height, nearer range */
-    float   height[hits_capacity], range[hits_capacity];       /* shares of the other two */
-    int32_t turn[hits_capacity];                               /* first node of the lower azimuth's plane */
-    float   azimuth[hits_capacity];                            /* share of the upper one */
+    __m256i node, slope_node;            /* lower height, nearer range; lower slope, nearer share of the way */
+    Eight   height, range, slope, share; /* shares of the others */
+    Eight   range_m;
 } Places;
 
 /* Distance to the round ground at height 0 along a ray that meets nothing nearer; INFINITY: it passes above. With u the
@@ -227,19 +269,9 @@ static float ground_beyond(double eye_m, double climb, double bend_per_m)
     return disc >= 0 ? (float)(2 * eye_m / (-climb + sqrt(disc))) : INFINITY;
 }
 
-static void find_places(Places *p, float *range_m, const Air *air, const AirTable *table, const Hits *hits,
-                        const Rays *rays, int count)
+static void find_ranges(float *range_m, const Air *air, const Hits *hits, const Rays *rays)
 {
-    const float azimuth_low = (float)table->azimuth_low, azimuth_high = (float)table->azimuth_high - 1e-3f;
-    const float height_steps = (float)(air_heights / sqrt(air_top_m));
-    const float range_steps = (float)(air_ranges * log(2) / log(air_far_m / air_near_m));
-    const float range_origin = (float)(log2(air_near_m) * range_steps);
-    const float near_m = (float)air_near_m, far_m = (float)air_far_m, eye_m = (float)air->eye_height_m;
-    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
-    const float sun_east = level > 1e-10 ? (float)(air->sun_d_enu[0] / level) : 1;
-    const float sun_north = level > 1e-10 ? (float)(air->sun_d_enu[1] / level) : 0;
-
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < hits->count; i++) {
         range_m[i] = (float)hits->range_m[i];
         if (range_m[i] < INFINITY) continue;
         const double climb = rays->d_enu[2][i] + (rays->o_enu[0][i] * rays->d_enu[0][i] +
@@ -247,74 +279,105 @@ static void find_places(Places *p, float *range_m, const Air *air, const AirTabl
         range_m[i] = ground_beyond(air->eye_height_m, climb,
                                    (1 - rays->d_enu[2][i] * rays->d_enu[2][i]) / (2 * earth_radius_m));
     }
-    for (int i = 0; i < count; i++) {
-        const float dx = (float)rays->d_enu[0][i], dy = (float)rays->d_enu[1][i], flat2 = dx * dx + dy * dy;
-        const float r = fminf(fmaxf(range_m[i], near_m), far_m);
-        /* the tangent plane leaves the Earth: by the eye's own distance from the origin, and along the path */
-        const float climb = (float)(rays->d_enu[2][i] +
-                                    (rays->o_enu[0][i] * rays->d_enu[0][i] + rays->o_enu[1][i] * rays->d_enu[1][i]) *
-                                        (1 / earth_radius_m));
-        const float h = fmaxf(eye_m + r * (climb + r * flat2 * (float)(0.5 / earth_radius_m)), 0);
+}
 
-        const float hs = fminf(sqrtf(h) * height_steps, (float)air_heights - 1e-3f);
-        const float rs = fminf(log2_quick(r) * range_steps - range_origin, (float)air_ranges - 1e-3f);
-        const int   hi = (int)hs, ri = rs > 0 ? (int)rs : 0;
-        /* between nodes linear in height, not in its root */
-        const float h0 = (float)hi, of_cell = (hs * hs - h0 * h0) / (2 * h0 + 1);
-        p->node[i]   = hi * (air_ranges + 1) + ri;
-        p->height[i] = of_cell;
-        p->range[i]  = rs - (float)ri;
+static inline void find_places(Places *p, const Air *air, const AirTable *table, const float *range_m, const Rays *rays, int i)
+{
+    const Eight dx = narrow(rays->d_enu[0] + i), dy = narrow(rays->d_enu[1] + i), dz = narrow(rays->d_enu[2] + i);
+    const Eight ox = narrow(rays->o_enu[0] + i), oy = narrow(rays->o_enu[1] + i);
+    p->range_m = _mm256_loadu_ps(range_m + i);
+    const Eight r = within(p->range_m, all(air_near_m), all(air_far_m));
+    /* the tangent plane leaves the Earth: by the eye's own distance from the origin, and along the path. Past the tables'
+     * nearest range only height counts, so the path's own range is taken for it */
+    const Eight at = _mm256_min_ps(p->range_m, r), per_earth = all(1 / earth_radius_m);
+    const Eight climb = add(dz, mul(add(mul(ox, dx), mul(oy, dy)), per_earth));
+    const Eight bend = mul(add(mul(dx, dx), mul(dy, dy)), all(0.5 / earth_radius_m));
+    const Eight h = _mm256_max_ps(add(all(air->eye_height_m), mul(at, add(climb, mul(at, bend)))), all(0));
 
-        const float c = (dx * sun_east + dy * sun_north) / sqrtf(fmaxf(flat2, 1e-12f));
-        const float as =
-            fminf(fmaxf(acos_quick(c) * (float)(air_path_azimuths / 3.14159265), azimuth_low), azimuth_high);
-        p->turn[i]    = (int)as * air_nodes;
-        p->azimuth[i] = as - (float)(int)as;
+    const Eight hs = within(mul(_mm256_sqrt_ps(h), all(air_heights / sqrt(air_top_m))), all(0), all(air_heights - 1e-3));
+    const Eight steps = all(air_ranges * 0.69314718055994531 / log(air_far_m / air_near_m));
+    const Eight rs = within(mul(sub(log2_eight(r), all(log2(air_near_m))), steps), all(0), all(air_ranges - 1e-3));
+    const __m256i hi = _mm256_cvttps_epi32(hs), ri = _mm256_cvttps_epi32(rs);
+    /* between nodes linear in height, not in its root */
+    const Eight h0 = _mm256_cvtepi32_ps(hi);
+    p->height = _mm256_div_ps(sub(mul(hs, hs), mul(h0, h0)), add(add(h0, h0), all(1)));
+    p->range  = sub(rs, _mm256_cvtepi32_ps(ri));
+    p->node   = _mm256_add_epi32(_mm256_mullo_epi32(hi, _mm256_set1_epi32(air_ranges + 1)), ri);
+
+    const Eight rise_m = sub(h, all(air->eye_height_m)), rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, all(1e-3)));
+    const Eight sign = _mm256_and_ps(rise, all(-0.0)), root = _mm256_sqrt_ps(_mm256_andnot_ps(all(-0.0), rise));
+    const Eight ss = within(mul(sub(_mm256_or_ps(root, sign), all((double)table->slope_low)), all((double)table->slope_steps)),
+                            all(0), all(air_slopes - 1e-3));
+    const __m256i si = _mm256_cvttps_epi32(ss);
+    p->slope      = sub(ss, _mm256_cvtepi32_ps(si));
+    /* the whole way: to the ground or the top, as far again as the rise so far goes into what there is to go */
+    const Eight whole_m = _mm256_blendv_ps(all(air_top_m - air->eye_height_m), all(-air->eye_height_m), rise);
+    const Eight steep = _mm256_or_ps(_mm256_max_ps(_mm256_andnot_ps(all(-0.0), rise), all(1e-9)), sign);
+    const Eight end_m = within(_mm256_div_ps(whole_m, steep), all(shortest_way_m), all(air_far_m));
+    const Eight ws = within(mul(_mm256_sqrt_ps(_mm256_div_ps(at, end_m)), all(air_shares)), all(0), all(air_shares - 1e-3));
+    const __m256i wi = _mm256_cvttps_epi32(ws);
+    p->share      = sub(ws, _mm256_cvtepi32_ps(wi));
+    p->slope_node = _mm256_add_epi32(_mm256_mullo_epi32(si, _mm256_set1_epi32(air_shares + 1)), wi);
+}
+
+/* Between four neighbours of a plane whose rows are this long. */
+static inline Eight look_up_in(const float *plane, int row, __m256i node, Eight across, Eight along)
+{
+    const Eight a = _mm256_i32gather_ps(plane, node, 4), b = _mm256_i32gather_ps(plane + 1, node, 4);
+    const Eight c = _mm256_i32gather_ps(plane + row, node, 4), d = _mm256_i32gather_ps(plane + row + 1, node, 4);
+    return between(between(a, b, along), between(c, d, along), across);
+}
+
+static inline Eight look_up(const float *plane, __m256i node, const Places *p)
+{
+    return look_up_in(plane, air_ranges + 1, node, p->height, p->range);
+}
+
+static inline Eight transmit(const float *plane, const Places *p)
+{
+    return exp_eight(sub(all(0), mul(p->range_m, look_up(plane, p->node, p))));
+}
+
+/* Emitters by their own temperature; NaN counts as the coldest. */
+static inline Eight transmit_emitted(const AirTable *table, const Places *p, Eight temp_k)
+{
+    const Eight t = within(temp_k, all(emitter_temp_k[0]), all(emitter_temp_k[air_temps - 1]));
+    Eight   from = all(emitter_temp_k[0]), per_k = all(1 / (emitter_temp_k[1] - emitter_temp_k[0]));
+    __m256i plane = _mm256_setzero_si256();
+    for (int k = 1; k < air_temps - 1; k++) {
+        const Eight above = _mm256_cmp_ps(t, all(emitter_temp_k[k]), _CMP_GE_OQ);
+        from  = _mm256_blendv_ps(from, all(emitter_temp_k[k]), above);
+        per_k = _mm256_blendv_ps(per_k, all(1 / (emitter_temp_k[k + 1] - emitter_temp_k[k])), above);
+        plane = _mm256_blendv_epi8(plane, _mm256_set1_epi32(k * air_nodes), _mm256_castps_si256(above));
     }
+    const __m256i node = _mm256_add_epi32(p->node, plane);
+    const float  *planes = table->extinction_temp_per_m[0];
+    const Eight   q = between(look_up(planes, node, p), look_up(planes + air_nodes, node, p), mul(sub(t, from), per_k));
+    return exp_eight(sub(all(0), mul(p->range_m, q)));
 }
 
-static inline float look_up(const float *plane, int node, float height, float range)
+/* Sunlight scattered into the paths, over what the paths take away. */
+static inline Eight scattered_source(const AirTable *table, const Places *p, const Rays *rays, int i, Eight sun_east,
+                                     Eight sun_north)
 {
-    const float *q = plane + node;
-    const float  low = q[0] + range * (q[1] - q[0]);
-    const float  high = q[air_ranges + 1] + range * (q[air_ranges + 2] - q[air_ranges + 1]);
-    return low + height * (high - low);
-}
-
-static void transmit(float *out, const float *plane, const Places *p, const float *range_m, int count)
-{
-    for (int i = 0; i < count; i++)
-        out[i] = exp_quick(-range_m[i] * look_up(plane, p->node[i], p->height[i], p->range[i]));
-}
-
-/* Emitters by their own temperature. */
-static void transmit_emitted(float *out, const AirTable *table, const Places *p, const float *range_m,
-                             const float *temp_k, int count)
-{
-    const float *planes = table->extinction_temp_per_m[0];
-    for (int i = 0; i < count; i++) {
-        float t = temp_k[i] > (float)emitter_temp_k[0] ? temp_k[i] : (float)emitter_temp_k[0]; /* NaN: the first */
-        t = fminf(t, (float)emitter_temp_k[air_temps - 1]);
-        int   low = 0;
-        float from_k = (float)emitter_temp_k[0], to_k = (float)emitter_temp_k[1];
-        for (int k = 1; k < air_temps - 1; k++) {
-            const bool above = t >= (float)emitter_temp_k[k];
-            low    = above ? k : low;
-            from_k = above ? (float)emitter_temp_k[k] : from_k;
-            to_k   = above ? (float)emitter_temp_k[k + 1] : to_k;
-        }
-        const int   node = p->node[i] + low * air_nodes;
-        const float a = look_up(planes, node, p->height[i], p->range[i]);
-        const float b = look_up(planes, node + air_nodes, p->height[i], p->range[i]);
-        out[i] = exp_quick(-range_m[i] * (a + (t - from_k) / (to_k - from_k) * (b - a)));
-    }
+    const Eight dx = narrow(rays->d_enu[0] + i), dy = narrow(rays->d_enu[1] + i);
+    const Eight level = _mm256_sqrt_ps(_mm256_max_ps(add(mul(dx, dx), mul(dy, dy)), all(1e-12)));
+    const Eight azimuth = acos_eight(_mm256_div_ps(add(mul(dx, sun_east), mul(dy, sun_north)), level));
+    const Eight s = within(mul(sub(azimuth, all((double)table->azimuth_low_rad)), all((double)table->azimuth_planes_per_rad)),
+                           all(0), all(table->azimuth_planes - 1e-3));
+    const __m256i plane = _mm256_cvttps_epi32(s);
+    const __m256i node = _mm256_add_epi32(p->slope_node, _mm256_mullo_epi32(plane, _mm256_set1_epi32(air_slope_nodes)));
+    const float  *low = table->ln_scattered[0], *high = low + air_slope_nodes;
+    return exp_eight(between(look_up_in(low, air_shares + 1, node, p->slope, p->share),
+                             look_up_in(high, air_shares + 1, node, p->slope, p->share),
+                             sub(s, _mm256_cvtepi32_ps(plane))));
 }
 
 static void veils_even(Veils *out, const Air *air, AirBand band, const Hits *hits)
 {
-    const float radiance = air->sky_eye[band].radiance_w_m2_sr[0][0];
+    const float radiance = air->sky_eye[band].thermal_w_m2_sr[0];
     for (int i = 0; i < hits->count; i++) {
-        const float tau = exp_quick(-(float)(air->even_per_m * fmin(hits->range_m[i], 1e12)));
+        const float tau = (float)exp(-air->even_per_m * fmin(hits->range_m[i], 1e12));
         out->range_m[i] = (float)hits->range_m[i];
         out->transmittance[i] = out->sun_transmittance[i] = out->air_transmittance[i] =
             out->range_m[i] < INFINITY ? tau : 0;
@@ -325,39 +388,34 @@ static void veils_even(Veils *out, const Air *air, AirBand band, const Hits *hit
 void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k)
 {
     const AirTable *table = air->table[band];
-    const int count = hits->count;
     if (!table) {
         veils_even(out, air, band, hits);
         return;
     }
-    if (count <= 0) return;
-    Places p;
-    find_places(&p, out->range_m, air, table, hits, rays, count);
+    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
+    const Eight  sun_east = all(level > 1e-10 ? air->sun_d_enu[0] / level : 1);
+    const Eight  sun_north = all(level > 1e-10 ? air->sun_d_enu[1] / level : 0);
+    find_ranges(out->range_m, air, hits, rays);
 
-    transmit(out->sun_transmittance, table->extinction_sun_per_m, &p, out->range_m, count);
-    if (table->scattered) {
-        const float *planes = table->scattered_w_m2_sr[0];
-        for (int i = 0; i < count; i++) {
-            const int   node = p.node[i] + p.turn[i];
-            const float a = look_up(planes, node, p.height[i], p.range[i]);
-            const float b = look_up(planes, node + air_nodes, p.height[i], p.range[i]);
-            out->added_w_m2_sr[i] = (1 - out->sun_transmittance[i]) * (a + p.azimuth[i] * (b - a));
+    for (int i = 0; i < hits->count; i += 8) {
+        Places p;
+        find_places(&p, air, table, out->range_m, rays, i);
+        Eight added = all(0), sun = all(0);
+        if (table->scattered || !table->thermal) sun = transmit(table->extinction_sun_per_m, &p);
+        if (table->scattered) added = mul(sub(all(1), sun), scattered_source(table, &p, rays, i, sun_east, sun_north));
+        Eight own = sun, emitted = sun;
+        if (table->thermal) {
+            own = transmit(table->extinction_air_per_m, &p);
+            added = add(added, mul(sub(all(1), own), look_up(table->thermal_w_m2_sr, p.node, &p)));
+            if (temp_k) emitted = transmit_emitted(table, &p, _mm256_loadu_ps(temp_k + i));
+            if (!table->scattered) sun = own;
         }
-    } else {
-        memset(out->added_w_m2_sr, 0, (size_t)count * sizeof *out->added_w_m2_sr);
+        _mm256_storeu_ps(out->sun_transmittance + i, sun);
+        _mm256_storeu_ps(out->air_transmittance + i, own);
+        _mm256_storeu_ps(out->transmittance + i, emitted);
+        _mm256_storeu_ps(out->added_w_m2_sr + i, added);
     }
-    if (table->thermal) {
-        transmit(out->air_transmittance, table->extinction_air_per_m, &p, out->range_m, count);
-        for (int i = 0; i < count; i++)
-            out->added_w_m2_sr[i] += (1 - out->air_transmittance[i]) *
-                                     look_up(table->thermal_w_m2_sr, p.node[i], p.height[i], p.range[i]);
-        if (temp_k) transmit_emitted(out->transmittance, table, &p, out->range_m, temp_k, count);
-        else memcpy(out->transmittance, out->sun_transmittance, (size_t)count * sizeof(float));
-    } else {
-        memcpy(out->air_transmittance, out->sun_transmittance, (size_t)count * sizeof(float));
-        memcpy(out->transmittance, out->sun_transmittance, (size_t)count * sizeof(float));
-    }
-    for (int i = 0; i < count; i++) {
+    for (int i = 0; i < hits->count; i++) {
         if (out->range_m[i] < INFINITY) continue;
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         out->transmittance[i] = out->sun_transmittance[i] = out->air_transmittance[i] = 0;
