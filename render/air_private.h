@@ -9,7 +9,7 @@
  * and by the root of their share of the whole way, to the ground or out of the tables' air, so that ground is at its end.
  * Kept as what varies slowly: extinction -ln(tau) / range, which is constant in a grey and even air, and the path's
  * radiance over 1 - tau, its mean source. */
-enum { air_heights = 20, air_ranges = 40, air_temps = 5, air_path_azimuths = 12, air_slopes = 24, air_shares = 20 };
+enum { air_heights = 40, air_ranges = 40, air_temps = 5, air_path_azimuths = 12, air_slopes = 32, air_shares = 24 };
 enum { air_nodes = (air_heights + 1) * (air_ranges + 1), air_slope_nodes = (air_slopes + 1) * (air_shares + 1) };
 
 static const double air_top_m = 30e3, air_near_m = 50, air_far_m = 250e3;

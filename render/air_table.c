@@ -21,8 +21,9 @@ static double node_range_m(int i) { return air_near_m * pow(air_far_m / air_near
  * path, and drawn between them by cubics. */
 enum { slope_stride = 2, share_stride = 2, coarse_slopes = air_slopes / slope_stride,
        coarse_shares = air_shares / share_stride };
-/* Ways are at least this long, also from an eye on the ground. */
-static const double shortest_way_m = 10;
+/* The whole way ends at the ground or the tables' top, and after 100 km, where little more light is to come. From less
+ * than 200 m up it goes on along the ground, as if from there: the air below is much the same. */
+static const double shortest_way_m = 10, longest_way_m = 100e3, least_fall_m = 200;
 
 typedef struct TableJob {
     Air        *air;
@@ -113,8 +114,8 @@ static void fill_slope(void *user, int worker, int task)
     const double eye_m = job->air->eye_height_m, s = (double)(table->slope_low + (float)(i * slope_stride) / table->slope_steps);
     const double slope = clamp(s * fabs(s), -1, 1);
     /* to the ground, or out of the tables' air; never quite nothing */
-    const double rise_m = slope < 0 ? -eye_m : air_top_m - eye_m;
-    const double end_m = clamp(rise_m / (fabs(slope) > 1e-9 ? slope : copysign(1e-9, slope)), shortest_way_m, air_far_m);
+    const double whole_m = slope < 0 ? fmax(eye_m, least_fall_m) : air_top_m - eye_m;
+    const double end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), shortest_way_m, longest_way_m);
     for (int a = 0; a <= table->azimuth_planes; a++)
         for (int c = 0; c <= coarse_shares; c++) {
             float *at = &job->coarse[band][a][i][c];
@@ -310,10 +311,10 @@ static inline void find_places(Places *p, const Air *air, const AirTable *table,
                             all(0), all(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(ss);
     p->slope      = sub(ss, _mm256_cvtepi32_ps(si));
-    /* the whole way: to the ground or the top, as far again as the rise so far goes into what there is to go */
-    const Eight whole_m = _mm256_blendv_ps(all(air_top_m - air->eye_height_m), all(-air->eye_height_m), rise);
-    const Eight steep = _mm256_or_ps(_mm256_max_ps(_mm256_andnot_ps(all(-0.0), rise), all(1e-9)), sign);
-    const Eight end_m = within(_mm256_div_ps(whole_m, steep), all(shortest_way_m), all(air_far_m));
+    const Eight whole_m =
+        _mm256_blendv_ps(all(air_top_m - air->eye_height_m), all(fmax(air->eye_height_m, least_fall_m)), rise);
+    const Eight steep = _mm256_max_ps(_mm256_andnot_ps(all(-0.0), rise), all(1e-9));
+    const Eight end_m = within(_mm256_div_ps(whole_m, steep), all(shortest_way_m), all(longest_way_m));
     const Eight ws = within(mul(_mm256_sqrt_ps(_mm256_div_ps(at, end_m)), all(air_shares)), all(0), all(air_shares - 1e-3));
     const __m256i wi = _mm256_cvttps_epi32(ws);
     p->share      = sub(ws, _mm256_cvtepi32_ps(wi));
