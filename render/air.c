@@ -38,7 +38,6 @@ double air_sun_disc(const Air *air, const double d_enu[3])
     return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
 }
 
-
 /* ---- the sky as a table -------------------------------------------------------------------- */
 
 /* Cosine of the angle between two directions' azimuths, by their level parts; 1 where one has none. */
@@ -68,7 +67,8 @@ double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double 
 {
     int i, a, k;
     const double fi = split(&i, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
-    const double fa = split(&a, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
+    const double fa =
+        split(&a, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
     /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
     double chord[3];
     v3_sub(chord, d_enu, sun_d_enu);
@@ -104,8 +104,13 @@ double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
 /* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
  * and 48 azimuths; and rings about the sun, dense at its middle, which take over from the grid there by a weight that
  * goes smoothly from one to nothing. */
-enum { lamp_ups = 24, lamp_azimuths = 48, lamp_rings = 20, lamp_spokes = 24,
-       lamps = lamp_ups * lamp_azimuths + lamp_rings * lamp_spokes };
+enum {
+    lamp_ups = 24,
+    lamp_azimuths = 48,
+    lamp_rings = 20,
+    lamp_spokes = 24,
+    lamps = lamp_ups * lamp_azimuths + lamp_rings * lamp_spokes
+};
 static const double rings_rad = 0.7, rings_only_rad = 0.2;
 
 typedef struct Lamps {
@@ -197,7 +202,8 @@ static void light_planes(Air *air, AirBand band, const float w_m2[lamps], const 
 
 static void run_all(Pool *pool, int count, PoolTask *task, void *user)
 {
-    if (pool) pool_run(pool, count, task, user);
+    if (pool)
+        pool_run(pool, count, task, user);
     else
         for (int i = 0; i < count; i++) task(user, 0, i);
 }
@@ -213,13 +219,13 @@ typedef struct AskedSky {
 } AskedSky;
 
 typedef struct SkyJob {
-    Air              *air;
+    Air *air;
     const Atmosphere *atmosphere;
-    unsigned          bands;
-    bool              eye_on_ground;
-    double            day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
-    AskedSky          asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
-    Lamps             lamp;
+    unsigned bands;
+    bool eye_on_ground;
+    double day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
+    AskedSky asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
+    Lamps lamp;
 } SkyJob;
 
 static double height_of(const SkyJob *job, int from_eye) { return from_eye ? job->air->eye_height_m : 0; }
@@ -239,8 +245,9 @@ static void ask_around_sun(void *user, int worker, int task)
         const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad);
         SkyAir seen = {0};
         if (b != AIR_LWIR)
-            atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, asked_eye),
-                           fabs(zenith_rad), job->day_zenith_rad, zenith_rad < 0 ? pi_rad : 0);
+            atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b,
+                           height_of(job, asked_eye), fabs(zenith_rad), job->day_zenith_rad,
+                           zenith_rad < 0 ? pi_rad : 0);
         sky->around_sun[k] = seen.scattered_w_m2_sr > 0 ? (float)seen.scattered_w_m2_sr : 1;
     }
     sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
@@ -273,7 +280,8 @@ static void ask_sky(void *user, int worker, int task)
             b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / air_sky_table(&ring, sun, d);
         asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? seen.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
     }
-    for (int a = azimuths + 1; a <= asked_azimuths; a++) asked->scattered_w_m2_sr[i][a] = asked->scattered_w_m2_sr[i][0];
+    for (int a = azimuths + 1; a <= asked_azimuths; a++)
+        asked->scattered_w_m2_sr[i][a] = asked->scattered_w_m2_sr[i][0];
 }
 
 /* In full resolution; mirrored at both ends of azimuth, as the sky is. */
@@ -285,7 +293,8 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
             const double *v = asked->scattered_w_m2_sr[i];
             const int low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
             const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
-            along[i][a] = cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
+            along[i][a] =
+                cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
         }
     const double *v = asked->thermal_w_m2_sr;
     for (int i = 0; i <= air_sky_ups; i++) {
@@ -293,8 +302,8 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
         const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
         const double t = (double)(i - low * sky_stride) / sky_stride;
         for (int a = 0; a <= air_sky_azimuths; a++)
-            sky->scattered_w_m2_sr[i][a] = (float)fmax(
-                cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
+            sky->scattered_w_m2_sr[i][a] =
+                (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
         sky->thermal_w_m2_sr[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
     }
 }
@@ -330,7 +339,7 @@ static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_te
     /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
      * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
     static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
-    air->solar_direct_w_m2  = air->sun_w_m2[AIR_PAN] / visible_share;
+    air->solar_direct_w_m2 = air->sun_w_m2[AIR_PAN] / visible_share;
     air->solar_diffuse_w_m2 = air->sky_w_m2[AIR_PAN] / visible_share;
 
     /* What a black horizontal plane at air temperature loses to a clear sky. */
@@ -374,7 +383,9 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
 {
     const Atmosphere *atmosphere = source->atmosphere;
     const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
-    *out = (Air){.weather = *weather, .planck_mwir = source->planck_mwir, .planck_lwir = source->planck_lwir,
+    *out = (Air){.weather = *weather,
+                 .planck_mwir = source->planck_mwir,
+                 .planck_lwir = source->planck_lwir,
                  .eye_height_m = clamp(eye->height_m, 0, air_top_m)};
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
     if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
@@ -385,10 +396,10 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     *job = (SkyJob){.air = out, .atmosphere = atmosphere, .bands = eye->bands, .eye_on_ground = out->eye_height_m < 10};
     const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
     for (int k = 0; k < 2; k++)
-        job->thermal_scale[k] = planck_table_radiance(planck[k], out->weather.air_temp_k) /
-                                planck_table_radiance(planck[k], model_temp_k);
+        job->thermal_scale[k] =
+            planck_table_radiance(planck[k], out->weather.air_temp_k) / planck_table_radiance(planck[k], model_temp_k);
     const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
-    job->day_zenith_rad  = fmin(zenith_rad, 85 * rad_per_deg);
+    job->day_zenith_rad = fmin(zenith_rad, 85 * rad_per_deg);
     job->scattered_scale = per_au2 * twilight(sun->elevation_rad);
 
     const double above = per_au2 * disc_above(sun->elevation_rad), low_rad = fmin(zenith_rad, 0.5 * pi_rad);
@@ -398,7 +409,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
         atmosphere_sun(&from_ground, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
         atmosphere_sun(&from_eye, atmosphere, weather->visibility_m, (AirBand)b, out->eye_height_m, low_rad);
         atmosphere_sun(&day, atmosphere, weather->visibility_m, (AirBand)b, 0, job->day_zenith_rad);
-        out->sun_w_m2[b]     = from_ground.direct_normal_w_m2 * above;
+        out->sun_w_m2[b] = from_ground.direct_normal_w_m2 * above;
         out->sun_eye_w_m2[b] = from_eye.direct_normal_w_m2 * above;
         job->diffuse_w_m2[b] = day.diffuse_horizontal_w_m2 * job->scattered_scale;
     }
@@ -410,7 +421,9 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     run_all(pool, AIR_BAND_COUNT, fill_sky, job);
     heat_balance(out, atmosphere, model_temp_k);
 
-    TableInput input = {.atmosphere = atmosphere, .sun_zenith_rad = job->day_zenith_rad, .bands = eye->bands,
+    TableInput input = {.atmosphere = atmosphere,
+                        .sun_zenith_rad = job->day_zenith_rad,
+                        .bands = eye->bands,
                         .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
                         .scattered_scale = job->scattered_scale};
     look_where(&input, eye->view, out->sun_d_enu);
@@ -427,11 +440,12 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
         out->sky_w_m2[b] = pi_rad * sky_w_m2_sr[b];
         if (b >= AIR_MWIR) out->ground_w_m2_sr[b] = sky_w_m2_sr[b];
         for (int i = 0; i <= air_sky_ups; i++)
-            out->sky[b].thermal_w_m2_sr[i] = out->sky_light[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] = (float)sky_w_m2_sr[b];
+            out->sky[b].thermal_w_m2_sr[i] = out->sky_light[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] =
+                (float)sky_w_m2_sr[b];
         for (int i = 0; i <= air_plane_ups; i++)
             for (int a = 0; a <= air_plane_azimuths; a++)
                 out->plane_w_m2[b][i][a] = (float)(out->sky_w_m2[b] * i / air_plane_ups);
     }
-    out->solar_direct_w_m2  = sun_w_m2;
+    out->solar_direct_w_m2 = sun_w_m2;
     out->solar_diffuse_w_m2 = out->sky_w_m2[AIR_PAN];
 }

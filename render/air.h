@@ -99,7 +99,7 @@ typedef struct Veils {
     float range_m[hits_capacity];       /* of the path; INFINITY: sky */
 } Veils;
 
-/* temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance is then the sun's). */
+/* temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
 void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 
 #endif

@@ -8,13 +8,13 @@
 enum { bounces = 2, stream_first = 40, stream_next = 41 }; /* streams of random numbers, nobody else's */
 
 typedef struct Paths {
-    Rays     rays;
-    Hits     hits;
-    int      of_hit[hits_capacity], of_sample[hits_capacity];
-    float    share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
+    Rays rays;
+    Hits hits;
+    int of_hit[hits_capacity], of_sample[hits_capacity];
+    float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
     uint16_t material[hits_capacity];
-    float    texture[hits_capacity], temp_k[hits_capacity];
-    uint8_t  shadow[hits_capacity];
+    float texture[hits_capacity], temp_k[hits_capacity];
+    uint8_t shadow[hits_capacity];
 } Paths;
 
 /* A direction about n, its cosine with n distributed as cosines are; u, v in [0, 1). */
@@ -61,9 +61,8 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, Visibili
     visibility_first_hit(&p->hits, scene->visibility, &p->rays, NULL, -1, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
         p->texture[i] = 1;
-        p->material[i] = p->hits.entity[i]
-                             ? (uint16_t)scene->materials->part[p->hits.model[i]][p->hits.part[i] - 1]
-                             : (uint16_t)scene->materials->surface[p->hits.surface[i]];
+        p->material[i] = p->hits.entity[i] ? (uint16_t)scene->materials->part[p->hits.model[i]][p->hits.part[i] - 1]
+                                           : (uint16_t)scene->materials->surface[p->hits.surface[i]];
     }
     memset(p->shadow, 0, sizeof p->shadow);
     if (scene->air->sun_d_enu[2] > 0)
@@ -94,8 +93,8 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
     *rho = reflectance(m, band);
     double radiance = 0;
     if (band >= AIR_MWIR)
-        radiance = (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->planck_mwir : air->planck_lwir,
-                                                      p->temp_k[i]);
+        radiance =
+            (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->planck_mwir : air->planck_lwir, p->temp_k[i]);
     if (!p->shadow[i] && band != AIR_LWIR)
         radiance += *rho / pi_rad * air->sun_w_m2[band] * fmax(v3_dot(n_enu, air->sun_d_enu), 0);
     if (last) radiance += *rho * (air_sky_on_plane(air, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
@@ -127,8 +126,9 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
         p->rays.count = 0;
         for (int i = 0; i < p->hits.count; i++) {
             if (!(p->hits.range_m[i] < INFINITY)) continue;
-            const uint64_t draw = ((block * hits_capacity + (uint64_t)p->of_hit[i]) * gather_samples_limit +
-                                   (uint64_t)p->of_sample[i]) * 2;
+            const uint64_t draw =
+                ((block * hits_capacity + (uint64_t)p->of_hit[i]) * gather_samples_limit + (uint64_t)p->of_sample[i]) *
+                2;
             const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_next, (uint32_t)bounce, draw),
                                  random_uniform(0, stream_next, (uint32_t)bounce, draw + 1));
             p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i];
@@ -138,11 +138,11 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
     }
 }
 
-void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples, uint64_t block,
-                  VisibilityCounters *counters)
+void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                  uint64_t block, VisibilityCounters *counters)
 {
     static const double golden = 0.61803398874989485;
-    Paths  paths;
+    Paths paths;
     double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
 
     paths.rays.count = 0;

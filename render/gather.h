@@ -1,8 +1,8 @@
 /* render/gather.h: what sky and surroundings send to each hit, by asking them: rays over the hemisphere, two bounces.
  *
  * The quick form of render/optical.c and thermal.c sees sky and level ground by a surface's tilt; this one sees what
- * really stands there: a shadowed wall, a warm engine deck, the dark under a hull. Each direction is followed to what it
- * meets, lit by the sun or emitting by itself, and from there in one more direction; what that meets is lit the quick
+ * really stands there: a shadowed wall, a warm engine deck, the dark under a hull. Each direction is followed to what
+ * it meets, lit by the sun or emitting by itself, and from there in one more direction; what that meets is lit the quick
  * way. Everything met counts as diffuse. Cost: 2 x samples first hits and shadow rays a hit. The error falls with
  * samples^-0.5 or faster; test_gather.c holds it against two other renderers. */
 #ifndef RENDER_GATHER_H
@@ -26,8 +26,8 @@ typedef struct Gathered {
 } Gathered;
 
 /* bands: 1 << AirBand, those to fill. samples: 1 .. gather_samples_limit directions a hit, spread evenly over the
- * hemisphere. block: which block of the picture this is; the same block and samples give the same bits, whoever asks. */
-void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples, uint64_t block,
-                  VisibilityCounters *counters);
+ * hemisphere. block: which block of the picture this is; same block, same samples, same bits. */
+void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                  uint64_t block, VisibilityCounters *counters);
 
 #endif

@@ -38,7 +38,9 @@ static const double sun_azimuth = 2.1;
 static Sun sun_at_elevation(double elevation_deg)
 {
     const double e = elevation_deg * rad_per_deg;
-    return (Sun){.azimuth_rad = sun_azimuth, .elevation_rad = e, .distance_au = 1,
+    return (Sun){.azimuth_rad = sun_azimuth,
+                 .elevation_rad = e,
+                 .distance_au = 1,
                  .d_enu = {cos(e) * sin(sun_azimuth), cos(e) * cos(sun_azimuth), sin(e)}};
 }
 
@@ -119,11 +121,13 @@ static void frames_follow_the_tables(void **state)
             air_veils(&veils, &air, (AirBand)b, &hits, &rays, thermal ? temp_k : NULL);
             for (int i = 0; i < hits.count; i++) {
                 const double r = hits.range_m[i], up = rays.d_enu[2][i], level = sqrt(1 - up * up);
-                AirPath path = {.observer_m = eye_m, .range_m = r, .sun_zenith_rad = 45 * rad_per_deg,
+                AirPath path = {.observer_m = eye_m,
+                                .range_m = r,
+                                .sun_zenith_rad = 45 * rad_per_deg,
                                 .target_m = fmax(eye_m + r * up + r * r * level * level / (2 * 6371e3), 0)};
                 const double *s = air.sun_d_enu;
-                path.rel_azimuth_rad = acos(clamp((rays.d_enu[0][i] * s[0] + rays.d_enu[1][i] * s[1]) /
-                                                      (level * hypot(s[0], s[1])), -1, 1));
+                path.rel_azimuth_rad = acos(
+                    clamp((rays.d_enu[0][i] * s[0] + rays.d_enu[1][i] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
                 PathAir want;
                 atmosphere_path(&want, atmosphere, weather.visibility_m, (AirBand)b, &path, 300);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
@@ -132,7 +136,8 @@ static void frames_follow_the_tables(void **state)
                                             : 0.1 / pi_rad * (air.sun_w_m2[b] * s[2] + air.sky_w_m2[b]);
                 const double added = want.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr);
                 tau_error[n] = fabs(veils.transmittance[i] / tau - 1);
-                seen_error[n++] = fabs((bare * veils.transmittance[i] + veils.added_w_m2_sr[i]) / (bare * tau + added) - 1);
+                seen_error[n++] =
+                    fabs((bare * veils.transmittance[i] + veils.added_w_m2_sr[i]) / (bare * tau + added) - 1);
             }
         }
         qsort(tau_error, (size_t)n, sizeof *tau_error, compare_doubles);
@@ -191,17 +196,22 @@ static void sky_adds_up(void **state)
                 for (int a = 0; a < azimuths; a++) {
                     const double rise = (h + 0.5) / heights * 0.5 * pi_rad, turn = (a + 0.5) * 2 * pi_rad / azimuths;
                     const double d[3] = {cos(rise) * sin(turn), cos(rise) * cos(turn), sin(rise)};
-                    const double part = air_sky_light(&air, bands[b], d) * cos(rise) * pi_rad * pi_rad / heights / azimuths;
+                    const double part =
+                        air_sky_light(&air, bands[b], d) * cos(rise) * pi_rad * pi_rad / heights / azimuths;
                     for (int n = 0; n < 5; n++) sum[n] += part * fmax(v3_dot(d, normals[n]), 0);
                 }
             SunAir sun;
-            atmosphere_sun(&sun, atmosphere, weather.visibility_m, bands[b], 0, (90 - fmax(elevations_deg[e], 5)) * rad_per_deg);
-            print_message("sun %2.0f deg, %s: level %.4g (tables' diffuse %.4g, scale %.3f); integral over planes %.4f %.4f %.4f "
-                          "%.4f %.4f\n", elevations_deg[e], air_band_name(bands[b]), air.sky_w_m2[bands[b]],
-                          sun.diffuse_horizontal_w_m2, air.sky_scale[bands[b]],
-                          air_sky_on_plane(&air, bands[b], normals[0]) / sum[0], air_sky_on_plane(&air, bands[b], normals[1]) / sum[1],
-                          air_sky_on_plane(&air, bands[b], normals[2]) / sum[2], air_sky_on_plane(&air, bands[b], normals[3]) / sum[3],
-                          air_sky_on_plane(&air, bands[b], normals[4]) / sum[4]);
+            atmosphere_sun(&sun, atmosphere, weather.visibility_m, bands[b], 0,
+                           (90 - fmax(elevations_deg[e], 5)) * rad_per_deg);
+            print_message(
+                "sun %2.0f deg, %s: level %.4g (tables' diffuse %.4g, scale %.3f); integral over planes %.4f %.4f %.4f "
+                "%.4f %.4f\n",
+                elevations_deg[e], air_band_name(bands[b]), air.sky_w_m2[bands[b]], sun.diffuse_horizontal_w_m2,
+                air.sky_scale[bands[b]], air_sky_on_plane(&air, bands[b], normals[0]) / sum[0],
+                air_sky_on_plane(&air, bands[b], normals[1]) / sum[1],
+                air_sky_on_plane(&air, bands[b], normals[2]) / sum[2],
+                air_sky_on_plane(&air, bands[b], normals[3]) / sum[3],
+                air_sky_on_plane(&air, bands[b], normals[4]) / sum[4]);
             /* 1 %: the grid cuts the ring about a low sun at the horizon */
             for (int n = 0; n < 5; n++)
                 CHECK_NEAR(air_sky_on_plane(&air, bands[b], normals[n]), sum[n], 0.01 * air.sky_w_m2[bands[b]]);
@@ -254,8 +264,8 @@ static void light_fades_smoothly(void **state)
     CHECK(air_sky(&night, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
 }
 
-/* Further is dimmer, nothing is between at no distance, and no number is not one: from the ground, the air and space, by
- * day, dusk and night, in haze and out of it, up, level and down. */
+/* Further is dimmer, nothing is between at no distance, and no number is not one: from the ground, the air and space,
+ * by day, dusk and night, in haze and out of it, up, level and down. */
 static void veils_are_sound_everywhere(void **state)
 {
     (void)state;
@@ -266,7 +276,8 @@ static void veils_are_sound_everywhere(void **state)
             Weather weather = weather_default();
             weather.visibility_m = visibility[v];
             weather.air_temp_k = temp[v];
-            const Air air = air_of(&weather, sun_deg[(v + e) % 4], eyes_m[e], 1 << AIR_G | 1 << AIR_MWIR | 1 << AIR_LWIR, NULL);
+            const Air air =
+                air_of(&weather, sun_deg[(v + e) % 4], eyes_m[e], 1 << AIR_G | 1 << AIR_MWIR | 1 << AIR_LWIR, NULL);
             clear();
             static const double rise[] = {-1.5, -0.3, -0.01, 0, 0.02, 0.8};
             for (int d = 0; d < 6; d++) {
@@ -279,11 +290,12 @@ static void veils_are_sound_everywhere(void **state)
                 air_veils(&veils, &air, bands[b], &hits, &rays, b ? temp_k : NULL);
                 CHECK(veils.transmittance[0] == 1 && veils.added_w_m2_sr[0] == 0);
                 for (int i = 0; i < hits.count; i++) {
-                    const float tau[3] = {veils.transmittance[i], veils.sun_transmittance[i], veils.air_transmittance[i]};
+                    const float tau[3] = {veils.transmittance[i], veils.sun_transmittance[i],
+                                          veils.air_transmittance[i]};
                     for (int t = 0; t < 3; t++) CHECK(tau[t] >= 0 && tau[t] <= 1);
                     CHECK(veils.added_w_m2_sr[i] >= 0 && veils.added_w_m2_sr[i] < 2000);
-                    /* from one range to the next, along the ground and down to it, to 60 km; a rising path leaves the dense
-                     * air, where the tables' own mean over a band may turn by a few percent */
+                    /* from one range to the next, along the ground and down to it, to 60 km; a rising path leaves the
+                     * dense air, where the tables' own mean over a band may turn by a few percent */
                     if (i / 13 < 3 && i % 13 > 0 && i % 13 < 10 && eyes_m[e] < 2000)
                         CHECK(tau[0] <= veils.transmittance[i - 1] * 1.0001f);
                 }
@@ -296,7 +308,8 @@ static void sky_is_cold_above_and_warm_at_the_horizon(void **state)
 {
     (void)state;
     const Weather weather = weather_default();
-    const Air air = air_of(&weather, 40, 2, 1 << AIR_LWIR, NULL), high = air_of(&weather, 40, 3000, 1 << AIR_LWIR, NULL);
+    const Air air = air_of(&weather, 40, 2, 1 << AIR_LWIR, NULL),
+              high = air_of(&weather, 40, 3000, 1 << AIR_LWIR, NULL);
     double last = INFINITY;
     for (double up = 0; up <= 1; up += 0.001) {
         const double sky = air_sky(&air, AIR_LWIR, (double[3]){sqrt(1 - up * up), 0, up});

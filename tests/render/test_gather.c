@@ -10,19 +10,19 @@
 enum { model_plane, model_sphere, model_count };
 
 static struct {
-    PlanckTable   *mwir, *lwir;
-    Model          model[model_count];
-    Tracer        *tracer;
-    Arena         *arena;
-    LocalFrame     frame;
+    PlanckTable *mwir, *lwir;
+    Model model[model_count];
+    Tracer *tracer;
+    Arena *arena;
+    LocalFrame frame;
     SnapshotEntity entity[model_count];
-    NodePose       pose[model_count];
-    Snapshot       snapshot;
-    Visibility    *visibility;
-    Material       rows[3];
-    Materials      materials;
-    int           *part[model_count], row_of[model_count];
-    Air            air;
+    NodePose pose[model_count];
+    Snapshot snapshot;
+    Visibility *visibility;
+    Material rows[3];
+    Materials materials;
+    int *part[model_count], row_of[model_count];
+    Air air;
 } stage;
 
 /* Plane rho 0.2 at z = 0, sphere rho 0.8 of radius 1 at (0, 0, 2): reference/infrared.md. */
@@ -31,7 +31,8 @@ static int open_stage(void **state)
     (void)state;
     const Geodetic origin = {0.6, -1.9, 700};
     if (planck_table_create(&stage.mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
-        planck_table_create(&stage.lwir, 8e-6, 12e-6) != STATUS_OK || local_frame_at(&stage.frame, &origin) != STATUS_OK)
+        planck_table_create(&stage.lwir, 8e-6, 12e-6) != STATUS_OK ||
+        local_frame_at(&stage.frame, &origin) != STATUS_OK)
         return -1;
     /* two kilometres: 2 mrad of the lowest sky is missing beyond, 4e-6 of the light */
     hand_plate(&stage.model[model_plane], 2000, 2000);
@@ -39,8 +40,8 @@ static int open_stage(void **state)
     const Model *models[model_count] = {&stage.model[model_plane], &stage.model[model_sphere]};
     if (tracer_create_models(&stage.tracer, models, model_count, "avx2") != STATUS_OK) return -1;
     stage.arena = arena_create();
-    stage.snapshot = (Snapshot){.count = model_count, .node_count = model_count, .entity = stage.entity,
-                                .node = stage.pose};
+    stage.snapshot =
+        (Snapshot){.count = model_count, .node_count = model_count, .entity = stage.entity, .node = stage.pose};
     /* the plate's forward is up, its z from -4 to 0 km lies along east */
     static const double turned[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0}, straight[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
     static const double place[model_count][3] = {{2000, 0, 0}, {0, 0, 2}};
@@ -54,7 +55,9 @@ static int open_stage(void **state)
     }
     stage.materials = (Materials){.count = 3, .material = stage.rows, .part = stage.part, .model_count = model_count};
     return visibility_create(&stage.visibility, stage.tracer, NULL, &stage.frame, &stage.snapshot, false,
-                             stage.arena) == STATUS_OK ? 0 : -1;
+                             stage.arena) == STATUS_OK
+               ? 0
+               : -1;
 }
 
 static int close_stage(void **state)
@@ -102,7 +105,7 @@ static void sphere_over_a_plane(void **state)
         double px[2], cycles, radiance, tolerance;
     } point[] = {
         /* lit points: 1 %, shaded ones: 2 % of the span of the two (infrared.md), which differ by that themselves */
-        {"ground", {60, 470}, 55.142, 55.120, 0.01},        {"sphere top", {360, 150}, 182.206, 181.780, 0.01},
+        {"ground", {60, 470}, 55.142, 55.120, 0.01},         {"sphere top", {360, 150}, 182.206, 181.780, 0.01},
         {"sunlit side", {420, 190}, 204.268, 204.980, 0.01}, {"shaded side", {290, 200}, 31.115, 30.462, 0.02},
         {"sphere bottom", {360, 290}, 37.771, 38.056, 0.02},
     };
@@ -137,8 +140,8 @@ static void sphere_over_a_plane(void **state)
                       shadow, gathered.w_m2[AIR_PAN]);
     }
     for (int i = 0; i < points; i++)
-        print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name, (double)out[0][i],
-                      (double)out[1][i], point[i].cycles, point[i].radiance);
+        print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name,
+                      (double)out[0][i], (double)out[1][i], point[i].cycles, point[i].radiance);
     for (int i = 0; i < points; i++) {
         const double low = fmin(point[i].cycles, point[i].radiance), high = fmax(point[i].cycles, point[i].radiance);
         CHECK(out[1][i] >= low * (1 - point[i].tolerance) && out[1][i] <= high * (1 + point[i].tolerance));

@@ -143,7 +143,7 @@ static void sphere_is_as_others_render_it(void **state)
     } pixel[] = {
         {{420, 190}, 204.6, 0.006, false},
         {{360, 150}, 182.0, 0.006, false},
-        {{290, 200}, 30.8, 0.03, true}, /* the quick form leaves out the sphere's own shadow on the ground; test_gather */
+        {{290, 200}, 30.8, 0.03, true}, /* the quick form leaves out the sphere's own shadow on the ground */
     };
     const double focal_px = 360 / tan(15 * rad_per_deg), pitch = -10 * rad_per_deg;
     for (int i = 0; i < 3; i++) {
