@@ -87,10 +87,12 @@ static const char *read_row(ProbeValue *in, const Column *column, int columns, c
 
 static Status find_columns(Column *column, int columns, const Probe *probe, char **cell, int cells)
 {
+    int found = 0;
     for (int i = 0; i < columns; i++) {
         for (int c = 0; c < cells; c++)
             if (strcmp(cell[c], column[i].name) == 0) column[i].cell = c;
-        if (column[i].cell >= 0 || column[i].optional) continue;
+        found += column[i].cell >= 0;
+        if (column[i].cell >= 0 || (column[i].optional && (found > 0 || i < columns - 1))) continue;
         log_error("probe: %s: no column %s in the header; it needs %s ($: text, ?: may be missing)", probe->name,
                   column[i].name, probe->in);
         return STATUS_BAD_VALUE;

@@ -1,67 +1,9 @@
-/* render/air.c: a clear sky from five numbers of weather and the sun's place.
+/* render/air.c: what one place, one sun and one visibility make of the tables of render/atmosphere.c: the sun's light,
+ * the sky by direction and what it gives to a plane. The paths are air_table.c's.
  *
- * Every coefficient below was fitted to band averages computed with LOWTRAN 7 (Kneizys et al., AFGL 1988),
- * rural aerosol, ground at sea level, visibilities of 23 and 5 km; visible: US standard and mid-latitude
- * summer, thermal: all six of its standard atmospheres. tests/render/test_air.c measures the errors:
- *
- *   direct sun      PAN 1 %, B G R 4 % to zenith 70 degrees; 8 % at 80
- *   diffuse sky     4 % to zenith 80 degrees
- *   sky by direction 15 % rms, 15 degrees and more from the sun; inside, an aureole about three times too faint
- *   transmittance   MWIR 0.019, LWIR 0.016 at worst (absolute), 0.1 .. 20 km along the ground
- *   thermal sky     LWIR 4 %, MWIR 7 % (US standard and mid-latitude summer); 10 % in the others
- *   sun in MWIR     8 % to zenith 80 degrees; its scattered part within a factor of 1.6
- *
- * Visibilities below 5 km are extrapolated: the aerosol only grows, and a true fog (droplets, opaque in LWIR
- * too) is not here. Nor are clouds, the observer's height (every path is as if along the ground, so a steep
- * one is seen through too much air), and the dependence of a band's transmittance on the target's own
- * temperature (taken at 300 K). LOWTRAN itself is 5 .. 17 % from newer models in MWIR. */
-#include "render/air.h"
-
-/* ---- the visible -------------------------------------------------------------------------- */
-
-/* One channel. aerosol: extinction of the aerosol at 0.55 um, 1/km. */
-typedef struct Channel {
-    double top_w_m2;            /* outside the air, at 1 au */
-    double clear_per_km;        /* horizontal extinction of clean air: Rayleigh, ozone, water lines */
-    double aerosol_ratio;       /* horizontal aerosol extinction over that at 0.55 um */
-    double depth[2], power[2];  /* vertical optical depth, and the power of the air mass it grows with (a band is
-                                 * not one wavelength): value = [0] + [1] * aerosol */
-    double total[2], bend[2];   /* global on a horizontal plane; see global_transmittance */
-} Channel;
-
-static const Channel channels[optical_channel_count] = {
-    [optical_channel_b]   = {186.641, 0.0267, 1.2736, {0.3669, 1.7429}, {0.9948, 0.0112},
-                             {0.1042, 0.3637}, {0.1087, 0.1307}},
-    [optical_channel_g]   = {185.365, 0.0150, 1.0126, {0.2427, 1.3892}, {1.0022, 0.0119},
-                             {0.0767, 0.3010}, {0.0474, 0.1109}},
-    [optical_channel_r]   = {159.390, 0.0144, 0.8306, {0.1793, 1.1398}, {0.9896, 0.0253},
-                             {0.0585, 0.2613}, {0.0459, 0.1008}},
-    [optical_channel_pan] = {531.395, 0.0208, 1.0338, {0.2694, 1.4015}, {0.9619, -0.0105},
-                             {0.0798, 0.3078}, {0.0683, 0.1129}},
-};
-
-static const double rayleigh_550nm_per_km = 0.01159; /* LOWTRAN 7, sea level */
-
-/* Koschmieder: contrast 0.02 is left over one meteorological range, -ln 0.02 = 3.912. */
-static double aerosol_per_km(double visibility_m)
-{
-    return fmax(3912 / visibility_m - rayleigh_550nm_per_km, 0);
-}
-
-/* Relative air mass. Source: Kasten & Young, Applied Optics 28 (1989) 4735; 38 at the horizon. */
-static double air_mass(double elevation_rad)
-{
-    const double e_deg = fmax(elevation_rad, 0) / rad_per_deg;
-    return 1 / (sin(fmax(elevation_rad, 0)) + 0.50572 * pow(e_deg + 6.07995, -1.6364));
-}
-
-/* Direct and scattered together, on a horizontal plane, over what arrives there at the top. The two-stream
- * form 1 / (1 + k m), with the air mass bent at both ends to follow the tables. Albedo of the ground: 0.2. */
-static double global_transmittance(const Channel *c, double aerosol, double mass)
-{
-    const double k = c->total[0] + c->total[1] * aerosol, bend = c->bend[0] + c->bend[1] * aerosol;
-    return 1 / (1 + k * mass * sqrt(mass) / (1 + bend * (mass - 1)));
-}
+ * The tables know the sun above the horizon only. Below 5 degrees the sky keeps the shape it has there and loses
+ * brightness as twilight does. */
+#include "render/air_private.h"
 
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
  * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
@@ -96,233 +38,414 @@ double air_sun_disc(const Air *air, const double d_enu[3])
     return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
 }
 
-static void sun_and_sky(double *sun_w_m2, double *sky_w_m2, const Channel *c, double aerosol, double elevation_rad,
-                        double distance_au)
-{
-    const double top = c->top_w_m2 / (distance_au * distance_au), mass = air_mass(elevation_rad);
-    /* the power's slope is known between the two visibilities only; it stops at 2 km */
-    const double power = c->power[0] + c->power[1] * fmin(aerosol, 2);
-    *sun_w_m2 = top * exp(-(c->depth[0] + c->depth[1] * aerosol) * pow(mass, power)) * disc_above(elevation_rad);
+/* ---- the sky as a table -------------------------------------------------------------------- */
 
-    const double day_rad = fmax(elevation_rad, 5 * rad_per_deg), day_mass = air_mass(day_rad);
-    const double direct = exp(-(c->depth[0] + c->depth[1] * aerosol) * pow(day_mass, power));
-    *sky_w_m2 = top * sin(day_rad) * (global_transmittance(c, aerosol, day_mass) - direct) * twilight(elevation_rad);
+/* Cosine of the angle between two directions' azimuths, by their level parts; 1 where one has none. */
+static double cos_azimuth(const double a_enu[3], const double b_enu[3])
+{
+    const double n2 = (a_enu[0] * a_enu[0] + a_enu[1] * a_enu[1]) * (b_enu[0] * b_enu[0] + b_enu[1] * b_enu[1]);
+    return n2 > 1e-20 ? clamp((a_enu[0] * b_enu[0] + a_enu[1] * b_enu[1]) / sqrt(n2), -1, 1) : 1;
 }
 
-/* Kruse's exponent of the aerosol is constant above 6 km and goes as the cube root of visibility below
- * (Kruse, McGlauchlin, McQuistan, Elements of Infrared Technology, 1962): haze turns white as it thickens. */
-static double channel_extinction_per_m(const Channel *c, double aerosol, double visibility_m)
+/* The arc cosine, within 7e-5 rad: Abramowitz & Stegun 4.4.45. Steps of the tables are 0.26 rad. */
+static double acos_quick(double c)
 {
-    const double whiter = visibility_m < 5000 ? cbrt(visibility_m / 5000) : 1;
-    return 1e-3 * (c->clear_per_km + pow(c->aerosol_ratio, whiter) * aerosol);
+    const double x = fabs(c);
+    const double a = sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
+    return c < 0 ? pi_rad - a : a;
 }
 
-/* The sky is single scattering in a plane layer (by height, with its depth) times a phase function (by angle from
- * the sun), plus light that has forgotten where it came from. Fit: the phase function, this share, and the 0.72
- * that air_at puts on the depth. */
-static const double sky_even = 0.315;
-
-static double sky_phase(double cos_from_sun)
+/* Where x of 0 .. steps falls: *at its lower node, returns the share of the upper one. */
+static inline double split(int *at, double x, int steps)
 {
-    const double x = cos_from_sun - 1;
-    /* the aureole is 1e-10 of the rest beyond 45 degrees */
-    return 1 + 5.0 * exp(4.61 * x) + (x > -0.3 ? 25 * exp(85 * x) : 0);
+    const int i = x > 0 ? (int)x : 0;
+    *at = i < steps ? i : steps - 1;
+    return clamp(x - *at, 0, 1);
 }
 
-/* Air mass 1 / (up + 0.025): 40 at the horizon, no arc cosine. A sun lower than 8.6 degrees lights the sky as if it
- * stood there: in twilight the light comes from above. */
-static double sky_path(double depth, double sun_up, double up)
+double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double d_enu[3])
 {
-    const double mass = 1 / (up + 0.025), sun_mass = 1 / fmax(sun_up, 0.15);
-    const double q = depth * (mass - sun_mass);
-    const double mean = fabs(q) > 1e-6 ? -expm1(-q) / q : 1; /* of e^-x over the path: 0 / 0 at equal masses */
-    return mass * depth * exp(-depth * sun_mass) * mean;
+    int i, a, k;
+    const double fi = split(&i, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
+    const double fa =
+        split(&a, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
+    /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
+    double chord[3];
+    v3_sub(chord, d_enu, sun_d_enu);
+    const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
+    const double fk = split(&k, air_sky_angles * sqrt(angle / pi_rad), air_sky_angles);
+    const float *low = sky->scattered_w_m2_sr[i], *high = sky->scattered_w_m2_sr[i + 1], *around = &sky->around_sun[k];
+    const double l = low[a] + fa * (low[a + 1] - low[a]), h = high[a] + fa * (high[a + 1] - high[a]);
+    return sky->thermal_w_m2_sr[i] + fi * (sky->thermal_w_m2_sr[i + 1] - sky->thermal_w_m2_sr[i]) +
+           (l + fi * (h - l)) * (around[0] + fk * (around[1] - around[0]));
 }
 
-/* Sets the scales so that the sky's radiance, weighted by the sine of its height, adds up to its irradiance: Gauss
- * in the square root of elevation, in two halves (the horizon changes fastest), equal steps in azimuth (periodic, so
- * exact before long), one half by symmetry about the sun. The angle from the sun is common to all channels. */
-static void normalise_sky(Air *air)
+double air_sky(const Air *air, AirBand band, const double d_enu[3])
 {
-    enum { gauss = 16, heights = 2 * gauss, azimuths = 36 };
-    static const double node[gauss / 2] = {0.0950125098376374, 0.2816035507792589, 0.4580167776572274,
-                                           0.6178762444026437, 0.7554044083550030, 0.8656312023878317,
-                                           0.9445750230732326, 0.9894009349916499};
-    static const double weight[gauss / 2] = {0.1894506104550685, 0.1826034150449236, 0.1691565193950025,
-                                             0.1495959888165767, 0.1246289712555339, 0.0951585116824928,
-                                             0.0622535239386479, 0.0271524594117541};
-    const double sun_up = air->sun_d_enu[2], sun_level = sqrt(fmax(1 - sun_up * sun_up, 0));
-    double cos_azimuth[azimuths], horizon_phase = 0;
-    for (int a = 0; a < azimuths; a++) {
-        cos_azimuth[a] = cos((a + 0.5) * pi_rad / azimuths);
-        horizon_phase += sky_phase(sun_level * cos_azimuth[a]) / azimuths;
+    return air_sky_table(&air->sky[band], air->sun_d_enu, d_enu);
+}
+
+double air_sky_light(const Air *air, AirBand band, const double d_enu[3])
+{
+    return air_sky_table(&air->sky_light[band], air->sun_d_enu, d_enu);
+}
+
+double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
+{
+    int i, a;
+    const double fi = split(&i, 0.5 * air_plane_ups * (1 + n_enu[2]), air_plane_ups);
+    const double fa =
+        split(&a, air_plane_azimuths / pi_rad * acos_quick(cos_azimuth(n_enu, air->sun_d_enu)), air_plane_azimuths);
+    const float *low = air->plane_w_m2[band][i], *high = air->plane_w_m2[band][i + 1];
+    const double l = low[a] + fa * (low[a + 1] - low[a]), h = high[a] + fa * (high[a + 1] - high[a]);
+    return l + fi * (h - l);
+}
+
+/* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
+ * and 48 azimuths; and rings about the sun, dense at its middle, which take over from the grid there by a weight that
+ * goes smoothly from one to nothing. */
+enum {
+    lamp_ups = 24,
+    lamp_azimuths = 48,
+    lamp_rings = 20,
+    lamp_spokes = 24,
+    lamps = lamp_ups * lamp_azimuths + lamp_rings * lamp_spokes
+};
+static const double rings_rad = 0.7, rings_only_rad = 0.2;
+
+typedef struct Lamps {
+    float d[3][lamps], solid_angle[lamps];
+} Lamps;
+
+/* Share of the rings at an angle from the sun. */
+static double rings_share(double angle_rad)
+{
+    const double t = clamp((rings_rad - angle_rad) / (rings_rad - rings_only_rad), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+static void set_lamp(Lamps *out, int k, const double d_enu[3], double solid_angle)
+{
+    for (int c = 0; c < 3; c++) out->d[c][k] = (float)d_enu[c];
+    out->solid_angle[k] = d_enu[2] > 0 ? (float)solid_angle : 0;
+}
+
+static void place_lamps(Lamps *out, const double sun_d_enu[3])
+{
+    static const double step_rad = 2 * 3.14159265358979323846 / lamp_azimuths;
+    int k = 0;
+    for (int i = 0; i < lamp_ups; i++) {
+        const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
+        const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
+        for (int a = 0; a < lamp_azimuths; a++) {
+            const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
+            const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
+            set_lamp(out, k++, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
+        }
     }
-    double irradiance[optical_channel_count] = {0};
-    for (int h = 0; h < heights; h++) {
-        const int k = h % gauss / 2;
-        const double u = 0.25 * (1 + (h & 1 ? node[k] : -node[k])) + (h < gauss ? 0 : 0.5);
-        const double elevation_rad = 0.5 * pi_rad * u * u, up = sin(elevation_rad), level = cos(elevation_rad);
-        double phase = 0;
-        for (int a = 0; a < azimuths; a++)
-            phase += sky_phase(up * sun_up + level * sun_level * cos_azimuth[a]) / azimuths;
-        /* up d solid angle = 2 pi up level d elevation, d elevation = pi u du, du: a quarter of Gauss's unit */
-        const double share = 0.5 * pi_rad * pi_rad * up * level * u * weight[k];
-        for (int c = 0; c < optical_channel_count; c++)
-            irradiance[c] += share * (sky_path(air->sky_depth[c], sun_up, up) * phase + sky_even);
-    }
-    for (int c = 0; c < optical_channel_count; c++) {
-        air->sky_scale[c] = air->sky_w_m2[c] / irradiance[c];
-        air->horizon_w_m2_sr[c] =
-            air->sky_scale[c] * (sky_path(air->sky_depth[c], sun_up, 0) * horizon_phase + sky_even);
+    double east[3] = {0}, other[3];
+    east[fabs(sun_d_enu[0]) < 0.6 ? 0 : 1] = 1;
+    v3_add_scaled(east, east, -v3_dot(east, sun_d_enu), sun_d_enu);
+    v3_normalize(east, east);
+    v3_cross(other, sun_d_enu, east);
+    for (int r = 0; r < lamp_rings; r++) {
+        const double a0 = rings_rad * r * r / (lamp_rings * lamp_rings);
+        const double a1 = rings_rad * (r + 1) * (r + 1) / (lamp_rings * lamp_rings), angle = 0.5 * (a0 + a1);
+        for (int p = 0; p < lamp_spokes; p++) {
+            const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes;
+            double d[3];
+            for (int c = 0; c < 3; c++)
+                d[c] = cos(angle) * sun_d_enu[c] + sin(angle) * (cos(turn) * east[c] + sin(turn) * other[c]);
+            set_lamp(out, k++, d, (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle));
+        }
     }
 }
 
-/* ---- the thermal bands -------------------------------------------------------------------- */
-
-/* Water vapour, g/m3. Saturation: Magnus form of Alduchov & Eskridge, J. Appl. Meteor. 35 (1996) 601. */
-static double vapour_g_m3(const Weather *weather)
+/* Irradiance of each lamp facing it. */
+static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky, const double sun_d_enu[3])
 {
-    const double t_c = weather->air_temp_k - 273.15;
-    const double e_hpa = weather->relative_humidity * 6.1094 * exp(17.625 * t_c / (t_c + 243.04));
-    return fmin(216.7 * e_hpa / weather->air_temp_k, 30);
+    for (int k = 0; k < lamps; k++) {
+        const double d_enu[3] = {lamp->d[0][k], lamp->d[1][k], lamp->d[2][k]};
+        w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)air_sky_table(sky, sun_d_enu, d_enu) : 0;
+    }
 }
 
-/* Emissivity of the sky at a height: 1 - exp(-depth mass^power). Air mass: Rozenberg, Twilight, 1966. */
-static double sky_emissivity(double depth, double power, double up)
+/* What they give to a plane: a fixed order of sums, eight at a time. */
+static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double n_enu[3])
 {
-    return -expm1(-depth * pow(1 / (up + 0.025 * exp(-11 * up)), power));
-}
-
-static double sky_mean(const double sky_w_m2_sr[air_sky_steps + 1])
-{
-    /* the mean weighted by 2 up d up = 4 u^3 du over the table's straight pieces, by Simpson's rule (exact for
-     * their product, a quartic, to 1e-8) */
+    const float n0 = (float)n_enu[0], n1 = (float)n_enu[1], n2 = (float)n_enu[2];
+    float part[8] = {0};
+    for (int k = 0; k < lamps; k += 8)
+        for (int j = 0; j < 8; j++) {
+            const float cosine = n0 * lamp->d[0][k + j] + n1 * lamp->d[1][k + j] + n2 * lamp->d[2][k + j];
+            part[j] += w_m2[k + j] * (cosine > 0 ? cosine : 0);
+        }
     double sum = 0;
-    for (int i = 0; i < air_sky_steps; i++) {
-        const double a = (double)i / air_sky_steps, b = (i + 1.0) / air_sky_steps, m = 0.5 * (a + b);
-        const double middle = 0.5 * (sky_w_m2_sr[i] + sky_w_m2_sr[i + 1]);
-        sum += (a * a * a * sky_w_m2_sr[i] + 4 * m * m * m * middle + b * b * b * sky_w_m2_sr[i + 1]) / 6;
-    }
-    return 4 * sum / air_sky_steps;
+    for (int j = 0; j < 8; j++) sum += (double)part[j];
+    return sum;
 }
 
-static void thermal_air(Air *air, double aerosol, double elevation_rad, double distance_au)
+static void light_planes(Air *air, AirBand band, const float w_m2[lamps], const Lamps *lamp)
 {
-    const Weather *weather = &air->weather;
-    const double w = vapour_g_m3(weather), root_w = sqrt(w), air_temp_k = weather->air_temp_k;
-
-    /* fitted in kilometres; 1000^-0.25 and 1000^-0.5 bring the roots to metres */
-    air->saturating_mwir       = 0.17782794100389229 * (0.42568 + 0.02118 * root_w + 0.00143 * w);
-    air->extinction_mwir_per_m = 1e-3 * (0.01623 + 0.00476 * w + 1e-5 * w * w + 0.10861 * aerosol);
-    air->saturating_lwir       = 0.03162277660168379 * (0.00863 + 0.02513 * root_w + 0.00073 * w);
-    air->extinction_lwir_per_m = 1e-3 * (0.00092 + 0.00463 * w + 0.00059 * w * w + 0.08817 * aerosol);
-
-    const double mass = air_mass(elevation_rad);
-    const double top_mwir_w_m2 = 12.7887 / (distance_au * distance_au);
-    air->sun_mwir_w_m2 = top_mwir_w_m2 * disc_above(elevation_rad) *
-                         exp(-(0.3663 + 0.0223 * pow(w, 0.8753)) * pow(mass, 0.5015) - 0.1479 * aerosol * mass);
-    const double up = sin(elevation_rad);
-    const double scattered_mwir =
-        up > 0 ? top_mwir_w_m2 * 0.0973 * aerosol / (1 + 0.5656 * aerosol) * pow(up, 0.7337) / pi_rad : 0;
-
-    air->air_mwir_w_m2_sr = planck_table_radiance(air->planck_mwir, air_temp_k);
-    air->air_lwir_w_m2_sr = planck_table_radiance(air->planck_lwir, air_temp_k);
-    const double a = fmin(aerosol, 2); /* as above: the power is not known further */
-    const double depth_mwir = 0.67632 - 0.02478 * w + 0.00156 * w * w + 0.12504 * aerosol;
-    const double power_mwir = 0.43386 - 0.00448 * w + 0.05137 * a;
-    const double depth_lwir = 0.09144 + 0.01041 * w + 0.00074 * w * w + 0.12247 * aerosol;
-    const double power_lwir = 0.76869 - 0.00062 * w + 0.08101 * a;
-    for (int i = 0; i <= air_sky_steps; i++) {
-        const double u = (double)i / air_sky_steps, d_up = u * u;
-        air->sky_mwir_w_m2_sr[i] = scattered_mwir +
-                                   air->air_mwir_w_m2_sr * sky_emissivity(depth_mwir, power_mwir, d_up);
-        air->sky_lwir_w_m2_sr[i] = air->air_lwir_w_m2_sr * sky_emissivity(depth_lwir, power_lwir, d_up);
+    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
+    const double sun_east = level > 1e-10 ? air->sun_d_enu[0] / level : 1;
+    const double sun_north = level > 1e-10 ? air->sun_d_enu[1] / level : 0;
+    for (int i = 0; i <= air_plane_ups; i++) {
+        const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
+        for (int p = 0; p <= air_plane_azimuths; p++) {
+            const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
+            const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
+            air->plane_w_m2[band][i][p] = (float)on_plane(w_m2, lamp, n_enu);
+        }
     }
-    air->sky_mean_mwir_w_m2_sr = sky_mean(air->sky_mwir_w_m2_sr);
-    air->sky_mean_lwir_w_m2_sr = sky_mean(air->sky_lwir_w_m2_sr);
+}
 
-    /* For temperatures. 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic
-     * share: 0.43 .. 0.46 under clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
-    static const double visible_share = 0.44;
-    air->solar_direct_w_m2  = air->sun_w_m2[optical_channel_pan] / visible_share;
-    air->solar_diffuse_w_m2 = air->sky_w_m2[optical_channel_pan] / visible_share;
-
-    /* What a black horizontal plane at air temperature loses to a clear sky. Brunt's form (Q. J. R. Meteor. Soc. 58,
-     * 1932) with its two coefficients fitted to LOWTRAN's downward flux in the six atmospheres: within 4.5 %. */
-    static const double sigma_w_m2_k4 = 5.670374419184429e-8;
-    const double emissivity = fmin(0.66 + 0.034 * sqrt(w * air_temp_k / 216.7), 1); /* vapour pressure in hPa */
-    const double t2 = air_temp_k * air_temp_k;
-    air->longwave_loss_w_m2 = (1 - emissivity) * sigma_w_m2_k4 * t2 * t2;
-
-    /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
-    const double ground_temp_k =
-        air_temp_k + 0.018 * (air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2);
-    air->ground_mwir_w_m2_sr = planck_table_radiance(air->planck_mwir, ground_temp_k);
-    air->ground_lwir_w_m2_sr = planck_table_radiance(air->planck_lwir, ground_temp_k);
+static void run_all(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool)
+        pool_run(pool, count, task, user);
+    else
+        for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
 
-void air_at(Air *out, const Weather *weather, const Sun *sun, const PlanckTable *mwir, const PlanckTable *lwir)
+/* The sky is asked for at every second height and azimuth, over its brightness around the sun, and drawn between them
+ * by cubics. */
+enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
+
+typedef struct AskedSky {
+    double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
+} AskedSky;
+
+typedef struct SkyJob {
+    Air *air;
+    const Atmosphere *atmosphere;
+    unsigned bands;
+    bool eye_on_ground;
+    double day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
+    AskedSky asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
+    Lamps lamp;
+} SkyJob;
+
+static double height_of(const SkyJob *job, int from_eye) { return from_eye ? job->air->eye_height_m : 0; }
+
+/* How bright the sky is by angle from the sun: from it up over the zenith and down to the horizon behind, and beyond
+ * that as there. */
+static void ask_around_sun(void *user, int worker, int task)
 {
-    *out = (Air){.weather = *weather, .planck_mwir = mwir, .planck_lwir = lwir};
+    (void)worker;
+    SkyJob *job = user;
+    const int from_eye = task % 2, b = task / 2;
+    if (!(job->bands >> b & 1)) return;
+    AirSky *sky = from_eye ? &job->air->sky_eye[b] : &job->air->sky[b];
+    const int asked_eye = from_eye && !job->eye_on_ground;
+    for (int k = 0; k <= air_sky_angles; k++) {
+        const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
+        const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad);
+        SkyAir seen = {0};
+        if (b != AIR_LWIR)
+            atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b,
+                           height_of(job, asked_eye), fabs(zenith_rad), job->day_zenith_rad,
+                           zenith_rad < 0 ? pi_rad : 0);
+        sky->around_sun[k] = seen.scattered_w_m2_sr > 0 ? (float)seen.scattered_w_m2_sr : 1;
+    }
+    sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
+}
+
+/* One height of one band's sky, from the ground or the eye. */
+static void ask_sky(void *user, int worker, int task)
+{
+    (void)worker;
+    SkyJob *job = user;
+    const int i = task % (asked_ups + 1), from_eye = task / (asked_ups + 1) % 2, b = task / (asked_ups + 1) / 2;
+    if (!(job->bands >> b & 1) || (from_eye && job->eye_on_ground)) return;
+    const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up), zenith_rad = acos(up);
+    AskedSky *asked = &job->asked[b][from_eye];
+    /* a sky of one everywhere but for the ring says what the ring is at each place */
+    AirSky ring = from_eye ? job->air->sky_eye[b] : job->air->sky[b];
+    for (int m = 0; m <= air_sky_ups; m++) {
+        ring.thermal_w_m2_sr[m] = 0;
+        for (int a = 0; a <= air_sky_azimuths; a++) ring.scattered_w_m2_sr[m][a] = 1;
+    }
+    const double sun[3] = {sin(job->day_zenith_rad), 0, cos(job->day_zenith_rad)};
+    const int azimuths = b == AIR_LWIR || i == asked_ups ? 0 : asked_azimuths; /* even about; the zenith has none */
+    for (int a = 0; a <= azimuths; a++) {
+        const double azimuth_rad = a * pi_rad / asked_azimuths;
+        const double d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
+        SkyAir seen;
+        atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, from_eye),
+                       zenith_rad, job->day_zenith_rad, azimuth_rad);
+        asked->scattered_w_m2_sr[i][a] =
+            b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / air_sky_table(&ring, sun, d);
+        asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? seen.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
+    }
+    for (int a = azimuths + 1; a <= asked_azimuths; a++)
+        asked->scattered_w_m2_sr[i][a] = asked->scattered_w_m2_sr[i][0];
+}
+
+/* In full resolution; mirrored at both ends of azimuth, as the sky is. */
+static void draw_sky(AirSky *sky, const AskedSky *asked)
+{
+    double along[asked_ups + 1][air_sky_azimuths + 1];
+    for (int i = 0; i <= asked_ups; i++)
+        for (int a = 0; a <= air_sky_azimuths; a++) {
+            const double *v = asked->scattered_w_m2_sr[i];
+            const int low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
+            const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
+            along[i][a] =
+                cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
+        }
+    const double *v = asked->thermal_w_m2_sr;
+    for (int i = 0; i <= air_sky_ups; i++) {
+        const int low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
+        const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+        const double t = (double)(i - low * sky_stride) / sky_stride;
+        for (int a = 0; a <= air_sky_azimuths; a++)
+            sky->scattered_w_m2_sr[i][a] =
+                (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
+        sky->thermal_w_m2_sr[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
+    }
+}
+
+/* One band: drawn, scaled to add up as light, and what it gives to planes. */
+static void fill_sky(void *user, int worker, int task)
+{
+    (void)worker;
+    SkyJob *job = user;
+    Air *air = job->air;
+    if (!(job->bands >> task & 1)) return;
+    AirSky *sky = &air->sky[task], *sky_light = &air->sky_light[task];
+    static const double up_enu[3] = {0, 0, 1};
+    float w_m2[lamps];
+    draw_sky(sky, &job->asked[task][0]);
+    draw_sky(&air->sky_eye[task], &job->asked[task][!job->eye_on_ground]);
+    AirSky scattered = *sky;
+    memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
+    light_lamps(w_m2, &job->lamp, &scattered, air->sun_d_enu);
+    const double adds_up_to = on_plane(w_m2, &job->lamp, up_enu);
+    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[task] / adds_up_to : 0;
+    *sky_light = *sky;
+    for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
+    light_lamps(w_m2, &job->lamp, sky_light, air->sun_d_enu);
+    light_planes(air, (AirBand)task, w_m2, &job->lamp);
+    air->sky_scale[task] = scale;
+    air->sky_w_m2[task] = air->plane_w_m2[task][air_plane_ups][0];
+}
+
+/* For temperatures: all wavelengths. */
+static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_temp_k)
+{
+    /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
+     * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
+    static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
+    air->solar_direct_w_m2 = air->sun_w_m2[AIR_PAN] / visible_share;
+    air->solar_diffuse_w_m2 = air->sky_w_m2[AIR_PAN] / visible_share;
+
+    /* What a black horizontal plane at air temperature loses to a clear sky. */
+    const double t_k = air->weather.air_temp_k, ratio = t_k / model_temp_k;
+    const double down_w_m2 = atmosphere_longwave_down(atmosphere, air->weather.visibility_m) * pow(ratio, 4);
+    air->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
+
+    /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
+    const double ground_temp_k =
+        t_k + 0.018 * (air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2);
+    air->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(air->planck_mwir, ground_temp_k);
+    air->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air->planck_lwir, ground_temp_k);
+}
+
+/* Azimuths from the sun's, and slopes, that a view can show. */
+static void look_where(TableInput *input, const View *view, const double sun_d_enu[3])
+{
+    input->azimuth_low_rad = 0, input->azimuth_high_rad = pi_rad;
+    input->slope_low = -1, input->slope_high = 1;
+    if (!view) return;
+    double low = pi_rad, high = 0, down = 1, up = -1;
+    enum { along = 8 };
+    for (int k = 0; k <= along; k++)
+        for (int m = 0; m <= along; m++) {
+            double d_enu[3];
+            view_ray(d_enu, view, (double)k / along * view->width, (double)m / along * view->height);
+            const double azimuth_rad = acos_quick(cos_azimuth(d_enu, sun_d_enu));
+            low = fmin(low, azimuth_rad), high = fmax(high, azimuth_rad);
+            down = fmin(down, d_enu[2]), up = fmax(up, d_enu[2]);
+        }
+    /* what the raster misses; and the round Earth falls away from under a long path: by 0.02 over its 250 km */
+    const double slope_margin = 0.1 * (up - down) + 1e-3;
+    input->slope_low = fmax(down - slope_margin, -1), input->slope_high = fmin(up + slope_margin + 0.02, 1);
+    if (down < -0.8 || up > 0.8) return; /* a pole may be in it, where all azimuths meet */
+    const double margin_rad = fmax(0.25 * (high - low), 0.02);
+    input->azimuth_low_rad = fmax(low - margin_rad, 0), input->azimuth_high_rad = fmin(high + margin_rad, pi_rad);
+}
+
+Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
+              Arena *arena)
+{
+    const Atmosphere *atmosphere = source->atmosphere;
+    const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
+    *out = (Air){.weather = *weather,
+                 .planck_mwir = source->planck_mwir,
+                 .planck_lwir = source->planck_lwir,
+                 .eye_height_m = clamp(eye->height_m, 0, air_top_m)};
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
+    if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
 
-    const double aerosol = aerosol_per_km(weather->visibility_m);
-    for (int c = 0; c < optical_channel_count; c++) {
-        const Channel *channel = &channels[c];
-        sun_and_sky(&out->sun_w_m2[c], &out->sky_w_m2[c], channel, aerosol, sun->elevation_rad, sun->distance_au);
-        out->extinction_per_m[c] = channel_extinction_per_m(channel, aerosol, weather->visibility_m);
-        /* 3: a layer so thick is even all over, and a horizon forty times thicker still has an exponential */
-        out->sky_depth[c] = fmin(0.72 * (channel->depth[0] + channel->depth[1] * aerosol), 3);
+    SkyJob *job = arena_alloc(arena, 1, sizeof *job);
+    if (!job) return STATUS_NO_MEMORY;
+    /* ten metres of air under the eye are nothing to the sky above it */
+    *job = (SkyJob){.air = out, .atmosphere = atmosphere, .bands = eye->bands, .eye_on_ground = out->eye_height_m < 10};
+    const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
+    for (int k = 0; k < 2; k++)
+        job->thermal_scale[k] =
+            planck_table_radiance(planck[k], out->weather.air_temp_k) / planck_table_radiance(planck[k], model_temp_k);
+    const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
+    job->day_zenith_rad = fmin(zenith_rad, 85 * rad_per_deg);
+    job->scattered_scale = per_au2 * twilight(sun->elevation_rad);
+
+    const double above = per_au2 * disc_above(sun->elevation_rad), low_rad = fmin(zenith_rad, 0.5 * pi_rad);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!((eye->bands | 1 << AIR_PAN) >> b & 1)) continue;
+        SunAir from_ground, from_eye, day;
+        atmosphere_sun(&from_ground, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
+        atmosphere_sun(&from_eye, atmosphere, weather->visibility_m, (AirBand)b, out->eye_height_m, low_rad);
+        atmosphere_sun(&day, atmosphere, weather->visibility_m, (AirBand)b, 0, job->day_zenith_rad);
+        out->sun_w_m2[b] = from_ground.direct_normal_w_m2 * above;
+        out->sun_eye_w_m2[b] = from_eye.direct_normal_w_m2 * above;
+        job->diffuse_w_m2[b] = day.diffuse_horizontal_w_m2 * job->scattered_scale;
     }
-    normalise_sky(out);
-    thermal_air(out, aerosol, sun->elevation_rad, sun->distance_au);
+    /* sunlight for temperatures, also where nobody looks at it */
+    out->sky_w_m2[AIR_PAN] = job->diffuse_w_m2[AIR_PAN];
+    place_lamps(&job->lamp, out->sun_d_enu);
+    run_all(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
+    run_all(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
+    run_all(pool, AIR_BAND_COUNT, fill_sky, job);
+    heat_balance(out, atmosphere, model_temp_k);
+
+    TableInput input = {.atmosphere = atmosphere,
+                        .sun_zenith_rad = job->day_zenith_rad,
+                        .bands = eye->bands,
+                        .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
+                        .scattered_scale = job->scattered_scale};
+    look_where(&input, eye->view, out->sun_d_enu);
+    return air_tables_fill(out, &input, pool, arena);
 }
 
-double air_sky_optical(const Air *air, int channel, const double d_enu[3])
+void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
+              double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir)
 {
-    double d[3] = {d_enu[0], d_enu[1], d_enu[2]};
-    if (d[2] < 0) {
-        d[2] = 0;
-        if (!v3_normalize(d, d)) d[0] = 1; /* straight down: any horizon */
+    *out = (Air){.weather = weather_default(), .planck_mwir = mwir, .planck_lwir = lwir, .even_per_m = even_per_m};
+    memcpy(out->sun_d_enu, sun_d_enu, sizeof out->sun_d_enu);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        out->sun_w_m2[b] = out->sun_eye_w_m2[b] = sun_w_m2;
+        out->sky_w_m2[b] = pi_rad * sky_w_m2_sr[b];
+        if (b >= AIR_MWIR) out->ground_w_m2_sr[b] = sky_w_m2_sr[b];
+        for (int i = 0; i <= air_sky_ups; i++)
+            out->sky[b].thermal_w_m2_sr[i] = out->sky_light[b].thermal_w_m2_sr[i] = out->sky_eye[b].thermal_w_m2_sr[i] =
+                (float)sky_w_m2_sr[b];
+        for (int i = 0; i <= air_plane_ups; i++)
+            for (int a = 0; a <= air_plane_azimuths; a++)
+                out->plane_w_m2[b][i][a] = (float)(out->sky_w_m2[b] * i / air_plane_ups);
     }
-    return air->sky_scale[channel] * (sky_path(air->sky_depth[channel], air->sun_d_enu[2], d[2]) *
-                                          sky_phase(v3_dot(d, air->sun_d_enu)) + sky_even);
-}
-
-static double sky_at(const double sky_w_m2_sr[air_sky_steps + 1], double d_up)
-{
-    const double at = air_sky_steps * sqrt(clamp(d_up, 0, 1));
-    const int i = at < air_sky_steps ? (int)at : air_sky_steps - 1;
-    return sky_w_m2_sr[i] + (at - i) * (sky_w_m2_sr[i + 1] - sky_w_m2_sr[i]);
-}
-
-double air_sky_mwir(const Air *air, double d_up)
-{
-    return sky_at(air->sky_mwir_w_m2_sr, d_up);
-}
-
-double air_sky_lwir(const Air *air, double d_up)
-{
-    return sky_at(air->sky_lwir_w_m2_sr, d_up);
-}
-
-/* Koschmieder: a long path turns into the horizon. */
-Veil air_veil_optical(const Air *air, int channel, double range_m)
-{
-    const double tau = exp(-air->extinction_per_m[channel] * range_m);
-    return (Veil){tau, (1 - tau) * air->horizon_w_m2_sr[channel]};
-}
-
-Veil air_veil_mwir(const Air *air, double range_m)
-{
-    const double tau = exp(-air->saturating_mwir * sqrt(sqrt(range_m)) - air->extinction_mwir_per_m * range_m);
-    return (Veil){tau, (1 - tau) * air->air_mwir_w_m2_sr};
-}
-
-Veil air_veil_lwir(const Air *air, double range_m)
-{
-    const double tau = exp(-air->saturating_lwir * sqrt(range_m) - air->extinction_lwir_per_m * range_m);
-    return (Veil){tau, (1 - tau) * air->air_lwir_w_m2_sr};
+    out->solar_direct_w_m2 = sun_w_m2;
+    out->solar_diffuse_w_m2 = out->sky_w_m2[AIR_PAN];
 }

@@ -1,57 +1,105 @@
 /* render/air.h: sun, sky and the path, per frame: the light that falls on the scene and the air before it.
  *
- * A first model, where the tables of a later version will sit: Koschmieder in the visible, two coefficients a
- * thermal band, a sky of single scattering. Sources and errors of every figure: air.c. */
+ * Everything comes from the tables of render/atmosphere.h, collapsed once a frame for one eye, one sun and one
+ * visibility into tables small enough to ask for every sample. tests/render/test_air.c measures what that costs in
+ * accuracy. Heights are above the ground at the terrain's origin, which stands at the model's 0 km.
+ *
+ * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
+ * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
+ * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
+ * model's. Wind cools surfaces and nothing else here. */
 #ifndef RENDER_AIR_H
 #define RENDER_AIR_H
 
+#include "render/atmosphere.h"
+#include "render/hits.h"
 #include "render/materials.h"
 #include "render/planck.h"
+#include "render/view.h"
 #include "terrain/sun.h"
 #include "terrain/weather.h"
 
-/* What one band's path does to what is behind it: out = in * transmittance + added. */
-typedef struct Veil {
-    double transmittance, added_w_m2_sr;
-} Veil;
+/* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
+ * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
+ * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: by its normal's height, -1 .. 1,
+ * and azimuth. */
+enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
 
-/* Thermal sky radiance at d_up = (i / air_sky_steps)^2, i = 0 .. air_sky_steps: dense at the horizon. */
-enum { air_sky_steps = 64 };
+typedef struct AirSky {
+    float thermal_w_m2_sr[air_sky_ups + 1], scattered_w_m2_sr[air_sky_ups + 1][air_sky_azimuths + 1];
+    float around_sun[air_sky_angles + 2]; /* one to spare at the end */
+} AirSky;
+
+typedef struct AirTable AirTable; /* one band's paths from this eye */
 
 typedef struct Air {
     Weather weather;
-    double  sun_d_enu[3];                              /* towards the sun; below the horizon: no direct light */
-    double  sun_w_m2[optical_channel_count];           /* direct, on a plane facing the sun, at the ground */
-    double  sky_w_m2[optical_channel_count];           /* diffuse, on a horizontal plane */
-    double  extinction_per_m[optical_channel_count];
-    /* -ln(transmittance) = extinction * range + saturating * sqrt(range): the root is of lines that are
-     * already black at their centres (MWIR: of the fourth degree, range^0.25) */
-    double  extinction_mwir_per_m, extinction_lwir_per_m;
-    double  saturating_mwir, saturating_lwir;
-    double  sun_mwir_w_m2;                             /* direct in 3.4-4.8 um */
+    double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
+    double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
+    double  sun_eye_w_m2[AIR_BAND_COUNT];  /* the same at the eye: what its disc is seen by */
+    /* The tables' radiance and irradiance of a sky are two computations and do not quite agree: what is seen, also in a
+     * mirror, is the radiance, and what lights a surface is that times this, so that it adds up to the irradiance. */
+    double  sky_scale[AIR_BAND_COUNT];
+    double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane: its radiance, added up */
+    double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground that things see from below, and of ground beyond
+                                            * the terrain's edge. Others: 0, since it depends on the materials */
+    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
+    AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
+    AirSky  sky_eye[AIR_BAND_COUNT];       /* from the eye */
+    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* of the sky on a tilted plane */
     const PlanckTable *planck_mwir, *planck_lwir;
 
-    /* shape of the optical sky */
-    double  sky_depth[optical_channel_count], sky_scale[optical_channel_count];
-    double  horizon_w_m2_sr[optical_channel_count];    /* mean over azimuth: what a long path fades to */
-    /* thermal surroundings, W/(m2 sr): air and its veil, ground seen from below, sky by height and its mean */
-    double  air_mwir_w_m2_sr, air_lwir_w_m2_sr, ground_mwir_w_m2_sr, ground_lwir_w_m2_sr;
-    double  sky_mwir_w_m2_sr[air_sky_steps + 1], sky_lwir_w_m2_sr[air_sky_steps + 1];
-    double  sky_mean_mwir_w_m2_sr, sky_mean_lwir_w_m2_sr; /* irradiance on a horizontal plane / pi */
+    double    eye_height_m;
+    AirTable *table[AIR_BAND_COUNT];       /* in the arena of air_at; NULL: even air, see air_even */
+    double    even_per_m;                  /* extinction of even air, whose radiance is that of its sky */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
-    double  solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
+    double    solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
 } Air;
 
-/* About 10 us; once a frame. */
-void air_at(Air *out, const Weather *weather, const Sun *sun, const PlanckTable *mwir, const PlanckTable *lwir);
-/* Sky radiance towards a unit direction, W/(m2 sr); below the horizon: the horizon's. */
-double air_sky_optical(const Air *air, int channel, const double d_enu[3]);
-double air_sky_mwir(const Air *air, double d_up);  /* d_up: the direction's z */
-double air_sky_lwir(const Air *air, double d_up);
+/* What does not change between frames. */
+typedef struct AirSource {
+    const Atmosphere  *atmosphere;
+    const PlanckTable *planck_mwir, *planck_lwir;
+} AirSource;
+
+/* Who looks. */
+typedef struct AirEye {
+    double      height_m; /* clamped to the tables */
+    unsigned    bands;    /* 1 << AirBand, those that somebody asks for; air_veils answers no others */
+    const View *view;     /* where to, so that only its azimuths are filled in; NULL: all round */
+} AirEye;
+
+/* weather->air_temp_k: NaN for the model's own; the Air's is then filled in. pool: may be NULL. The tables live in the
+ * arena. STATUS_NO_MEMORY when that is out. Some milliseconds. */
+Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
+              Arena *arena);
+
+/* A world with answers on paper: sun_w_m2 from sun_d_enu, everything else, path included, of the one radiance
+ * sky_w_m2_sr[band]; even_per_m 0: nothing in between. No tables, no arena. */
+void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
+              double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir);
+
+/* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
+double air_sky(const Air *air, AirBand band, const double d_enu[3]);
+/* The same as it lights a surface: it adds up to air_sky_on_plane. */
+double air_sky_light(const Air *air, AirBand band, const double d_enu[3]);
+/* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
+double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3]);
 /* Share of the direct sun's irradiance that arrives from a direction, 1/sr: its disc has one brightness. */
 double air_sun_disc(const Air *air, const double d_enu[3]);
-Veil   air_veil_optical(const Air *air, int channel, double range_m);
-Veil   air_veil_mwir(const Air *air, double range_m);
-Veil   air_veil_lwir(const Air *air, double range_m);
+
+/* What the path does to what is behind it: seen = emitted * transmittance + sunlight reflected * sun_transmittance +
+ * air's light reflected * air_transmittance + added. Outside the thermal bands the three are one; at night, and always
+ * in LWIR, sun_transmittance is the air's.
+ * A ray that met nothing ends on the ground beyond the terrain's edge, when it goes down far enough to reach the round
+ * Earth (its range is then in range_m), or in the sky: transmittance 0, and added is the sky's radiance. */
+typedef struct Veils {
+    float transmittance[hits_capacity], sun_transmittance[hits_capacity], air_transmittance[hits_capacity];
+    float added_w_m2_sr[hits_capacity];
+    float range_m[hits_capacity];       /* of the path; INFINITY: sky */
+} Veils;
+
+/* temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
+void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 
 #endif

@@ -12,8 +12,9 @@ static const double band_low_m[effect_band_count] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4
 static const double band_high_m[effect_band_count] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6, 1.1e-6, 4.8e-6, 12e-6};
 
 _Static_assert((int)effect_band_count == (int)veil_bands, "a volume's bands are the effects'");
-_Static_assert((int)effect_band_b == (int)optical_channel_b && (int)effect_band_pan == (int)optical_channel_pan &&
-               (int)optical_channel_count <= (int)effect_band_mwir, "optical channels come first, in one order");
+_Static_assert((int)effect_band_count == (int)AIR_BAND_COUNT && (int)effect_band_pan == (int)AIR_PAN &&
+               (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
+               "effects, air and materials have their bands in one order");
 
 static double phase_per_sr(double asymmetry, double cosine)
 {
@@ -28,59 +29,69 @@ static double glow_w_m2_sr(int band, double temp_k)
     return planck_band(band_low_m[band], band_high_m[band], temp_k, NULL);
 }
 
-/* What falls on a puff in one band: direct sun, and mean radiances from above and below. */
-typedef struct Light {
-    double sun_w_m2, above_w_m2_sr, below_w_m2_sr;
-    Veil   veil;
-    double glow_w_m2_sr;
-} Light;
+typedef struct Placed {
+    VeilVolume       volume;
+    const EffectLaw *law;
+    double           d_eye_enu[3], temp_k; /* from the eye to its centre */
+    uint32_t         group;
+    int              index; /* in the snapshot: decides between equals */
+} Placed;
 
-static Light light_in(const Air *air, const float *ground_rho, int band, double range_m, double temp_k)
+/* Source terms of one volume in one band. i: its path among the veils. */
+static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const Veils *veils, int i)
 {
-    Light light = {.glow_w_m2_sr = 0};
-    if (band == effect_band_mwir) {
-        light = (Light){air->sun_mwir_w_m2, air->sky_mean_mwir_w_m2_sr, air->ground_mwir_w_m2_sr,
-                        air_veil_mwir(air, range_m), planck_table_radiance(air->planck_mwir, temp_k)};
-    } else if (band == effect_band_lwir) {
-        light = (Light){0, air->sky_mean_lwir_w_m2_sr, air->ground_lwir_w_m2_sr, air_veil_lwir(air, range_m),
-                        planck_table_radiance(air->planck_lwir, temp_k)};
-    } else if (band < (int)optical_channel_count) {
-        const double sun_up = fmax(air->sun_d_enu[2], 0), sky = air->sky_w_m2[band] / pi_rad;
-        light = (Light){air->sun_w_m2[band], sky,
-                        ground_rho[band] * (air->sun_w_m2[band] * sun_up / pi_rad + sky),
-                        air_veil_optical(air, band, range_m), glow_w_m2_sr(band, temp_k)};
+    VeilVolume  *v = &p->volume;
+    const bool   optical = band < effect_band_mwir;
+    const double albedo = p->law->albedo[band], sun_w_m2 = air->sun_w_m2[band];
+    /* mean radiances from above and below: thermal ground shines by itself, ground in daylight by what falls on it */
+    const double above = air->sky_w_m2[band] / pi_rad;
+    const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->sun_d_enu[2], 0) / pi_rad + above)
+                                 : air->ground_w_m2_sr[band];
+    const double lit = veils->air_transmittance[i] * albedo * 0.5;
+    v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
+                      veils->transmittance[i] * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
+    v->from_top[band] = lit * (above - below);
+
+    const double cosine = v3_dot(p->d_eye_enu, air->sun_d_enu); /* forward: the sun behind the puff */
+    double       share = veils->sun_transmittance[i] * albedo * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
+    for (int order = 0; order < veil_orders; order++) {
+        v->sun[band][order] = share * phase_per_sr(asymmetry, cosine);
+        share *= 0.5;
+        asymmetry *= 0.5;
     }
-    return light;
 }
 
-static void light_volume(VeilVolume *v, const EffectLaw *law, const Air *air, const float *ground_rho, double temp_k,
-                         const double d_eye_enu[3], unsigned bands)
+/* The paths from the eye to all centres, as many at a time as a block holds. */
+static Status light_volumes(Placed *placed, int count, const View *view, const Air *air, const float *ground_rho,
+                            unsigned bands, Arena *arena)
 {
-    const double cosine = v3_dot(d_eye_enu, air->sun_d_enu); /* forward: the sun behind the puff */
-    for (int b = 0; b < effect_band_count; b++) {
-        if (!(bands >> b & 1)) continue;
-        const Light  light = light_in(air, ground_rho, b, v->range_m, temp_k);
-        const double albedo = law->albedo[b], through = light.veil.transmittance;
-        v->source[b] = light.veil.added_w_m2_sr +
-                       through * ((1 - albedo) * light.glow_w_m2_sr +
-                                  albedo * 0.5 * (light.above_w_m2_sr + light.below_w_m2_sr));
-        v->from_top[b] = through * albedo * 0.5 * (light.above_w_m2_sr - light.below_w_m2_sr);
-        double share = through * albedo * light.sun_w_m2, asymmetry = b < effect_band_mwir ? law->asymmetry : 0;
-        for (int order = 0; order < veil_orders; order++) {
-            v->sun[b][order] = share * phase_per_sr(asymmetry, cosine);
-            share *= 0.5;
-            asymmetry *= 0.5;
+    Rays  *rays = arena_alloc(arena, 1, sizeof *rays);
+    Hits  *hits = arena_alloc(arena, 1, sizeof *hits);
+    Veils *veils = arena_alloc(arena, 1, sizeof *veils);
+    float  temp_k[hits_capacity];
+    if (!rays || !hits || !veils) return STATUS_NO_MEMORY;
+    for (int first = 0; first < count; first += hits_capacity) {
+        Placed *some = placed + first;
+        hits->count = rays->count = count - first < hits_capacity ? count - first : hits_capacity;
+        for (int i = 0; i < rays->count; i++) {
+            for (int k = 0; k < 3; k++) {
+                rays->o_enu[k][i] = view->p_enu[k];
+                rays->d_enu[k][i] = some[i].d_eye_enu[k];
+                hits->p_enu[k][i] = some[i].volume.p_enu[k];
+            }
+            hits->range_m[i] = some[i].volume.range_m;
+            temp_k[i]        = (float)some[i].temp_k;
+        }
+        for (int b = 0; b < effect_band_count; b++) {
+            if (!(bands >> b & 1)) continue;
+            air_veils(veils, air, (AirBand)b, hits, rays, b < effect_band_mwir ? NULL : temp_k);
+            for (int i = 0; i < rays->count; i++) light_volume(&some[i], b, air, ground_rho, veils, i);
         }
     }
+    return STATUS_OK;
 }
 
 /* ---- order -------------------------------------------------------------------------------- */
-
-typedef struct Placed {
-    VeilVolume volume;
-    uint32_t   group;
-    int        index; /* in the snapshot: decides between equals */
-} Placed;
 
 static int by_group(const void *a, const void *b)
 {
@@ -141,7 +152,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, const LocalFram
         if (!may_matter(view, &volume)) continue;
 
         VeilVolume *v = &placed[count].volume;
-        double      d_eye_enu[3];
+        double     *d_eye_enu = placed[count].d_eye_enu;
         *v = (VeilVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
         memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
         memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
@@ -152,11 +163,14 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, const LocalFram
         if (!v3_normalize(d_eye_enu, d_eye_enu)) d_eye_enu[2] = 1;
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
         v->pattern[2] -= 0.25 * puff->age_s; /* it rolls upwards through its own outline */
-        light_volume(v, law, air, ground_rho, volume.temp_k, d_eye_enu, bands);
-        placed[count].group = puff->group;
-        placed[count].index = i;
+        placed[count].law    = law;
+        placed[count].temp_k = volume.temp_k;
+        placed[count].group  = puff->group;
+        placed[count].index  = i;
         count++;
     }
+    const Status status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
+    if (status != STATUS_OK) return status;
     qsort(placed, (size_t)count, sizeof *placed, by_group);
     for (int first = 0, end; first < count; first = end) {
         for (end = first + 1; end < count && placed[end].group == placed[first].group;) end++;

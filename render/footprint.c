@@ -109,6 +109,11 @@ static double overlap(Span a, double low, double high)
 
 void footprint_box(double box_px[4], const Footprint *f) { memcpy(box_px, f->box, sizeof f->box); }
 
+uint64_t footprint_key(const Footprint *f, int cell)
+{
+    return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
+}
+
 double footprint_area(const Footprint *f, int cell)
 {
     return overlap(cell_span(f, 0, cell % f->columns), f->x0, f->x1) *

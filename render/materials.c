@@ -23,6 +23,7 @@ static const struct {
     {"rho_g", offsetof(Material, rho[optical_channel_g]), 0, 1},
     {"rho_r", offsetof(Material, rho[optical_channel_r]), 0, 1},
     {"rho_pan", offsetof(Material, rho[optical_channel_pan]), 0, 1},
+    {"rho_nir", offsetof(Material, rho[optical_channel_nir]), 0, 1},
     {"rho_mwir", offsetof(Material, rho_mwir), 0, 1},
     {"rho_lwir", offsetof(Material, rho_lwir), 0, 1},
     {"solar_absorptance", offsetof(Material, solar_absorptance), 0, 1},
@@ -30,6 +31,10 @@ static const struct {
     {"roughness_rad", offsetof(Material, roughness), 0, 1.5},
     {"metal", offsetof(Material, metal), 0, 1},
     {"radar_gamma", offsetof(Material, radar_gamma), 0, 100},
+    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with room */
+    {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000},
+    {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000},
+    {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000},
 };
 enum { number_column_count = sizeof number_columns / sizeof *number_columns };
 
@@ -57,7 +62,9 @@ static Status read_materials(Materials *m, const char *path)
         status = STATUS_NO_MEMORY;
         goto done;
     }
-    memcpy(m->material[0].name, "none", 5); /* row 0: absorbs everything, gives nothing back */
+    /* row 0: absorbs everything, gives nothing back; its heat is that of dry sand */
+    m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
+                                .heat_capacity_j_kgk = 800};
     m->count = 1;
     for (int row = 0; row < table.rows; row++) {
         const char *name = table_text(&table, row, name_column);
@@ -234,15 +241,46 @@ void materials_close(Materials *materials)
     *materials = (Materials){0};
 }
 
-/* Schlick's rise towards grazing (Computer Graphics Forum 13, 1994). A rough surface takes part less: its facets
- * seldom graze when it does (the square is a guess, that leaves grass dull). What reflects less than water (0.02)
- * at normal incidence is only partly covered by gloss, and rises by that part. */
+/* Unpolarised reflectance of a dielectric that returns rho_normal at normal incidence (Fresnel; its refractive index
+ * from (n - 1)^2 / (n + 1)^2 = rho_normal). */
+static double fresnel_dielectric(double rho_normal, double cosine)
+{
+    const double root = sqrt(rho_normal), index = (1 + root) / (1 - root);
+    const double inside = sqrt(1 - (1 - cosine * cosine) / (index * index));
+    const double across = (cosine - index * inside) / (cosine + index * inside);
+    const double along = (index * cosine - inside) / (index * cosine + inside);
+    return 0.5 * (across * across + along * along);
+}
+
+/* Schlick (Computer Graphics Forum 13, 1994): for metals, whose dip before grazing is slight. */
+static double fresnel_schlick(double rho_normal, double cosine)
+{
+    const double away = 1 - cosine, away2 = away * away;
+    return rho_normal + (1 - rho_normal) * away2 * away2 * away;
+}
+
+/* What reflects less than water (0.02) at normal incidence is only partly covered by gloss, and rises by that part;
+ * what reflects more than 0.3 is a metal, and between 0.2 and 0.3 we cannot know. A rough surface takes part less: its
+ * facets seldom graze when it does (the square is a guess, that leaves grass dull). */
 double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
 {
-    const double cover = fmin(gloss_rho / 0.02, 1), smooth = 1 - fmin(roughness_rad, 1);
-    const double grazing = fmax(gloss_rho, cover * smooth * smooth);
-    const double away = 1 - clamp(cosine, 0, 1), away2 = away * away;
-    return gloss_rho + (grazing - gloss_rho) * away2 * away2 * away;
+    if (!(gloss_rho > 0)) return 0;
+    if (gloss_rho >= 1) return 1;
+    const double cover = fmin(gloss_rho / 0.02, 1), normal = fmax(gloss_rho, 0.02), c = clamp(cosine, 0, 1);
+    const double metal = clamp((normal - 0.2) / 0.1, 0, 1);
+    double reflected = 0;
+    if (metal < 1) reflected += (1 - metal) * fresnel_dielectric(normal, c);
+    if (metal > 0) reflected += metal * fresnel_schlick(normal, c);
+    const double smooth = 1 - fmin(roughness_rad, 1);
+    return gloss_rho + cover * smooth * smooth * (reflected - normal);
+}
+
+void material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine)
+{
+    const double gloss_rho = rho * gloss;
+    *lobe    = material_fresnel(gloss_rho, roughness_rad, cosine);
+    /* what the lobe takes at grazing angles the diffuse share gives up */
+    *diffuse = gloss_rho < 1 ? (rho - gloss_rho) * (1 - *lobe) / (1 - gloss_rho) : 0;
 }
 
 /* Smith's masking for Beckmann slopes, as the rational fit of Walter, Marschner, Li, Torrance (EGSR 2007). */

@@ -7,17 +7,22 @@
 #include "entities/catalog.h"
 #include "terrain/surface.h"
 
-enum { optical_channel_b, optical_channel_g, optical_channel_r, optical_channel_pan, optical_channel_count };
+/* In the order of AirBand (render/atmosphere.h). */
+enum {
+    optical_channel_b, optical_channel_g, optical_channel_r, optical_channel_pan, optical_channel_nir,
+    optical_channel_count
+};
 
 typedef struct Material {
     char  name[32];
-    float rho[optical_channel_count]; /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7 um */
+    float rho[optical_channel_count]; /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7, 0.7-1.1 um */
     float rho_mwir, rho_lwir;         /* 3.4-4.8, 8-12 um */
     float solar_absorptance;
-    float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1 */
+    float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
     float roughness;                  /* width of that lobe, rad rms slope */
     float metal;                      /* 1: mirrors radar; 0: does not */
     float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
+    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of what lies under the surface */
 } Material;
 
 typedef struct Materials {
@@ -39,12 +44,15 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */
 
-/* The lobe of a glossy surface lit by the sun. material_fresnel: share reflected by it at an angle of this
- * cosine, from gloss_rho (reflectance times gloss) at normal incidence upwards; 0 for gloss_rho = 0.
+/* The lobe of a glossy surface. material_fresnel: share reflected by it at an angle of this cosine, from gloss_rho
+ * (reflectance times gloss) at normal incidence to 1 at grazing where it is smooth; 0 for gloss_rho = 0. Smooth, and
+ * 0.02 .. 0.2 at normal incidence: Fresnel's own for the refractive index that has it (0.04: glass of 1.5).
+ * material_split: that, and what is left of the diffuse share so that their sum never passes 1.
  * material_lobe: radiance over irradiance facing the sun, 1/sr, for a reflectance of 1: Beckmann's slopes of
  * rms roughness_rad with Smith's masking; its whole over all directions is at most the cosine n_sun.
  * All vectors are unit; n and towards_eye must be on the same side. 0 when the sun is behind. */
 double material_fresnel(double gloss_rho, double roughness_rad, double cosine);
+void   material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine);
 double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3]);
 
 #endif

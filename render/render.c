@@ -2,22 +2,37 @@
  * somebody asked for from the same hits. */
 #include "render/render_private.h"
 
+#include "render/gather.h"
 #include "render/optical.h"
 
-/* Bands of veil.h that somebody consumes. */
-static unsigned veil_wanted(const RenderRequest *request)
+/* The optical channels that somebody wants, in the picture's order; returns how many. */
+static int optical_channels(int channel[3], unsigned bands, OpticalChannels optical)
 {
-    static const unsigned rgb = 1u << effect_band_b | 1u << effect_band_g | 1u << effect_band_r;
-    unsigned bands = 0;
-    if (has_band(request->bands, BAND_OPTICAL)) bands |= request->optical_rgb ? rgb : 1u << effect_band_pan;
-    if (has_band(request->bands, BAND_MWIR)) bands |= 1u << effect_band_mwir;
-    if (has_band(request->bands, BAND_LWIR)) bands |= 1u << effect_band_lwir;
-    return bands;
+    static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
+    if (!has_band(bands, BAND_OPTICAL)) return 0;
+    if (optical == OPTICAL_RGB) {
+        memcpy(channel, rgb, sizeof rgb);
+        return 3;
+    }
+    channel[0] = optical == OPTICAL_NIR ? optical_channel_nir : optical_channel_pan;
+    return 1;
+}
+
+unsigned render_air_bands(unsigned bands, OpticalChannels optical)
+{
+    int      channel[3];
+    unsigned air = 0;
+    for (int c = optical_channels(channel, bands, optical) - 1; c >= 0; c--) air |= 1u << channel[c];
+    if (has_band(bands, BAND_MWIR)) air |= 1u << AIR_MWIR;
+    if (has_band(bands, BAND_LWIR)) air |= 1u << AIR_LWIR;
+    return air;
 }
 
 double veil_taken(const Scratch *s, const Job *job, Band band, int sample)
 {
-    const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical_rgb ? effect_band_g : effect_band_pan,
+    const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical == OPTICAL_RGB   ? effect_band_g
+                                                 : job->request->optical == OPTICAL_NIR ? effect_band_nir
+                                                                                        : effect_band_pan,
                                 [BAND_MWIR] = effect_band_mwir, [BAND_LWIR] = effect_band_lwir, [BAND_RADAR] = -1};
     if (!s->veil.any || of[band] < 0 || !has_band(job->request->bands, band)) return 0;
     return 1 - (double)s->veil.transmittance[of[band]][sample];
@@ -38,7 +53,7 @@ static void trace_veils(Scratch *s, const Job *job)
     }
     const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
                                                                  &job->request->view, box[0], box[1], box[2], box[3]);
-    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, veil_wanted(job->request));
+    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, render_air_bands(job->request->bands, job->request->optical));
 }
 
 double pixel_cosine3(const View *view, int x, int y)
@@ -132,21 +147,37 @@ static void deliver(Scratch *s, const Job *job, int plane)
     if (job->picture->target) add_radiance(s, job, plane);
 }
 
+/* Light from all around, by directions that belong to a sample's place on the picture, whatever block it comes in. */
+static void gather_around(Scratch *s, const Job *job)
+{
+    const Block         *block = &s->block;
+    const RenderRequest *request = job->request;
+    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog, job->snapshot};
+    const int            samples = block->n * block->n;
+    uint64_t             key[hits_capacity];
+    for (int i = 0; i < s->hits.count; i++)
+        key[i] = block->footprint
+                     ? footprint_key(block->footprint, block->cell[i])
+                     : (pixel_index(job, block->x[i / samples], block->y[i / samples]) * 32 + (uint64_t)block->n) * 256 +
+                           (uint64_t)(i % samples);
+    gather_light(&s->gathered, &scene, &s->hits, render_air_bands(block->bands, request->optical), request->sky_samples,
+                 key, &s->counters.visibility);
+}
+
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
     const World         *world   = job->world;
     const unsigned       bands   = s->block.bands;
 
-    if (has_band(bands, BAND_OPTICAL)) {
-        static const int rgb[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
-        for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++) {
-            const int channel = request->optical_rgb ? rgb[c] : optical_channel_pan;
-            optical_shade(s->out, channel, job->air, &world->materials, &s->hits, &s->rays, s->material,
-                          s->texture[channel], s->shadow);
-            veil_apply(s->out, &s->veil, channel, s->hits.count);
-            deliver(s, job, picture_optical + c);
-        }
+    const bool gathered = request->sky_samples > 0;
+    int        channel[3];
+    const int  channels = optical_channels(channel, bands, request->optical);
+    for (int c = 0; c < channels; c++) {
+        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
+                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL);
+        veil_apply(s->out, &s->veil, channel[c], s->hits.count);
+        deliver(s, job, picture_optical + c);
     }
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
@@ -154,7 +185,7 @@ static void shade_bands(Scratch *s, const Job *job)
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow);
+                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL);
             veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }
@@ -213,6 +244,7 @@ void shade_block(Scratch *s, const Job *job)
     const double t0 = wall_clock_s();
     resolve_materials(s, job);
     trace_veils(s, job);
+    if (job->request->sky_samples > 0) gather_around(s, job);
     shade_bands(s, job);
     const double t1 = wall_clock_s();
     if (has_band(s->block.bands, BAND_RADAR)) shade_radar(s, job);
@@ -399,9 +431,9 @@ static Status allocate_planes(Picture *picture, const RenderRequest *request, in
     picture->width  = request->view.width;
     picture->height = request->view.height;
 
-    if (has_band(request->bands, BAND_OPTICAL))
-        for (int c = 0; c < (request->optical_rgb ? 3 : 1); c++)
-            ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
+    int channel[3];
+    for (int c = optical_channels(channel, request->bands, request->optical) - 1; c >= 0; c--)
+        ok = (picture->optical[c] = arena_alloc(arena, px, sizeof(float))) && ok;
     if (has_band(request->bands, BAND_MWIR)) ok = (picture->mwir = arena_alloc(arena, px, sizeof(float))) && ok;
     if (has_band(request->bands, BAND_LWIR)) ok = (picture->lwir = arena_alloc(arena, px, sizeof(float))) && ok;
     if (has_band(request->bands, BAND_RADAR)) {
@@ -478,7 +510,8 @@ static bool request_is_good(const RenderRequest *r)
     return r->samples >= 1 && r->samples <= 16 && r->edge_samples >= 0 && r->edge_samples <= 16 &&
            (r->target_samples == 0 || (r->target_samples >= 8 && r->target_samples <= 256)) && r->view.width >= 1 &&
            r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
-           v3_is_finite(r->view.p_enu) && r->profile_bins >= 0;
+           v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 &&
+           r->sky_samples >= 0 && r->sky_samples <= gather_samples_limit;
 }
 
 Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request, const Air *air,
@@ -500,7 +533,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
     if (status == STATUS_OK)
         status = effects_scene(&job.effects, snapshot, &world->frame, &request->view, air, world->materials.ground_rho,
-                               veil_wanted(request), arena);
+                               render_air_bands(request->bands, request->optical), arena);
     if (status == STATUS_OK) status = allocate_job(&job, workers, arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,
@@ -554,6 +587,7 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
 
 void world_close(World *world)
 {
+    atmosphere_close(world->atmosphere);
     planck_table_destroy(world->planck_lwir);
     planck_table_destroy(world->planck_mwir);
     materials_close(&world->materials);

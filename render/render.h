@@ -15,6 +15,7 @@ typedef struct World {
     Tracer          *tracer;
     Materials        materials;
     PlanckTable     *planck_mwir, *planck_lwir;
+    Atmosphere      *atmosphere;     /* NULL after world_open; whoever opens one here, world_close closes it */
     RadarConfig      radar;
 } World;
 
@@ -59,7 +60,7 @@ typedef struct RenderTimes {
  * pixel, and then that of the target's sample nearest the centre. */
 typedef struct Picture {
     int       width, height;
-    float    *optical[3];           /* R G B, or [0] alone: W/(m2 sr) */
+    float    *optical[3];           /* R G B, or pan or near infrared in [0] alone: W/(m2 sr) */
     float    *mwir, *lwir;          /* W/(m2 sr) */
     float    *radar;                /* relative */
     double   *profile;              /* [profile_bins][radar_bounces], relative power */
@@ -80,6 +81,9 @@ float *picture_plane(const Picture *picture, int plane);
 /* frame: the landscape's, or any where there is none. */
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame, const char *isa);
 void   world_close(World *world);
+
+/* 1 << AirBand of all that a request of these bands needs of the air. */
+unsigned render_air_bands(unsigned bands, OpticalChannels optical);
 
 Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
               const Air *air, Pool *pool, Arena *arena);

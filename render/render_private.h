@@ -12,6 +12,7 @@
 #define RENDER_RENDER_PRIVATE_H
 
 #include "render/effects.h"
+#include "render/gather.h"
 #include "render/render.h"
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
@@ -65,6 +66,7 @@ typedef struct Scratch {
     float          texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground, a channel */
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
+    Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
     VeilRays       veil;
     int           *veil_list; /* [volumes of the effects] */
@@ -160,6 +162,8 @@ void   footprints_cover(Job *job);
 void   footprint_splat(Scratch *s, int plane);
 /* All that its samples may meet, px: columns and rows from, to. */
 void   footprint_box(double box_px[4], const Footprint *f);
+/* One number for each cell of each entity: what random choices for a sample hang on; none is a pixel's. */
+uint64_t footprint_key(const Footprint *f, int cell);
 /* Area of a sample within the image, px. */
 double footprint_area(const Footprint *f, int cell);
 /* Over the finished pixels, in order of entity. */

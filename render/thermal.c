@@ -3,7 +3,8 @@
  * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get
  * unobstructed. That is the first model; layered conduction with a history of shadow comes after it.
  *
- * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings, then the veil. In a closed isothermal cavity
+ * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each through the veil as its own
+ * spectrum goes. In a closed isothermal cavity
  * everything reads Planck(T), whatever the material (tests/render/test_thermal.c). */
 #include "render/thermal.h"
 
@@ -63,58 +64,62 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* ---- radiance ----------------------------------------------------------------------------- */
 
-/* What a band needs to know, so that the loop asks once. */
-typedef struct BandAir {
-    const PlanckTable *planck;
-    double (*sky)(const Air *, double);
-    Veil (*veil)(const Air *, double);
-    double sky_mean_w_m2_sr, ground_w_m2_sr, sun_w_m2;
-} BandAir;
-
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
-                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow)
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
+                   const float *around_w_m2)
 {
     const bool mwir = band == BAND_MWIR;
+    const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
+    const PlanckTable *planck = mwir ? air->planck_mwir : air->planck_lwir;
+    const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
-    const BandAir b = mwir ? (BandAir){air->planck_mwir, air_sky_mwir, air_veil_mwir, air->sky_mean_mwir_w_m2_sr,
-                                       air->ground_mwir_w_m2_sr, air->sun_mwir_w_m2}
-                           : (BandAir){air->planck_lwir, air_sky_lwir, air_veil_lwir, air->sky_mean_lwir_w_m2_sr,
-                                       air->ground_lwir_w_m2_sr, 0};
+    const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0, sun_eye_w_m2 = mwir ? air->sun_eye_w_m2[AIR_MWIR] : 0;
+    Veils veils;
+    air_veils(&veils, air, air_band, hits, rays, temp_k);
 
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
-            out[i] = (float)(b.sky(air, d_enu[2]) + b.sun_w_m2 * air_sun_disc(air, d_enu));
+            /* ground beyond the terrain's edge, or sky */
+            double seen = ground_w_m2_sr * veils.air_transmittance[i] + veils.added_w_m2_sr[i];
+            if (!(veils.range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
+            out[i] = (float)seen;
             continue;
         }
         const Material *m = &materials->material[material[i]];
-        const double rho = mwir ? m->rho_mwir : m->rho_lwir;
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
+        double diffuse, lobe_rho;
+        material_split(&diffuse, &lobe_rho, mwir ? m->rho_mwir : m->rho_lwir, m->gloss, m->roughness, n_eye);
 
+        /* Kirchhoff, at this angle: what is not reflected is emitted */
+        const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
         /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
-        const double faces_sky = 0.5 * (1 + n_enu[2]);
-        double around = faces_sky * b.sky_mean_w_m2_sr + (1 - faces_sky) * b.ground_w_m2_sr;
-        if (m->gloss > 0) {
-            const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
-            const double mirror_up = d_enu[2] + 2 * n_eye * n_enu[2];
-            const double sees_sky = clamp(0.5 + 0.5 * mirror_up / fmax(m->roughness, 0.01), 0, 1);
-            const double mirrored = sees_sky * b.sky(air, mirror_up) + (1 - sees_sky) * b.ground_w_m2_sr;
-            around += m->gloss * (mirrored - around);
+        const double around = around_w_m2 ? around_w_m2[i] / pi_rad
+                                          : air_sky_on_plane(air, air_band, n_enu) / pi_rad +
+                                                ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
+        double reflected = diffuse * around;
+        if (lobe_rho > 0) {
+            double mirror_enu[3];
+            v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
+            const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
+            reflected += lobe_rho * (sees_sky * air_sky(air, air_band, mirror_enu) + (1 - sees_sky) * ground_w_m2_sr);
         }
-        double radiance = (1 - rho) * planck_table_radiance(b.planck, temp_k[i]) + rho * around;
-
-        if (b.sun_w_m2 > 0 && !shadow[i]) {
+        double sunlit = 0;
+        if (sun_w_m2 > 0 && !shadow[i]) {
             const double n_sun = v3_dot(n_enu, air->sun_d_enu);
             if (n_sun > 0) {
-                double lobe = (1 - m->gloss) * n_sun / pi_rad;
-                if (m->gloss > 0) {
+                sunlit = diffuse * n_sun / pi_rad;
+                if (lobe_rho > 0) {
                     const double eye_enu[3] = {-d_enu[0], -d_enu[1], -d_enu[2]};
-                    lobe += m->gloss * material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
+                    const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, air->sun_d_enu)), 0));
+                    sunlit += material_fresnel((mwir ? m->rho_mwir : m->rho_lwir) * m->gloss, m->roughness, cosine) *
+                              material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
                 }
-                radiance += rho * lobe * b.sun_w_m2;
+                sunlit *= sun_w_m2;
             }
         }
-        const Veil veil = b.veil(air, hits->range_m[i]);
-        out[i] = (float)(radiance * veil.transmittance + veil.added_w_m2_sr);
+        out[i] = (float)(emitted * veils.transmittance[i] + reflected * veils.air_transmittance[i] +
+                         sunlit * veils.sun_transmittance[i] + veils.added_w_m2_sr[i]);
     }
 }

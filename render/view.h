@@ -29,11 +29,15 @@ static inline void view_ray(double d_enu[3], const View *view, double column_px,
     m3_mul_v3(d_enu, view->r_enu_from_cam, d_cam);
 }
 
+/* Of the optical band: three pictures or one. */
+typedef enum OpticalChannels { OPTICAL_PAN, OPTICAL_RGB, OPTICAL_NIR } OpticalChannels;
+
 typedef struct RenderRequest {
     View     view;
     unsigned bands;          /* 1 << Band, those somebody consumes */
     bool     truth;          /* id, part, material, range, normal, temperature planes and target counts */
-    bool     optical_rgb;    /* else one panchromatic channel */
+    OpticalChannels optical;
+    int      sky_samples;    /* directions a hit in which sky and surroundings are asked for light; 0: the quick form */
     int      samples;        /* a side: samples^2 rays a pixel, on a turned grid, box-averaged. 1 .. 16 */
     int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
     int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as all */

@@ -28,7 +28,8 @@ static const Key keys[] = {
     {"sensor.edge_samples", KEY_INT, AT(sensor.edge_samples), 2, 16, NULL, "", "rays a side of a pixel where neighbours disagree; adaptive"},
     {"sensor.target_samples", KEY_INT, AT(sensor.target_samples), 8, 256, NULL, "", "rays a side over a target of less than 16 px; adaptive"},
     {"sensor.bands", KEY_TEXT, AT(sensor.bands), 0, 0, NULL, "", "any of optical,mwir,lwir,radar"},
-    {"sensor.optical", KEY_TEXT, AT(sensor.optical), 0, 0, "rgb|pan", "", "three channels or one"},
+    {"sensor.optical", KEY_TEXT, AT(sensor.optical), 0, 0, "rgb|pan|nir", "", "three channels or one: visible, or 0.7-1.1 um"},
+    {"sensor.sky_samples", KEY_INT, AT(sensor.sky_samples), 0, 4096, NULL, "", "directions a ray's hit asks for light; 0: by its slope"},
     {"sensor.gimbal_limit_deg", KEY_DOUBLE, AT(sensor.gimbal_limit_deg), 0, 180, NULL, "deg", "largest angle off the body axis"},
     {"sensor.gimbal_rate_dps", KEY_DOUBLE, AT(sensor.gimbal_rate_dps), 0.01, 10000, NULL, "deg/s", "largest rate"},
     {"sensor.gimbal_lag_s", KEY_DOUBLE, AT(sensor.gimbal_lag_s), 0, 10, NULL, "s", "time constant of the tracking loop"},
@@ -67,9 +68,9 @@ static const Key keys[] = {
     {"exercise.from_s", KEY_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
     {"exercise.to_s", KEY_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},
     {"exercise.causal", KEY_BOOL, AT(causal), 0, 1, NULL, "", "use only what had been received by each frame"},
+    {"weather.atmosphere", KEY_TEXT, AT(weather.atmosphere), 0, 0, NULL, "", "us1976, midlat_summer, or another of etc/atmosphere"},
     {"weather.visibility_m", KEY_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
-    {"weather.air_temp_k", KEY_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K", "at the ground"},
-    {"weather.relative_humidity", KEY_DOUBLE, AT(weather.relative_humidity), 0, 1, NULL, "", ""},
+    {"weather.air_temp_k", KEY_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K", "at the ground; unset: the atmosphere's own"},
     {"weather.pressure_mbar", KEY_DOUBLE, AT(weather.pressure_mbar), 300, 1100, NULL, "mbar", ""},
     {"weather.wind_mps", KEY_DOUBLE, AT(weather.wind_mps), 0, 60, NULL, "m/s", ""},
     {"weather.wind_from_deg", KEY_DOUBLE, AT(weather.wind_from_deg), 0, 360, NULL, "deg", "where the wind comes from, clockwise from north"},
@@ -135,9 +136,9 @@ Config config_default(void)
     c.exercise.exercise             = -1;
     c.exercise.from_s               = NAN;
     c.exercise.to_s                 = NAN;
+    strcpy(c.weather.atmosphere, "us1976");
     c.weather.visibility_m          = 23000;
-    c.weather.air_temp_k            = 288.15;
-    c.weather.relative_humidity     = 0.5;
+    c.weather.air_temp_k            = NAN;
     c.weather.pressure_mbar         = 1013.25;
     c.weather.wind_mps              = 3;
     c.weather.wind_from_deg         = 270;

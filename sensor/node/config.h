@@ -18,7 +18,8 @@ typedef struct Config {
         char   antialias[12];      /* adaptive or off */
         int    edge_samples, target_samples; /* a side: of a pixel with an edge; over a small target */
         char   bands[64];          /* comma separated */
-        char   optical[8];         /* rgb or pan */
+        char   optical[8];         /* rgb, pan or nir */
+        int    sky_samples;        /* directions a hit; 0: the quick form */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
     } sensor;
@@ -49,7 +50,8 @@ typedef struct Config {
         double from_s, to_s;       /* exercise time; NaN: whole */
     } exercise;
     struct {
-        double visibility_m, air_temp_k, relative_humidity, pressure_mbar, wind_mps, wind_from_deg;
+        char   atmosphere[32];     /* a folder of etc/atmosphere */
+        double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
     } weather;
     struct {
         double relief_m, spacing_m;

@@ -139,8 +139,9 @@ static void frame_path(char path[path_size], const FrameFiles *frame, const char
 }
 
 /* The planes of one band, with the names of their channels. */
-static int band_planes(Plane plane[max_planes], const Picture *p, int band)
+static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int band)
 {
+    const Picture *p = frame->picture;
     static const char *const rgb[3] = {"R", "G", "B"}, *const normal[3] = {"nx", "ny", "nz"};
     const int w = p->width, h = p->height;
     int       n = 0;
@@ -220,11 +221,15 @@ static Status write_exr(const FrameFiles *frame, int band)
     ImageAttribute attribute[16];
     char          *ids = NULL, *names = NULL, *parts = NULL;
     int            n   = 0;
-    const int      planes = band_planes(plane, frame->picture, band);
+    const int      planes = band_planes(plane, frame, band);
 
     attribute[n++] = image_string("band", band < BAND_COUNT ? band_name((Band)band) : "truth");
     if (band < BAND_COUNT) attribute[n++] = image_string("unit", band == BAND_RADAR ? "relative" : "W/(m2 sr)");
     if (band == BAND_RADAR) attribute[n++] = image_string("model", "pseudo-radar");
+    if (band == BAND_OPTICAL) /* what the planes see, um; in the order of their names */
+        attribute[n++] = image_string("wavelengths_um", frame->request->optical == OPTICAL_RGB   ? "R 0.6-0.7, G 0.5-0.6, B 0.4-0.5"
+                                                        : frame->request->optical == OPTICAL_NIR ? "0.7-1.1"
+                                                                                                 : "0.4-0.7");
     attribute[n++] = image_int("frame", frame->frame);
     attribute[n++] = image_double("time_s", frame->time_s);
     attribute[n++] = image_string("host", frame->host);
@@ -442,7 +447,7 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
     int   planes = 0;
     for (int b = 0; b <= BAND_COUNT; b++) {
         if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
-        const int added = band_planes(plane + planes, frame->picture, b);
+        const int added = band_planes(plane + planes, frame, b);
         for (int i = planes; i < planes + added; i++) {
             snprintf(name[i], sizeof name[i], "%s/%s", b < BAND_COUNT ? band_name((Band)b) : "truth", plane[i].name);
             plane[i].name = name[i];

@@ -302,6 +302,8 @@ static Status run_host(Run *run, const char *host_text)
         status = choose_ground(&landscape, &clamp, &choices, &run->survey, &o->config, &frame, run->catalog, &plan);
     if (status == STATUS_OK) status = world_open(world, run->catalog, &landscape, &frame, o->isa);
     if (status != STATUS_OK) goto done;
+    status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
+    if (status != STATUS_OK) goto done;
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(&plan, &choices, &o->config);
     for (int i = 0; i < choices.count; i++) printf("%s\n", choices.line[i]);

@@ -219,17 +219,25 @@ static bool observer_eye(Eye *eye, Session *s, double t_s)
 
 /* ---- one frame ------------------------------------------------------------------------------ */
 
+static OpticalChannels optical_of(const Config *config)
+{
+    return strcmp(config->sensor.optical, "rgb") == 0   ? OPTICAL_RGB
+           : strcmp(config->sensor.optical, "nir") == 0 ? OPTICAL_NIR
+                                                        : OPTICAL_PAN;
+}
+
 /* Sun at the eye's own place, its direction turned into the world's frame. */
 static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s)
 {
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
-    const Weather        weather = {.visibility_m = config->weather.visibility_m,
+    World               *world = shared->world;
+    Weather              weather = {.visibility_m = config->weather.visibility_m,
                                     .air_temp_k = config->weather.air_temp_k,
-                                    .relative_humidity = config->weather.relative_humidity,
                                     .pressure_mbar = config->weather.pressure_mbar,
                                     .wind_mps = config->weather.wind_mps,
                                     .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
+    if (isnan(weather.air_temp_k)) weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
     Geodetic place;
     double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
     Status   status = geodetic_from_ecef(&place, eye->state.p_ecef);
@@ -240,9 +248,15 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     Sun local = *sun;
     m3_mul_v3(d_ecef, r_ecef_from_host, sun->d_enu);
     m3_tmul_v3(local.d_enu, shared->world->frame.r_ecef_from_enu, d_ecef);
-    air_at(air, &weather, &local, shared->world->planck_mwir, shared->world->planck_lwir);
     m3_tmul(r_host_from_enu, r_ecef_from_host, shared->world->frame.r_ecef_from_enu);
-    return STATUS_OK;
+
+    /* heights of the air are above the ground at the origin, and the tangent plane leaves the Earth */
+    const double     *p_enu = eye->view.p_enu;
+    const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
+    const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
+    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
+    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, optical_of(config)), &eye->view};
+    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, s->frame_arena);
 }
 
 /* Products give normals in the host's own ENU. */
@@ -261,7 +275,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
 {
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
-                               .optical_rgb = strcmp(config->sensor.optical, "rgb") == 0,
+                               .optical = optical_of(config), .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .no_skip = s->shared->no_skip};
     if (strcmp(config->sensor.antialias, "adaptive") == 0) {

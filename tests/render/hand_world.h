@@ -16,7 +16,7 @@ typedef struct HandWorld {
     Catalog       *catalog;
     World          world;
     Pool          *pool;
-    Arena         *arena;
+    Arena         *arena, *air_arena;
     int            model[hand_models]; /* of the catalog */
     SnapshotEntity entity[hand_most_entities];
     NodePose       pose[hand_most_entities];
@@ -68,7 +68,8 @@ static inline int hand_open(bool with_ground)
     m->gloss = 0;
     m->metal = 1;
     hand.arena = arena_create();
-    return hand.arena && pool_create(&hand.pool, 2) == STATUS_OK ? 0 : -1;
+    hand.air_arena = arena_create();
+    return hand.arena && hand.air_arena && atmosphere_open(&hand.world.atmosphere, "us1976") == STATUS_OK && pool_create(&hand.pool, 2) == STATUS_OK ? 0 : -1;
 }
 
 static inline int hand_close(void **state)
@@ -79,6 +80,7 @@ static inline int hand_close(void **state)
     if (hand.world.landscape || hand.landscape.cover) landscape_destroy(&hand.landscape);
     catalog_close(hand.catalog);
     arena_destroy(hand.arena);
+    arena_destroy(hand.air_arena);
     return 0;
 }
 
@@ -130,18 +132,22 @@ static inline View hand_view(const double p_enu[3], const double d_enu[3], int w
 /* A sun, and nothing else that shines, warms, cools, dims or glows. */
 static inline void hand_air_off(const double sun_enu[3])
 {
-    Sun           sun = {.elevation_rad = 0.8, .distance_au = 1};
-    const Weather weather = weather_default();
-    Air          *a = &hand.air;
+    static const double dark[AIR_BAND_COUNT] = {0};
+    Air *a = &hand.air;
+    air_even(a, sun_enu, 300, dark, 0, hand.world.planck_mwir, hand.world.planck_lwir);
+    for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
+    a->solar_direct_w_m2 = a->solar_diffuse_w_m2 = 0;
+}
+
+/* Air of the tables about an eye at this height; good until hand_close. */
+static inline void hand_air_on(const double sun_enu[3], double height_m)
+{
+    const AirSource source = {hand.world.atmosphere, hand.world.planck_mwir, hand.world.planck_lwir};
+    const AirEye    eye = {.height_m = height_m, .bands = (1 << AIR_BAND_COUNT) - 1};
+    const Weather   weather = weather_default();
+    Sun             sun = {.elevation_rad = asin(sun_enu[2]), .distance_au = 1};
     memcpy(sun.d_enu, sun_enu, sizeof sun.d_enu);
-    air_at(a, &weather, &sun, hand.world.planck_mwir, hand.world.planck_lwir);
-    for (int c = 0; c < optical_channel_count; c++) a->sky_w_m2[c] = a->extinction_per_m[c] = a->sky_scale[c] = 0;
-    a->extinction_mwir_per_m = a->extinction_lwir_per_m = a->saturating_mwir = a->saturating_lwir = 0;
-    a->sun_mwir_w_m2 = a->ground_mwir_w_m2_sr = a->ground_lwir_w_m2_sr = 0;
-    a->sky_mean_mwir_w_m2_sr = a->sky_mean_lwir_w_m2_sr = 0;
-    a->solar_direct_w_m2 = a->solar_diffuse_w_m2 = a->longwave_loss_w_m2 = 0;
-    memset(a->sky_mwir_w_m2_sr, 0, sizeof a->sky_mwir_w_m2_sr);
-    memset(a->sky_lwir_w_m2_sr, 0, sizeof a->sky_lwir_w_m2_sr);
+    assert_int_equal(air_at(&hand.air, &source, &weather, &sun, &eye, NULL, hand.air_arena), STATUS_OK);
 }
 
 /* What a part of brick sends out by itself, W/(m2 sr): it is as warm as the air. */

@@ -16,11 +16,8 @@ static double ground_at(double x, double y) { return elevation_height(&hand.land
 /* Real light, and the hand-made things strewn over the ground from 60 m to 3 km before the eye. */
 static View strew(int things, int width, int height)
 {
-    const double  eye_enu[3] = {-400, 0, ground_at(-400, 0) + 40}, ahead[3] = {1, 0, -0.09};
-    const Weather weather = weather_default();
-    Sun           sun = {.elevation_rad = 0.9, .distance_au = 1};
-    memcpy(sun.d_enu, sun_enu, sizeof sun_enu);
-    air_at(&hand.air, &weather, &sun, hand.world.planck_mwir, hand.world.planck_lwir);
+    const double eye_enu[3] = {-400, 0, ground_at(-400, 0) + 40}, ahead[3] = {1, 0, -0.09};
+    hand_air_on(sun_enu, 40);
     hand_clear();
     hand_draw = 77;
     for (int k = 0; k < things; k++) {

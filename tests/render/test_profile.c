@@ -42,7 +42,6 @@ static Picture shoot(double range_m, double lobe_rad, int side_px, int samples)
     const double          p_enu[3] = {0, 0, 0};
     Air                   air;
     const Sun             sun = {.elevation_rad = 1, .distance_au = 1, .d_enu = {0, 0, 1}};
-    const Weather         weather = weather_default();
     Picture               picture;
 
     entity       = (SnapshotEntity){.id = {1, 1, 1}};
@@ -62,7 +61,7 @@ static Picture shoot(double range_m, double lobe_rad, int side_px, int samples)
           .bands = 1 << BAND_RADAR, .samples = samples, .hidden_entity = -1, .profile_near_m = range_m - 20,
           .profile_bin_m = 0.5, .profile_bins = 80};
     world.radar.lobe_rad = lobe_rad;
-    air_at(&air, &weather, &sun, world.planck_mwir, world.planck_lwir);
+    air_even(&air, sun.d_enu, 0, (const double[AIR_BAND_COUNT]){0}, 0, world.planck_mwir, world.planck_lwir);
     arena_reset(arena);
     assert_int_equal(render(&picture, &world, &snapshot, &request, &air, pool, arena), STATUS_OK);
     return picture;

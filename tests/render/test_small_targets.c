@@ -171,7 +171,7 @@ static void the_background_gives_way_by_as_much(void **state)
     const View view = east();
     double     r[9], p_enu[3];
     hand_air_off(sun_enu);
-    for (int i = 0; i <= air_sky_steps; i++) hand.air.sky_lwir_w_m2_sr[i] = 12;
+    for (int i = 0; i <= air_sky_ups; i++) hand.air.sky_eye[AIR_LWIR].thermal_w_m2_sr[i] = 12;
     hand_attitude(r, pi_rad, 0);
     place_at(p_enu, &view, 8000, 0.31, 0.77);
     hand_clear();

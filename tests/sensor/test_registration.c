@@ -239,12 +239,13 @@ static void shoot(Shot *shot, int where, int how, int side, double range_m)
 
     /* Sun behind the eye and a little up, so that plate and block are lit in every attitude. */
     Sun           sun = {.elevation_rad = 0.8, .distance_au = 1};
-    const Weather weather = weather_default();
     Air           air;
     for (int k = 0; k < 3; k++) sun.d_enu[k] = -request.view.r_enu_from_cam[3 * k + 2];
     sun.d_enu[2] = fabs(sun.d_enu[2]) + 0.2;
     v3_normalize(sun.d_enu, sun.d_enu);
-    air_at(&air, &weather, &sun, fixture.world.planck_mwir, fixture.world.planck_lwir);
+    static const double sky[AIR_BAND_COUNT] = {20, 20, 20, 60, 60, 0.3, 15};
+    air_even(&air, sun.d_enu, 150, sky, 0, fixture.world.planck_mwir, fixture.world.planck_lwir);
+    air.sun_w_m2[AIR_MWIR] = 8;
     assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena), STATUS_OK);
     entity_table_destroy(table);
 }

@@ -3,7 +3,10 @@
 . "$(dirname "$0")/common.sh"
 
 # probe NAME [ARGUMENT ...] < rows: the rows and their results in $tmp/stdout
-probe() { "$pitviper" probe "$@" >"$tmp/stdout" 2>"$tmp/stderr"; code=$?; }
+probe() { # not behind a pipe: $code would be lost
+    "$pitviper" probe "$@" >"$tmp/stdout" 2>"$tmp/stderr"
+    code=$?
+}
 # cell ROW COLUMN: of the last result; row 1 is the first behind the header. No quoted commas, please.
 cell() {
     awk -F, -v row="$1" -v name="$2" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) c = i } NR == row + 1 { print $c }' \
@@ -26,15 +29,15 @@ check "and it is named" grep -q "no such probe: nonsense" "$tmp/stderr"
 for name in $names; do
     probe "$name" </dev/null
     check "$name: nothing on standard input is an error" test $code -ge 1
-    printf 'these,are,not,its,columns\n1,2,3,4,5\n' | probe "$name"
+    probe "$name" < <(printf 'these,are,not,its,columns\n1,2,3,4,5\n')
     check "$name: a foreign header is an error" test $code -ge 1
     check "$name: which says so" test -s "$tmp/stderr"
-    head -c 100000 /dev/urandom | probe "$name"
+    probe "$name" < <(head -c 100000 /dev/urandom)
     check "$name: noise is an error, no crash" test $code -ge 1 -a $code -lt 124
 done
 
 # Planck: the reference's 25 digits, rounded
-printf 'lo_um,hi_um,temp_k,note\n8,12,300,a\n3.4,4.8,300,b\n8,12,1,c\n8,12,-1,d\n12,8,300,e\n' | probe planck
+probe planck < <(printf 'lo_um,hi_um,temp_k,note\n8,12,300,a\n3.4,4.8,300,b\n8,12,1,c\n8,12,-1,d\n12,8,300,e\n')
 near "8-12 um at 300 K" "$(cell 1 radiance_w_m2_sr)" 38.50042393334787 1e-12
 near "its derivative" "$(cell 1 dldt)" 0.62970434672218919 1e-14
 near "3.4-4.8 um at 300 K" "$(cell 2 radiance_w_m2_sr)" 1.3460717111444343 1e-13
@@ -51,7 +54,8 @@ check "foreign columns pass" test "$(cell 5 note)" = e
     echo 5,6378137,0,0,0,0,0,10,0,0,4,,3
     echo 6,6378137,0,0,1.5707963267948966,0,0,10,0,0,,,3
     echo 10,0,0,0,0,0,0,0,0,0,,,1
-} | probe deadreckon
+} >"$tmp/rows"
+probe deadreckon <"$tmp/rows"
 near "FPW x" "$(cell 1 dr_x_m)" 6378162 1e-8
 near "FPW z" "$(cell 1 dr_z_m)" -75 1e-12
 near "FPW attitude is held" "$(cell 1 dr_psi_rad)" 1 1e-15

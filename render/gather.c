@@ -1,0 +1,165 @@
+/* render/gather.c: see gather.h. Directions are drawn in proportion to their cosine, so that the irradiance is pi times
+ * the mean radiance; the first bounce by a Fibonacci lattice turned at random for each hit, the second at random. */
+#include "render/gather.h"
+
+#include "render/optical.h"
+#include "render/thermal.h"
+
+enum { bounces = 2, stream_first = 40, stream_next = 41 }; /* streams of random numbers, nobody else's */
+
+typedef struct Paths {
+    Rays rays;
+    Hits hits;
+    int of_hit[hits_capacity], of_sample[hits_capacity];
+    float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
+    uint16_t material[hits_capacity];
+    float texture[hits_capacity], temp_k[hits_capacity];
+    uint8_t shadow[hits_capacity];
+} Paths;
+
+/* A direction about n, its cosine with n distributed as cosines are; u, v in [0, 1). */
+static void cosine_direction(double d[3], const double n[3], double u, double v)
+{
+    double t[3] = {0, 0, 0}, b[3];
+    t[fabs(n[0]) < 0.6 ? 0 : 1] = 1;
+    v3_add_scaled(t, t, -v3_dot(t, n), n);
+    v3_normalize(t, t);
+    v3_cross(b, n, t);
+    const double s = sqrt(u), c = sqrt(1 - u), turn = 2 * pi_rad * v;
+    for (int k = 0; k < 3; k++) d[k] = c * n[k] + s * (cos(turn) * t[k] + sin(turn) * b[k]);
+    v3_normalize(d, d);
+}
+
+/* Adds a ray that leaves hit `from` of hits. */
+static int leave(Rays *rays, const Hits *hits, int from, double u, double v)
+{
+    static const double offset_m = 1e-3; /* as visibility_shadow's */
+    const double n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
+    const double n_geo[3] = {hits->n_geo[0][from], hits->n_geo[1][from], hits->n_geo[2][from]};
+    const int at = rays->count++;
+    double d_enu[3];
+    cosine_direction(d_enu, n_enu, u, v);
+    /* an interpolated normal sends some into the facet itself: mirrored out of it */
+    const double out = v3_dot(d_enu, n_geo);
+    if (out < 0) v3_add_scaled(d_enu, d_enu, -2 * out, n_geo);
+    for (int k = 0; k < 3; k++) {
+        rays->o_enu[k][at] = hits->p_enu[k][from] + offset_m * n_geo[k];
+        rays->d_enu[k][at] = d_enu[k];
+    }
+    rays->far_m[at] = INFINITY;
+    return at;
+}
+
+static double reflectance(const Material *m, AirBand band)
+{
+    return band == AIR_MWIR ? m->rho_mwir : band == AIR_LWIR ? m->rho_lwir : m->rho[band];
+}
+
+/* What all paths of a block met: materials, temperatures, shadows. */
+static void resolve(Paths *p, const GatherScene *scene, unsigned bands, VisibilityCounters *counters)
+{
+    visibility_first_hit(&p->hits, scene->visibility, &p->rays, NULL, -1, -1, counters);
+    for (int i = 0; i < p->hits.count; i++) {
+        p->texture[i] = 1;
+        p->material[i] = p->hits.entity[i] ? (uint16_t)scene->materials->part[p->hits.model[i]][p->hits.part[i] - 1]
+                                           : (uint16_t)scene->materials->surface[p->hits.surface[i]];
+    }
+    memset(p->shadow, 0, sizeof p->shadow);
+    if (scene->air->sun_d_enu[2] > 0)
+        visibility_shadow(p->shadow, scene->visibility, &p->hits, scene->air->sun_d_enu, counters);
+    if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
+        thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
+                            p->material, p->texture);
+}
+
+/* Radiance of level, open ground. */
+static double ground_radiance(const GatherScene *scene, AirBand band)
+{
+    return band >= AIR_MWIR ? scene->air->ground_w_m2_sr[band]
+                            : optical_ground_w_m2((int)band, scene->air, scene->materials) / pi_rad;
+}
+
+/* Radiance that path i brings from what it met, in one band; *rho: the share of its own surroundings still to come. */
+static double met(double *rho, const Paths *p, int i, const GatherScene *scene, AirBand band, double ground, bool last)
+{
+    const Air *air = scene->air;
+    *rho = 0;
+    if (!(p->hits.range_m[i] < INFINITY)) {
+        const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
+        return d_enu[2] < 0 ? ground : air_sky_light(air, band, d_enu);
+    }
+    const Material *m = &scene->materials->material[p->material[i]];
+    const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
+    *rho = reflectance(m, band);
+    double radiance = 0;
+    if (band >= AIR_MWIR)
+        radiance =
+            (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->planck_mwir : air->planck_lwir, p->temp_k[i]);
+    if (!p->shadow[i] && band != AIR_LWIR)
+        radiance += *rho / pi_rad * air->sun_w_m2[band] * fmax(v3_dot(n_enu, air->sun_d_enu), 0);
+    if (last) radiance += *rho * (air_sky_on_plane(air, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
+    return radiance;
+}
+
+/* Follows one block of paths to its end, adding what they bring. */
+static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const GatherScene *scene, unsigned bands,
+                   const uint64_t *key, VisibilityCounters *counters)
+{
+    double ground[AIR_BAND_COUNT] = {0};
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1) ground[b] = ground_radiance(scene, (AirBand)b);
+
+    for (int bounce = 0; bounce < bounces && p->rays.count > 0; bounce++) {
+        const bool last = bounce == bounces - 1;
+        resolve(p, scene, bands, counters);
+        float rho[AIR_BAND_COUNT][hits_capacity];
+        for (int b = 0; b < AIR_BAND_COUNT; b++) {
+            if (!(bands >> b & 1)) continue;
+            for (int i = 0; i < p->hits.count; i++) {
+                double left;
+                sum[b][p->of_hit[i]] += p->share[b][i] * met(&left, p, i, scene, (AirBand)b, ground[b], last);
+                rho[b][i] = (float)left;
+            }
+        }
+        if (last) return;
+        /* those that met something go on, closed up; no slot is read after a later path was written to it */
+        p->rays.count = 0;
+        for (int i = 0; i < p->hits.count; i++) {
+            if (!(p->hits.range_m[i] < INFINITY)) continue;
+            const uint64_t to = key[p->of_hit[i]];
+            const uint32_t draw = (uint32_t)(2 * p->of_sample[i]);
+            const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_next, draw, to),
+                                 random_uniform(0, stream_next, draw + 1, to));
+            p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i];
+            for (int b = 0; b < AIR_BAND_COUNT; b++)
+                if (bands >> b & 1) p->share[b][at] = p->share[b][i] * rho[b][i];
+        }
+    }
+}
+
+void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                  const uint64_t *key, VisibilityCounters *counters)
+{
+    static const double golden = 0.61803398874989485;
+    Paths paths;
+    double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
+
+    paths.rays.count = 0;
+    for (int i = 0; i < hits->count; i++) {
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
+        for (int k = 0; k < samples; k++) {
+            const double v = v0 + k * golden;
+            const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
+            paths.of_hit[at] = i, paths.of_sample[at] = k;
+            for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = 1;
+            if (paths.rays.count < hits_capacity) continue;
+            follow(sum, &paths, scene, bands, key, counters);
+            paths.rays.count = 0;
+        }
+    }
+    if (paths.rays.count > 0) follow(sum, &paths, scene, bands, key, counters);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1)
+            for (int i = 0; i < hits->count; i++) out->w_m2[b][i] = (float)(sum[b][i] * pi_rad / samples);
+}

@@ -1,0 +1,33 @@
+/* render/gather.h: what sky and surroundings send to each hit, by asking them: rays over the hemisphere, two bounces.
+ *
+ * The quick form of render/optical.c and thermal.c sees sky and level ground by a surface's tilt; this one sees what
+ * really stands there: a shadowed wall, a warm engine deck, the dark under a hull. Each direction is followed to what
+ * it meets, lit by the sun or emitting by itself, and from there in one more direction; what that meets is lit the quick
+ * way. Everything met counts as diffuse. Cost: 2 x samples first hits and shadow rays a hit. The error falls with
+ * samples^-0.5 or faster; test_gather.c holds it against two other renderers. */
+#ifndef RENDER_GATHER_H
+#define RENDER_GATHER_H
+
+#include "render/air.h"
+#include "render/visibility.h"
+
+enum { gather_samples_limit = 4096 };
+
+typedef struct GatherScene {
+    const Visibility *visibility;
+    const Air        *air;
+    const Materials  *materials;
+    const Catalog    *catalog;   /* NULL where no entity shows: temperatures of parts come from their model */
+    const Snapshot   *snapshot;
+} GatherScene;
+
+typedef struct Gathered {
+    float w_m2[AIR_BAND_COUNT][hits_capacity]; /* irradiance on the hit's own shading normal; 0 for sky */
+} Gathered;
+
+/* bands: 1 << AirBand, those to fill. samples: 1 .. gather_samples_limit directions a hit, spread evenly over the
+ * hemisphere. key: a number for each hit; same key, same directions, in whatever company. */
+void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                  const uint64_t *key, VisibilityCounters *counters);
+
+#endif

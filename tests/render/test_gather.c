@@ -1,0 +1,224 @@
+/* Light from all around: the sphere over a plane that two other renderers were asked about, and even worlds where
+ * nothing can be brighter or darker than what surrounds it. */
+#include "tests/render/hand_models.h"
+
+#include "render/gather.h"
+#include "render/optical.h"
+#include "render/parts.h"
+#include "render/thermal.h"
+
+enum { model_plane, model_sphere, model_count };
+
+static struct {
+    PlanckTable *mwir, *lwir;
+    Model model[model_count];
+    Tracer *tracer;
+    Arena *arena;
+    LocalFrame frame;
+    SnapshotEntity entity[model_count];
+    NodePose pose[model_count];
+    Snapshot snapshot;
+    Visibility *visibility;
+    Material rows[3];
+    Materials materials;
+    int *part[model_count], row_of[model_count];
+    Air air;
+} stage;
+
+/* Plane rho 0.2 at z = 0, sphere rho 0.8 of radius 1 at (0, 0, 2): reference/infrared.md. */
+static int open_stage(void **state)
+{
+    (void)state;
+    const Geodetic origin = {0.6, -1.9, 700};
+    if (planck_table_create(&stage.mwir, 3.4e-6, 4.8e-6) != STATUS_OK ||
+        planck_table_create(&stage.lwir, 8e-6, 12e-6) != STATUS_OK ||
+        local_frame_at(&stage.frame, &origin) != STATUS_OK)
+        return -1;
+    /* two kilometres: 2 mrad of the lowest sky is missing beyond, 4e-6 of the light */
+    hand_plate(&stage.model[model_plane], 2000, 2000);
+    hand_sphere(&stage.model[model_sphere], 1, 96); /* facets lie within 0.3 mm of it */
+    const Model *models[model_count] = {&stage.model[model_plane], &stage.model[model_sphere]};
+    if (tracer_create_models(&stage.tracer, models, model_count, "avx2") != STATUS_OK) return -1;
+    stage.arena = arena_create();
+    stage.snapshot =
+        (Snapshot){.count = model_count, .node_count = model_count, .entity = stage.entity, .node = stage.pose};
+    /* the plate's forward is up, its z from -4 to 0 km lies along east */
+    static const double turned[9] = {0, 0, 1, 0, 1, 0, 1, 0, 0}, straight[9] = {1, 0, 0, 0, -1, 0, 0, 0, -1};
+    static const double place[model_count][3] = {{2000, 0, 0}, {0, 0, 2}};
+    for (int k = 0; k < model_count; k++) {
+        stage.entity[k] = (SnapshotEntity){.model = k, .first_node = k};
+        ecef_from_enu(stage.entity[k].p_ecef, &stage.frame, place[k]);
+        m3_mul(stage.entity[k].r_ecef_from_body, stage.frame.r_ecef_from_enu, k == model_plane ? turned : straight);
+        stage.pose[k] = (NodePose){{0, 0, 0}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+        stage.row_of[k] = k + 1;
+        stage.part[k] = &stage.row_of[k];
+    }
+    stage.materials = (Materials){.count = 3, .material = stage.rows, .part = stage.part, .model_count = model_count};
+    return visibility_create(&stage.visibility, stage.tracer, NULL, &stage.frame, &stage.snapshot, false,
+                             stage.arena) == STATUS_OK
+               ? 0
+               : -1;
+}
+
+static int close_stage(void **state)
+{
+    (void)state;
+    tracer_destroy(stage.tracer);
+    arena_destroy(stage.arena);
+    planck_table_destroy(stage.mwir);
+    planck_table_destroy(stage.lwir);
+    for (int m = 0; m < model_count; m++) hand_free(&stage.model[m]);
+    return 0;
+}
+
+/* A key for each hit, of a series. */
+static const uint64_t *keys(uint64_t series)
+{
+    static uint64_t key[hits_capacity];
+    for (uint64_t i = 0; i < hits_capacity; i++) key[i] = series * hits_capacity + i;
+    return key;
+}
+
+static void set_rho(double plane, double sphere)
+{
+    for (int c = 0; c < optical_channel_count; c++) {
+        stage.rows[1].rho[c] = (float)plane;
+        stage.rows[2].rho[c] = (float)sphere;
+        stage.materials.ground_rho[c] = (float)plane;
+    }
+}
+
+/* The camera of that scene: (0,-12,4), pitched 10 degrees down, 30 degrees wide, 720 x 486. */
+static void look_at(Rays *rays, Hits *hits, VisibilityCounters *counters, const double (*px)[2], int count)
+{
+    const double focal_px = 360 / tan(15 * rad_per_deg), pitch = -10 * rad_per_deg;
+    rays->count = count;
+    for (int i = 0; i < count; i++) {
+        /* the centre of the pixel */
+        const double x = (px[i][0] + 0.5 - 360) / focal_px, y = -(px[i][1] + 0.5 - 243) / focal_px;
+        double d[3] = {x, cos(pitch) - y * sin(pitch), sin(pitch) + y * cos(pitch)};
+        CHECK(v3_normalize(d, d));
+        const double o[3] = {0, -12, 4};
+        for (int k = 0; k < 3; k++) rays->o_enu[k][i] = o[k], rays->d_enu[k][i] = d[k];
+        rays->far_m[i] = INFINITY;
+    }
+    visibility_first_hit(hits, stage.visibility, rays, NULL, -1, -1, counters);
+}
+
+static void sphere_over_a_plane(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        double px[2], cycles, radiance, tolerance;
+    } point[] = {
+        /* lit points: 1 %, shaded ones: 2 % of the span of the two (infrared.md), which differ by that themselves */
+        {"ground", {60, 470}, 55.142, 55.120, 0.01},         {"sphere top", {360, 150}, 182.206, 181.780, 0.01},
+        {"sunlit side", {420, 190}, 204.268, 204.980, 0.01}, {"shaded side", {290, 200}, 31.115, 30.462, 0.02},
+        {"sphere bottom", {360, 290}, 37.771, 38.056, 0.02},
+    };
+    enum { points = sizeof point / sizeof *point };
+    static Rays rays;
+    static Hits hits;
+    static Gathered gathered;
+    double px[points][2];
+    for (int i = 0; i < points; i++) memcpy(px[i], point[i].px, sizeof px[i]);
+    VisibilityCounters counters = {0};
+    const double z = 40 * rad_per_deg, sun[3] = {sin(z), 0, cos(z)};
+    double sky[AIR_BAND_COUNT];
+    for (int b = 0; b < AIR_BAND_COUNT; b++) sky[b] = 100 / pi_rad;
+    air_even(&stage.air, sun, 1000, sky, 0, stage.mwir, stage.lwir);
+    set_rho(0.2, 0.8);
+    look_at(&rays, &hits, &counters, px, points);
+
+    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    uint8_t shadow[hits_capacity] = {0};
+    float texture[hits_capacity], out[2][hits_capacity];
+    uint16_t material[hits_capacity];
+    visibility_shadow(shadow, stage.visibility, &hits, sun, &counters);
+    for (int i = 0; i < points; i++) {
+        CHECK(hits.entity[i] > 0);
+        material[i] = (uint16_t)hits.entity[i];
+        texture[i] = 1;
+    }
+    static const int samples[2] = {64, 4096};
+    for (int run = 0; run < 2; run++) {
+        gather_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
+        optical_shade(out[run], optical_channel_pan, &stage.air, &stage.materials, &hits, &rays, material, texture,
+                      shadow, gathered.w_m2[AIR_PAN]);
+    }
+    for (int i = 0; i < points; i++)
+        print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name,
+                      (double)out[0][i], (double)out[1][i], point[i].cycles, point[i].radiance);
+    for (int i = 0; i < points; i++) {
+        const double low = fmin(point[i].cycles, point[i].radiance), high = fmax(point[i].cycles, point[i].radiance);
+        CHECK(out[1][i] >= low * (1 - point[i].tolerance) && out[1][i] <= high * (1 + point[i].tolerance));
+        CHECK_NEAR(out[0][i] / out[1][i], 1, 0.05); /* and few samples are near enough to look at */
+    }
+}
+
+/* A world of reflectance 1 under an even sky without sun is even; one of any emissivity at one temperature reads it. */
+static void even_worlds_stay_even(void **state)
+{
+    (void)state;
+    static Rays rays;
+    static Hits hits;
+    static Gathered gathered;
+    VisibilityCounters counters = {0};
+    static const double px[][2] = {{60, 470}, {360, 150}, {290, 200}, {360, 290}, {360, 330}};
+    double sky[AIR_BAND_COUNT] = {1, 1, 1, 1, 1};
+    sky[AIR_MWIR] = planck_table_radiance(stage.mwir, 300), sky[AIR_LWIR] = planck_table_radiance(stage.lwir, 300);
+    air_even(&stage.air, (const double[3]){0, 0.6, -0.8}, 0, sky, 0, stage.mwir, stage.lwir);
+    set_rho(1, 1);
+    look_at(&rays, &hits, &counters, px, 5);
+    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    gather_light(&gathered, &scene, &hits, 1 << AIR_G | 1 << AIR_NIR, 200, keys(1), &counters);
+    for (int i = 0; i < 5; i++) {
+        /* all of it is a sum of ones, in single precision */
+        CHECK_NEAR(gathered.w_m2[AIR_G][i] / pi_rad, 1, 1e-6);
+        CHECK_NEAR(gathered.w_m2[AIR_NIR][i] / pi_rad, 1, 1e-6);
+    }
+}
+
+/* Same block and samples, same bits; another block, other draws. */
+static void same_question_same_bits(void **state)
+{
+    (void)state;
+    static Rays rays;
+    static Hits hits;
+    static Gathered a, b;
+    VisibilityCounters counters = {0};
+    static const double px[][2] = {{290, 200}, {900, -500}, {360, 290}};
+    look_at(&rays, &hits, &counters, px, 3);
+    CHECK(!(hits.range_m[1] < INFINITY));
+    const double sky[AIR_BAND_COUNT] = {1, 2, 3, 4, 5, 6, 7};
+    air_even(&stage.air, (const double[3]){0.6, 0, 0.8}, 10, sky, 0, stage.mwir, stage.lwir);
+    set_rho(0.2, 0.8);
+    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    gather_light(&a, &scene, &hits, 1 << AIR_R, 500, keys(3), &counters);
+    gather_light(&b, &scene, &hits, 1 << AIR_R | 1 << AIR_B, 500, keys(3), &counters);
+    for (int i = 0; i < 3; i++) CHECK(a.w_m2[AIR_R][i] == b.w_m2[AIR_R][i]);
+    CHECK(a.w_m2[AIR_R][1] == 0 && a.w_m2[AIR_R][0] > 0 && a.w_m2[AIR_R][0] != a.w_m2[AIR_R][2]);
+    gather_light(&b, &scene, &hits, 1 << AIR_R, 500, keys(4), &counters);
+    CHECK(a.w_m2[AIR_R][0] != b.w_m2[AIR_R][0]);
+
+    /* the last hit alone, by its own key: whoever else is asked for does not show */
+    for (int k = 0; k < 3; k++) {
+        hits.p_enu[k][0] = hits.p_enu[k][2], hits.n_enu[k][0] = hits.n_enu[k][2], hits.n_geo[k][0] = hits.n_geo[k][2];
+    }
+    hits.range_m[0] = hits.range_m[2], hits.entity[0] = hits.entity[2], hits.part[0] = hits.part[2];
+    hits.model[0] = hits.model[2], hits.surface[0] = hits.surface[2];
+    hits.count = 1;
+    gather_light(&b, &scene, &hits, 1 << AIR_R, 500, keys(3) + 2, &counters);
+    CHECK(a.w_m2[AIR_R][2] == b.w_m2[AIR_R][0]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sphere_over_a_plane),
+        cmocka_unit_test(even_worlds_stay_even),
+        cmocka_unit_test(same_question_same_bits),
+    };
+    return cmocka_run_group_tests(tests, open_stage, close_stage);
+}
