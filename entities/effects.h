@@ -47,6 +47,7 @@ Status effect_table_open(EffectTable *out, const char *path);
 /* One puff at one instant, as a Snapshot holds it: still without wind, which is the weather's. */
 typedef struct EffectPuff {
     EffectKind kind;
+    uint64_t   owner;        /* whose smoke it is: snapshot_owns_puff; 0: nobody's */
     uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
     uint32_t   seed;         /* of its pattern */
     double     age_s;        /* >= 0; what an entity carries with it stays at 0 */

@@ -300,7 +300,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
 
     if (source->from_s > t_s || source->to_s + life_s <= t_s || source->to_s <= source->from_s) return;
     rhythm(&interval_s, &full_s, source->kind);
-    EffectPuff puff = {.kind = source->kind, .scale = source->scale, .throw_s = 0.6,
+    EffectPuff puff = {.kind = source->kind, .owner = source->key, .scale = source->scale, .throw_s = 0.6,
                        .group = (uint32_t)mix(source->key * EFFECT_KIND_COUNT + source->kind)};
     const double first_s = fmax(source->from_s, t_s - life_s), last_s = fmin(source->to_s, t_s);
     const int64_t first = (int64_t)ceil(first_s / interval_s), last = (int64_t)floor(last_s / interval_s);

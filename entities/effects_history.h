@@ -15,7 +15,7 @@ enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff
 /* One stretch of giving off: the entity's motion and what comes out of where. */
 typedef struct EffectSource {
     EffectKind kind;
-    uint64_t   key;              /* of the entity */
+    uint64_t   key;              /* of the entity; the puffs' owner */
     double     from_s, to_s;     /* puffs are let go in from_s <= t < to_s */
     Kinematics motion;           /* at motion_s */
     double     motion_s;

@@ -30,6 +30,11 @@ int snapshot_find(const Snapshot *snapshot, DisEntityId id)
     return -1;
 }
 
+bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff)
+{
+    return puff->owner == entity_key(snapshot->entity[index].id) + 1;
+}
+
 bool snapshot_is_wreck(const SnapshotEntity *entity)
 {
     return entity->type.kind == dis_kind_platform &&

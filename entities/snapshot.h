@@ -36,6 +36,8 @@ typedef struct Snapshot {
     const EffectTable *effect_table; /* NULL where there are no puffs */
 } Snapshot;
 
+/* Whether a puff came out of this entity: its own trail, flames or plume. */
+bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
 

@@ -135,7 +135,7 @@ static bool may_matter(const View *view, const EffectVolume *v)
     return (sqrt(cam[0] * cam[0] + cam[1] * cam[1]) - fmax(cam[2], 0) * tangent) <= reach * secant;
 }
 
-Status effects_scene(EffectScene *out, const Snapshot *snapshot, const LocalFrame *frame, const View *view,
+Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
                      const Air *air, const float *ground_rho, unsigned bands, Arena *arena)
 {
     *out = (EffectScene){0};
@@ -148,6 +148,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, const LocalFram
         const EffectPuff *puff = &snapshot->puff[i];
         const EffectLaw  *law = &snapshot->effect_table->law[puff->kind];
         EffectVolume      volume;
+        if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
         if (!effect_volume(&volume, snapshot->effect_table, puff, &air->weather, frame)) continue;
         if (!may_matter(view, &volume)) continue;
 

@@ -532,8 +532,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
     if (status == STATUS_OK)
-        status = effects_scene(&job.effects, snapshot, &world->frame, &request->view, air, world->materials.ground_rho,
-                               render_air_bands(request->bands, request->optical), arena);
+        status = effects_scene(&job.effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
+                               world->materials.ground_rho, render_air_bands(request->bands, request->optical), arena);
     if (status == STATUS_OK) status = allocate_job(&job, workers, arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,

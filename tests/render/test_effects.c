@@ -96,7 +96,7 @@ static void boresight(double transmittance[effect_band_count], double added[effe
 
     arena_reset(arena);
     const float ground_rho[optical_channel_count] = {0};
-    CHECK(effects_scene(&scene, &snapshot, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
+    CHECK(effects_scene(&scene, &snapshot, -1, &world.frame, &view, air, ground_rho, all_bands, arena) == STATUS_OK);
     CHECK(scene.count == 1);
     scene.volume[0].billow = 0;
     rays.count = 1;
@@ -270,6 +270,31 @@ static void without_smoke_no_bit_changes(void **state)
     CHECK(sky > 20);
 }
 
+/* A host's eye is not in its own smoke: others see it. */
+static void a_host_does_not_see_its_own(void **state)
+{
+    (void)state;
+    SnapshotEntity host = {.id = {1, 3001, 41}}, other = {.id = {1, 3001, 42}};
+    SnapshotEntity both[2] = {host, other};
+    EffectPuff     puff = puff_at(EFFECT_MOTOR_SMOKE, 30, 0.5, 1);
+    const Snapshot snapshot = {.count = 2, .entity = both, .puff_count = 1, .puff = &puff, .effect_table = &effects};
+    const View     view = view_north(64);
+    const Air      air = air_when(40);
+    static const float ground_rho[optical_channel_count] = {0.1f, 0.1f, 0.1f, 0.1f, 0.1f};
+    const int      seen_by[3] = {-1, 0, 1};
+    /* the key is the entity's own: 16 bits each of site, application and number, and one */
+    for (puff.owner = 0; ; puff.owner = (UINT64_C(1) << 32 | UINT64_C(3001) << 16 | 41) + 1) {
+        for (int k = 0; k < 3; k++) {
+            EffectScene scene;
+            arena_reset(arena);
+            CHECK(effects_scene(&scene, &snapshot, seen_by[k], &world.frame, &view, &air, ground_rho, all_bands, arena) ==
+                  STATUS_OK);
+            CHECK(scene.count == (puff.owner && seen_by[k] == 0 ? 0 : 1));
+        }
+        if (puff.owner) break;
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -277,6 +302,7 @@ int main(void)
         cmocka_unit_test(thick_smoke_reads_its_temperature),
         cmocka_unit_test(cavity_hides_it),
         cmocka_unit_test(bands_differ_as_the_stuff_does),
+        cmocka_unit_test(a_host_does_not_see_its_own),
         cmocka_unit_test(without_smoke_no_bit_changes),
     };
     return cmocka_run_group_tests(tests, open_world, close_world);
