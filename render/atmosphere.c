@@ -43,46 +43,73 @@ void blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m)
     *out = (Blend){&slice[i], &slice[i + 1], clamp(x, 0, 1), 1 - x, x};
 }
 
-static double sum_at(const Profile *profile, const double *per_m, const double *sum, double height_m)
+static double value_at(const AirColumn *column, const double *value, double height_m)
 {
     double t;
-    const int i = interval_of(&t, profile->height_m, profile->nodes, height_m);
-    const double step_m = t * (profile->height_m[i + 1] - profile->height_m[i]);
-    return sum[i] + step_m * (per_m[i] + t / 2 * (per_m[i + 1] - per_m[i]));
+    const int i = interval_of(&t, column->height_m, column->nodes, height_m);
+    return value[i] + t * (value[i + 1] - value[i]);
 }
 
-static double value_at(const Profile *profile, const double *per_m, double height_m)
+static double sum_at(const AirColumn *column, const double *value, const double *sum, double height_m)
 {
     double t;
-    const int i = interval_of(&t, profile->height_m, profile->nodes, height_m);
-    return per_m[i] + t * (per_m[i + 1] - per_m[i]);
+    const int i = interval_of(&t, column->height_m, column->nodes, height_m);
+    const double step_m = t * (column->height_m[i + 1] - column->height_m[i]);
+    return sum[i] + step_m * (value[i] + t / 2 * (value[i + 1] - value[i]));
 }
 
-/* Mean of a profile between two heights. */
-static double mean_of(const Profile *profile, const double *per_m, const double *sum, double a_m, double b_m)
+static double mean_of(const AirColumn *column, const double *value, const double *sum, double a_m, double b_m)
 {
-    const double top_m = profile->height_m[profile->nodes - 1];
+    const double top_m = column->height_m[column->nodes - 1];
     a_m = clamp(a_m, 0, top_m);
     b_m = clamp(b_m, 0, top_m);
-    if (fabs(a_m - b_m) < 1) return value_at(profile, per_m, (a_m + b_m) / 2);
-    return (sum_at(profile, per_m, sum, b_m) - sum_at(profile, per_m, sum, a_m)) / (b_m - a_m);
+    if (fabs(a_m - b_m) < 1) return value_at(column, value, (a_m + b_m) / 2);
+    return (sum_at(column, value, sum, b_m) - sum_at(column, value, sum, a_m)) / (b_m - a_m);
 }
 
-/* Beyond the tables' visibilities haze never falls below this share of the clearest table's. */
-static double haze_floor(double haze, double clearest) { return fmax(haze, 0.1 * clearest); }
-
-double blend_mean_extinction(const Blend *blend, AirBand band, double a_m, double b_m)
+double column_mean(const AirColumn *column, AirBand band, double a_m, double b_m)
 {
-    const Profile *low = &blend->low->profile, *high = &blend->high->profile;
-    const double haze_low = mean_of(low, low->haze_per_m[band], low->haze_sum[band], a_m, b_m);
-    double clear = mean_of(low, low->clear_per_m[band], low->clear_sum[band], a_m, b_m);
-    if (low == high) return clear + blend->haze_low * haze_low;
-    const double haze_high = mean_of(high, high->haze_per_m[band], high->haze_sum[band], a_m, b_m);
-    clear += blend->share * (mean_of(high, high->clear_per_m[band], high->clear_sum[band], a_m, b_m) - clear);
-    return clear + haze_floor(blend->haze_low * haze_low + blend->haze_high * haze_high, haze_high);
+    return mean_of(column, column->per_m[band], column->sum[band], a_m, b_m);
+}
+
+double column_scatter(const AirColumn *column, AirBand band, double height_m)
+{
+    return value_at(column, column->scatter_per_m[band], height_m);
+}
+
+/* Beyond the tables' visibilities haze never falls below a tenth of the clearest table's. */
+static double blend_haze(const Blend *blend, double low, double high)
+{
+    return fmax(blend->haze_low * low + blend->haze_high * high, 0.1 * high);
+}
+
+double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m)
+{
+    const double low = column_mean(&blend->low->haze, band, a_m, b_m);
+    if (blend->low == blend->high) return blend->haze_low * low;
+    return blend_haze(blend, low, column_mean(&blend->high->haze, band, a_m, b_m));
+}
+
+double blend_haze_scatter(const Blend *blend, AirBand band, double height_m)
+{
+    const double low = column_scatter(&blend->low->haze, band, height_m);
+    if (blend->low == blend->high) return blend->haze_low * low;
+    return blend_haze(blend, low, column_scatter(&blend->high->haze, band, height_m));
 }
 
 static double blend_of(const Blend *blend, double low, double high) { return low + blend->share * (high - low); }
+
+double black_air(const Atmosphere *atmosphere, AirBand band, double height_m)
+{
+    return planck_table_radiance(atmosphere->planck[band == AIR_LWIR], atmosphere_temp_k(atmosphere, height_m));
+}
+
+double mean_black(const Atmosphere *atmosphere, AirBand band, double a_m, double b_m)
+{
+    const AirColumn *clear = &atmosphere->clear;
+    const int i = band == AIR_LWIR;
+    return mean_of(clear, clear->black_per_m[i], clear->black_sum[i], a_m, b_m) / column_mean(clear, band, a_m, b_m);
+}
 
 /* ---- a path -------------------------------------------------------------------------------------- */
 
@@ -94,97 +121,117 @@ int path_emission_weight(const PathTable *table)
     return best;
 }
 
-/* Two weights and the share of the second for a temperature: straight in its logarithm. */
-static int weight_at(double *share, const PathTable *table, double temp_k)
+/* Value of a weight, of sunlight or of a temperature: straight in 1 / temperature. */
+static double weight_value(const PathTable *table, const Stencil *at, double temp_k)
 {
-    *share = 0;
-    if (table->weights < 3) return table->weights - 1;
+    if (isnan(temp_k) || table->weights < 2) return stencil_value(at, table, 0);
+    if (table->weights == 2) return stencil_value(at, table, 1);
     double t;
-    const int i = interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
-    const double a = table->weight_temp_k[i + 1], b = table->weight_temp_k[i + 2];
-    *share = clamp(log(fmax(temp_k, a) / a) / log(b / a), 0, 1);
-    return i + 1;
+    const int i = 1 + interval_of(&t, table->weight_temp_k + 1, table->weights - 1, temp_k);
+    const double a = 1 / table->weight_temp_k[i], b = 1 / table->weight_temp_k[i + 1];
+    const double share = clamp((1 / temp_k - a) / (b - a), 0, 1), low = stencil_value(at, table, i);
+    return share > 0 ? low + share * (stencil_value(at, table, i + 1) - low) : low;
 }
 
-/* One band's stencils in both slices. */
+/* All that a band's path needs, found once. */
 typedef struct Look {
-    const Blend     *blend;
-    const PathTable *low, *high;
-    Stencil          at_low, at_high;
+    const Atmosphere *atmosphere;
+    const Blend      *blend;
+    AirBand           band;
+    Stencil           clear, low, high;
+    double            clear_plain, haze_plain; /* depths by the columns alone */
 } Look;
 
-static void look_at(Look *out, const Blend *blend, const PathTable *low, const PathTable *high, const AirPath *path)
+static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
 {
+    const double sag_m = mean_sag_m(path->range_m), a_m = path->observer_m - sag_m, b_m = path->target_m - sag_m;
+    out->atmosphere = atmosphere;
     out->blend = blend;
-    out->low = low;
-    out->high = high;
-    stencil_at(&out->at_low, low, path->observer_m, path->target_m, path->range_m);
-    if (low != high) stencil_at(&out->at_high, high, path->observer_m, path->target_m, path->range_m);
+    out->band = band;
+    stencil_at(&out->clear, &atmosphere->clear_path[band], path->observer_m, path->target_m, path->range_m);
+    out->clear_plain = path->range_m * column_mean(&atmosphere->clear, band, a_m, b_m);
+    if (!blend) return;
+    stencil_at(&out->low, &blend->low->path[band], path->observer_m, path->target_m, path->range_m);
+    if (blend->low != blend->high)
+        stencil_at(&out->high, &blend->high->path[band], path->observer_m, path->target_m, path->range_m);
+    out->haze_plain = path->range_m * blend_haze_mean(blend, band, a_m, b_m);
 }
 
-static double look_value(const Look *look, int value_low, int value_high)
+static double look_depth(const Look *look, double temp_k)
 {
-    const double low = stencil_value(&look->at_low, look->low, value_low);
-    if (look->low == look->high) return low;
-    return blend_of(look->blend, low, stencil_value(&look->at_high, look->high, value_high));
+    const Blend *blend = look->blend;
+    const AirBand band = look->band;
+    double depth = look->clear_plain * exp(weight_value(&look->atmosphere->clear_path[band], &look->clear, temp_k));
+    if (!blend) return depth;
+    double haze = weight_value(&blend->low->path[band], &look->low, temp_k);
+    if (blend->low != blend->high)
+        haze = blend_of(blend, haze, weight_value(&blend->high->path[band], &look->high, temp_k));
+    return depth + look->haze_plain * fmax(haze, 0);
 }
 
-double blend_ln_ratio(const Blend *blend, AirBand band, const AirPath *path, int weight)
+/* ln of the ratio of what the path would radiate, were it opaque, to mean_black. */
+static double look_ln_opaque(const Look *look)
+{
+    const Blend *blend = look->blend;
+    const PathTable *low = &blend->low->path[look->band], *high = &blend->high->path[look->band];
+    const double value = stencil_value(&look->low, low, low->weights);
+    return low == high ? value : blend_of(blend, value, stencil_value(&look->high, high, high->weights));
+}
+
+double clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k)
 {
     Look look;
-    look_at(&look, blend, &blend->low->path[band], &blend->high->path[band], path);
-    return look_value(&look, weight, weight);
+    look_at(&look, atmosphere, NULL, band, path);
+    return look_depth(&look, temp_k);
 }
 
-static double ln_ratio_of_temp(const Look *look, double temp_k)
+double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k)
 {
-    double s, t;
-    const int a = weight_at(&s, look->low, temp_k), b = weight_at(&t, look->high, temp_k);
-    double low = stencil_value(&look->at_low, look->low, a);
-    if (s > 0) low += s * (stencil_value(&look->at_low, look->low, a + 1) - low);
-    if (look->low == look->high) return low;
-    double high = stencil_value(&look->at_high, look->high, b);
-    if (t > 0) high += t * (stencil_value(&look->at_high, look->high, b + 1) - high);
-    return blend_of(look->blend, low, high);
+    Look look;
+    look_at(&look, atmosphere, blend, band, path);
+    return look_depth(&look, temp_k);
 }
 
-static AirPath sane_path(const Blend *blend, const AirPath *path)
+/* Heights within the tables, a range that can be. */
+static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
 {
-    const Profile *profile = &blend->low->profile;
-    const double top_m = profile->height_m[profile->nodes - 1];
+    const PathTable *table = &atmosphere->clear_path[AIR_B];
+    const double top_m = fmin(table->axis[0][table->nodes[0] - 1], table->axis[1][table->nodes[1] - 1]);
     AirPath p = *path;
     p.observer_m = clamp(p.observer_m, 0, top_m);
     p.target_m = clamp(p.target_m, 0, top_m);
     p.range_m = fmax(p.range_m, fabs(p.target_m - p.observer_m));
+    p.rel_azimuth_rad = fabs(remainder(p.rel_azimuth_rad, 2 * pi_rad));
     return p;
 }
 
-static double scattered(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
+/* Ratio of scattered light to its estimate, of one visibility. */
+static double scattered_ratio(const PathTable *table, AirBand band, const AirPath *path)
 {
-    const double estimate = scatter_estimate(atmosphere, blend, band, path);
-    const PathTable *low = &blend->low->scattered, *high = &blend->high->scattered;
-    if (low->rows == 0 || high->rows == 0) return estimate;
-    Look look;
-    look_at(&look, blend, low, high, path);
-    double ratio[2];
-    for (int k = 0; k < 2; k++) {
-        const PathTable *table = k ? high : low;
-        const Stencil *stencil = k ? &look.at_high : &look.at_low;
-        ratio[k] = ratio[0];
-        if (k && low == high) break;
-        double s, a;
-        const int i = interval_of(&s, table->sun_x, table->suns, slant_x(path->sun_zenith_rad));
-        const int j = interval_of(&a, table->azimuth_deg, table->azimuths, path->rel_azimuth_rad / rad_per_deg);
-        double sum = 0;
-        for (int corner = 0; corner < 4; corner++) {
-            const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? a : 1 - a);
-            if (share == 0) continue;
-            const int node = (i + (corner & 1)) * table->azimuths + j + (corner >> 1);
-            sum += share * stencil_value(stencil, table, node * air_scattered_count + air_tabled_index(band));
-        }
-        ratio[k] = sum;
+    Stencil stencil;
+    stencil_at(&stencil, table, path->observer_m, -path_up(path), path->range_m);
+    double s, a, sum = 0;
+    const int i = interval_of(&s, table->sun_x, table->suns, slant_x(path->sun_zenith_rad));
+    const int j = interval_of(&a, table->azimuth_deg, table->azimuths, path->rel_azimuth_rad / rad_per_deg);
+    for (int corner = 0; corner < 4; corner++) {
+        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? a : 1 - a);
+        if (share == 0) continue;
+        const int node = (i + (corner & 1)) * table->azimuths + j + (corner >> 1);
+        sum += share * stencil_value(&stencil, table, node * air_tabled_count + air_tabled_index(band));
     }
-    return estimate * fmax(blend_of(blend, ratio[0], ratio[1]), 0);
+    return sum;
+}
+
+static double scattered(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path,
+                        double depth)
+{
+    ScatterParts parts;
+    scatter_parts(&parts, atmosphere, blend, band, path, depth);
+    double ratio = scattered_ratio(&blend->low->scattered, band, path);
+    if (blend->low != blend->high)
+        ratio = blend_of(blend, ratio, scattered_ratio(&blend->high->scattered, band, path));
+    return fmax(ratio, 0) * scatter_estimate(&parts, atmosphere, band, path_up(path), path->sun_zenith_rad,
+                                             path->rel_azimuth_rad);
 }
 
 static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
@@ -193,22 +240,18 @@ static void tabled_path(PathAir *out, const Atmosphere *atmosphere, const Blend 
     *out = (PathAir){.transmittance = 1, .sun_transmittance = 1};
     if (!(path->range_m > 0)) return;
     Look look;
-    look_at(&look, blend, &blend->low->path[band], &blend->high->path[band], path);
-    const double plain = path->range_m * blend_mean_extinction(blend, band, path->observer_m, path->target_m);
-    out->sun_transmittance = out->transmittance = exp(-plain * exp(look_value(&look, 0, 0)));
+    look_at(&look, atmosphere, blend, band, path);
+    const double depth = look_depth(&look, NAN);
+    out->sun_transmittance = out->transmittance = exp(-depth);
     if (air_band_is_thermal(band)) {
-        out->transmittance = exp(-plain * exp(ln_ratio_of_temp(&look, temp_k)));
-        const int low = path_emission_weight(look.low), high = path_emission_weight(look.high);
-        const double depth = plain * exp(look_value(&look, low, high));
-        out->thermal_w_m2_sr = exp(look_value(&look, look.low->weights, look.high->weights)) * -expm1(-depth);
+        const PathTable *table = &blend->low->path[band];
+        out->transmittance = exp(-look_depth(&look, temp_k));
+        out->thermal_w_m2_sr = exp(look_ln_opaque(&look)) *
+                               mean_black(atmosphere, band, path->observer_m, path->target_m) *
+                               -expm1(-look_depth(&look, table->weight_temp_k[path_emission_weight(table)]));
     }
-    if (path->sun_zenith_rad <= pi_rad / 2 && air_tabled_index(band) < air_scattered_count)
-        out->scattered_w_m2_sr = scattered(atmosphere, blend, band, path);
-}
-
-static double fold_azimuth(double rad)
-{
-    return fabs(remainder(rad, 2 * pi_rad));
+    if (path->sun_zenith_rad <= pi_rad / 2)
+        out->scattered_w_m2_sr = scattered(atmosphere, blend, band, path, depth);
 }
 
 void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
@@ -216,8 +259,7 @@ void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibili
 {
     Blend blend;
     blend_at(&blend, atmosphere, visibility_m);
-    AirPath p = sane_path(&blend, path);
-    p.rel_azimuth_rad = fold_azimuth(p.rel_azimuth_rad);
+    const AirPath p = sane_path(atmosphere, path);
     if (band != AIR_PAN) {
         tabled_path(out, atmosphere, &blend, band, &p, temp_k);
         return;
@@ -240,14 +282,14 @@ void blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, Ai
 {
     *out = (SunAir){0};
     if (!(sun_zenith_rad <= pi_rad / 2)) return;
-    double low[2 * air_tabled_count], high[2 * air_tabled_count];
+    double low[2], high[2]; /* ln depth, ln (diffuse / top) */
     const double at[2] = {observer_m, slant_x(sun_zenith_rad)}, top = atmosphere->sun_top_w_m2[band];
-    const int i = air_tabled_index(band), d = i + air_tabled_count;
-    grid_at(low, &blend->low->sun, at);
-    double depth = exp(low[i]), diffuse = exp(low[d]);
+    const int i = air_tabled_index(band);
+    grid_some(low, &blend->low->sun, at, i, air_tabled_count, 2);
+    double depth = exp(low[0]), diffuse = exp(low[1]);
     if (blend->high != blend->low) {
-        grid_at(high, &blend->high->sun, at);
-        const double clearest = exp(high[i]), clearest_diffuse = exp(high[d]);
+        grid_some(high, &blend->high->sun, at, i, air_tabled_count, 2);
+        const double clearest = exp(high[0]), clearest_diffuse = exp(high[1]);
         depth = fmax(blend->haze_low * depth + blend->haze_high * clearest, 0.3 * clearest);
         diffuse = clamp(blend->haze_low * diffuse + blend->haze_high * clearest_diffuse, 0.3 * clearest_diffuse, 1);
     }
@@ -276,12 +318,13 @@ void atmosphere_sun(SunAir *out, const Atmosphere *atmosphere, double visibility
 static double sky_scattered(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const double at[4],
                             const double angle_rad[3])
 {
-    double low[air_scattered_count], high[air_scattered_count];
-    grid_at(low, &blend->low->sky_scattered, at);
-    grid_at(high, &blend->high->sky_scattered, at);
-    const int i = air_tabled_index(band);
-    return fmax(blend_of(blend, low[i], high[i]), 0) *
-           scatter_estimate_sky(atmosphere, blend, band, at[0], angle_rad[0], angle_rad[1], angle_rad[2]);
+    double low, high;
+    grid_some(&low, &blend->low->sky_scattered, at, air_tabled_index(band), 1, 1);
+    grid_some(&high, &blend->high->sky_scattered, at, air_tabled_index(band), 1, 1);
+    ScatterParts parts;
+    scatter_parts_sky(&parts, atmosphere, blend, band, at[0], angle_rad[0], angle_rad[1]);
+    return fmax(blend_of(blend, low, high), 0) *
+           scatter_estimate(&parts, atmosphere, band, cos(angle_rad[0]), angle_rad[1], angle_rad[2]);
 }
 
 void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, double observer_m,
@@ -289,9 +332,9 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
 {
     Blend blend;
     blend_at(&blend, atmosphere, visibility_m);
-    const double angle_rad[3] = {clamp(zenith_rad, 0, pi_rad / 2), sun_zenith_rad, fold_azimuth(rel_azimuth_rad)};
-    const double top_m = blend.low->profile.height_m[blend.low->profile.nodes - 1];
-    const double at[4] = {clamp(observer_m, 0, top_m), slant_x(angle_rad[0]), slant_x(angle_rad[1]),
+    const double angle_rad[3] = {clamp(zenith_rad, 0, pi_rad / 2), sun_zenith_rad,
+                                 fabs(remainder(rel_azimuth_rad, 2 * pi_rad))};
+    const double at[4] = {fmax(observer_m, 0), slant_x(angle_rad[0]), slant_x(angle_rad[1]),
                           angle_rad[2] / rad_per_deg};
     *out = (SkyAir){0};
     if (air_band_is_thermal(band)) {
@@ -299,9 +342,9 @@ void atmosphere_sky(SkyAir *out, const Atmosphere *atmosphere, double visibility
         grid_at(low, &blend.low->sky_thermal, at);
         grid_at(high, &blend.high->sky_thermal, at);
         const int i = band == AIR_LWIR;
-        out->thermal_w_m2_sr = exp(blend_of(&blend, low[i], high[i]));
+        out->thermal_w_m2_sr = exp(blend_of(&blend, low[i], high[i])) * black_air(atmosphere, band, at[0]);
     }
-    if (!(sun_zenith_rad <= pi_rad / 2) || band == AIR_LWIR) return;
+    if (!(sun_zenith_rad <= pi_rad / 2)) return;
     for (AirBand part = band == AIR_PAN ? AIR_B : band; part <= (band == AIR_PAN ? AIR_R : band); part++)
         out->scattered_w_m2_sr += sky_scattered(atmosphere, &blend, part, at, angle_rad);
 }

@@ -1,5 +1,4 @@
-/* render/atmosphere_grid.c: tables over a full grid, and tables of paths, which are ragged: a path is no shorter than
- * its ends are apart in height. */
+/* render/atmosphere_grid.c: tables that hold every combination of their axes' values. */
 #include "render/atmosphere_private.h"
 
 #include <stdlib.h>
@@ -18,20 +17,22 @@ int interval_of(double *share, const double *ascending, int count, double x)
     return low;
 }
 
-static int compare_doubles(const void *a, const void *b)
+int axis_from(double *axis, int capacity, const double *values, int count)
 {
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-int axis_from(double *axis, int capacity, double *values, int count)
-{
-    qsort(values, (size_t)count, sizeof *values, compare_doubles);
     int nodes = 0;
     for (int i = 0; i < count; i++) {
-        if (nodes && axis[nodes - 1] == values[i]) continue;
+        if (i > 0 && values[i] == values[i - 1]) continue;
+        int low = 0, high = nodes; /* where the first is that is not below */
+        while (low < high) {
+            const int middle = (low + high) / 2;
+            if (axis[middle] < values[i]) low = middle + 1;
+            else high = middle;
+        }
+        if (low < nodes && axis[low] == values[i]) continue;
         if (nodes == capacity) return -1;
-        axis[nodes++] = values[i];
+        memmove(axis + low + 1, axis + low, (size_t)(nodes - low) * sizeof *axis);
+        axis[low] = values[i];
+        nodes++;
     }
     return nodes;
 }
@@ -168,84 +169,31 @@ void grid_close(Grid *grid)
     *grid = (Grid){0};
 }
 
-void grid_at(double *out, const Grid *grid, const double *at)
+void grid_at(double *out, const Grid *grid, const double *at) { grid_some(out, grid, at, 0, 1, grid->values); }
+
+void grid_some(double *out, const Grid *grid, const double *at, int first, int step, int count)
 {
     size_t offset[1 << grid_max_axes] = {0};
     double share[1 << grid_max_axes] = {1};
     int corners = 1;
     for (int i = 0; i < grid->axes; i++) {
         double t;
-        const int cell = interval_of(&t, grid->axis[i], grid->nodes[i], at[i]);
-        const int upper = cell + 1 < grid->nodes[i] ? cell + 1 : cell;
+        const size_t nodes = (size_t)grid->nodes[i];
+        const size_t cell = (size_t)interval_of(&t, grid->axis[i], grid->nodes[i], at[i]);
+        const bool both = t > 0;
         for (int c = 0; c < corners; c++) {
-            offset[c + corners] = offset[c] * (size_t)grid->nodes[i] + (size_t)upper;
-            share[c + corners] = share[c] * t;
-            offset[c] = offset[c] * (size_t)grid->nodes[i] + (size_t)cell;
+            if (both) {
+                offset[c + corners] = offset[c] * nodes + cell + 1;
+                share[c + corners] = share[c] * t;
+            }
+            offset[c] = offset[c] * nodes + cell;
             share[c] *= 1 - t;
         }
-        corners *= 2;
+        corners <<= both;
     }
-    for (int v = 0; v < grid->values; v++) out[v] = 0;
+    for (int v = 0; v < count; v++) out[v] = 0;
     for (int c = 0; c < corners; c++) {
-        if (share[c] == 0) continue;
-        const double *value = grid->value + offset[c] * (size_t)grid->values;
-        for (int v = 0; v < grid->values; v++) out[v] += share[c] * value[v];
+        const double *value = grid->value + offset[c] * (size_t)grid->values + first;
+        for (int v = 0; v < count; v++) out[v] += share[c] * value[v * step];
     }
-}
-
-/* ---- paths ---------------------------------------------------------------------------------- */
-
-/* Lagrange's cubic through the four rows around x (fewer at the ends), straight on below the first row. Below the
- * shortest range of all and beyond a pair's longest one: the end's value. */
-static int range_stencil(int *row, double *share, const PathTable *table, int pair, double x)
-{
-    const int first = table->first[pair], count = table->first[pair + 1] - first;
-    const double *node = table->ln_range + first;
-    x = clamp(x, table->ln_range_low, node[count - 1]);
-    int low, points;
-    if (count == 1) {
-        low = 0;
-        points = 1;
-    } else if (x < node[0]) {
-        low = 0;
-        points = 2;
-    } else {
-        double t;
-        const int cell = interval_of(&t, node, count, x);
-        low = cell > 0 ? cell - 1 : 0;
-        const int high = cell + 2 < count ? cell + 2 : count - 1;
-        points = high - low + 1;
-    }
-    for (int i = 0; i < points; i++) {
-        row[i] = first + low + i;
-        share[i] = 1;
-        for (int j = 0; j < points; j++)
-            if (j != i) share[i] *= (x - node[low + j]) / (node[low + i] - node[low + j]);
-    }
-    return points;
-}
-
-void stencil_at(Stencil *out, const PathTable *table, double observer_m, double target_m, double range_m)
-{
-    double s, t;
-    const int i = interval_of(&s, table->height_m, table->heights, observer_m);
-    const int j = interval_of(&t, table->height_m, table->heights, target_m);
-    const double x = log(fmax(range_m, 1e-3));
-    out->count = 0;
-    for (int corner = 0; corner < 4; corner++) {
-        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
-        if (share == 0) continue;
-        const int pair = (i + (corner & 1)) * table->heights + j + (corner >> 1);
-        const int points = range_stencil(out->row + out->count, out->share + out->count, table, pair, x);
-        for (int p = 0; p < points; p++) out->share[out->count + p] *= share;
-        out->count += points;
-    }
-}
-
-double stencil_value(const Stencil *stencil, const PathTable *table, int value)
-{
-    double sum = 0;
-    for (int p = 0; p < stencil->count; p++)
-        sum += stencil->share[p] * table->value[(size_t)stencil->row[p] * (size_t)table->values + (size_t)value];
-    return sum;
 }
