@@ -3,6 +3,7 @@
 #include "tests/check.h"
 #include "render/atmosphere.h"
 #include "render/planck.h"
+#include "render/probe.h"
 
 #include <sys/stat.h>
 
@@ -574,6 +575,26 @@ static void goes_to_its_limits(void **state)
         CHECK_NEAR(log(c.transmittance) / log(a.transmittance), 10, 1e-3); /* the sum of three bands bends */
         CHECK(a.transmittance > 0.99 && a.transmittance < 1);
     }
+    /* far: a straight line of 100 km is on the average 112 m below its ends (100 km squared over 12 times 7/6 of the
+     * Earth's radius), and has more air than the table's level path as that height has on a kilometre */
+    double level_depth = NAN;
+    char path[1024];
+    Table table;
+    CHECK(etc_path(path, sizeof path, "atmosphere/us1976/23000/paths_b.csv") && table_open(&table, path) == STATUS_OK);
+    for (int row = 0; row < table.rows; row++)
+        if (cell(&table, row, "observer_m") == 5500 && cell(&table, row, "target_m") == 5500 &&
+            cell(&table, row, "range_m") == 100000)
+            level_depth = cell(&table, row, "depth_sun");
+    table_close(&table);
+    const AirPath straight = {5500, 5500, 100000, pi_rad, 0}, above = {5500, 5500, 1000, pi_rad, 0};
+    const AirPath below = {5500 - 112, 5500 - 112, 1000, pi_rad, 0};
+    PathAir d;
+    atmosphere_path(&a, us1976, 23000, AIR_B, &straight, 300);
+    atmosphere_path(&c, us1976, 23000, AIR_B, &above, 300);
+    atmosphere_path(&d, us1976, 23000, AIR_B, &below, 300);
+    const double more = log(d.transmittance) / log(c.transmittance);
+    CHECK(more > 1.012); /* than can be missed */
+    CHECK_NEAR(-log(a.transmittance) / level_depth, more, 0.003); /* haze counts a little less on the long path */
     /* no way at all, and a far, thick one: its own air as a black body between its coldest and its warmest */
     const AirPath none = {0, 0, 0, 0.5, 0}, far = {0, 500, 400000, pi_rad, 0};
     atmosphere_path(&a, us1976, 5000, AIR_LWIR, &none, 300);
@@ -621,6 +642,44 @@ static void visibility_goes_smoothly(void **state)
     CHECK(at.transmittance == beyond.transmittance);
 }
 
+/* The probe: the same figures by row, bad rows with a reason and no figures. */
+static void probe_answers(void **state)
+{
+    (void)state;
+    const Probe *probe = NULL;
+    for (int i = 0; i < render_probe_count; i++)
+        if (strcmp(render_probes[i].name, "atmosphere") == 0) probe = &render_probes[i];
+    CHECK(probe != NULL);
+    static char rows[] = "model,visibility_km,band,observer_m,target_m,range_km,temp_k,sun_zenith_deg,rel_azimuth_deg\n"
+                         "us1976,23,lwir,0,0,5,300,,\n"
+                         "midlat_summer,5,nir,3000,0,5,300,45,90\n"
+                         "us1976,23,swir,0,0,5,300,,\n"
+                         "us1976,23,lwir,0,9000,5,300,,\n"
+                         "us1976,-1,lwir,0,0,5,300,,\n"
+                         "mars,23,lwir,0,0,5,300,,\n";
+    char text[4096] = "", path[text_file_size];
+    FILE *in = fmemopen(rows, strlen(rows), "r"), *out = fmemopen(text, sizeof text, "w");
+    log_set_sink(check_listen, NULL);
+    CHECK(in && out && probe_run(probe, 0, NULL, in, out) == STATUS_OK);
+    log_set_sink(NULL, NULL);
+    fclose(in);
+    fclose(out);
+    text_file(path, text);
+    Table table;
+    CHECK(table_open(&table, path) == STATUS_OK && table.rows == 6);
+    remove(path);
+    CHECK_NEAR(cell(&table, 0, "tau"), 0.625655, 5e-5); /* infrared.md */
+    CHECK_NEAR(cell(&table, 0, "path_radiance"), 11.7559, 2e-3);
+    CHECK(isnan(cell(&table, 0, "scattered")));
+    /* shared/data/atmosphere/slant_solar.csv: 3 km, 126.888 degrees, to the ground; to a per cent */
+    CHECK_NEAR(cell(&table, 1, "scattered") / 9.24522, 1, 0.01);
+    for (int row = 0; row < 6; row++) {
+        CHECK((row < 2) == !*word(&table, row, "error"));
+        CHECK((row < 2) == isfinite(cell(&table, row, "tau")));
+    }
+    table_close(&table);
+}
+
 /* ---- 5: spoilt tables ------------------------------------------------------------------------------------- */
 
 typedef struct SmallFile {
@@ -633,7 +692,8 @@ typedef struct SmallFile {
 #define PATHS "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,1000,0.2\n0,9000,9000,1\n9000,0,9000,1\n" \
               "9000,9000,100,0.01\n9000,9000,1000,0.1\n"
 #define THERMAL "observer_m,target_m,range_m,depth_sun,depth_250k,depth_300k,thermal_w_m2_sr\n" \
-                "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n9000,9000,100,0.01,0.01,0.01,1\n"
+                "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n" \
+                "9000,9000,100,0.01,0.01,0.01,1\n"
 #define SIX "b,g,r,nir,mwir,lwir\n"
 
 static const SmallFile small_files[] = {
@@ -861,6 +921,7 @@ int main(void)
         cmocka_unit_test(visibilities_between_and_beyond),
         cmocka_unit_test(goes_to_its_limits),
         cmocka_unit_test(visibility_goes_smoothly),
+        cmocka_unit_test(probe_answers),
         cmocka_unit_test_setup_teardown(refuses_and_says_where, make_small, remove_small),
         cmocka_unit_test_setup_teardown(survives_any_spoiling, make_small, remove_small),
     };
