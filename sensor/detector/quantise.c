@@ -40,10 +40,10 @@ static void display_prepare(Display *d, const DetectorConfig *config, DetectorLe
     d->curve[curve_intervals + 1] = 1; /* so that the very end needs no branch */
 }
 
-static inline double display_code(const Display *d, float in)
+/* x: of full scale. */
+static inline double display_code(const Display *d, double x)
 {
     /* written so that NaN falls to 0 at the first comparison */
-    double x = in * d->scale + d->shift;
     x = x > 0 ? x : 0;
     x = x < 1 ? x : 1;
     if (d->gamma) {
@@ -54,22 +54,19 @@ static inline double display_code(const Display *d, float in)
     return x * d->full + 0.5;
 }
 
-static void display_channel(void *out, int stride, int channel, const float *in, size_t count, const Display *d)
+static inline void display_write(void *out, size_t at, const Display *d, double x)
 {
-    if (d->full > 255) {
-        uint16_t *code = (uint16_t *)out + channel;
-        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint16_t)display_code(d, in[i]);
-    } else {
-        uint8_t *code = (uint8_t *)out + channel;
-        for (size_t i = 0; i < count; i++) code[i * (size_t)stride] = (uint8_t)display_code(d, in[i]);
-    }
+    if (d->full > 255)
+        ((uint16_t *)out)[at] = (uint16_t)display_code(d, x);
+    else
+        ((uint8_t *)out)[at] = (uint8_t)display_code(d, x);
 }
 
 void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level)
 {
     Display d;
     display_prepare(&d, config, level);
-    display_channel(out, 1, 0, in, count, &d);
+    for (size_t i = 0; i < count; i++) display_write(out, i, &d, in[i] * d.scale + d.shift);
 }
 
 void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
@@ -77,7 +74,12 @@ void detector_display_rgb(void *out, const float *const in[3], size_t count, con
 {
     Display d;
     display_prepare(&d, config, level);
-    for (int c = 0; c < 3; c++) display_channel(out, 3, c, in[c], count, &d);
+    for (size_t i = 0; i < count; i++) {
+        const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, shown = fmax(mean * d.scale + d.shift, 0);
+        const bool   has_hue = mean > 0 && mean < INFINITY;
+        for (size_t c = 0; c < 3; c++)
+            display_write(out, 3 * i + c, &d, has_hue ? shown * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
+    }
 }
 
 void detector_display_db(void *out, const float *power, size_t count, double dynamic_range_db, int bits)
