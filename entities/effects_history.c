@@ -292,6 +292,17 @@ static double share_of(int64_t number, double age_s, double full_s, double *toge
     return level == stage && stage < most_halvings ? one * (1 - f) : one * (1 + f);
 }
 
+/* Down, or up, to where the vehicle is shown. Attitude stays: a puff is wider than a slope lifts it. */
+static void set_down(Motion *motion, const EffectSource *source, const double up_ecef[3])
+{
+    const double below_body[3] = {0, 0, source->base_below_m};
+    double       lever_ecef[3], base_ecef[3];
+    m3_mul_v3(lever_ecef, motion->r_ecef_from_body, below_body);
+    v3_add(base_ecef, motion->p_ecef, lever_ecef);
+    const double above_m = contact_above_m(source->ground, base_ecef);
+    if (isfinite(above_m)) v3_add_scaled(motion->p_ecef, motion->p_ecef, -above_m, up_ecef);
+}
+
 static void put_source(PuffList *list, const EffectSource *source, double t_s)
 {
     const EffectLaw *law = &list->table->law[source->kind];
@@ -321,10 +332,11 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         Motion         motion;
         double         at_body[3], at_ecef[3];
         dead_reckon(&motion, &source->motion, clamp(let_go_s - source->motion_s, 0, source->hold_s));
+        v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
+        if (source->ground) set_down(&motion, source, puff.up_ecef);
         for (int i = 0; i < 3; i++) at_body[i] = source->at_body[i] + source->spread_body[i] * draw(seed, 0, i);
         m3_mul_v3(at_ecef, motion.r_ecef_from_body, at_body);
         v3_add(puff.p_ecef, motion.p_ecef, at_ecef);
-        v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
         puff.along_m = source->speed_mps * interval_s * together;
         if (source->kind == EFFECT_FLAME) { /* tongues */

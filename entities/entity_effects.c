@@ -57,7 +57,8 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
                            .to_s = slot->stopped ? INFINITY : slot->report_s + slot->timeout_s,
                            .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
-                           .hold_s = slot->hold_s, .scale = size_of(model)};
+                           .hold_s = slot->hold_s, .scale = size_of(model), .base_below_m = below_m};
+    if (contact_applies(slot->type) && table->config.ground.elevation) source.ground = &table->config.ground;
     if (stands) {
         Motion motion;
         dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));

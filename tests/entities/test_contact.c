@@ -158,6 +158,36 @@ static void every_pose_handed_out_stands(void **state)
     elevation_destroy(&ground);
 }
 
+/* Dust comes off the wheels where the vehicle is shown, not where its sender's ground was. */
+static void dust_rises_from_this_ground(void **state)
+{
+    (void)state;
+    const LocalFrame  frame = frame_at(0, 0);
+    Elevation         ground = plane(200, 2, 27, 0.125, 0);
+    EntityTableConfig config = entity_table_default_config();
+    config.ground = (ContactGround){&frame, &ground};
+    Fixture        f = fixture_open(&config);
+    DisEntityState tank = report(1, tank_type), flyer = report(2, helicopter_type);
+    tank.velocity_mps[2] = flyer.velocity_mps[2] = 10; /* north */
+    tank.appearance = flyer.appearance = UINT32_C(2) << 7;
+    hear(&f, &tank, 0);
+    hear(&f, &flyer, 0);
+    CHECK(seen_at(&f, 1, 2));
+    int dust = 0;
+    for (int i = 0; i < f.snapshot.puff_count; i++) {
+        const EffectPuff *puff = &f.snapshot.puff[i];
+        const double above_m = contact_above_m(&config.ground, puff->p_ecef);
+        dust += puff->kind == EFFECT_DUST;
+        if (puff->kind == EFFECT_DUST)
+            CHECK(fabs(above_m) < 1);
+        else
+            CHECK(above_m < -20); /* the helicopter's: at the height it gave, under this ground */
+    }
+    CHECK(dust >= 4 && f.snapshot.puff_count > dust);
+    fixture_close(&f);
+    elevation_destroy(&ground);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -165,6 +195,7 @@ int main(void)
         cmocka_unit_test(it_moves_along_the_local_vertical),
         cmocka_unit_test(who_does_not_stand_stays),
         cmocka_unit_test(every_pose_handed_out_stands),
+        cmocka_unit_test(dust_rises_from_this_ground),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
