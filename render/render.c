@@ -28,6 +28,12 @@ unsigned render_air_bands(unsigned bands, OpticalChannels optical)
     return air;
 }
 
+int render_places(int samples, int edge_samples)
+{
+    const int n = edge_samples > samples ? edge_samples : samples;
+    return n * n;
+}
+
 double veil_taken(const Scratch *s, const Job *job, Band band, int sample)
 {
     const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical == OPTICAL_RGB   ? effect_band_g

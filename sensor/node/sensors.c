@@ -16,6 +16,7 @@ static void apply_settings(SensorPreset *p, const Config *config)
     over(&p->line_noise, config->detector.line_noise, 1);
     p->noise_scale = config->detector.noise;
     p->smear       = config->detector.smear;
+    p->optical     = config_optical(config);
     preset_refresh(p);
 }
 
