@@ -59,7 +59,8 @@ static void trace_veils(Scratch *s, const Job *job)
     }
     const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
                                                                  &job->request->view, box[0], box[1], box[2], box[3]);
-    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, render_air_bands(job->request->bands, job->request->optical));
+    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m,
+              render_air_bands(job->request->bands, job->request->optical));
 }
 
 double pixel_cosine3(const View *view, int x, int y)
@@ -158,7 +159,8 @@ static void gather_around(Scratch *s, const Job *job)
 {
     const Block         *block = &s->block;
     const RenderRequest *request = job->request;
-    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog, job->snapshot};
+    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog,
+                                  job->snapshot};
     const int            samples = block->n * block->n;
     uint64_t             key[hits_capacity];
     for (int i = 0; i < s->hits.count; i++)

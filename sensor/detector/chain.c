@@ -137,7 +137,6 @@ void chain_destroy(Chain *c)
     free(c);
 }
 
-const SensorPreset *chain_preset(const Chain *c) { return &c->preset; }
 const uint16_t *chain_counts(const Chain *c, int channel) { return c->channel[channel].count; }
 const float    *chain_values(const Chain *c, int channel) { return c->channel[channel].value; }
 double          chain_step_e(const Chain *c) { return c->step_e; }
