@@ -172,6 +172,18 @@ static void gather_around(Scratch *s, const Job *job)
                  key, &s->counters.visibility);
 }
 
+/* What warms the ground by its brightness is the ground's own pattern, for whose range (landscape_texture: 0.6 .. 1.4)
+ * thermal.c has its law. A photograph's white roof is six times as bright as its class's mean, and by that law would be
+ * colder than the air at noon. */
+static void find_temperatures(Scratch *s, const Job *job)
+{
+    const World *world = job->world;
+    float        pattern[hits_capacity];
+    for (int i = 0; i < s->hits.count; i++) pattern[i] = fminf(fmaxf(s->texture[optical_channel_pan][i], 0.6f), 1.4f);
+    thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
+                        pattern);
+}
+
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
@@ -188,8 +200,7 @@ static void shade_bands(Scratch *s, const Job *job)
         deliver(s, job, picture_optical + c);
     }
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
-        thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
-                            s->material, s->texture[optical_channel_pan]);
+        find_temperatures(s, job);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
