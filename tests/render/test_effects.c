@@ -61,7 +61,8 @@ static void path_north(Veils *veils, const Air *air, int band, double range_m, f
     hits.count = rays.count = 1;
     hits.range_m[0] = hits.p_enu[1][0] = range_m;
     rays.d_enu[1][0] = 1;
-    air_veils(veils, air, (AirBand)band, &hits, &rays, &temp_k);
+    float temps_k[8] = {temp_k}; /* eight paths at once: arrays are padded, as those of Hits are */
+    air_veils(veils, air, (AirBand)band, &hits, &rays, temps_k);
 }
 
 static EffectPuff puff_at(EffectKind kind, double north_m, double age_s, double mass_kg)
