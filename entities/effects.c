@@ -8,8 +8,6 @@ static const char *const kind_names[EFFECT_KIND_COUNT] = {
     "burst_dust", "sparks", "flame", "smoke", "engine_smoke", "dust", "contrail", "motor_plume", "motor_smoke",
     "afterburner"};
 
-const char *effect_kind_name(EffectKind kind) { return kind_names[kind]; }
-
 /* ---- table -------------------------------------------------------------------------------- */
 
 static const struct {

@@ -18,8 +18,6 @@ typedef enum EffectKind {
     EFFECT_KIND_COUNT
 } EffectKind;
 
-const char *effect_kind_name(EffectKind kind);
-
 /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7 (the mean of the three), 0.7-1.1, 3.4-4.8, 8-12 um. */
 enum { effect_band_b, effect_band_g, effect_band_r, effect_band_pan, effect_band_nir, effect_band_mwir,
        effect_band_lwir, effect_band_count };

@@ -207,11 +207,15 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
     }
 }
 
-/* Result codes of a Detonation (SISO-REF-010, from memory). */
-static bool result_is_none(int result) { return result == 6 || (result >= 29 && result <= 32); }
+/* Result codes of a Detonation (SISO-REF-010, UID 62, checked against public transcriptions of it): 6 none, 31 .. 33
+ * misses that do not burst, 18 .. 20 hits on a building. */
+static bool result_is_none(int result) { return result == 6 || (result >= 31 && result <= 33); }
 static bool result_is_ground(int result) { return result == 3 || result == 4 || (result >= 11 && result <= 13); }
 static bool result_is_water(int result) { return (result >= 14 && result <= 16) || result == 24; }
-static bool result_is_entity(int result) { return result == 1 || (result >= 7 && result <= 10); }
+static bool result_is_entity(int result)
+{
+    return result == 1 || (result >= 7 && result <= 10) || (result >= 18 && result <= 20);
+}
 
 static void put_burst(PuffList *list, const EffectEvent *e, double t_s)
 {

@@ -586,8 +586,7 @@ Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets
     return status;
 }
 
-/* ---- osgconv
- * --------------------------------------------------------------------------------------------------------- */
+/* ---- osgconv ------------------------------------------------------------------------------------------------- */
 
 /* Waits for a process, up to `seconds`; false: it had to be stopped. */
 static bool wait_for(int *ended, pid_t child, double seconds)

@@ -2,9 +2,10 @@
  *
  * A pixel is sampled again where it and a neighbour (left, right, above, below) show different entities, parts or
  * materials, surfaces that stand at an angle, one in shadow and one not, or a step in depth that neither's own plane
- * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in
- * the boxes of targets that are too large for a footprint and small enough to have such parts are sampled again
- * whatever they show, and so is the ground where a small target's shadow falls. */
+ * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls
+ * between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in the boxes of targets
+ * that are too large for a footprint and small enough to have such parts are sampled again whatever they show, and so
+ * is the ground where a small target's shadow falls. */
 #include "render/render_private.h"
 
 /* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
@@ -47,7 +48,8 @@ static bool shadow_box(double box[4], const Job *job, int index)
     if (!job->world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
     enu_from_ecef(foot_enu, &job->world->frame, entity->p_ecef);
     /* a flying one's shadow is elsewhere, and as faint as it is far */
-    const double above_m = foot_enu[2] - elevation_height(&job->world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
+    const double above_m =
+        foot_enu[2] - elevation_height(&job->world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
     if (!(fabs(above_m) < model->height_m)) return false;
     v3_add_scaled(tip_enu, foot_enu, -model->height_m / sun[2], sun);
     tip_enu[2] = foot_enu[2];
@@ -157,7 +159,8 @@ void spread_ground(Scratch *s, const Job *job)
             s->hits.p_enu[k][i] = view->p_enu[k] + range_m * d_enu[k];
             s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
         }
-        s->hits.surface[i] = (uint8_t)landscape_surface(job->world->landscape, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
-        s->shadow[i]       = job->shadow[px];
+        s->hits.surface[i] =
+            (uint8_t)landscape_surface(job->world->landscape, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
+        s->shadow[i] = job->shadow[px];
     }
 }

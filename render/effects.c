@@ -22,10 +22,10 @@ static double phase_per_sr(double asymmetry, double cosine)
     return (1 - g2) / (4 * pi_rad * base * sqrt(base));
 }
 
-/* Below 900 K nothing shows in the visible that a display could: under 1e-5 W/(m2 sr). */
+/* Below 500 K nothing shows to 1.1 um: under 2e-5 W/(m2 sr). */
 static double glow_w_m2_sr(int band, double temp_k)
 {
-    if (band < effect_band_mwir && temp_k < 900) return 0;
+    if (band < effect_band_mwir && temp_k < 500) return 0;
     return planck_band(band_low_m[band], band_high_m[band], temp_k, NULL);
 }
 

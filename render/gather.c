@@ -11,6 +11,7 @@ typedef struct Paths {
     Rays rays;
     Hits hits;
     int of_hit[hits_capacity], of_sample[hits_capacity];
+    int of_path[hits_capacity]; /* its place among those that started together */
     float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
     uint16_t material[hits_capacity];
     float texture[hits_capacity], temp_k[hits_capacity];
@@ -63,6 +64,9 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, Visibili
         p->texture[i] = 1;
         p->material[i] = p->hits.entity[i] ? (uint16_t)scene->materials->part[p->hits.model[i]][p->hits.part[i] - 1]
                                            : (uint16_t)scene->materials->surface[p->hits.surface[i]];
+        if (p->hits.entity[i] && scene->materials->burnt &&
+            snapshot_is_wreck(&scene->snapshot->entity[p->hits.entity[i] - 1]))
+            p->material[i] = (uint16_t)scene->materials->burnt;
     }
     memset(p->shadow, 0, sizeof p->shadow);
     if (scene->air->sun_d_enu[2] > 0)
@@ -101,11 +105,15 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
     return radiance;
 }
 
-/* Follows one block of paths to its end, adding what they bring. */
+/* Follows one block of paths to its end, adding what they bring: each path's first, then path by path, so that where a
+ * block ends changes no bit. */
 static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const GatherScene *scene, unsigned bands,
                    const uint64_t *key, VisibilityCounters *counters)
 {
-    double ground[AIR_BAND_COUNT] = {0};
+    double    ground[AIR_BAND_COUNT] = {0}, brought[AIR_BAND_COUNT][hits_capacity] = {{0}};
+    int       of_hit[hits_capacity];
+    const int started = p->rays.count;
+    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i];
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) ground[b] = ground_radiance(scene, (AirBand)b);
 
@@ -117,11 +125,11 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
             if (!(bands >> b & 1)) continue;
             for (int i = 0; i < p->hits.count; i++) {
                 double left;
-                sum[b][p->of_hit[i]] += p->share[b][i] * met(&left, p, i, scene, (AirBand)b, ground[b], last);
+                brought[b][p->of_path[i]] += p->share[b][i] * met(&left, p, i, scene, (AirBand)b, ground[b], last);
                 rho[b][i] = (float)left;
             }
         }
-        if (last) return;
+        if (last) break;
         /* those that met something go on, closed up; no slot is read after a later path was written to it */
         p->rays.count = 0;
         for (int i = 0; i < p->hits.count; i++) {
@@ -130,11 +138,14 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
             const uint32_t draw = (uint32_t)(2 * p->of_sample[i]);
             const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_next, draw, to),
                                  random_uniform(0, stream_next, draw + 1, to));
-            p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i];
+            p->of_hit[at] = p->of_hit[i], p->of_sample[at] = p->of_sample[i], p->of_path[at] = p->of_path[i];
             for (int b = 0; b < AIR_BAND_COUNT; b++)
                 if (bands >> b & 1) p->share[b][at] = p->share[b][i] * rho[b][i];
         }
     }
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1)
+            for (int i = 0; i < started; i++) sum[b][of_hit[i]] += brought[b][i];
 }
 
 void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,

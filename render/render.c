@@ -28,6 +28,12 @@ unsigned render_air_bands(unsigned bands, OpticalChannels optical)
     return air;
 }
 
+int render_places(int samples, int edge_samples)
+{
+    const int n = edge_samples > samples ? edge_samples : samples;
+    return n * n;
+}
+
 double veil_taken(const Scratch *s, const Job *job, Band band, int sample)
 {
     const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical == OPTICAL_RGB   ? effect_band_g
@@ -53,7 +59,8 @@ static void trace_veils(Scratch *s, const Job *job)
     }
     const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
                                                                  &job->request->view, box[0], box[1], box[2], box[3]);
-    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m, render_air_bands(job->request->bands, job->request->optical));
+    veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m,
+              render_air_bands(job->request->bands, job->request->optical));
 }
 
 double pixel_cosine3(const View *view, int x, int y)
@@ -152,7 +159,8 @@ static void gather_around(Scratch *s, const Job *job)
 {
     const Block         *block = &s->block;
     const RenderRequest *request = job->request;
-    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog, job->snapshot};
+    const GatherScene    scene = {job->visibility, job->air, &job->world->materials, job->world->catalog,
+                                  job->snapshot};
     const int            samples = block->n * block->n;
     uint64_t             key[hits_capacity];
     for (int i = 0; i < s->hits.count; i++)
@@ -162,6 +170,18 @@ static void gather_around(Scratch *s, const Job *job)
                            (uint64_t)(i % samples);
     gather_light(&s->gathered, &scene, &s->hits, render_air_bands(block->bands, request->optical), request->sky_samples,
                  key, &s->counters.visibility);
+}
+
+/* What warms the ground by its brightness is the ground's own pattern, for whose range (landscape_texture: 0.6 .. 1.4)
+ * thermal.c has its law. A photograph's white roof is six times as bright as its class's mean, and by that law would be
+ * colder than the air at noon. */
+static void find_temperatures(Scratch *s, const Job *job)
+{
+    const World *world = job->world;
+    float        pattern[hits_capacity];
+    for (int i = 0; i < s->hits.count; i++) pattern[i] = fminf(fmaxf(s->texture[optical_channel_pan][i], 0.6f), 1.4f);
+    thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
+                        pattern);
 }
 
 static void shade_bands(Scratch *s, const Job *job)
@@ -180,8 +200,7 @@ static void shade_bands(Scratch *s, const Job *job)
         deliver(s, job, picture_optical + c);
     }
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
-        thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
-                            s->material, s->texture[optical_channel_pan]);
+        find_temperatures(s, job);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,

@@ -82,6 +82,10 @@ float *picture_plane(const Picture *picture, int plane);
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame, const char *isa);
 void   world_close(World *world);
 
+/* How many different places along a row (or column) of a pixel an edge there is averaged over: n^2 for the turned grid
+ * of n x n rays that edges get. A detector's footprint must not take them away again (sensor/detector/mtf.h). */
+int render_places(int samples, int edge_samples);
+
 /* 1 << AirBand of all that a request of these bands needs of the air. */
 unsigned render_air_bands(unsigned bands, OpticalChannels optical);
 

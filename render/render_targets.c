@@ -1,4 +1,5 @@
-/* render/render_targets.c: what each target gave: its boxes, its area seen and unseen, its own radiance, who hides it. */
+/* render/render_targets.c: what each target gave: its boxes, its area seen and unseen, its own radiance, who hides
+ * it. */
 #include "render/render_private.h"
 
 #include <stdlib.h>
@@ -68,7 +69,8 @@ static void note_hidden(HiddenBy *pairs, int target, int occluder, int64_t area)
 static int64_t sample_steps(int64_t *seen, const Scratch *s, const Job *job, size_t px)
 {
     const int64_t whole = job->steps_per_px / (s->block.n * s->block.n) * s->block.sign;
-    *seen = job->picture->covered && job->picture->covered[px] > 0 ? llrint((double)whole * (1 - (double)job->picture->covered[px])) : whole;
+    const double  covered = job->picture->covered ? (double)job->picture->covered[px] : 0;
+    *seen = covered > 0 ? llrint((double)whole * (1 - covered)) : whole;
     return whole;
 }
 

@@ -20,7 +20,7 @@ static const char *mtf_row(void *state, const ProbeValue *in, ProbeValue *out)
     (void)state;
     const double   wavelength_um = in[0].number, f_number = in[1].number, pitch_um = in[3].number, f = in[6].number;
     const MtfChain chain = {.cutoff_cyc_px = pitch_um / (wavelength_um * f_number), .obscuration = or_else(&in[2], 0),
-                            .footprint_px = 1, .samples = 1, .smear_px = {or_else(&in[4], 0), 0},
+                            .footprint_px = 1, .places = 1, .smear_px = {or_else(&in[4], 0), 0},
                             .jitter_px = or_else(&in[5], 0)};
     if (!(wavelength_um > 0 && f_number > 0 && pitch_um > 0))
         return "wavelength_um, f_number and pitch_um must be above 0";

@@ -10,7 +10,8 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
-enum { most_sheets = 4096, path_size = 4096 };
+/* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
+enum { most_sheets = 4096, path_size = 4096, most_side = 100000000 };
 
 static pthread_once_t once = PTHREAD_ONCE_INIT;
 
@@ -60,6 +61,11 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
                   o.height);
         return STATUS_BAD_VALUE;
     }
+    if (o.width > most_side || o.height > most_side) {
+        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key, path,
+                  o.width, o.height, (int)most_side);
+        return STATUS_BAD_VALUE;
+    }
     if (!crs) {
         log_error("%s: %s does not say its coordinate system; gdal_edit.py -a_srs EPSG:nnnn %s", key, path, path);
         return STATUS_BAD_VALUE;
@@ -84,8 +90,8 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
 static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
 {
     const double *a = raster->crs_from_px, *b = o->transform;
-    if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes || raster->bands != o->bands ||
-        raster->metres_per_unit != o->metres_per_unit)
+    if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
+        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit)
         return false;
     static const int terms[4] = {1, 2, 4, 5};
     for (int k = 0; k < 4; k++)

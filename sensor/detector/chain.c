@@ -46,7 +46,7 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
     const size_t        count = (size_t)w * (size_t)h;
     const uint32_t      stream = (uint32_t)(3 * p->band + index);
     PhotonDetector      photons = p->photons;
-    preset_band(&photons.low_m, &photons.high_m, p->band, chain->channels == 3 ? index : -1);
+    if (chain->channels == 3) preset_band(&photons.low_m, &photons.high_m, p->band, p->optical, index);
     Status status = photon_table_create(&c->photons, &photons, p->band != BAND_OPTICAL);
     if (status != STATUS_OK) return status;
     c->count = calloc(count, sizeof *c->count);
@@ -75,8 +75,7 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
     return STATUS_OK;
 }
 
-Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int channels, int samples,
-                    uint64_t seed)
+Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed)
 {
     const size_t          count = (size_t)width * (size_t)height;
     const PhotonDetector *d     = &preset->photons;
@@ -85,7 +84,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
     c->preset   = *preset;
     c->width    = width;
     c->height   = height;
-    c->channels = channels;
+    c->channels = preset->band == BAND_OPTICAL && preset->optical == OPTICAL_RGB ? 3 : 1;
     c->seed     = seed;
     c->exposure = 1;
     c->full     = (uint16_t)((1u << (int)preset->bits) - 1);
@@ -95,7 +94,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
 
     /* diffraction at the middle of the band */
     const MtfChain mtf = {.cutoff_cyc_px = d->pitch_m / (0.5 * (d->low_m + d->high_m) * d->f_number),
-                          .obscuration = preset->obscuration, .footprint_px = preset->footprint, .samples = samples,
+                          .obscuration = preset->obscuration, .footprint_px = preset->footprint, .places = places,
                           .jitter_px = preset->jitter_px};
     Status status = blur_create(&c->blur, width, height, &mtf);
     c->work       = calloc(count, sizeof *c->work);
@@ -109,7 +108,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
             scan_line_noise(c->pool + (size_t)k * count, width, height, &preset->scan, preset->line_noise_px, seed,
                             (uint32_t)preset->band, k);
     }
-    for (int k = 0; k < channels && status == STATUS_OK; k++) status = channel_create(&c->channel[k], c, k);
+    for (int k = 0; k < c->channels && status == STATUS_OK; k++) status = channel_create(&c->channel[k], c, k);
     if (status != STATUS_OK) {
         chain_destroy(c);
         return status;
@@ -138,7 +137,6 @@ void chain_destroy(Chain *c)
     free(c);
 }
 
-const SensorPreset *chain_preset(const Chain *c) { return &c->preset; }
 const uint16_t *chain_counts(const Chain *c, int channel) { return c->channel[channel].count; }
 const float    *chain_values(const Chain *c, int channel) { return c->channel[channel].value; }
 double          chain_step_e(const Chain *c) { return c->step_e; }

@@ -12,11 +12,10 @@
 
 typedef struct Chain Chain;
 
-/* samples: rays a side of a pixel, which the picture has averaged (MtfChain). channels: 3 (R G B) or 1. */
-Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int channels, int samples,
-                    uint64_t seed);
+/* places: along a row of a pixel, which the picture has averaged (MtfChain, render_places). Of the optical band there
+ * are three channels, R G B, or one, as preset->optical says; else one. */
+Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed);
 void   chain_destroy(Chain *chain);
-const SensorPreset *chain_preset(const Chain *chain);
 
 /* Sets the exposure for these planes, [channels], in-band W/(m2 sr). Before the calls below. */
 void chain_expose(Chain *chain, const float *const radiance[]);

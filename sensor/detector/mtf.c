@@ -42,7 +42,7 @@ double mtf_optics(const MtfChain *c, double fx, double fy)
     return isinf(c->cutoff_cyc_px) ? 1 : mtf_aperture(sqrt(fx * fx + fy * fy) / c->cutoff_cyc_px, c->obscuration);
 }
 
-/* sinc(w f) over the mean of n rays at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
+/* sinc(w f) over the mean of n places at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
 static double footprint_axis(double footprint_px, int n, double f)
 {
     return mtf_sinc(footprint_px * f) * mtf_sinc(f / n) / mtf_sinc(f);
@@ -50,7 +50,7 @@ static double footprint_axis(double footprint_px, int n, double f)
 
 double mtf_footprint(const MtfChain *c, double fx, double fy)
 {
-    return footprint_axis(c->footprint_px, c->samples, fx) * footprint_axis(c->footprint_px, c->samples, fy);
+    return footprint_axis(c->footprint_px, c->places, fx) * footprint_axis(c->footprint_px, c->places, fy);
 }
 
 double mtf_smear(const MtfChain *c, double fx, double fy)

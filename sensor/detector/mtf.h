@@ -19,16 +19,16 @@ typedef struct MtfChain {
     double cutoff_cyc_px;  /* pitch / (wavelength x f-number); INFINITY: no diffraction */
     double obscuration;
     double footprint_px;   /* side of the square that a detector sees; 1: the whole pixel */
-    int    samples;        /* rays a side of a pixel that the picture has averaged already, 1 .. */
+    int    places;         /* along a row of a pixel, or a column, that the picture has averaged already, 1 .. */
     double smear_px[2];    /* of the line of sight within the integration time: column, row */
     double jitter_px;      /* rms a direction, within the integration time */
 } MtfChain;
 
 /* What the optics pass at (fx, fy), |f| <= 0.5. */
 double mtf_optics(const MtfChain *chain, double fx, double fy);
-/* What the footprint passes on top of what the renderer's own averaging has taken away already. n rays on a
- * regular grid pass sin(pi f) / (n sin(pi f / n)): nothing is taken by one ray, the whole sinc by many, and this
- * is the quotient. For a footprint of a whole pixel that is sinc(f / n). */
+/* What the footprint passes on top of what the renderer's own averaging has taken away already. n evenly spaced
+ * places pass sin(pi f) / (n sin(pi f / n)): nothing is taken by one, the whole sinc by many, and this is the
+ * quotient. Exact along rows and columns. For a footprint of a whole pixel that is sinc(f / n). */
 double mtf_footprint(const MtfChain *chain, double fx, double fy);
 double mtf_smear(const MtfChain *chain, double fx, double fy);
 double mtf_jitter(const MtfChain *chain, double fx, double fy);

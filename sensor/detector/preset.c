@@ -42,12 +42,16 @@ static const Column columns[] = {
 };
 enum { column_count = sizeof columns / sizeof columns[0] };
 
-void preset_band(double *low_m, double *high_m, Band band, int channel)
+void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel)
 {
     static const double low_um[BAND_COUNT] = {0.4, 3.4, 8, NAN}, high_um[BAND_COUNT] = {0.7, 4.8, 12, NAN};
     *low_m  = low_um[band] * 1e-6;
     *high_m = high_um[band] * 1e-6;
-    if (band == BAND_OPTICAL && channel >= 0) { /* R first */
+    if (band != BAND_OPTICAL) return;
+    if (optical == OPTICAL_NIR) {
+        *low_m  = 0.7e-6;
+        *high_m = 1.1e-6;
+    } else if (optical == OPTICAL_RGB && channel >= 0) { /* R first */
         *low_m  = (0.6 - 0.1 * channel) * 1e-6;
         *high_m = (0.7 - 0.1 * channel) * 1e-6;
     }
@@ -55,7 +59,7 @@ void preset_band(double *low_m, double *high_m, Band band, int channel)
 
 void preset_refresh(SensorPreset *p)
 {
-    preset_band(&p->photons.low_m, &p->photons.high_m, p->band, -1);
+    preset_band(&p->photons.low_m, &p->photons.high_m, p->band, p->optical, -1);
     p->photons.dark_e         = p->dark_e_s * p->photons.integration_s;
     p->ratio.sigma[NOISE_TVH] = 1;
 }

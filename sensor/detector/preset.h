@@ -10,6 +10,7 @@
 typedef struct SensorPreset {
     char           name[32];
     Band           band;               /* optical, mwir or lwir */
+    OpticalChannels optical;           /* what it sees of the optical band */
     double         width_px, height_px, hfov_deg;
     PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s */
     double         obscuration, footprint, jitter_px;
@@ -30,7 +31,7 @@ typedef struct SensorPreset {
 Status preset_read(SensorPreset *out, const char *path, const char *name);
 /* After fields were changed by hand. */
 void   preset_refresh(SensorPreset *preset);
-/* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of optical: R G B; -1: the whole. */
-void   preset_band(double *low_m, double *high_m, Band band, int channel);
+/* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */
+void   preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
 
 #endif

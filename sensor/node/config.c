@@ -231,6 +231,13 @@ static Status set_key(Config *config, const Key *key, const char *value, const c
     return status;
 }
 
+OpticalChannels config_optical(const Config *config)
+{
+    return strcmp(config->sensor.optical, "rgb") == 0   ? OPTICAL_RGB
+           : strcmp(config->sensor.optical, "nir") == 0 ? OPTICAL_NIR
+                                                        : OPTICAL_PAN;
+}
+
 bool config_given(const Config *config, const char *name) { return config->given[find_key(name) - keys]; }
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)

@@ -5,7 +5,7 @@
 #ifndef SENSOR_NODE_CONFIG_H
 #define SENSOR_NODE_CONFIG_H
 
-#include "pitviper.h"
+#include "render/view.h"
 
 enum { config_keys_max = 256 };
 
@@ -83,6 +83,8 @@ Status config_read(Config *config, const char *path);
 Status config_set(Config *config, const char *key, const char *value, const char *source);
 /* Whether a file or the command line has set it; the key must exist. */
 bool   config_given(const Config *config, const char *key);
+/* What sensor.optical says. */
+OpticalChannels config_optical(const Config *config);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
 /* The canonical text: every key and value, in table order. What config_sha256 hashes. */

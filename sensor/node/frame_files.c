@@ -298,7 +298,7 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
         double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
         const double mean   = mean_radiance(picture, b);
         if (!chain[b] || !(mean > 0)) continue;
-        preset_band(&low_m, &high_m, (Band)b, -1);
+        preset_band(&low_m, &high_m, (Band)b, OPTICAL_PAN, -1);
         planck_band(low_m, high_m, planck_band_inverse(low_m, high_m, mean), &slope);
         *netd_k = chain_sigma(chain[b], 0, mean) / slope;
     }
@@ -323,7 +323,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     } else {
         const bool   mwir = band == BAND_MWIR;
         double       low_m, high_m, slope; /* W/(m2 sr K) at 300 K, where the figure is defined */
-        preset_band(&low_m, &high_m, (Band)band, -1);
+        preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
         d.min_span    = 2 * slope; /* never stretch less than 2 K over the screen */

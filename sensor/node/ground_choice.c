@@ -124,17 +124,15 @@ static Status invent(Landscape *out, Choices *choices, const Config *config, con
 
 static void say_cover(Choices *choices, const CoverReport *cover)
 {
-    char text[choice_text_size / 2];
+    char text[choice_text_size / 2] = "";
+    bool said[SURFACE_COUNT] = {false};
     int  n = 0;
-    text[0] = 0;
     for (int shown = 0; shown < 4; shown++) { /* the four that cover most */
         int best = 0;
-        for (int s = 1; s < SURFACE_COUNT; s++) {
-            char name[32];
-            snprintf(name, sizeof name, "%s ", surface_name((SurfaceClass)s));
-            if (cover->share[s] > (best ? cover->share[best] : 0) && !strstr(text, name)) best = s;
-        }
+        for (int s = 1; s < SURFACE_COUNT; s++)
+            if (!said[s] && cover->share[s] > (best ? cover->share[best] : 0)) best = s;
         if (!best) break;
+        said[best] = true;
         n += snprintf(text + n, sizeof text - (size_t)n, "%s%s %.0f %%", n ? ", " : "", surface_name((SurfaceClass)best),
                       100 * cover->share[best]);
         if (n >= (int)sizeof text) break;

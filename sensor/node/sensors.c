@@ -16,6 +16,7 @@ static void apply_settings(SensorPreset *p, const Config *config)
     over(&p->line_noise, config->detector.line_noise, 1);
     p->noise_scale = config->detector.noise;
     p->smear       = config->detector.smear;
+    p->optical     = config_optical(config);
     preset_refresh(p);
 }
 
@@ -49,6 +50,19 @@ static Status add_sensor(Sensors *s, const char *name, unsigned bands)
     return STATUS_OK;
 }
 
+/* Noise that a sensor makes itself is not set beside it. */
+static Status one_noise(const Sensors *s, const Config *config)
+{
+    static const char *const key[BAND_COUNT] = {"detector.noise_optical", "detector.netd_mwir_k", "detector.netd_lwir_k"};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->has[b] && key[b] && config_given(config, key[b])) {
+            log_error("replay: %s: the noise of %s is that of its sensor, %s; leave one of them out (detector.noise is a "
+                      "factor of both)", key[b], band_name((Band)b), s->preset[b].name);
+            return STATUS_BAD_VALUE;
+        }
+    return STATUS_OK;
+}
+
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands)
 {
     Sensors s = {0};
@@ -59,8 +73,8 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
     strcpy(list, config->sensor.preset);
     char *save = NULL;
     for (char *name = strtok_r(list, ",", &save); name; name = strtok_r(NULL, ",", &save)) {
-        Status status = add_sensor(&s, name, bands);
-        if (status != STATUS_OK) return status;
+        const Status added = add_sensor(&s, name, bands);
+        if (added != STATUS_OK) return added;
         for (int b = 0; b < BAND_COUNT && first; b++)
             if (s.has[b]) apply_raster(config, &s.preset[b]);
         first = false;
@@ -70,6 +84,8 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
                   config->sensor.preset);
         return STATUS_BAD_VALUE;
     }
+    const Status status = one_noise(&s, config);
+    if (status != STATUS_OK) return status;
     for (int b = 0; b < BAND_COUNT; b++) {
         SensorPreset *p = &s.preset[b];
         if (!s.has[b]) continue;

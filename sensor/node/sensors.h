@@ -12,7 +12,8 @@ typedef struct Sensors {
 } Sensors;
 
 /* Reads sensor.preset; raster and field of view of the first go into *config where the user has given none. A choice a
- * sensor says what it can do. STATUS_BAD_VALUE, logged: an unknown name, two of one band, a band that is not shown. */
+ * sensor says what it can do. STATUS_BAD_VALUE, logged: an unknown name, two of one band, a band that is not shown, noise
+ * given beside a sensor's own. */
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
 
 #endif

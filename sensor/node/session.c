@@ -219,13 +219,6 @@ static bool observer_eye(Eye *eye, Session *s, double t_s)
 
 /* ---- one frame ------------------------------------------------------------------------------ */
 
-static OpticalChannels optical_of(const Config *config)
-{
-    return strcmp(config->sensor.optical, "rgb") == 0   ? OPTICAL_RGB
-           : strcmp(config->sensor.optical, "nir") == 0 ? OPTICAL_NIR
-                                                        : OPTICAL_PAN;
-}
-
 /* Sun at the eye's own place, its direction turned into the world's frame. */
 static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s)
 {
@@ -255,7 +248,7 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
-    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, optical_of(config)), &eye->view};
+    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, config_optical(config)), &eye->view};
     return air_at(air, &source, &weather, &local, &air_eye, shared->pool, s->frame_arena);
 }
 
@@ -271,14 +264,16 @@ static void turn_normals(Picture *picture, const double r_host_from_enu[9])
     }
 }
 
+static bool adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }
+
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
-                               .optical = optical_of(config), .sky_samples = config->sensor.sky_samples,
+                               .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .no_skip = s->shared->no_skip};
-    if (strcmp(config->sensor.antialias, "adaptive") == 0) {
+    if (adaptive(config)) {
         request->edge_samples   = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;
     }
@@ -407,14 +402,15 @@ static Status open_session(Session *s)
     Status status = entity_table_create(&s->table, &table, shared->catalog, path);
     if (status == STATUS_OK)
         status = player_create(&s->player, shared->log, shared->exercise, shared->config->causal);
-    unsigned raw = 0;
+    const Config *config = shared->config;
+    unsigned      raw = 0;
     for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
         if (!shared->sensors->has[b]) continue;
-        const bool rgb = b == BAND_OPTICAL && strcmp(shared->config->sensor.optical, "rgb") == 0;
-        status = chain_create(&s->chain[b], &shared->sensors->preset[b], shared->config->sensor.width_px,
-                              shared->config->sensor.height_px, rgb ? 3 : 1, shared->config->sensor.samples,
-                              (uint64_t)shared->config->seed);
-        raw |= shared->config->detector.raw ? 1u << b : 0;
+        status = chain_create(&s->chain[b], &shared->sensors->preset[b], config->sensor.width_px,
+                              config->sensor.height_px,
+                              render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0),
+                              (uint64_t)config->seed);
+        raw |= config->detector.raw ? 1u << b : 0;
     }
     if (status == STATUS_OK) status = frame_files_prepare(s->out, shared->bands, raw);
     if (status != STATUS_OK) return status;

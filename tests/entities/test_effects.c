@@ -140,7 +140,8 @@ static void results_burst_in_their_way(void **state)
     (void)state;
     static const struct { uint8_t result; bool fire, smoke, dust; } want[] = {
         {1, true, true, true}, {2, true, true, false}, {3, true, true, true},  {5, true, true, false},
-        {6, false, false, false}, {12, true, true, true}, {30, false, false, false}};
+        {6, false, false, false}, {12, true, true, true}, {19, true, true, true},
+        {30, true, true, false}, {31, false, false, false}, {33, false, false, false}};
     double dust_kg[16] = {0};
     for (size_t i = 0; i < sizeof want / sizeof *want; i++) {
         EffectHistory *h = open_history();

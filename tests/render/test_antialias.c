@@ -245,6 +245,53 @@ static void a_mast_between_the_pixels_is_seen(void **state)
     CHECK(worst < 0.5); /* one of sixteen columns of samples more or less, of 2.7: 37 %; and its nearer face is wider */
 }
 
+/* An edge that moves over a pixel is met in as many steps as render_places says, all of a size: what the detector's
+ * footprint takes for granted. A plate of 24 px before a dark sky, moved a pixel in 64 steps that fall on no sample. */
+static void an_edge_has_its_places(void **state)
+{
+    (void)state;
+    enum { steps = 64, side = 40 };
+    static const int samples_of[4] = {1, 2, 4, 1}, edge_of[4] = {0, 0, 0, 4};
+    const double     eye_enu[3] = {0, 0, ground_at(0, 0) + 300}, up[3] = {1, 0, 1}, range_m = 20;
+    const View       view = hand_view(eye_enu, up, side, side, 240);
+    hand_air_off(sun_enu);
+    for (int k = 0; k < 4; k++) {
+        const int     places = render_places(samples_of[k], edge_of[k]);
+        RenderRequest request = hand_request(&view);
+        double        last = NAN;
+        int           jumps = 0;
+        request.samples        = samples_of[k];
+        request.edge_samples   = edge_of[k];
+        request.target_samples = 0;
+        for (int n = 0; n <= steps; n++) {
+            /* columns lie along the south; the plate's left edge runs through pixel 8, its right one off the sum */
+            const double edge_px = 8 + (n + 0.5) / steps, aside_m = (edge_px + 12 - 0.5 * side) / 240 * range_m;
+            double       p_enu[3], r[9], row = 0;
+            for (int i = 0; i < 3; i++)
+                p_enu[i] = eye_enu[i] + range_m * view.r_enu_from_cam[3 * i + 2] + aside_m * view.r_enu_from_cam[3 * i] +
+                           1.0 * view.r_enu_from_cam[3 * i + 1];
+            for (int i = 0; i < 3; i++) { /* faces the eye: forward against the boresight, right to its left, down */
+                r[3 * i]     = -view.r_enu_from_cam[3 * i + 2];
+                r[3 * i + 1] = -view.r_enu_from_cam[3 * i];
+                r[3 * i + 2] = view.r_enu_from_cam[3 * i + 1];
+            }
+            hand_clear();
+            hand_add(hand_plate_model, p_enu, r);
+            arena_reset(hand.arena);
+            const Picture picture = hand_render(&request, hand.pool);
+            for (int x = 0; x < side / 2; x++) row += picture.lwir[side / 2 * side + x] / hand_emitted(BAND_LWIR);
+            CHECK_NEAR(row, 20 - edge_px, 0.5 / places + 1e-5); /* half a step; floats */
+            if (n > 0) {
+                const double fell = (last - row) * places;
+                CHECK(fabs(fell - rint(fell)) < 1e-3); /* 24 px of floats */
+                jumps += (int)lrint(fell);
+            }
+            last = row;
+        }
+        CHECK(jumps == places);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -254,6 +301,7 @@ int main(void)
         cmocka_unit_test(the_error_and_its_price),
         cmocka_unit_test(bare_ground_stays_cheap),
         cmocka_unit_test(a_mast_between_the_pixels_is_seen),
+        cmocka_unit_test(an_edge_has_its_places),
     };
     thread_flush_denormals();
     return cmocka_run_group_tests(tests, open_world, hand_close);

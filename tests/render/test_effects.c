@@ -61,7 +61,8 @@ static void path_north(Veils *veils, const Air *air, int band, double range_m, f
     hits.count = rays.count = 1;
     hits.range_m[0] = hits.p_enu[1][0] = range_m;
     rays.d_enu[1][0] = 1;
-    air_veils(veils, air, (AirBand)band, &hits, &rays, &temp_k);
+    float temps_k[8] = {temp_k}; /* eight paths at once: arrays are padded, as those of Hits are */
+    air_veils(veils, air, (AirBand)band, &hits, &rays, temps_k);
 }
 
 static EffectPuff puff_at(EffectKind kind, double north_m, double age_s, double mass_kg)
@@ -170,6 +171,27 @@ static void thick_smoke_reads_its_temperature(void **state)
                        (double)path.added_w_m2_sr[0],
                    1e-5);
     }
+}
+
+/* A flame's last second, below 900 K: dark to the eye, 3 W/(m2 sr) in the near infrared, by Planck. */
+static void near_infrared_sees_it_longer(void **state)
+{
+    (void)state;
+    static Veils     path;
+    const Air        air = air_when(-30);
+    const EffectLaw *law = &effects.law[EFFECT_FLAME];
+    const double     age_s = 1, range_m = 100, temp_k = 288.15 + law->temp_rise_k * exp(-age_s / law->cool_s);
+    double           tau[effect_band_count], added[effect_band_count];
+    EffectPuff       puff = puff_at(EFFECT_FLAME, range_m, age_s, 20);
+    boresight(tau, added, &puff, &air);
+    path_north(&path, &air, AIR_NIR, range_m, (float)temp_k);
+    const double glow = planck_band(0.7e-6, 1.1e-6, temp_k, NULL), night = air.sky_w_m2[AIR_NIR] / pi_rad;
+    CHECK(temp_k < 900 && glow > 1);
+    /* the wind has moved its centre by some metres of 100 */
+    CHECK_NEAR(added[effect_band_nir],
+               (1 - tau[effect_band_nir]) * ((double)path.transmittance[0] * (1 - law->albedo[effect_band_nir]) * glow +
+                                             (double)path.added_w_m2_sr[0]), 1e-4 * glow + night);
+    CHECK(added[effect_band_pan] < 0.01);
 }
 
 /* Air, sky, ground and smoke at one temperature: the smoke cannot be seen. */
@@ -300,6 +322,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(flash_follows_its_closed_form),
         cmocka_unit_test(thick_smoke_reads_its_temperature),
+        cmocka_unit_test(near_infrared_sees_it_longer),
         cmocka_unit_test(cavity_hides_it),
         cmocka_unit_test(bands_differ_as_the_stuff_does),
         cmocka_unit_test(a_host_does_not_see_its_own),

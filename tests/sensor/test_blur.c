@@ -69,12 +69,12 @@ static double measured_mtf(const float *plane, double angle_rad, double f, int p
 }
 
 static const MtfChain chains[] = {
-    {.cutoff_cyc_px = INFINITY, .footprint_px = 1, .samples = 1},
-    {.cutoff_cyc_px = 1.5, .footprint_px = 1, .samples = 1},
-    {.cutoff_cyc_px = 0.75, .obscuration = 0.3, .footprint_px = 1, .samples = 1, .jitter_px = 0.1},
-    {.cutoff_cyc_px = 0.9, .footprint_px = 0.9, .samples = 1, .jitter_px = 0.3, .smear_px = {0.8, 0}},
-    {.cutoff_cyc_px = 2, .footprint_px = 1, .samples = 1, .smear_px = {1.2, 0.9}},
-    {.cutoff_cyc_px = 2, .footprint_px = 1, .samples = 1, .smear_px = {1.2, -0.9}},
+    {.cutoff_cyc_px = INFINITY, .footprint_px = 1, .places = 1},
+    {.cutoff_cyc_px = 1.5, .footprint_px = 1, .places = 1},
+    {.cutoff_cyc_px = 0.75, .obscuration = 0.3, .footprint_px = 1, .places = 1, .jitter_px = 0.1},
+    {.cutoff_cyc_px = 0.9, .footprint_px = 0.9, .places = 1, .jitter_px = 0.3, .smear_px = {0.8, 0}},
+    {.cutoff_cyc_px = 2, .footprint_px = 1, .places = 1, .smear_px = {1.2, 0.9}},
+    {.cutoff_cyc_px = 2, .footprint_px = 1, .places = 1, .smear_px = {1.2, -0.9}},
 };
 
 /* 1 % to 0.4 cycles a pixel, the house's bar. Four bins a pixel where each pixel has the edge's exact area; a
@@ -87,7 +87,7 @@ static void slanted_edge_shows_the_product(void **state)
     for (size_t k = 0; k < sizeof chains / sizeof *chains; k++)
         for (int rays = 0; rays < 3; rays++) { /* a point a pixel; the exact area; 4 x 4 points */
             MtfChain chain = chains[k];
-            chain.samples = rays == 0 ? 1 : rays == 1 ? 1 << 20 : 4;
+            chain.places = rays == 0 ? 1 : rays == 1 ? 1 << 20 : 4;
             Blur *blur;
             assert_int_equal(blur_create(&blur, width, height, &chain), STATUS_OK);
             slanted_edge(a, rays == 0 ? 1 : rays == 1 ? 0 : 4);

@@ -21,14 +21,14 @@ static SensorPreset preset_of(const char *name)
 static void fill(Band band, double temp_k)
 {
     double low_m, high_m;
-    preset_band(&low_m, &high_m, band, -1);
+    preset_band(&low_m, &high_m, band, OPTICAL_PAN, -1);
     for (int i = 0; i < pixels; i++) plane[i] = (float)planck_band(low_m, high_m, temp_k, NULL);
 }
 
 static Chain *chain_of(const SensorPreset *p)
 {
     Chain *chain;
-    assert_int_equal(chain_create(&chain, p, width, height, 1, 1, 7), STATUS_OK);
+    assert_int_equal(chain_create(&chain, p, width, height, 1, 7), STATUS_OK);
     return chain;
 }
 
@@ -205,6 +205,27 @@ static void the_shutter_follows_the_light(void **state)
     chain_destroy(chain);
 }
 
+/* A watt of near infrared is more photons than one of visible light: by the wavelengths at the middle of the bands. In
+ * three channels each has its own. */
+static void light_counts_by_its_own_wavelength(void **state)
+{
+    (void)state;
+    static const OpticalChannels seen[3] = {OPTICAL_PAN, OPTICAL_NIR, OPTICAL_RGB};
+    static const double          middle_um[3] = {0.55, 0.9, 0.65};
+    double                       counts[3];
+    for (int k = 0; k < 3; k++) {
+        SensorPreset p = preset_of("tv");
+        p.dark_e_s = 0;
+        p.optical  = seen[k];
+        preset_refresh(&p);
+        Chain *chain = chain_of(&p);
+        counts[k]    = chain_counts_at(chain, 0, 10);
+        if (seen[k] == OPTICAL_RGB) CHECK_NEAR(chain_counts_at(chain, 2, 10) / counts[k], 0.45 / 0.65, 1e-12);
+        chain_destroy(chain);
+    }
+    for (int k = 1; k < 3; k++) CHECK_NEAR(counts[k] / counts[0], middle_um[k] / middle_um[0], 1e-12); /* rounding */
+}
+
 /* 63 % of the way in one time constant, all of it without. */
 static void levels_follow_with_their_time_constant(void **state)
 {
@@ -262,6 +283,7 @@ int main(void)
         cmocka_unit_test(frames_need_no_other),
         cmocka_unit_test(the_pool_of_ten_rolls),
         cmocka_unit_test(the_shutter_follows_the_light),
+        cmocka_unit_test(light_counts_by_its_own_wavelength),
         cmocka_unit_test(levels_follow_with_their_time_constant),
         cmocka_unit_test(bad_rows_are_named),
     };

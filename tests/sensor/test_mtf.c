@@ -60,7 +60,7 @@ static void footprint_is_counted_once(void **state)
     (void)state;
     for (int n = 1; n <= 16; n++)
         for (double f = 0; f <= 0.5; f += 0.1) {
-            MtfChain chain = {.cutoff_cyc_px = INFINITY, .footprint_px = 1, .samples = n};
+            MtfChain chain = {.cutoff_cyc_px = INFINITY, .footprint_px = 1, .places = n};
             double   rays = 0;
             for (int k = 0; k < n; k++) rays += cos(2 * pi_rad * f * ((k + 0.5) / n - 0.5)) / n;
             CHECK_NEAR(rays * mtf_footprint(&chain, f, 0), mtf_sinc(f), 1e-14);

@@ -55,6 +55,7 @@ slip "unknown sensor" "no sensor named 'hubble'; there are: staring_lwir" --set 
 slip "two of a band" "staring_lwir and scanning_flir are both for lwir" --set sensor.preset=staring_lwir,scanning_flir
 slip "band not shown" "tv is for optical, which sensor.bands does not name" --set sensor.preset=tv --bands lwir
 slip "key of no sensor" "detector.f_number: needs a sensor" --set detector.f_number=2
+slip "noise beside a sensor's" "detector.netd_lwir_k: the noise of lwir is that of its sensor, staring_lwir" --set sensor.preset=staring_lwir --set detector.netd_lwir_k=0.1
 slip "empty list" "names no sensor" --set sensor.preset=,
 slip "out of range" "detector.bad_share: '0.9' is not a number in 0 .. 0.2" --set sensor.preset=tv --set detector.bad_share=0.9
 finish

@@ -334,6 +334,11 @@ static void what_is_wrong_is_said_with_the_next_step(void **state)
     files.paths = path;
     expect_refused(&files, &frame, "gdalinfo");
     remove(path);
+    text_file(path, "<VRTDataset rasterXSize=\"2147483647\" rasterYSize=\"4\"><VRTRasterBand dataType=\"Byte\" band=\"1\"/>"
+                    "</VRTDataset>");
+    files.paths = path;
+    expect_refused(&files, &frame, "2147483647 x 4 pixels, more than 100000000 a side");
+    remove(path);
     snprintf(cut, sizeof cut, "/tmp/pitviper-folder-%d", (int)getpid());
     CHECK(mkdir(cut, 0700) == 0);
     files.paths = cut;
