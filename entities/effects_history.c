@@ -326,7 +326,8 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         v3_add(puff.p_ecef, motion.p_ecef, at_ecef);
         v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
-        puff.along_m = source->speed_mps * interval_s * together;
+        /* never ahead of where it came out: a missile would look into its own smoke */
+        puff.along_m = source->speed_mps * fmin(interval_s * together, puff.age_s);
         if (source->kind == EFFECT_FLAME) { /* tongues */
             memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);
             puff.along_m = 0.8 * source->scale * (1 + 0.5 * draw(seed, 2, 1));
