@@ -22,6 +22,8 @@ typedef struct EffectSource {
     double     hold_s;           /* longest extrapolation of it */
     double     at_body[3], spread_body[3]; /* where it comes out, from the reported position, and how far about */
     double     speed_mps;        /* along the way: puffs are stretched to meet */
+    bool       grounded;         /* it is set onto the ground, its base below_m under the reported position */
+    double     below_m;
     double     scale, rate;      /* lengths; share of the row's mass a second */
 } EffectSource;
 
