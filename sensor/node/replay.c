@@ -323,6 +323,9 @@ static Status run_host(Run *run, const char *host_text)
         const Status written = write_run(run, out, &plan, &choices, &result);
         if (status == STATUS_OK) status = written;
         printf("%d frames in %s/frames\n", result.frames, out);
+        if (result.buried > 0)
+            log_warn("replay: the eye was below the ground in %d of %d frames and saw nothing of use; the exercise was "
+                     "run over other ground: terrain.ground=fit leads this one through it", result.buried, result.frames);
     }
 
 done:
