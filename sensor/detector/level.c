@@ -5,7 +5,7 @@
 DetectorConfig detector_default_config(void)
 {
     return (DetectorConfig){.gain = 1, .bits = 8, .auto_level = true, .percentile_low = 0.01,
-                            .percentile_high = 0.99, .margin = 0.05, .level_low = 0, .level_high = 1};
+                            .percentile_high = 0.99, .margin = 0.05, .black_most = 1, .level_low = 0, .level_high = 1};
 }
 
 static bool in_range(const char *field, double value, double low, double high)
@@ -21,7 +21,7 @@ Status detector_check_config(const DetectorConfig *c)
     bool ok = in_range("gain", c->gain, 1e-6, 1e6) & in_range("offset", c->offset, -10, 10) &
               in_range("noise_sigma", c->noise_sigma, 0, most) & in_range("percentile_low", c->percentile_low, 0, 1) &
               in_range("percentile_high", c->percentile_high, c->percentile_low, 1) &
-              in_range("margin", c->margin, 0, 10) & in_range("min_span", c->min_span, 0, most) &
+              in_range("margin", c->margin, 0, 10) & in_range("black_most", c->black_most, 0, 1) & in_range("min_span", c->min_span, 0, most) &
               in_range("level_low", c->level_low, -most, most);
     if (c->bits != 8 && c->bits != 16) {
         log_error("detector: bad value: bits=%d (8 or 16)", c->bits);
@@ -116,6 +116,7 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
         span = fmax(fmax(span, config->min_span), fmax(relative_floor * fabs(middle), absolute_floor));
         level.low = middle - 0.5 * span;
         level.high = middle + 0.5 * span;
+        level.low = fmin(level.low, config->black_most * level.high);
     }
     return level;
 }

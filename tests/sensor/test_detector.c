@@ -223,6 +223,28 @@ static void rgb_has_one_gain(void **state)
     CHECK(rgb[3 * i + 2] < rgb[3 * i]);
 }
 
+/* A field of grass whose shades differ by a tenth: white is its brightest, black no more than the share of that. A
+ * picture of all shades is not touched. */
+static void colours_of_a_flat_picture_stay(void **state)
+{
+    (void)state;
+    static float r[pixels], g[pixels], b[pixels];
+    for (int i = 0; i < pixels; i++) {
+        const float shade = 1 + 0.1f * (float)i / pixels;
+        r[i] = 0.7f * shade, g[i] = shade, b[i] = 0.6f * shade;
+    }
+    const float   *in[3] = {r, g, b};
+    DetectorConfig config = detector_default_config();
+    config.black_most = 1.0 / 3;
+    const DetectorLevel level = detector_level(&config, in, 3, pixels);
+    CHECK_NEAR(level.low, level.high / 3, 1e-15); /* rounding */
+    CHECK(level.high > 1.08 && level.high < 1.15);
+    for (int i = 0; i < pixels; i++) r[i] = g[i] = b[i] = (float)i;
+    const DetectorLevel all = detector_level(&config, in, 3, pixels);
+    config.black_most = 1;
+    CHECK(all.low == detector_level(&config, in, 3, pixels).low);
+}
+
 /* 10 dB is a tenth: with 60 dB over 255 codes, 42.5 codes down. */
 static void radar_decibels_by_hand(void **state)
 {
@@ -292,6 +314,7 @@ int main(void)
         cmocka_unit_test(quantisation_by_hand),
         cmocka_unit_test(display_is_monotone),
         cmocka_unit_test(rgb_has_one_gain),
+        cmocka_unit_test(colours_of_a_flat_picture_stay),
         cmocka_unit_test(radar_decibels_by_hand),
         cmocka_unit_test(bad_configurations_are_named),
     };
