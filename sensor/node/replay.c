@@ -324,8 +324,9 @@ static Status run_host(Run *run, const char *host_text)
         if (status == STATUS_OK) status = written;
         printf("%d frames in %s/frames\n", result.frames, out);
         if (result.buried > 0)
-            log_warn("replay: the eye was below the ground in %d of %d frames and saw nothing of use; the exercise was "
-                     "run over other ground: terrain.ground=fit leads this one through it", result.buried, result.frames);
+            log_warn("replay: the eye was below the ground in %d of %d frames and saw nothing of use%s", result.buried,
+                     result.frames, *o->config.terrain.elevation && strcmp(o->config.terrain.ground, "fit") != 0
+                         ? "; over other ground than the exercise's, terrain.ground=fit leads it through" : "");
     }
 
 done:
