@@ -119,6 +119,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
             status = STATUS_BAD_VALUE;
             goto done;
         }
+        if (strncmp(line, "\xef\xbb\xbf", 3) == 0) memmove(line, line + 3, strlen(line + 3) + 1); /* a spreadsheet's mark */
     } while (!*line || *line == '#');
     strcpy(copy, line);
     const int cells = text_split(cell, row_max_cells, copy);
@@ -132,7 +133,9 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
     if (status != STATUS_OK) goto done;
     opened = true;
 
-    fprintf(out, "%s,%s,error\n", line, probe->out);
+    fputs(line, out);
+    for (int i = 0; i < results; i++) fprintf(out, ",%s", result[i].name);
+    fputs(",error\n", out);
     while (read_line(line, in, &cut)) {
         char reason[128];
         if (!*line || *line == '#') continue;

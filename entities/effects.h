@@ -57,6 +57,8 @@ typedef struct EffectPuff {
     double     mass_kg;      /* all of it, before thinning */
     double     axis_ecef[3]; /* unit; the spheroid's own axis */
     double     along_m;      /* least half length along the axis; 0: a sphere */
+    bool       grounded;     /* let go above_m above the ground, wherever the snapshot's ground is there */
+    double     above_m;
 } EffectPuff;
 
 /* A spheroid whose density falls off as (1 - q^2)^2 from its centre to its surface (q = 1). */

@@ -178,6 +178,16 @@ typedef struct Cloud {
     double     stretch;              /* along the direction, over the radius at birth; 0: round */
 } Cloud;
 
+/* Result codes of a Detonation (SISO-REF-010, UID 62, checked against public transcriptions of it): 6 none, 31 .. 33
+ * misses that do not burst, 18 .. 20 hits on a building. */
+static bool result_is_none(int result) { return result == 6 || (result >= 31 && result <= 33); }
+static bool result_is_ground(int result) { return result == 3 || result == 4 || (result >= 11 && result <= 13); }
+static bool result_is_water(int result) { return (result >= 14 && result <= 16) || result == 24; }
+static bool result_is_entity(int result)
+{
+    return result == 1 || (result >= 7 && result <= 10) || (result >= 18 && result <= 20);
+}
+
 static void put_cloud(PuffList *list, const EffectEvent *event, int which, const Cloud *c, double t_s)
 {
     const double scale = cbrt(event->charge_kg);
@@ -185,6 +195,7 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
                          .throw_s = c->throw_s, .age_s = t_s - event->t_s - c->delay_s * scale,
                          .mass_kg = list->table->law[c->kind].mass_kg * event->charge_kg * c->mass};
     if (!(puff.age_s >= 0)) return;
+    puff.grounded = event->detonation && result_is_ground(event->result);
     v3_scale(puff.up_ecef, 1 / v3_length(event->p_ecef), event->p_ecef);
     memcpy(puff.axis_ecef, event->d_ecef, sizeof puff.axis_ecef);
     puff.along_m = c->stretch * puff.scale * list->table->law[c->kind].radius_start_m;
@@ -199,22 +210,17 @@ static void put_cloud(PuffList *list, const EffectEvent *event, int which, const
         puff.seed = (uint32_t)mix(event->seed + (uint64_t)(64 * which + i));
         v3_add_scaled(puff.p_ecef, event->p_ecef, c->ahead * scale, event->d_ecef);
         v3_add_scaled(puff.p_ecef, puff.p_ecef, c->off * scale, d);
+        if (puff.grounded) {
+            double off[3];
+            v3_sub(off, puff.p_ecef, event->p_ecef);
+            puff.above_m = v3_dot(off, puff.up_ecef);
+        }
         const double hard = 0.65 + 0.35 * draw(event->seed, 64 * which + i, 4);
         for (int k = 0; k < 3; k++)
             puff.throw_mps[k] = scale * (hard * c->throw_out_mps * d[k] + hard * c->throw_up_mps * puff.up_ecef[k] +
                                          c->throw_ahead_mps * event->d_ecef[k]);
         put(list, &puff);
     }
-}
-
-/* Result codes of a Detonation (SISO-REF-010, UID 62, checked against public transcriptions of it): 6 none, 31 .. 33
- * misses that do not burst, 18 .. 20 hits on a building. */
-static bool result_is_none(int result) { return result == 6 || (result >= 31 && result <= 33); }
-static bool result_is_ground(int result) { return result == 3 || result == 4 || (result >= 11 && result <= 13); }
-static bool result_is_water(int result) { return (result >= 14 && result <= 16) || result == 24; }
-static bool result_is_entity(int result)
-{
-    return result == 1 || (result >= 7 && result <= 10) || (result >= 18 && result <= 20);
 }
 
 static void put_burst(PuffList *list, const EffectEvent *e, double t_s)
@@ -296,17 +302,6 @@ static double share_of(int64_t number, double age_s, double full_s, double *toge
     return level == stage && stage < most_halvings ? one * (1 - f) : one * (1 + f);
 }
 
-/* Down, or up, to where the vehicle is shown. Attitude stays: a puff is wider than a slope lifts it. */
-static void set_down(Motion *motion, const EffectSource *source, const double up_ecef[3])
-{
-    const double below_body[3] = {0, 0, source->base_below_m};
-    double       lever_ecef[3], base_ecef[3];
-    m3_mul_v3(lever_ecef, motion->r_ecef_from_body, below_body);
-    v3_add(base_ecef, motion->p_ecef, lever_ecef);
-    const double above_m = contact_above_m(source->ground, base_ecef);
-    if (isfinite(above_m)) v3_add_scaled(motion->p_ecef, motion->p_ecef, -above_m, up_ecef);
-}
-
 static void put_source(PuffList *list, const EffectSource *source, double t_s)
 {
     const EffectLaw *law = &list->table->law[source->kind];
@@ -336,13 +331,20 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
         Motion         motion;
         double         at_body[3], at_ecef[3];
         dead_reckon(&motion, &source->motion, clamp(let_go_s - source->motion_s, 0, source->hold_s));
-        v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
-        if (source->ground) set_down(&motion, source, puff.up_ecef);
         for (int i = 0; i < 3; i++) at_body[i] = source->at_body[i] + source->spread_body[i] * draw(seed, 0, i);
         m3_mul_v3(at_ecef, motion.r_ecef_from_body, at_body);
         v3_add(puff.p_ecef, motion.p_ecef, at_ecef);
+        v3_scale(puff.up_ecef, 1 / v3_length(motion.p_ecef), motion.p_ecef);
+        if (source->grounded) {
+            double over[3];
+            at_body[2] -= source->below_m;
+            m3_mul_v3(over, motion.r_ecef_from_body, at_body);
+            puff.grounded = true;
+            puff.above_m = v3_dot(over, puff.up_ecef);
+        }
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
-        puff.along_m = source->speed_mps * interval_s * together;
+        /* never ahead of where it came out: a missile would look into its own smoke */
+        puff.along_m = source->speed_mps * fmin(interval_s * together, puff.age_s);
         if (source->kind == EFFECT_FLAME) { /* tongues */
             memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);
             puff.along_m = 0.8 * source->scale * (1 + 0.5 * draw(seed, 2, 1));

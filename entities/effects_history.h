@@ -7,7 +7,6 @@
 #define ENTITIES_EFFECTS_HISTORY_H
 
 #include "dis/warfare.h"
-#include "entities/contact.h"
 #include "entities/dead_reckoning.h"
 #include "entities/effects.h"
 
@@ -22,9 +21,9 @@ typedef struct EffectSource {
     double     motion_s;
     double     hold_s;           /* longest extrapolation of it */
     double     at_body[3], spread_body[3]; /* where it comes out, from the reported position, and how far about */
-    const ContactGround *ground; /* whose base is set onto it: so are its puffs. NULL: it is where its sender says */
-    double     base_below_m;     /* of that base, below the reported position, body axes */
     double     speed_mps;        /* along the way: puffs are stretched to meet */
+    bool       grounded;         /* it is set onto the ground, its base below_m under the reported position */
+    double     below_m;
     double     scale, rate;      /* lengths; share of the row's mass a second */
 } EffectSource;
 

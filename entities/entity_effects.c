@@ -57,8 +57,8 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
                            .to_s = slot->stopped ? INFINITY : slot->report_s + slot->timeout_s,
                            .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
-                           .hold_s = slot->hold_s, .scale = size_of(model), .base_below_m = below_m};
-    if (contact_applies(slot->type) && table->config.ground.elevation) source.ground = &table->config.ground;
+                           .hold_s = slot->hold_s, .scale = size_of(model), .below_m = below_m,
+                           .grounded = contact_applies(slot->type)};
     if (stands) {
         Motion motion;
         dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
@@ -150,6 +150,13 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
     return false;
 }
 
+/* Who is set onto the ground smokes there, and a burst on the ground is on this one. */
+static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
+{
+    const double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
+    if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
+}
+
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena)
 {
@@ -162,6 +169,7 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     const size_t first = (size_t)carried_count < count ? (size_t)carried_count : count;
     if (first > 0) memcpy(puff, carried, first * sizeof *puff);
     if (count > first) effect_history_puffs(puff + first, count - first, table->effects, snapshot->t_s);
+    for (size_t i = 0; i < count; i++) set_onto_ground(&puff[i], &table->config.ground);
     snapshot->puff = puff;
     snapshot->puff_count = (int)count;
     snapshot->puffs_left_out = (int64_t)(all - count);

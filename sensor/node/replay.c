@@ -323,6 +323,10 @@ static Status run_host(Run *run, const char *host_text)
         const Status written = write_run(run, out, &plan, &choices, &result);
         if (status == STATUS_OK) status = written;
         printf("%d frames in %s/frames\n", result.frames, out);
+        if (result.buried > 0)
+            log_warn("replay: the eye was below the ground in %d of %d frames and saw nothing of use%s", result.buried,
+                     result.frames, *o->config.terrain.elevation && strcmp(o->config.terrain.ground, "fit") != 0
+                         ? "; over other ground than the exercise's, terrain.ground=fit leads it through" : "");
     }
 
 done:

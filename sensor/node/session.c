@@ -30,6 +30,7 @@ typedef struct Session {
     int                  ticks;         /* how many there were, to 2 */
     Chain               *chain[BAND_COUNT];  /* of the bands with a sensor of etc/sensors.csv */
     FrameLevel           level[BAND_COUNT];
+    int                  buried;        /* frames whose eye was below the ground */
 } Session;
 
 /* ---- where the eye is, and where it looks ----------------------------------------------------- */
@@ -353,6 +354,10 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     memcpy(stage_ms, ms, sizeof ms);
     *counters = picture.counters;
     *shown    = true;
+    if (shared->world->landscape) {
+        const double *p_enu = eye.view.p_enu;
+        s->buried += p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
+    }
     return STATUS_OK;
 }
 
@@ -478,6 +483,7 @@ Status session_run(SessionResult *result, const SessionShared *shared, const Hos
     memset(result, 0, sizeof *result);
     Status status = open_session(&s);
     if (status == STATUS_OK) status = run_frames(result, &s);
+    result->buried = s.buried;
     if (s.table) result->entities = *entity_table_counters(s.table);
     if (s.table) result->effects = *entity_table_effect_counters(s.table);
     if (s.truth && fclose(s.truth) != 0 && status == STATUS_OK) {

@@ -31,6 +31,7 @@ extern const char *const session_stage_name[session_stages];
 
 typedef struct SessionResult {
     int     frames;
+    int     buried;                   /* frames whose eye was below the ground */
     char  (*hash)[sha256_text_size];  /* [frames] */
     double (*stage_ms)[session_stages]; /* [frames] */
     RenderCounters counters;

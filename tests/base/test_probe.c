@@ -23,7 +23,7 @@ static Status divide_open(void **state, int argc, char **argv)
 }
 static void divide_close(void *state) { closed += state == &rows; }
 
-static const Probe divide = {.name = "divide", .help = "", .in = "a,b,extra?,name$", .out = "quotient,extra_again,said",
+static const Probe divide = {.name = "divide", .help = "", .in = "a,b,extra?,name$", .out = "quotient,extra_again,said$",
                              .open = divide_open, .row = divide_row, .close = divide_close};
 
 static Status through(char out[static 4096], const char *text, int argc)
@@ -85,6 +85,15 @@ static void headers_are_checked(void **state)
 }
 
 /* A line beyond the limit is refused as one row, and the next row is read from its own beginning. */
+/* A spreadsheet's UTF-8 mark and line ends are not part of a name. */
+static void spreadsheets_are_read(void **state)
+{
+    (void)state;
+    char out[4096] = {0};
+    CHECK(through(out, "\xef\xbb\xbf" "a,b,name\r\n6,2,y\r\n", 1) == STATUS_OK);
+    assert_string_equal(out, "a,b,name,quotient,extra_again,said,error\n6,2,y,3,,<y>,\n");
+}
+
 static void a_long_line_is_one_row(void **state)
 {
     (void)state;
@@ -109,6 +118,7 @@ static void a_long_line_is_one_row(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(rows_pass_through), cmocka_unit_test(numbers_read_back),
-                                       cmocka_unit_test(headers_are_checked), cmocka_unit_test(a_long_line_is_one_row)};
+                                       cmocka_unit_test(headers_are_checked), cmocka_unit_test(spreadsheets_are_read),
+                                       cmocka_unit_test(a_long_line_is_one_row)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -158,32 +158,40 @@ static void every_pose_handed_out_stands(void **state)
     elevation_destroy(&ground);
 }
 
-/* Dust comes off the wheels where the vehicle is shown, not where its sender's ground was. */
-static void dust_rises_from_this_ground(void **state)
+/* Dust and fire of who was set onto the ground are there too, and so is a burst that its sender calls one on the ground;
+ * a burst in the air stays where it was sent. */
+static void what_he_gives_off_goes_with_him(void **state)
 {
     (void)state;
     const LocalFrame  frame = frame_at(0, 0);
-    Elevation         ground = plane(200, 2, 27, 0.125, 0);
+    Elevation         ground = plane(200, 2, -40, 0.125, 0.125); /* 40 m below where everything is sent */
     EntityTableConfig config = entity_table_default_config();
     config.ground = (ContactGround){&frame, &ground};
     Fixture        f = fixture_open(&config);
-    DisEntityState tank = report(1, tank_type), flyer = report(2, helicopter_type);
-    tank.velocity_mps[2] = flyer.velocity_mps[2] = 10; /* north */
-    tank.appearance = flyer.appearance = UINT32_C(2) << 7;
+    DisEntityState tank = report(1, tank_type);
+    tank.velocity_mps[2] = 8;
+    tank.appearance = UINT32_C(1) << 15 | UINT32_C(2) << 7; /* burns, and raises dust */
     hear(&f, &tank, 0);
-    hear(&f, &flyer, 0);
-    CHECK(seen_at(&f, 1, 2));
-    int dust = 0;
+    DisDetonation burst = {.munition = entity_id(9), .event = {1, 3001, 9}, .p_ecef = {earth_radius_m, 20, 30}, .result = 3,
+                           .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+    entity_table_detonation(f.table, &burst, 2.5);
+    burst.event.number = 10;
+    burst.result = 5;
+    entity_table_detonation(f.table, &burst, 2.5);
+    CHECK(seen_at(&f, 1, 3) != NULL);
+    int low = 0, high = 0;
     for (int i = 0; i < f.snapshot.puff_count; i++) {
-        const EffectPuff *puff = &f.snapshot.puff[i];
-        const double above_m = contact_above_m(&config.ground, puff->p_ecef);
-        dust += puff->kind == EFFECT_DUST;
-        if (puff->kind == EFFECT_DUST)
-            CHECK(fabs(above_m) < 1);
-        else
-            CHECK(above_m < -20); /* the helicopter's: at the height it gave, under this ground */
+        const double above_m = contact_above_m(&config.ground, f.snapshot.puff[i].p_ecef);
+        const bool   trail = f.snapshot.puff[i].kind == EFFECT_FLAME || f.snapshot.puff[i].kind == EFFECT_DUST;
+        if (trail || above_m < 10) {
+            CHECK(above_m > 0 && above_m < 5); /* a tank is 2.5 m high; pieces of a burst of 4 kg start within 2 m */
+            low++;
+        } else {
+            CHECK(above_m > 30); /* the ground rises by 6 m from here to the burst */
+            high++;
+        }
     }
-    CHECK(dust >= 4 && f.snapshot.puff_count > dust);
+    CHECK(low > 30 && high > 5);
     fixture_close(&f);
     elevation_destroy(&ground);
 }
@@ -195,7 +203,7 @@ int main(void)
         cmocka_unit_test(it_moves_along_the_local_vertical),
         cmocka_unit_test(who_does_not_stand_stays),
         cmocka_unit_test(every_pose_handed_out_stands),
-        cmocka_unit_test(dust_rises_from_this_ground),
+        cmocka_unit_test(what_he_gives_off_goes_with_him),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -381,6 +381,36 @@ static void dust_lies_along_the_way(void **state)
     fixture_close(&f);
 }
 
+/* What trails is behind what it comes from, however quick, at any instant: no puff's front passes its nose. */
+static void nobody_flies_in_his_own_trail(void **state)
+{
+    (void)state;
+    Fixture f = fixture_open(NULL);
+    DisEntityState missile = report(4, missile_type);
+    missile.p_ecef[0] += 100;
+    missile.velocity_mps[2] = 300;
+    hear(&f, &missile, 0);
+    Weather          still = weather_default();
+    const LocalFrame frame = frame_here();
+    int              met = 0;
+    still.wind_mps = 0;
+    for (double t_s = 0.013; t_s < 1.9; t_s += 0.017) {
+        const SnapshotEntity *e = seen_at(&f, 4, t_s);
+        CHECK(e != NULL);
+        double nose_enu[3];
+        enu_from_ecef(nose_enu, &frame, e->p_ecef);
+        for (int i = 0; i < f.snapshot.puff_count; i++) {
+            EffectVolume v;
+            if (f.snapshot.puff[i].kind != EFFECT_MOTOR_SMOKE) continue;
+            if (!effect_volume(&v, f.snapshot.effect_table, &f.snapshot.puff[i], &still, &frame)) continue;
+            CHECK(v.p_enu[1] + v.along_m < nose_enu[1]); /* it flies north, and is reported at its middle */
+            met++;
+        }
+    }
+    CHECK(met > 500);
+    fixture_close(&f);
+}
+
 /* A missile leaves its trail hanging when it is gone, and its motor shines while it burns. */
 static void trails_outlive_their_missile(void **state)
 {
@@ -535,6 +565,7 @@ int main(void)
         cmocka_unit_test(appearance_lets_go),
         cmocka_unit_test(trails_change_evenly),
         cmocka_unit_test(dust_lies_along_the_way),
+        cmocka_unit_test(nobody_flies_in_his_own_trail),
         cmocka_unit_test(trails_outlive_their_missile),
         cmocka_unit_test(stop_holds_the_place),
         cmocka_unit_test(wrecks_glow_and_cool),

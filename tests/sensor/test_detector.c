@@ -226,6 +226,31 @@ static void rgb_has_one_gain(void **state)
     }
 }
 
+/* A field of grass whose shades differ by a tenth: the stretch brings out the shades and leaves it grass green. */
+static void colours_of_a_flat_picture_stay(void **state)
+{
+    (void)state;
+    static float    r[pixels], g[pixels], b[pixels];
+    static uint16_t rgb[3 * pixels];
+    for (int i = 0; i < pixels; i++) {
+        const float shade = 1 + 0.1f * (float)i / pixels;
+        r[i] = 0.7f * shade, g[i] = shade, b[i] = 0.6f * shade;
+    }
+    const float   *in[3] = {r, g, b};
+    DetectorConfig config = detector_default_config();
+    config.bits = 16;
+    detector_display_rgb(rgb, in, pixels, &config, detector_level(&config, in, 3, pixels));
+    int seen = 0;
+    for (int i = 0; i < pixels; i++) {
+        const uint16_t *code = rgb + 3 * i;
+        if (code[1] < 1000 || code[1] == 65535) continue;
+        seen++;
+        CHECK_NEAR(code[0] / (0.7 * code[1]), 1, 0.002); /* two roundings of at least 600 */
+        CHECK_NEAR(code[2] / (0.6 * code[1]), 1, 0.002);
+    }
+    CHECK(seen > pixels / 20);
+}
+
 /* 10 dB is a tenth: with 60 dB over 255 codes, 42.5 codes down. */
 static void radar_decibels_by_hand(void **state)
 {
@@ -295,6 +320,7 @@ int main(void)
         cmocka_unit_test(quantisation_by_hand),
         cmocka_unit_test(display_is_monotone),
         cmocka_unit_test(rgb_has_one_gain),
+        cmocka_unit_test(colours_of_a_flat_picture_stay),
         cmocka_unit_test(radar_decibels_by_hand),
         cmocka_unit_test(bad_configurations_are_named),
     };

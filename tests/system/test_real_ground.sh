@@ -24,6 +24,8 @@ check "3 threads, same bits" same_hashes "$tmp/one" "$tmp/two"
 
 differ() { ! same_hashes "$@"; }
 replay "$tmp/demo.pcap" "$tmp/trust" "${few[@]}" --set terrain.ground=trust
+quiet() { ! complained "$@"; }
+check "no eye below the ground" quiet "below the ground"
 check "trust: they stay" said 'stay where they were sent'
 check "trust: other bits" differ "$tmp/one" "$tmp/trust"
 replay "$tmp/demo.pcap" "$tmp/fit" "${few[@]}" --set terrain.ground=fit
@@ -31,6 +33,11 @@ check "fit: a correction" said 'smooth correction of at most'
 # the fit leads the ground through what was sent: what is left is centimetres
 left=$(grep -oE 'they were sent [0-9.]+ m' "$tmp/stdout" | grep -oE '[0-9.]+')
 check "fit: within 0.2 m (median), not ${left:-nothing}" is "$left" '<' 0.2
+
+# sent 60 m too low, the missile flies below this ground: its pictures are of nothing, and that is said
+exercise demo "$tmp/low.pcap" --lat 44.0565 --lon -123.0690 --height 46
+replay "$tmp/low.pcap" "$tmp/low" "${few[@]}"
+check "an eye below the ground is said" complained 'below the ground in [0-9]+ of [0-9]+ frames.*terrain\.ground=fit'
 
 replay "$tmp/demo.pcap" "$tmp/none" --config "$tmp/ground.yaml" --set terrain.elevation=/nowhere.tif
 check "a missing file ends it" [ "$code" = 1 ]
