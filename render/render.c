@@ -510,7 +510,8 @@ static void forget_truth(Picture *picture)
 /* ---- the frame ------------------------------------------------------------------------------ */
 
 /* Quanta: areas divide evenly by both grids; nothing answers the radar with more than the peak of its lobe; and no
- * radiance we can make passes 2^20 W/(m2 sr). Powers of two, so that scaling is exact. */
+ * target's own radiance passes 2^20 W/(m2 sr) but a perfect mirror of the sun, which is cut there in truth's sums (not
+ * in pictures). Powers of two, so that scaling is exact. */
 static void choose_quanta(Job *job)
 {
     const RenderRequest *request = job->request;

@@ -146,7 +146,7 @@ static Status cover_table_read(CoverTable *out, const char *path)
     for (int row = 0; row < table.rows; row++) {
         double      code;
         const char *name = table_text(&table, row, surface_column);
-        if (table_number(&code, &table, row, code_column, 0, most_codes - 1) != STATUS_OK) goto done;
+        if (table_number(&code, &table, row, code_column, 1, most_codes - 1) != STATUS_OK) goto done;
         const SurfaceClass surface = surface_find(name);
         if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
             log_error("cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "

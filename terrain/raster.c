@@ -1,6 +1,7 @@
 /* terrain/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what to do. */
 #include "terrain/raster.h"
 
+#include <strings.h>
 #include <cpl_conv.h>
 #include <dirent.h>
 #include <errno.h>
@@ -44,11 +45,19 @@ typedef struct Opened {
     OGRSpatialReferenceH crs;
 } Opened;
 
+/* As GDAL hands them on from files; 0: not a length that we know. */
 static double metres_of_unit(const char *unit)
 {
-    if (strcmp(unit, "ft") == 0 || strcmp(unit, "foot") == 0 || strcmp(unit, "feet") == 0) return 0.3048;
-    if (strstr(unit, "US survey") || strcmp(unit, "us-ft") == 0 || strcmp(unit, "ftUS") == 0) return 1200.0 / 3937;
-    return 1;
+    static const struct {
+        const char *name;
+        double      metres;
+    } units[] = {{"", 1}, {"m", 1}, {"metre", 1}, {"metres", 1}, {"meter", 1}, {"meters", 1},
+                 {"dm", 0.1}, {"decimetre", 0.1}, {"decimeter", 0.1}, {"cm", 0.01}, {"centimetre", 0.01}, {"centimeter", 0.01},
+                 {"km", 1000}, {"kilometre", 1000}, {"kilometer", 1000}, {"ft", 0.3048}, {"foot", 0.3048}, {"feet", 0.3048},
+                 {"us-ft", 1200.0 / 3937}, {"ftUS", 1200.0 / 3937}, {"US survey foot", 1200.0 / 3937}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcasecmp(unit, units[i].name) == 0) return units[i].metres;
+    return 0;
 }
 
 static Status describe(Opened *out, GDALDatasetH file, const char *path, const char *key)
@@ -76,8 +85,14 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
     }
     o.crs             = OSRClone(crs);
     o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
-    o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
     o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
+    o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+    if (o.metres_per_unit == 0) {
+        if (!o.bytes) /* codes and photographs have no length */
+            log_warn("%s: %s: its unit is '%s', which is not a length that is known here; taken as metres", key, path,
+                     GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+        o.metres_per_unit = 1;
+    }
     OSRStripVertical(o.crs);
     OSRDemoteTo2D(o.crs, NULL);
     OSRSetAxisMappingStrategy(o.crs, OAMS_TRADITIONAL_GIS_ORDER);

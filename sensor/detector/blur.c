@@ -15,6 +15,9 @@ struct Blur {
     fftw_plan cosines, back, back_odd;
 };
 
+/* Plain code, whatever vectors a processor has: the same bits on every one. */
+static const unsigned plan_flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
+
 /* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a
  * level end at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins
  * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside
@@ -42,9 +45,9 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     b->along  = fftw_alloc_real((size_t)width);
     if (b->value && b->odd && b->pass && b->along) {
         pthread_mutex_lock(&planner);
-        b->cosines  = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT10, FFTW_REDFT10, FFTW_ESTIMATE);
-        b->back     = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT01, FFTW_REDFT01, FFTW_ESTIMATE);
-        b->back_odd = fftw_plan_r2r_2d(height, width, b->odd, b->odd, FFTW_RODFT01, FFTW_RODFT01, FFTW_ESTIMATE);
+        b->cosines  = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT10, FFTW_REDFT10, plan_flags);
+        b->back     = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT01, FFTW_REDFT01, plan_flags);
+        b->back_odd = fftw_plan_r2r_2d(height, width, b->odd, b->odd, FFTW_RODFT01, FFTW_RODFT01, plan_flags);
         pthread_mutex_unlock(&planner);
     }
     if (!b->cosines || !b->back || !b->back_odd) {

@@ -3,8 +3,7 @@
  * A convolution with mirrored edges is a product in the cosine transform (half-sample symmetry), so no padding is
  * needed and a plane costs two transforms of its own size. A smear that is oblique to the rows is not even in each
  * axis; its odd part goes through the sine transforms of the same cosine coefficients, which a third transform
- * gives. In double, FFTW, plans by estimate: same bits for any thread count. Between machines, FFTW may choose
- * other vector instructions.
+ * gives. In double, FFTW, plans by estimate, without vector code: same bits for any thread count and processor.
  *
  * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the
  * chain levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge overshoots

@@ -11,8 +11,8 @@ double photon_band(double low_m, double high_m, double temp_k, double *derivativ
 
 typedef struct PhotonDetector {
     double low_m, high_m;                 /* the band */
-    double f_number, transmission;        /* of the optics */
-    double qe;                            /* electrons a photon */
+    double f_number, transmission;        /* of the optics, what they obscure counted as lost */
+    double qe;                            /* electrons a photon on the whole pixel */
     double pitch_m, integration_s;
     double dark_e, read_e;                /* in the integration time; rms */
     double well_e;

@@ -275,6 +275,15 @@ static Status write_run(const Run *run, const char *out, const HostPlan *plan, c
 
 /* One host: its own ground and frame, its own folder when there are several. */
 /* host_text: checked already; NULL: as configured, or chosen. */
+static void say_visibility(Choices *choices, const Config *config, const Atmosphere *atmosphere)
+{
+    double low_m, high_m;
+    atmosphere_visibilities(atmosphere, &low_m, &high_m);
+    if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
+        choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
+                   "(weather.visibility_m)", low_m, high_m);
+}
+
 static Status run_host(Run *run, const char *host_text)
 {
     const Options *o       = &run->options;
@@ -304,6 +313,7 @@ static Status run_host(Run *run, const char *host_text)
     if (status != STATUS_OK) goto done;
     status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
     if (status != STATUS_OK) goto done;
+    say_visibility(&choices, &o->config, world->atmosphere);
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(&plan, &choices, &o->config);
     for (int i = 0; i < choices.count; i++) printf("%s\n", choices.line[i]);
