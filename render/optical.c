@@ -13,20 +13,21 @@ double optical_ground_w_m2(int channel, const Air *air, const Materials *materia
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
-                   const float *around_w_m2)
+                   const float *around_w_m2, const Veils *veils)
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->sun_d_enu, sun_w_m2 = air->sun_w_m2[channel];
     const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
-    Veils veils;
-    air_veils(&veils, air, band, hits, rays, NULL);
+    Veils own;
+    if (!veils) air_veils(&own, air, band, hits, rays, NULL);
+    const Veils *v = veils ? veils : &own;
 
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
             /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2 / pi_rad * veils.sun_transmittance[i] + veils.added_w_m2_sr[i];
-            if (!(veils.range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
+            double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
+            if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
             out[i] = (float)seen;
             continue;
         }
@@ -65,6 +66,6 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                 }
             }
         }
-        out[i] = (float)(radiance * veils.sun_transmittance[i] + veils.added_w_m2_sr[i]);
+        out[i] = (float)(radiance * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
 }

@@ -173,19 +173,23 @@ static void shade_bands(Scratch *s, const Job *job)
     const bool gathered = request->sky_samples > 0;
     int        channel[3];
     const int  channels = optical_channels(channel, bands, request->optical);
-    for (int c = 0; c < channels; c++) {
-        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
-                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL);
-        veil_apply(s->out, &s->veil, channel[c], s->hits.count);
-        deliver(s, job, picture_optical + c);
-    }
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
                             s->material, s->texture[optical_channel_pan]);
+    const unsigned air_bands = render_air_bands(bands, request->optical);
+    if (air_bands) air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+    for (int c = 0; c < channels; c++) {
+        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
+                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL,
+                      &s->air[channel[c]]);
+        veil_apply(s->out, &s->veil, channel[c], s->hits.count);
+        deliver(s, job, picture_optical + c);
+    }
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL);
+                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL,
+                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR]);
             veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }

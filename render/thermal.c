@@ -66,7 +66,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
-                   const float *around_w_m2)
+                   const float *around_w_m2, const Veils *veils)
 {
     const bool mwir = band == BAND_MWIR;
     const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
@@ -74,15 +74,16 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
     const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
     const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0, sun_eye_w_m2 = mwir ? air->sun_eye_w_m2[AIR_MWIR] : 0;
-    Veils veils;
-    air_veils(&veils, air, air_band, hits, rays, temp_k);
+    Veils own;
+    if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
+    const Veils *v = veils ? veils : &own;
 
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
             /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2_sr * veils.air_transmittance[i] + veils.added_w_m2_sr[i];
-            if (!(veils.range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
+            double seen = ground_w_m2_sr * v->air_transmittance[i] + v->added_w_m2_sr[i];
+            if (!(v->range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
             out[i] = (float)seen;
             continue;
         }
@@ -119,7 +120,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                 sunlit *= sun_w_m2;
             }
         }
-        out[i] = (float)(emitted * veils.transmittance[i] + reflected * veils.air_transmittance[i] +
-                         sunlit * veils.sun_transmittance[i] + veils.added_w_m2_sr[i]);
+        out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +
+                         sunlit * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
 }
