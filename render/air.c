@@ -101,6 +101,21 @@ void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3])
     out->azimuth_share = (float)split(&out->azimuth, air_plane_azimuths / pi_rad * azimuth_rad, air_plane_azimuths);
 }
 
+void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
+                const uint16_t *material)
+{
+    for (int i = 0; i < hits->count; i++) {
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        air_plane_place(&out->plane[i], air, n_enu);
+        if (!(materials->material[material[i]].gloss > 0)) continue;
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        double mirror_enu[3];
+        v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
+        air_sky_place(&out->mirror[i], air, mirror_enu);
+    }
+}
+
 double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
 {
     PlanePlace place;

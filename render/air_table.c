@@ -1,10 +1,10 @@
 /* render/air_table.c: the paths of a frame, collapsed from the tables of an atmosphere. air_veils.c asks them.
  *
  * The eye's height, the sun and the visibility are a frame's own, so of a path only its far end's height, its length
- * and its azimuth from the sun are left. Each answer of the atmosphere is a search in its tables, and of scattered light
- * an integral along the path: ranges are asked for at each octave, scattered light at every second node, and drawn
- * between them by cubics. How scattered light turns with azimuth is much the same along a path and from one slope to the next,
- * so that away from the middle azimuth only every fourth of those nodes is asked, for its ratio to that.
+ * and its azimuth from the sun are left. Each answer of the atmosphere is a search in its tables, and of scattered
+ * light an integral along the path: ranges are asked for at each octave, scattered light at every second node, and
+ * drawn between them by cubics. How scattered light turns with azimuth is much the same along a path and from one
+ * slope to the next, so that away from the middle azimuth only a sixteenth of those nodes is asked, for their ratio.
  * tests/render/test_air.c holds the sum of it against atmosphere_path(). */
 #include "render/air_private.h"
 

@@ -177,11 +177,14 @@ static void shade_bands(Scratch *s, const Job *job)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits,
                             s->material, s->texture[optical_channel_pan]);
     const unsigned air_bands = render_air_bands(bands, request->optical);
-    if (air_bands) air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+    if (air_bands) {
+        air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+        air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material);
+    }
     for (int c = 0; c < channels; c++) {
         optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
                       s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL,
-                      &s->air[channel[c]]);
+                      &s->air[channel[c]], &s->facing);
         veil_apply(s->out, &s->veil, channel[c], s->hits.count);
         deliver(s, job, picture_optical + c);
     }
@@ -189,7 +192,7 @@ static void shade_bands(Scratch *s, const Job *job)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
                           s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL,
-                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR]);
+                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR], &s->facing);
             veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }

@@ -70,6 +70,7 @@ typedef struct Scratch {
     int            some_index[hits_capacity];
     VeilRays       veil;
     Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
+    Facing         facing;
     int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
