@@ -203,8 +203,9 @@ static inline void heats(Eight out[2 * air_warm_values], const AirHeat *heat, co
 {
     enum { values = 2 * air_warm_values };
     Eight row[8], pair[8];
+    const float *nodes = heat->value[0][0]; /* of all temperatures */
     for (int j = 0; j < 8; j++) {
-        const float *low = heat->value[0][p->heat_node[j]], *high = low + air_range_row * values;
+        const float *low = nodes + p->heat_node[j] * values, *high = low + air_range_row * values;
         const Eight height = _mm256_set1_ps(p->height[j]);
         row[j] = between(between(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
                          between(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
