@@ -50,7 +50,7 @@ static double cos_azimuth(const double a_enu[3], const double b_enu[3])
 /* The arc cosine, within 7e-5 rad: Abramowitz & Stegun 4.4.45. Steps of the tables are 0.26 rad. */
 static double acos_quick(double c)
 {
-    const double x = fabs(c);
+    const double x = fmin(fabs(c), 1);
     const double a = sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
     return c < 0 ? pi_rad - a : a;
 }
@@ -63,42 +63,64 @@ static inline double split(int *at, double x, int steps)
     return clamp(x - *at, 0, 1);
 }
 
-double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double d_enu[3])
+static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3])
 {
-    int i, a, k;
-    const double fi = split(&i, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
-    const double fa =
-        split(&a, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
+    out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
+    out->azimuth_share = (float)split(
+        &out->azimuth, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
     /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
     double chord[3];
     v3_sub(chord, d_enu, sun_d_enu);
     const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
-    const double fk = split(&k, air_sky_angles * sqrt(angle / pi_rad), air_sky_angles);
-    const float *low = sky->scattered_w_m2_sr[i], *high = sky->scattered_w_m2_sr[i + 1], *around = &sky->around_sun[k];
-    const double l = low[a] + fa * (low[a + 1] - low[a]), h = high[a] + fa * (high[a + 1] - high[a]);
-    return sky->thermal_w_m2_sr[i] + fi * (sky->thermal_w_m2_sr[i + 1] - sky->thermal_w_m2_sr[i]) +
-           (l + fi * (h - l)) * (around[0] + fk * (around[1] - around[0]));
+    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(angle / pi_rad), air_sky_angles);
+}
+
+void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3])
+{
+    place_in_sky(out, air->sun_d_enu, d_enu);
 }
 
 double air_sky(const Air *air, AirBand band, const double d_enu[3])
 {
-    return air_sky_table(&air->sky[band], air->sun_d_enu, d_enu);
+    SkyPlace place;
+    air_sky_place(&place, air, d_enu);
+    return air_sky_there(&air->sky[band], &place);
 }
 
 double air_sky_light(const Air *air, AirBand band, const double d_enu[3])
 {
-    return air_sky_table(&air->sky_light[band], air->sun_d_enu, d_enu);
+    SkyPlace place;
+    air_sky_place(&place, air, d_enu);
+    return air_sky_there(&air->sky_light[band], &place);
+}
+
+void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3])
+{
+    out->up_share = (float)split(&out->up, 0.5 * air_plane_ups * (1 + n_enu[2]), air_plane_ups);
+    const double azimuth_rad = acos_quick(cos_azimuth(n_enu, air->sun_d_enu));
+    out->azimuth_share = (float)split(&out->azimuth, air_plane_azimuths / pi_rad * azimuth_rad, air_plane_azimuths);
+}
+
+void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
+                const uint16_t *material)
+{
+    for (int i = 0; i < hits->count; i++) {
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        air_plane_place(&out->plane[i], air, n_enu);
+        if (!(materials->material[material[i]].gloss > 0)) continue;
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        double mirror_enu[3];
+        v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
+        air_sky_place(&out->mirror[i], air, mirror_enu);
+    }
 }
 
 double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3])
 {
-    int i, a;
-    const double fi = split(&i, 0.5 * air_plane_ups * (1 + n_enu[2]), air_plane_ups);
-    const double fa =
-        split(&a, air_plane_azimuths / pi_rad * acos_quick(cos_azimuth(n_enu, air->sun_d_enu)), air_plane_azimuths);
-    const float *low = air->plane_w_m2[band][i], *high = air->plane_w_m2[band][i + 1];
-    const double l = low[a] + fa * (low[a + 1] - low[a]), h = high[a] + fa * (high[a + 1] - high[a]);
-    return l + fi * (h - l);
+    PlanePlace place;
+    air_plane_place(&place, air, n_enu);
+    return air_plane_there(air, band, &place);
 }
 
 /* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
@@ -114,7 +136,8 @@ enum {
 static const double rings_rad = 0.7, rings_only_rad = 0.2;
 
 typedef struct Lamps {
-    float d[3][lamps], solid_angle[lamps];
+    float    d[3][lamps], solid_angle[lamps];
+    SkyPlace place[lamps];
 } Lamps;
 
 /* Share of the rings at an angle from the sun. */
@@ -124,10 +147,11 @@ static double rings_share(double angle_rad)
     return t * t * (3 - 2 * t);
 }
 
-static void set_lamp(Lamps *out, int k, const double d_enu[3], double solid_angle)
+static void set_lamp(Lamps *out, int k, const double sun_d_enu[3], const double d_enu[3], double solid_angle)
 {
     for (int c = 0; c < 3; c++) out->d[c][k] = (float)d_enu[c];
     out->solid_angle[k] = d_enu[2] > 0 ? (float)solid_angle : 0;
+    if (d_enu[2] > 0) place_in_sky(&out->place[k], sun_d_enu, d_enu);
 }
 
 static void place_lamps(Lamps *out, const double sun_d_enu[3])
@@ -140,7 +164,7 @@ static void place_lamps(Lamps *out, const double sun_d_enu[3])
         for (int a = 0; a < lamp_azimuths; a++) {
             const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
             const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
-            set_lamp(out, k++, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
+            set_lamp(out, k++, sun_d_enu, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
         }
     }
     double east[3] = {0}, other[3];
@@ -156,18 +180,16 @@ static void place_lamps(Lamps *out, const double sun_d_enu[3])
             double d[3];
             for (int c = 0; c < 3; c++)
                 d[c] = cos(angle) * sun_d_enu[c] + sin(angle) * (cos(turn) * east[c] + sin(turn) * other[c]);
-            set_lamp(out, k++, d, (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle));
+            set_lamp(out, k++, sun_d_enu, d, (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle));
         }
     }
 }
 
 /* Irradiance of each lamp facing it. */
-static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky, const double sun_d_enu[3])
+static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky)
 {
-    for (int k = 0; k < lamps; k++) {
-        const double d_enu[3] = {lamp->d[0][k], lamp->d[1][k], lamp->d[2][k]};
-        w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)air_sky_table(sky, sun_d_enu, d_enu) : 0;
-    }
+    for (int k = 0; k < lamps; k++)
+        w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)air_sky_there(sky, &lamp->place[k]) : 0;
 }
 
 /* What they give to a plane: a fixed order of sums, eight at a time. */
@@ -198,14 +220,6 @@ static void light_planes(Air *air, AirBand band, const float w_m2[lamps], const 
             air->plane_w_m2[band][i][p] = (float)on_plane(w_m2, lamp, n_enu);
         }
     }
-}
-
-static void run_all(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool)
-        pool_run(pool, count, task, user);
-    else
-        for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
 /* ---- all of it ---------------------------------------------------------------------------- */
@@ -273,11 +287,14 @@ static void ask_sky(void *user, int worker, int task)
     for (int a = 0; a <= azimuths; a++) {
         const double azimuth_rad = a * pi_rad / asked_azimuths;
         const double d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
+        SkyPlace place;
         SkyAir seen;
+        place_in_sky(&place, sun, d);
+        const double around = air_sky_there(&ring, &place);
         atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, from_eye),
                        zenith_rad, job->day_zenith_rad, azimuth_rad);
         asked->scattered_w_m2_sr[i][a] =
-            b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / air_sky_table(&ring, sun, d);
+            b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / around;
         asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? seen.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
     }
     for (int a = azimuths + 1; a <= asked_azimuths; a++)
@@ -322,12 +339,12 @@ static void fill_sky(void *user, int worker, int task)
     draw_sky(&air->sky_eye[task], &job->asked[task][!job->eye_on_ground]);
     AirSky scattered = *sky;
     memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
-    light_lamps(w_m2, &job->lamp, &scattered, air->sun_d_enu);
+    light_lamps(w_m2, &job->lamp, &scattered);
     const double adds_up_to = on_plane(w_m2, &job->lamp, up_enu);
     const double scale = adds_up_to > 0 ? job->diffuse_w_m2[task] / adds_up_to : 0;
     *sky_light = *sky;
     for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
-    light_lamps(w_m2, &job->lamp, sky_light, air->sun_d_enu);
+    light_lamps(w_m2, &job->lamp, sky_light);
     light_planes(air, (AirBand)task, w_m2, &job->lamp);
     air->sky_scale[task] = scale;
     air->sky_w_m2[task] = air->plane_w_m2[task][air_plane_ups][0];
@@ -354,11 +371,12 @@ static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_te
     air->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air->planck_lwir, ground_temp_k);
 }
 
-/* Azimuths from the sun's, and slopes, that a view can show. */
-static void look_where(TableInput *input, const View *view, const double sun_d_enu[3])
+/* Azimuths from the sun's, slopes and heights that a view can show. */
+static void look_where(TableInput *input, const View *view, const double sun_d_enu[3], double eye_m)
 {
     input->azimuth_low_rad = 0, input->azimuth_high_rad = pi_rad;
     input->slope_low = -1, input->slope_high = 1;
+    input->height_high_m = air_top_m;
     if (!view) return;
     double low = pi_rad, high = 0, down = 1, up = -1;
     enum { along = 8 };
@@ -373,6 +391,7 @@ static void look_where(TableInput *input, const View *view, const double sun_d_e
     /* what the raster misses; and the round Earth falls away from under a long path: by 0.02 over its 250 km */
     const double slope_margin = 0.1 * (up - down) + 1e-3;
     input->slope_low = fmax(down - slope_margin, -1), input->slope_high = fmin(up + slope_margin + 0.02, 1);
+    input->height_high_m = eye_m + fmax(air_far_m * input->slope_high, 0);
     if (down < -0.8 || up > 0.8) return; /* a pole may be in it, where all azimuths meet */
     const double margin_rad = fmax(0.25 * (high - low), 0.02);
     input->azimuth_low_rad = fmax(low - margin_rad, 0), input->azimuth_high_rad = fmin(high + margin_rad, pi_rad);
@@ -416,9 +435,9 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     /* sunlight for temperatures, also where nobody looks at it */
     out->sky_w_m2[AIR_PAN] = job->diffuse_w_m2[AIR_PAN];
     place_lamps(&job->lamp, out->sun_d_enu);
-    run_all(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
-    run_all(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
-    run_all(pool, AIR_BAND_COUNT, fill_sky, job);
+    air_run(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
+    air_run(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
+    air_run(pool, AIR_BAND_COUNT, fill_sky, job);
     heat_balance(out, atmosphere, model_temp_k);
 
     TableInput input = {.atmosphere = atmosphere,
@@ -426,8 +445,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
                         .bands = eye->bands,
                         .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
                         .scattered_scale = job->scattered_scale};
-    look_where(&input, eye->view, out->sun_d_enu);
-    return air_tables_fill(out, &input, pool, arena);
+    look_where(&input, eye->view, out->sun_d_enu, out->eye_height_m);
+    return air_table_fill(out, &input, pool, arena);
 }
 
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],

@@ -30,7 +30,7 @@ typedef struct AirSky {
     float around_sun[air_sky_angles + 2]; /* one to spare at the end */
 } AirSky;
 
-typedef struct AirTable AirTable; /* one band's paths from this eye */
+typedef struct AirTable AirTable; /* paths from this eye */
 
 typedef struct Air {
     Weather weather;
@@ -50,7 +50,7 @@ typedef struct Air {
     const PlanckTable *planck_mwir, *planck_lwir;
 
     double    eye_height_m;
-    AirTable *table[AIR_BAND_COUNT];       /* in the arena of air_at; NULL: even air, see air_even */
+    AirTable *table;                       /* in the arena of air_at; NULL: even air, see air_even */
     double    even_per_m;                  /* extinction of even air, whose radiance is that of its sky */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
     double    solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
@@ -70,7 +70,7 @@ typedef struct AirEye {
 } AirEye;
 
 /* weather->air_temp_k: NaN for the model's own; the Air's is then filled in. pool: may be NULL. The tables live in the
- * arena. STATUS_NO_MEMORY when that is out. Some milliseconds. */
+ * arena. STATUS_NO_MEMORY when that is out. 6 to 12 ms of one core for five bands, shared out over the pool. */
 Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
               Arena *arena);
 
@@ -78,6 +78,45 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
  * sky_w_m2_sr[band]; even_per_m 0: nothing in between. No tables, no arena. */
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
               double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir);
+
+/* Where a direction lies in the tables of the sky, and a plane's normal in those of the light on it: the same for every
+ * band, so that who asks for several finds it once. */
+typedef struct SkyPlace {
+    int   up, azimuth, angle; /* lower nodes; shares of the upper ones */
+    float up_share, azimuth_share, angle_share;
+} SkyPlace;
+typedef struct PlanePlace {
+    int   up, azimuth;
+    float up_share, azimuth_share;
+} PlanePlace;
+void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3]);
+void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3]);
+
+/* Both for each hit of a block: of its normal, and of the direction its mirror shows, where it has any gloss. */
+typedef struct Facing {
+    PlanePlace plane[hits_capacity];
+    SkyPlace   mirror[hits_capacity];
+} Facing;
+void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
+                const uint16_t *material);
+
+static inline double air_sky_there(const AirSky *sky, const SkyPlace *p)
+{
+    const float *low = &sky->scattered_w_m2_sr[p->up][p->azimuth], *high = low + air_sky_azimuths + 1;
+    const float *around = &sky->around_sun[p->angle], *thermal = &sky->thermal_w_m2_sr[p->up];
+    const float  l = low[0] + p->azimuth_share * (low[1] - low[0]);
+    const float  h = high[0] + p->azimuth_share * (high[1] - high[0]);
+    return (double)(thermal[0] + p->up_share * (thermal[1] - thermal[0]) +
+                    (l + p->up_share * (h - l)) * (around[0] + p->angle_share * (around[1] - around[0])));
+}
+
+static inline double air_plane_there(const Air *air, AirBand band, const PlanePlace *p)
+{
+    const float *low = &air->plane_w_m2[band][p->up][p->azimuth], *high = low + air_plane_azimuths + 1;
+    const float  l = low[0] + p->azimuth_share * (low[1] - low[0]);
+    const float  h = high[0] + p->azimuth_share * (high[1] - high[0]);
+    return (double)(l + p->up_share * (h - l));
+}
 
 /* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
 double air_sky(const Air *air, AirBand band, const double d_enu[3]);
@@ -99,7 +138,11 @@ typedef struct Veils {
     float range_m[hits_capacity];       /* of the path; INFINITY: sky */
 } Veils;
 
-/* temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
+/* bands: 1 << AirBand, those of out to fill, of the AirEye's; asking for several at once costs less, and gives the same
+ * bits. temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
+void air_veils_of(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+                  const float *temp_k);
+/* One band. */
 void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 
 #endif

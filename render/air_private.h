@@ -1,51 +1,88 @@
-/* render/air_private.h: between air.c and air_table.c. */
+/* render/air_private.h: between air.c, air_table.c and air_veils.c. */
 #ifndef RENDER_AIR_PRIVATE_H
 #define RENDER_AIR_PRIVATE_H
 
 #include "render/air.h"
 
-/* Paths from one eye: by the far end's height, h = air_top_m (i / air_heights)^2, and by ln(range); scattered light by
- * their slope, since it depends on where they point: rise over range, s |s| with s in equal steps over what is looked
- * at; and by the root of their share of the whole way, to the ground or out of the tables' air, so that ground is at
- * its end. Kept as what varies slowly: extinction -ln(tau) / range, which is constant in a grey and even air, and the
- * path's radiance over 1 - tau, its mean source. */
-enum { air_heights = 40, air_ranges = 40, air_temps = 5, air_path_azimuths = 12, air_slopes = 32, air_shares = 24 };
-enum { air_nodes = (air_heights + 1) * (air_ranges + 1), air_slope_nodes = (air_slopes + 1) * (air_shares + 1) };
+/* Paths from one eye. What they take away, and the air's own light, by the far end's height and the range, both in
+ * octaves (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that a number's own bits say
+ * where it lies: log2(1 / tau), which is
+ * straight in range in a grey and even air; and the path's radiance over 1 - tau, its mean source.
+ * Scattered light, over 1 - tau of the sun, also depends on where a path points: by its slope, rise over range, s |s|
+ * with s in equal steps over what is looked at; by the root of its share of the whole way, to the ground or out of the
+ * tables' air, so that ground is at its end; and by sqrt(1 - cos azimuth from the sun), which needs no arc cosine and
+ * is dense about the sun. What a sample wants of a node lies side by side. */
+enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
+enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };
+enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_temps = 5, air_lights = 4 };
+enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_range_row };
+enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
 
-static const double air_top_m = 30e3, air_near_m = 50, air_far_m = 250e3;
+static const double air_top_m = 30e3, air_near_m = 100, air_far_m = 409600, air_low_m = 64;
 static const double earth_radius_m = 6371e3;
+/* The whole way ends at the ground or the tables' top, and after 100 km, where little more light is to come. From less
+ * than 200 m up it goes on along the ground, as if from there: the air below is much the same. */
+static const double air_shortest_way_m = 10, air_longest_way_m = 100e3, air_least_fall_m = 200;
+
+/* Four bands that sunlight is scattered in. */
+typedef struct AirLight {
+    int     bands;
+    AirBand band[air_lights];
+    float   depth[air_nodes][air_lights];                            /* log2(1 / tau) of sunlight reflected */
+    float   log2_source[air_turns + 1][air_slope_nodes][air_lights]; /* W/(m2 sr); it falls off as e does */
+} AirLight;
+
+/* The two thermal bands, mwir before lwir: depth of emission at the air's temperature, at emitter_temp_k[t] and the
+ * next, and the air's own radiance over 1 - tau of the first, W/(m2 sr). */
+typedef enum AirWarm { air_warm_own, air_warm_low, air_warm_high, air_warm_source, air_warm_values } AirWarm;
+typedef struct AirHeat {
+    float value[air_temps - 1][air_nodes][2 * air_warm_values];
+} AirHeat;
+
+/* Temperatures of emitters for which transmittance is kept; between them its depth is linear in the temperature's
+ * logarithm, as in the tables, outside the nearest counts. */
+static const double emitter_temp_k[air_temps] = {260,300,400,600,1000};
 
 struct AirTable {
-    bool thermal, scattered;
-    float slope_low, slope_steps;                      /* s at the first step, steps per unit of s */
-    float azimuth_low_rad, azimuth_planes_per_rad;     /* of scattered light; beyond the first and last the nearest */
-    int azimuth_planes;                                /* steps between them, .. air_path_azimuths */
-    float extinction_temp_per_m[air_temps][air_nodes]; /* of emission at each temperature; thermal bands only */
-    float extinction_air_per_m[air_nodes];             /* of emission at the air's own; thermal bands only */
-    float extinction_sun_per_m[air_nodes];
-    float thermal_w_m2_sr[air_nodes]; /* over 1 - tau of the air's own */
-    float ln_scattered[air_path_azimuths + 1]
-                      [air_slope_nodes]; /* W/(m2 sr) over 1 - tau of the sun; it falls off as e does */
+    int   rows, row_shift;        /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
+    bool  scattered;
+    float slope_low, slope_steps; /* s at the first step, steps per unit of s */
+    float turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
+    int   turns;                  /* steps between them, .. air_turns */
+    int   lights;                 /* of light[] */
+    AirLight *light[2];
+    AirHeat  *heat;               /* NULL: no thermal band */
 };
 
-/* Fills air->table for the bands given, and of scattered light what is needed between two azimuths from the sun and two
- * slopes.
+/* The float whose bits are so many steps of 2^shift above low's. */
+static inline float air_step_up(double low, int steps, int shift)
+{
+    const float from = (float)low;
+    uint32_t    bits;
+    memcpy(&bits, &from, sizeof bits);
+    bits += (uint32_t)steps << shift;
+    float to;
+    memcpy(&to, &bits, sizeof to);
+    return to;
+}
+
+/* Fills air->table for the bands given, between two azimuths from the sun and two slopes, up to a height.
  * thermal_scale: for air of another temperature than the model's; scattered_scale: twilight and the sun's distance. */
 typedef struct TableInput {
     const Atmosphere *atmosphere;
     double sun_zenith_rad, thermal_scale[2], scattered_scale;
-    double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high; /* slopes as rise over range */
+    double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
-Status air_tables_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena);
+Status air_table_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena);
+
+/* The pool's, or in order where there is none. */
+void air_run(Pool *pool, int count, PoolTask *task, void *user);
 
 /* Straight-on cubic through four points a step apart, at t of the middle step. */
 static inline double cubic_between(double a, double b, double c, double d, double t)
 {
     return b + t * (c - b) + t * (t - 1) / 6 * ((2 - t) * (a - 2 * b + c) + (1 + t) * (b - 2 * c + d));
 }
-
-/* Sky radiance of a table towards a unit direction. */
-double air_sky_table(const AirSky *sky, const double sun_d_enu[3], const double d_enu[3]);
 
 #endif

@@ -241,15 +241,20 @@ void materials_close(Materials *materials)
     *materials = (Materials){0};
 }
 
-/* Unpolarised reflectance of a dielectric that returns rho_normal at normal incidence (Fresnel; its refractive index
- * from (n - 1)^2 / (n + 1)^2 = rho_normal). */
-static double fresnel_dielectric(double rho_normal, double cosine)
+/* Square of the refractive index whose reflectance at normal incidence, (n - 1)^2 / (n + 1)^2, this is. */
+static double index_squared(double rho_normal)
 {
     const double root = sqrt(rho_normal), index = (1 + root) / (1 - root);
-    const double inside = sqrt(1 - (1 - cosine * cosine) / (index * index));
-    const double across = (cosine - index * inside) / (cosine + index * inside);
-    const double along = (index * cosine - inside) / (index * cosine + inside);
-    return 0.5 * (across * across + along * along);
+    return index * index;
+}
+
+/* Unpolarised reflectance of a dielectric (Fresnel), the squares of its two polarisations over one denominator. */
+static double fresnel_dielectric(double index2, double cosine)
+{
+    const double inside = sqrt(index2 - 1 + cosine * cosine); /* times the index: its cosine */
+    const double a = cosine - inside, b = cosine + inside, c = index2 * cosine - inside, d = index2 * cosine + inside;
+    const double ad = a * d, bc = b * c, bd = b * d;
+    return 0.5 * (ad * ad + bc * bc) / (bd * bd);
 }
 
 /* Schlick (Computer Graphics Forum 13, 1994): for metals, whose dip before grazing is slight. */
@@ -268,8 +273,9 @@ double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
     if (gloss_rho >= 1) return 1;
     const double cover = fmin(gloss_rho / 0.02, 1), normal = fmax(gloss_rho, 0.02), c = clamp(cosine, 0, 1);
     const double metal = clamp((normal - 0.2) / 0.1, 0, 1);
+    static const double water_index2 = 1.7673876858061457; /* of 0.02, below which most ground is */
     double reflected = 0;
-    if (metal < 1) reflected += (1 - metal) * fresnel_dielectric(normal, c);
+    if (metal < 1) reflected += (1 - metal) * fresnel_dielectric(gloss_rho > 0.02 ? index_squared(normal) : water_index2, c);
     if (metal > 0) reflected += metal * fresnel_schlick(normal, c);
     const double smooth = 1 - fmin(roughness_rad, 1);
     return gloss_rho + cover * smooth * smooth * (reflected - normal);

@@ -13,20 +13,26 @@ double optical_ground_w_m2(int channel, const Air *air, const Materials *materia
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
-                   const float *around_w_m2)
+                   const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->sun_d_enu, sun_w_m2 = air->sun_w_m2[channel];
     const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
-    Veils veils;
-    air_veils(&veils, air, band, hits, rays, NULL);
+    Veils own;
+    if (!veils) air_veils(&own, air, band, hits, rays, NULL);
+    const Veils *v = veils ? veils : &own;
+    Facing found;
+    if (!facing) {
+        air_facing(&found, air, materials, hits, rays, material);
+        facing = &found;
+    }
 
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
             /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2 / pi_rad * veils.sun_transmittance[i] + veils.added_w_m2_sr[i];
-            if (!(veils.range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
+            double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
+            if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
             out[i] = (float)seen;
             continue;
         }
@@ -34,8 +40,9 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const double rho = fmin(m->rho[channel] * texture[i], 1);
         const double n_sun = shadow[i] ? 0 : fmax(v3_dot(n_enu, sun_d_enu), 0);
-        const double around = around_w_m2 ? around_w_m2[i]
-                                          : air_sky_on_plane(air, band, n_enu) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
+        const double around =
+            around_w_m2 ? around_w_m2[i]
+                        : air_plane_there(air, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
         const double irradiance_w_m2 = sun_w_m2 * n_sun + around;
 
         double radiance;
@@ -52,7 +59,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
             /* a rough lobe near the horizon sees some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
             double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
-            if (sees_sky > 0) seen += sees_sky * air_sky(air, band, mirror_enu);
+            if (sees_sky > 0) seen += sees_sky * air_sky_there(&air->sky[band], &facing->mirror[i]);
             radiance += lobe_rho * seen;
 
             if (n_sun > 0) {
@@ -65,6 +72,6 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                 }
             }
         }
-        out[i] = (float)(radiance * veils.sun_transmittance[i] + veils.added_w_m2_sr[i]);
+        out[i] = (float)(radiance * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
 }

@@ -193,18 +193,25 @@ static void shade_bands(Scratch *s, const Job *job)
     const bool gathered = request->sky_samples > 0;
     int        channel[3];
     const int  channels = optical_channels(channel, bands, request->optical);
+    if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
+        find_temperatures(s, job);
+    const unsigned air_bands = render_air_bands(bands, request->optical);
+    if (air_bands) {
+        air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+        air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material);
+    }
     for (int c = 0; c < channels; c++) {
         optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
-                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL);
+                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL,
+                      &s->air[channel[c]], &s->facing);
         veil_apply(s->out, &s->veil, channel[c], s->hits.count);
         deliver(s, job, picture_optical + c);
     }
-    if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
-        find_temperatures(s, job);
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
         if (has_band(bands, band)) {
             thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL);
+                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL,
+                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR], &s->facing);
             veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
             deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
         }

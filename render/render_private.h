@@ -69,6 +69,8 @@ typedef struct Scratch {
     Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
     VeilRays       veil;
+    Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
+    Facing         facing;
     int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */

@@ -66,7 +66,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
-                   const float *around_w_m2)
+                   const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const bool mwir = band == BAND_MWIR;
     const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
@@ -74,15 +74,21 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
     const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
     const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0, sun_eye_w_m2 = mwir ? air->sun_eye_w_m2[AIR_MWIR] : 0;
-    Veils veils;
-    air_veils(&veils, air, air_band, hits, rays, temp_k);
+    Veils own;
+    if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
+    const Veils *v = veils ? veils : &own;
+    Facing found;
+    if (!facing) {
+        air_facing(&found, air, materials, hits, rays, material);
+        facing = &found;
+    }
 
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
             /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2_sr * veils.air_transmittance[i] + veils.added_w_m2_sr[i];
-            if (!(veils.range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
+            double seen = ground_w_m2_sr * v->air_transmittance[i] + v->added_w_m2_sr[i];
+            if (!(v->range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
             out[i] = (float)seen;
             continue;
         }
@@ -96,14 +102,15 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
         /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
         const double around = around_w_m2 ? around_w_m2[i] / pi_rad
-                                          : air_sky_on_plane(air, air_band, n_enu) / pi_rad +
+                                          : air_plane_there(air, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
         double reflected = diffuse * around;
         if (lobe_rho > 0) {
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
-            reflected += lobe_rho * (sees_sky * air_sky(air, air_band, mirror_enu) + (1 - sees_sky) * ground_w_m2_sr);
+            const double sky = air_sky_there(&air->sky[air_band], &facing->mirror[i]);
+            reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
         }
         double sunlit = 0;
         if (sun_w_m2 > 0 && !shadow[i]) {
@@ -119,7 +126,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                 sunlit *= sun_w_m2;
             }
         }
-        out[i] = (float)(emitted * veils.transmittance[i] + reflected * veils.air_transmittance[i] +
-                         sunlit * veils.sun_transmittance[i] + veils.added_w_m2_sr[i]);
+        out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +
+                         sunlit * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
     }
 }

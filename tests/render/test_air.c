@@ -369,7 +369,8 @@ static void a_view_sees_what_all_round_sees(void **state)
     const Air every = air_of(&weather, 40, 500, 1 << AIR_G, NULL);
     air_veils(&all, &every, AIR_G, &hits, &rays, NULL);
     for (int i = 0; i < hits.count; i++) {
-        CHECK(all.transmittance[i] == veils.transmittance[i]);
+        /* heights in coarser steps, up to the tables' top: what a frame may lose against the tables, twice */
+        CHECK_NEAR(all.transmittance[i] / veils.transmittance[i], 1, 0.006);
         /* steps of 15 degrees and of a sixth of all slopes: what all round loses */
         CHECK_NEAR(all.added_w_m2_sr[i] / veils.added_w_m2_sr[i], 1, 0.03);
     }
