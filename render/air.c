@@ -63,7 +63,8 @@ static inline double split(int *at, double x, int steps)
     return clamp(x - *at, 0, 1);
 }
 
-static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3])
+/* blur_rad: nothing about the sun shows finer than this. */
+static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)
 {
     out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
     out->azimuth_share = (float)split(
@@ -72,12 +73,13 @@ static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double 
     double chord[3];
     v3_sub(chord, d_enu, sun_d_enu);
     const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
-    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(angle / pi_rad), air_sky_angles);
+    const double blurred = fmin(fmax(angle, blur_rad), pi_rad);
+    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(blurred / pi_rad), air_sky_angles);
 }
 
 void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3])
 {
-    place_in_sky(out, air->sun_d_enu, d_enu);
+    place_in_sky(out, air->sun_d_enu, d_enu, 0);
 }
 
 double air_sky(const Air *air, AirBand band, const double d_enu[3])
@@ -112,7 +114,8 @@ void air_facing(Facing *out, const Air *air, const Materials *materials, const H
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         double mirror_enu[3];
         v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
-        air_sky_place(&out->mirror[i], air, mirror_enu);
+        /* facets that lean by the roughness turn the ray by twice that: grass does not mirror the ring about the sun */
+        place_in_sky(&out->mirror[i], air->sun_d_enu, mirror_enu, 2 * materials->material[material[i]].roughness);
     }
 }
 
@@ -151,7 +154,7 @@ static void set_lamp(Lamps *out, int k, const double sun_d_enu[3], const double 
 {
     for (int c = 0; c < 3; c++) out->d[c][k] = (float)d_enu[c];
     out->solid_angle[k] = d_enu[2] > 0 ? (float)solid_angle : 0;
-    if (d_enu[2] > 0) place_in_sky(&out->place[k], sun_d_enu, d_enu);
+    if (d_enu[2] > 0) place_in_sky(&out->place[k], sun_d_enu, d_enu, 0);
 }
 
 static void place_lamps(Lamps *out, const double sun_d_enu[3])
@@ -289,7 +292,7 @@ static void ask_sky(void *user, int worker, int task)
         const double d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
         SkyPlace place;
         SkyAir seen;
-        place_in_sky(&place, sun, d);
+        place_in_sky(&place, sun, d, 0);
         const double around = air_sky_there(&ring, &place);
         atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, from_eye),
                        zenith_rad, job->day_zenith_rad, azimuth_rad);
@@ -351,13 +354,13 @@ static void fill_sky(void *user, int worker, int task)
 }
 
 /* For temperatures: all wavelengths. */
-static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_temp_k)
+static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_temp_k, double diffuse_pan_w_m2)
 {
     /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
      * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
     static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
     air->solar_direct_w_m2 = air->sun_w_m2[AIR_PAN] / visible_share;
-    air->solar_diffuse_w_m2 = air->sky_w_m2[AIR_PAN] / visible_share;
+    air->solar_diffuse_w_m2 = diffuse_pan_w_m2 / visible_share;
 
     /* What a black horizontal plane at air temperature loses to a clear sky. */
     const double t_k = air->weather.air_temp_k, ratio = t_k / model_temp_k;
@@ -438,7 +441,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     air_run(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
     air_run(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
     air_run(pool, AIR_BAND_COUNT, fill_sky, job);
-    heat_balance(out, atmosphere, model_temp_k);
+    /* the tables' own: the sum over our sky is there only when somebody asks for pan */
+    heat_balance(out, atmosphere, model_temp_k, job->diffuse_w_m2[AIR_PAN]);
 
     TableInput input = {.atmosphere = atmosphere,
                         .sun_zenith_rad = job->day_zenith_rad,

@@ -221,6 +221,19 @@ static void sky_adds_up(void **state)
     }
 }
 
+/* What one band is does not depend on which others are asked for. */
+static void a_band_does_not_see_its_company(void **state)
+{
+    (void)state;
+    const Weather weather = weather_default();
+    const Air alone = air_of(&weather, 35, 100, 1 << AIR_LWIR, NULL);
+    const Air company = air_of(&weather, 35, 100, 1 << AIR_LWIR | 1 << AIR_PAN | 1 << AIR_G | 1 << AIR_MWIR, NULL);
+    CHECK(alone.solar_direct_w_m2 == company.solar_direct_w_m2 && alone.solar_diffuse_w_m2 == company.solar_diffuse_w_m2);
+    CHECK(alone.longwave_loss_w_m2 == company.longwave_loss_w_m2);
+    CHECK(alone.ground_w_m2_sr[AIR_LWIR] == company.ground_w_m2_sr[AIR_LWIR]);
+    CHECK(alone.sky_w_m2[AIR_LWIR] == company.sky_w_m2[AIR_LWIR]);
+}
+
 static void sun_disc_adds_up(void **state)
 {
     (void)state;
@@ -382,6 +395,7 @@ int main(void)
         cmocka_unit_test(frames_follow_the_tables),
         cmocka_unit_test(pins),
         cmocka_unit_test(sky_adds_up),
+        cmocka_unit_test(a_band_does_not_see_its_company),
         cmocka_unit_test(sun_disc_adds_up),
         cmocka_unit_test(light_fades_smoothly),
         cmocka_unit_test(veils_are_sound_everywhere),

@@ -212,6 +212,27 @@ static void mirrors_show_the_sky_they_face(void **state)
     CHECK_NEAR(scene.out[i] / (fresnel * scene.out[sky]), 1, 1e-3);
 }
 
+/* The sky is bright about the sun. A mirror shows that ring; rough grass of the same reflectance shows an even sheen. */
+static void rough_mirrors_show_no_ring(void **state)
+{
+    (void)state;
+    clear();
+    set_material(1, 0.3, 1, 0.01);
+    set_material(2, 0.3, 1, 0.5);
+    const double e = 40 * rad_per_deg;
+    const Air    air = clear_day(40);
+    int          smooth[2], rough[2];
+    for (int k = 0; k < 2; k++) { /* down the sun's mirror image, and 8 degrees beside it; in shadow: no sun itself */
+        const double off = 8 * k * rad_per_deg, d_enu[3] = {cos(e) * cos(off), cos(e) * sin(off), -sin(e)};
+        smooth[k] = add(d_enu, (double[3]){0, 0, 1}, 0, 1, true);
+        rough[k]  = add(d_enu, (double[3]){0, 0, 1}, 0, 2, true);
+    }
+    shade(&air, optical_channel_r);
+    CHECK(scene.out[smooth[0]] > 1.5 * scene.out[smooth[1]]);
+    CHECK_NEAR(scene.out[rough[0]] / scene.out[rough[1]], 1, 0.1); /* what the sky does beyond the ring */
+    CHECK(scene.out[rough[0]] < scene.out[smooth[1]]);
+}
+
 static void glint_is_where_the_mirror_says(void **state)
 {
     (void)state;
@@ -319,6 +340,7 @@ int main(void)
         cmocka_unit_test(sphere_is_as_others_render_it),
         cmocka_unit_test(white_furnace),
         cmocka_unit_test(mirrors_show_the_sky_they_face),
+        cmocka_unit_test(rough_mirrors_show_no_ring),
         cmocka_unit_test(glint_is_where_the_mirror_says),
         cmocka_unit_test(sky_pixels_are_the_sky),
         cmocka_unit_test(beyond_the_edge_is_land),
