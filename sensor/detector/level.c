@@ -21,7 +21,8 @@ Status detector_check_config(const DetectorConfig *c)
     bool ok = in_range("gain", c->gain, 1e-6, 1e6) & in_range("offset", c->offset, -10, 10) &
               in_range("noise_sigma", c->noise_sigma, 0, most) & in_range("percentile_low", c->percentile_low, 0, 1) &
               in_range("percentile_high", c->percentile_high, c->percentile_low, 1) &
-              in_range("margin", c->margin, 0, 10) & in_range("black_most", c->black_most, 0, 1) & in_range("min_span", c->min_span, 0, most) &
+              in_range("margin", c->margin, 0, 10) & in_range("black_most", c->black_most, 0, 1) &
+              in_range("min_span", c->min_span, 0, most) &
               in_range("level_low", c->level_low, -most, most);
     if (c->bits != 8 && c->bits != 16) {
         log_error("detector: bad value: bits=%d (8 or 16)", c->bits);
