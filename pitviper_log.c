@@ -42,6 +42,8 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
 {
     char line[1024];
     vsnprintf(line, sizeof line, format, arguments);
+    for (char *c = line; *c; c++) /* names in files and what libraries say may hold anything */
+        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = ' ';
     pthread_mutex_lock(&log_lock);
     if (level >= log_lowest) {
         if (log_sink)

@@ -119,7 +119,8 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
             status = STATUS_BAD_VALUE;
             goto done;
         }
-        if (strncmp(line, "\xef\xbb\xbf", 3) == 0) memmove(line, line + 3, strlen(line + 3) + 1); /* a spreadsheet's mark */
+        /* a spreadsheet's mark */
+        if (strncmp(line, "\xef\xbb\xbf", 3) == 0) memmove(line, line + 3, strlen(line + 3) + 1);
     } while (!*line || *line == '#');
     strcpy(copy, line);
     const int cells = text_split(cell, row_max_cells, copy);

@@ -23,7 +23,8 @@ static Status divide_open(void **state, int argc, char **argv)
 }
 static void divide_close(void *state) { closed += state == &rows; }
 
-static const Probe divide = {.name = "divide", .help = "", .in = "a,b,extra?,name$", .out = "quotient,extra_again,said$",
+static const Probe divide = {.name = "divide", .help = "", .in = "a,b,extra?,name$",
+                             .out = "quotient,extra_again,said$",
                              .open = divide_open, .row = divide_row, .close = divide_close};
 
 static Status through(char out[static 4096], const char *text, int argc)

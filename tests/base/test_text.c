@@ -77,9 +77,20 @@ static void foreign_bytes_are_escaped(void **state)
     assert_string_equal(out, "ab");
 }
 
+/* A library's or a file's own words stay on the message's line, and move no cursor. */
+static void a_message_is_one_line(void **state)
+{
+    (void)state;
+    log_set_sink(check_listen, NULL);
+    log_warn("%s: damaged", "a.dt1\n at\033[2J\r\x7f");
+    log_set_sink(NULL, NULL);
+    assert_string_equal(check_said, "a.dt1  at [2J  : damaged");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_message_is_one_line),
         cmocka_unit_test(a_table_reads_comments_quotes_and_numbers),
         cmocka_unit_test(malformed_tables_are_refused_with_the_line),
         cmocka_unit_test(numbers_are_whole_strings),

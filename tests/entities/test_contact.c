@@ -158,8 +158,8 @@ static void every_pose_handed_out_stands(void **state)
     elevation_destroy(&ground);
 }
 
-/* Dust and fire of who was set onto the ground are there too, and so is a burst that its sender calls one on the ground;
- * a burst in the air stays where it was sent. */
+/* Dust and fire of who was set onto the ground are there too, and so is a burst that its sender calls one on the
+ * ground; a burst in the air stays where it was sent. */
 static void what_he_gives_off_goes_with_him(void **state)
 {
     (void)state;
@@ -172,8 +172,8 @@ static void what_he_gives_off_goes_with_him(void **state)
     tank.velocity_mps[2] = 8;
     tank.appearance = UINT32_C(1) << 15 | UINT32_C(2) << 7; /* burns, and raises dust */
     hear(&f, &tank, 0);
-    DisDetonation burst = {.munition = entity_id(9), .event = {1, 3001, 9}, .p_ecef = {earth_radius_m, 20, 30}, .result = 3,
-                           .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
+    DisDetonation burst = {.munition = entity_id(9), .event = {1, 3001, 9}, .p_ecef = {earth_radius_m, 20, 30},
+                           .result = 3, .descriptor = {{2, 2, 225, 1, 1, 3, 0}, 1000, 1000, 1, 0}};
     entity_table_detonation(f.table, &burst, 2.5);
     burst.event.number = 10;
     burst.result = 5;
