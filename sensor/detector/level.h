@@ -15,7 +15,7 @@ typedef struct DetectorConfig {
     bool   auto_level;      /* low and high from the plane, else the two manual ones */
     double percentile_low, percentile_high; /* 0 .. 1 */
     double margin;          /* automatic: added on both sides, in spans */
-    double min_span;        /* automatic: never less, in the plane's unit */
+    double min_span;        /* automatic: never less, in the plane's unit; from 0 up where it would reach below */
     double level_low, level_high;           /* manual, in the plane's unit */
     bool   display_gamma;   /* sRGB transfer curve after gain and level: visible light on a screen */
 } DetectorConfig;

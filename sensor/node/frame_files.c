@@ -317,6 +317,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     d.auto_level         = strcmp(c->detector.level, "auto") == 0;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
+        if (!chain) d.min_span = 1e-3; /* W/(m2 sr): grey things under some 4 lux; a night shows as one */
         d.noise_sigma   = optical_sigma(frame->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;

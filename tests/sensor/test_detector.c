@@ -149,6 +149,24 @@ static void min_span_bounds_the_gain(void **state)
 }
 
 /* Ends, middle, outside, NaN; gain about the middle; offset. Answers from paper. */
+/* Light under the least span is darkness, not half of the scale; above it, as everything. */
+static void a_night_is_dark(void **state)
+{
+    (void)state;
+    static uint8_t code[pixels];
+    const float   *planes[1] = {plane};
+    DetectorConfig config = detector_default_config();
+    config.min_span = 1e-3;
+    for (int i = 0; i < pixels; i++) plane[i] = 1e-6f * (float)i / pixels;
+    DetectorLevel level = detector_level(&config, planes, 1, pixels);
+    CHECK(level.low == 0 && level.high == 1e-3);
+    detector_display(code, plane, pixels, &config, level);
+    for (int i = 0; i < pixels; i++) CHECK(code[i] <= 1);
+    for (int i = 0; i < pixels; i++) plane[i] = (float)i / pixels;
+    level = detector_level(&config, planes, 1, pixels);
+    CHECK(level.low < 0 && level.high > 0.99);
+}
+
 static void quantisation_by_hand(void **state)
 {
     (void)state;
@@ -317,6 +335,7 @@ int main(void)
         cmocka_unit_test(percentiles_are_exact_order_statistics),
         cmocka_unit_test(a_constant_plane_is_steady_mid_grey),
         cmocka_unit_test(min_span_bounds_the_gain),
+        cmocka_unit_test(a_night_is_dark),
         cmocka_unit_test(quantisation_by_hand),
         cmocka_unit_test(display_is_monotone),
         cmocka_unit_test(rgb_has_one_gain),
