@@ -35,11 +35,12 @@ bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *p
     return puff->owner == entity_key(snapshot->entity[index].id) + 1;
 }
 
-bool snapshot_is_wreck(const SnapshotEntity *entity)
+int snapshot_damage(const SnapshotEntity *entity)
 {
-    return entity->type.kind == dis_kind_platform &&
-           (entity->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
+    return entity->type.kind == dis_kind_platform ? (int)(entity->appearance >> dis_appearance_damage_shift & 3) : 0;
 }
+
+bool snapshot_is_wreck(const SnapshotEntity *entity) { return snapshot_damage(entity) == dis_damage_destroyed; }
 
 /* ---- order -------------------------------------------------------------------------------- */
 

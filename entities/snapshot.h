@@ -38,6 +38,8 @@ typedef struct Snapshot {
 
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
+/* What its sender says of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
+int  snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
 

@@ -62,11 +62,10 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, Visibili
     visibility_first_hit(&p->hits, scene->visibility, &p->rays, NULL, -1, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
         p->texture[i] = 1;
-        p->material[i] = p->hits.entity[i] ? (uint16_t)scene->materials->part[p->hits.model[i]][p->hits.part[i] - 1]
-                                           : (uint16_t)scene->materials->surface[p->hits.surface[i]];
-        if (p->hits.entity[i] && scene->materials->burnt &&
-            snapshot_is_wreck(&scene->snapshot->entity[p->hits.entity[i] - 1]))
-            p->material[i] = (uint16_t)scene->materials->burnt;
+        const uint32_t entity = p->hits.entity[i];
+        p->material[i] = (uint16_t)(entity ? material_of_part(scene->materials, p->hits.model[i], p->hits.part[i] - 1,
+                                                              visibility_damage(scene->visibility, (int)entity - 1))
+                                           : scene->materials->surface[p->hits.surface[i]]);
     }
     memset(p->shadow, 0, sizeof p->shadow);
     if (scene->air->sun_d_enu[2] > 0)

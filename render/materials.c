@@ -194,23 +194,36 @@ done:
     return status;
 }
 
+static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name, const char *path)
+{
+    *out = materials_find(m, name);
+    if (*out >= 0) return STATUS_OK;
+    log_error("materials: a part's material is not in the table: file=%s model=%s part=%s material=%s", path, model->name,
+              model->part[part].name, name);
+    return STATUS_BAD_VALUE;
+}
+
 static Status resolve_parts(Materials *m, const Catalog *catalog, const char *path)
 {
-    const int model_count = catalog_model_count(catalog);
-    m->part = calloc((size_t)model_count + 1, sizeof *m->part);
-    if (!m->part) return STATUS_NO_MEMORY;
+    const int model_count = catalog_model_count(catalog), burnt = materials_find(m, "burnt");
+    m->part    = calloc((size_t)model_count + 1, sizeof *m->part);
+    m->damaged = calloc((size_t)model_count + 1, sizeof *m->damaged);
+    if (!m->part || !m->damaged) return STATUS_NO_MEMORY;
     m->model_count = model_count;
     for (int i = 0; i < model_count; i++) {
         const Model *model = catalog_model(catalog, i);
-        m->part[i] = calloc((size_t)model->part_count + 1, sizeof **m->part);
-        if (!m->part[i]) return STATUS_NO_MEMORY;
+        m->part[i]    = calloc((size_t)model->part_count + 1, sizeof **m->part);
+        m->damaged[i] = calloc((size_t)model->part_count + 1, model_damage_states * sizeof **m->damaged);
+        if (!m->part[i] || !m->damaged[i]) return STATUS_NO_MEMORY;
         for (int p = 0; p < model->part_count; p++) {
-            m->part[i][p] = materials_find(m, model->part[p].material);
-            if (m->part[i][p] < 0) {
-                log_error("materials: a part's material is not in the table: file=%s model=%s part=%s material=%s",
-                          path, model->name, model->part[p].name, model->part[p].material);
-                return STATUS_BAD_VALUE;
+            Status status = find_part_material(&m->part[i][p], m, model, p, model->part[p].material, path);
+            for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
+                int        *row  = &m->damaged[i][p * model_damage_states + state];
+                const char *name = model->part[p].damage_material[state];
+                *row = state == model_damage_states - 1 && burnt >= 0 ? burnt : m->part[i][p];
+                if (state > 0 && *name) status = find_part_material(row, m, model, p, name, path);
             }
+            if (status != STATUS_OK) return status;
         }
     }
     return STATUS_OK;
@@ -220,7 +233,6 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
 {
     Materials m = {0};
     Status status = read_materials(&m, path);
-    if (status == STATUS_OK) m.burnt = materials_find(&m, "burnt") > 0 ? materials_find(&m, "burnt") : 0;
     if (status == STATUS_OK) status = read_surfaces(&m, surfaces_path);
     if (status == STATUS_OK) status = read_ground_heat(&m);
     if (status == STATUS_OK && catalog) status = resolve_parts(&m, catalog, path);
@@ -235,8 +247,12 @@ Status materials_open(Materials *out, const char *path, const char *surfaces_pat
 void materials_close(Materials *materials)
 {
     if (!materials) return;
-    for (int i = 0; i < materials->model_count; i++) free(materials->part[i]);
+    for (int i = 0; i < materials->model_count; i++) {
+        if (materials->part) free(materials->part[i]);
+        if (materials->damaged) free(materials->damaged[i]);
+    }
     free(materials->part);
+    free(materials->damaged);
     free(materials->material);
     *materials = (Materials){0};
 }

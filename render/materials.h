@@ -29,8 +29,9 @@ typedef struct Materials {
     int       count;
     Material *material;              /* [0] is "none", black */
     int       surface[SURFACE_COUNT];/* material of each surface class */
-    int       burnt;                 /* row of what a wreck's parts look like; 0: as ever */
     int     **part;                  /* [model][part] */
+    int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. What a model
+                                      * says of itself, else destroyed is `burnt`, where there is such a row */
     int       model_count;
     /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that
      * a horizontal plane loses to the sky (etc/ground_heat.csv). 0: at air temperature. */
@@ -43,6 +44,13 @@ typedef struct Materials {
 Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
 void   materials_close(Materials *materials);
 int    materials_find(const Materials *materials, const char *name); /* -1: none */
+
+/* Row of a part of a model in a state of damage (snapshot_damage). */
+static inline int material_of_part(const Materials *m, int model, int part, int damage)
+{
+    if (damage > 0 && m->damaged) return m->damaged[model][part * model_damage_states + damage];
+    return m->part[model][part];
+}
 
 /* The lobe of a glossy surface. material_fresnel: share reflected by it at an angle of this cosine, from gloss_rho
  * (reflectance times gloss) at normal incidence to 1 at grazing where it is smooth; 0 for gloss_rho = 0. Smooth, and

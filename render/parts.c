@@ -8,6 +8,7 @@
 struct NodeMesh {
     const Model *model;
     int          node;
+    uint8_t      damage_hidden; /* of all its parts: ModelPart */
     RTCScene     scene;
     int          triangle_count;
     uint32_t    *triangle;  /* of the model, by Embree's primID */
@@ -20,7 +21,7 @@ typedef struct ModelMeshes {
     const Model *model;
     float      (*vertex)[4]; /* narrowed; Embree reads 16 bytes at a time */
     int          count;
-    NodeMesh    *mesh;       /* nodes that have triangles */
+    NodeMesh    *mesh;       /* nodes that have triangles; one more for each way in which damage hides some */
 } ModelMeshes;
 
 struct Tracer {
@@ -77,17 +78,25 @@ static void bound_mesh(NodeMesh *mesh)
     for (int a = 0; a < 3; a++) mesh->half[a] = 0.5 * (high[a] - low[a]) + room_m;
 }
 
-static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *meshes, int node, int triangle_count)
+/* Parts of a node that are hidden in the same states of damage are one mesh; state 0 hides nothing. */
+enum { hidden_groups = 1 << (model_damage_states - 1) };
+static int hidden_group_of(uint8_t hidden) { return hidden >> 1 & (hidden_groups - 1); }
+static int hidden_group(const ModelPart *part) { return hidden_group_of(part->damage_hidden); }
+
+static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *meshes, int node, uint8_t hidden, int triangle_count)
 {
     const Model *model = meshes->model;
     mesh->model    = model;
     mesh->node     = node;
+    mesh->damage_hidden = hidden;
     mesh->triangle_count = triangle_count;
     mesh->triangle = calloc((size_t)triangle_count, sizeof *mesh->triangle);
     if (!mesh->triangle) return STATUS_NO_MEMORY;
     int at = 0;
-    for (int t = 0; t < model->triangle_count; t++)
-        if (model->part[model->triangle_part[t]].node == node) mesh->triangle[at++] = (uint32_t)t;
+    for (int t = 0; t < model->triangle_count; t++) {
+        const ModelPart *part = &model->part[model->triangle_part[t]];
+        if (part->node == node && hidden_group(part) == hidden_group_of(hidden)) mesh->triangle[at++] = (uint32_t)t;
+    }
     bound_mesh(mesh);
 
     mesh->scene = rtcNewScene(tracer->device);
@@ -115,17 +124,22 @@ static Status build_model(ModelMeshes *meshes, Tracer *tracer, const Model *mode
 {
     meshes->model  = model;
     meshes->vertex = calloc((size_t)model->vertex_count + 1, sizeof *meshes->vertex);
-    meshes->mesh   = calloc((size_t)model->node_count + 1, sizeof *meshes->mesh);
-    int *triangle_count = calloc((size_t)model->node_count + 1, sizeof *triangle_count);
+    const int groups = model->node_count * hidden_groups;
+    meshes->mesh     = calloc((size_t)groups + 1, sizeof *meshes->mesh);
+    int *triangle_count = calloc((size_t)groups + 1, sizeof *triangle_count);
     Status status = meshes->vertex && meshes->mesh && triangle_count ? STATUS_OK : STATUS_NO_MEMORY;
     if (status != STATUS_OK) goto done;
 
     for (int v = 0; v < model->vertex_count; v++)
         for (int c = 0; c < 3; c++) meshes->vertex[v][c] = (float)model->vertex[v][c];
-    for (int t = 0; t < model->triangle_count; t++) triangle_count[model->part[model->triangle_part[t]].node]++;
-    for (int n = 0; n < model->node_count && status == STATUS_OK; n++)
-        if (triangle_count[n] > 0) {
-            status = build_mesh(&meshes->mesh[meshes->count], tracer, meshes, n, triangle_count[n]);
+    for (int t = 0; t < model->triangle_count; t++) {
+        const ModelPart *part = &model->part[model->triangle_part[t]];
+        triangle_count[part->node * hidden_groups + hidden_group(part)]++;
+    }
+    for (int g = 0; g < groups && status == STATUS_OK; g++)
+        if (triangle_count[g] > 0) {
+            status = build_mesh(&meshes->mesh[meshes->count], tracer, meshes, g / hidden_groups,
+                                (uint8_t)(g % hidden_groups << 1), triangle_count[g]);
             meshes->count++; /* a half-built one is closed as well */
         }
 done:
@@ -237,11 +251,12 @@ static void include_box(PosedEntity *entity, const NodeMesh *mesh, const NodePos
 }
 
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
-                const double r_enu_from_body[9])
+                const double r_enu_from_body[9], int damage)
 {
     const ModelMeshes *meshes = &tracer->model[model];
     double             low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     out->model      = model;
+    out->damage     = damage;
     out->node_count = 0;
     out->radius_m   = 0;
     memset(out->centre_enu, 0, sizeof out->centre_enu);
@@ -260,6 +275,7 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         const NodePose *p    = &pose[meshes->mesh[k].node];
         double          offset[3], centre[3];
         if (!pose_is_finite(p->p_body, p->r_body_from_node)) continue;
+        if (meshes->mesh[k].damage_hidden >> damage & 1) continue;
         node->mesh = &meshes->mesh[k];
         m3_mul_v3(offset, r_enu_from_body, p->p_body);
         v3_add(node->p_enu, p_enu, offset);

@@ -27,6 +27,7 @@ typedef struct PosedNode {
 
 /* An entity where it is now. Sphere and box hold all of its nodes as they are posed, whatever the model says. */
 typedef struct PosedEntity {
+    int          damage;     /* 0 .. model_damage_states - 1 */
     int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
     int          node_count; /* those with triangles */
     PosedNode   *node;
@@ -45,9 +46,10 @@ const uint32_t *parts_node_triangles(const PosedNode *node, int *count);
 
 /* The most nodes that posing an entity of this model needs room for. */
 int parts_node_count(const Tracer *tracer, int model);
-/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. */
+/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are
+ * not there. */
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
-                const double r_enu_from_body[9]);
+                const double r_enu_from_body[9], int damage);
 
 /* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is
  * asked even where the entity's box or a node's sphere is missed, which must not change the answer. */

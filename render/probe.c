@@ -67,7 +67,7 @@ static Status rays_open(void **state, int argc, char **argv)
     if (status == STATUS_OK) {
         model_pose(pose, model, NULL);
         m3_identity(attitude);
-        parts_pose(&p->entity, p->tracer, 0, pose, origin, attitude);
+        parts_pose(&p->entity, p->tracer, 0, pose, origin, attitude, 0);
         *state = p;
     } else {
         rays_close(p);

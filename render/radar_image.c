@@ -54,10 +54,10 @@ static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_en
     return v3_normalize(out_enu, out_enu) && v3_dot(out_enu, n_geo) > 0;
 }
 
-static int material_of(const Materials *materials, const Hits *hits, int k)
+static int material_of(const Visibility *v, const Materials *materials, const Hits *hits, int k)
 {
     if (hits->entity[k] == 0) return materials->surface[hits->surface[k]];
-    return materials->part[hits->model[k]][hits->part[k] - 1];
+    return material_of_part(materials, hits->model[k], hits->part[k] - 1, visibility_damage(v, (int)hits->entity[k] - 1));
 }
 
 /* Everything one block needs besides its input. */
@@ -110,7 +110,7 @@ static void next_bounce(RadarReturns *out, int bounce, Scratch *s, const RadarCo
     Rays *onward = &s->onward;
     for (int k = 0; k < paths->count; k++) {
         if (!(s->met.range_m[k] < INFINITY)) continue;
-        const Material *m = &materials->material[material_of(materials, &s->met, k)];
+        const Material *m = &materials->material[material_of(v, materials, &s->met, k)];
         if (!(m->metal > 0)) continue;
         const double d_enu[3] = {onward->d_enu[0][k], onward->d_enu[1][k], onward->d_enu[2][k]};
         double exit_enu[3];

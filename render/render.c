@@ -112,9 +112,9 @@ static void resolve_materials(Scratch *s, const Job *job)
         for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = 1;
         s->material[i] = 0;
         if (s->hits.entity[i]) {
-            s->material[i] = (uint16_t)world->materials.part[s->hits.model[i]][s->hits.part[i] - 1];
-            if (world->materials.burnt && snapshot_is_wreck(&job->snapshot->entity[s->hits.entity[i] - 1]))
-                s->material[i] = (uint16_t)world->materials.burnt;
+            const int damage = visibility_damage(job->visibility, (int)s->hits.entity[i] - 1);
+            s->material[i] =
+                (uint16_t)material_of_part(&world->materials, s->hits.model[i], s->hits.part[i] - 1, damage);
         } else if (s->hits.surface[i]) {
             const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
             s->material[i]             = (uint16_t)world->materials.surface[surface];

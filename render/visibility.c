@@ -27,17 +27,21 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
         const SnapshotEntity *e = &snapshot->entity[k];
         PosedEntity          *posed = &v->entity[k];
         double                p_enu[3], r_enu_from_body[9];
-        posed->model = -1;
+        posed->model  = -1;
+        posed->damage = 0;
         if (e->model < 0 || e->model >= tracer_model_count(tracer)) continue;
         posed->node = arena_alloc(arena, (size_t)parts_node_count(tracer, e->model) + 1, sizeof *posed->node);
         if (!posed->node) return STATUS_NO_MEMORY;
         enu_from_ecef(p_enu, frame, e->p_ecef);
         m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
-        parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body);
+        parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body,
+                   snapshot_damage(e));
     }
     *out = v;
     return STATUS_OK;
 }
+
+int visibility_damage(const Visibility *v, int index) { return v->entity[index].damage; }
 
 /* ---- which entities a block may see ------------------------------------------------------- */
 

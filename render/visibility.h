@@ -37,6 +37,9 @@ typedef struct VisibilityCounters {
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, bool no_skip, Arena *arena);
 
+/* How damaged an entity is shown: snapshot_damage. */
+int visibility_damage(const Visibility *v, int index);
+
 /* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
  * with no_skip). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,

@@ -129,7 +129,7 @@ static void scene_open(Scene *s, const char *path)
     s->entity.node = calloc((size_t)parts_node_count(s->tracer, 0), sizeof *s->entity.node);
     model_pose(pose, model, NULL);
     m3_identity(attitude);
-    parts_pose(&s->entity, s->tracer, 0, pose, origin, attitude);
+    parts_pose(&s->entity, s->tracer, 0, pose, origin, attitude, 0);
     free(pose);
 }
 

@@ -23,7 +23,7 @@ static void scene_open(Scene *s, const Model *model, const char *isa)
 
 static void scene_pose(Scene *s, const NodePose *pose, const double p_enu[3], const double r_enu_from_body[9])
 {
-    parts_pose(&s->entity, s->tracer, 0, pose, p_enu, r_enu_from_body);
+    parts_pose(&s->entity, s->tracer, 0, pose, p_enu, r_enu_from_body, 0);
 }
 
 static NodePose at_rest(void)
