@@ -124,6 +124,21 @@ static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame
 
 /* ---- cover ---------------------------------------------------------------------------------- */
 
+/* Elevation given in the wrong place is the usual mistake, and comes in float. */
+static Status open_whole(RasterSet *set, const char *paths, const char *key, const char *what)
+{
+    const Status status = raster_set_open(set, paths, key);
+    for (int k = 0; status == STATUS_OK && k < set->count; k++) {
+        if (set->raster[k].whole) continue;
+        log_error("%s: %s holds numbers with fractions, not %s; is it elevation (terrain.elevation)?", key,
+                  set->raster[k].sheet[0].path, what);
+        raster_set_close(set);
+        *set = (RasterSet){0};
+        return STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
 enum { most_codes = 256 };
 
 typedef struct CoverTable {
@@ -229,7 +244,7 @@ Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const 
     CoverGrid   grid[cover_windows] = {{0}};
     CoverReport r = {0};
     CoverTable  chosen;
-    Status      status = raster_set_open(&set, paths, cover_key);
+    Status      status = open_whole(&set, paths, cover_key, "classes");
     if (status != STATUS_OK) return status;
     const Raster *first = &set.raster[0];
     r.band      = band > 0 ? band : first->bands >= 8 ? 4 : 1;
@@ -455,7 +470,7 @@ Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevat
     RasterSet set = {0};
     Photo     p = {0};
     Window    window;
-    Status    status = raster_set_open(&set, paths, photo_key);
+    Status    status = open_whole(&set, paths, photo_key, "a photograph");
     if (status != STATUS_OK) return status;
     const Raster *first = &set.raster[0];
     *posting_m = fmin(first->posting_m[0], first->posting_m[1]);

@@ -40,7 +40,7 @@ static void loud(void) { CPLPopErrorHandler(); }
 typedef struct Opened {
     double transform[6];
     int    width, height, bands;
-    bool   ellipsoidal, bytes;
+    bool   ellipsoidal, bytes, whole;
     double metres_per_unit;
     OGRSpatialReferenceH crs;
 } Opened;
@@ -86,6 +86,7 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
     o.crs             = OSRClone(crs);
     o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
     o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
+    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(GDALGetRasterBand(file, 1)));
     o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
     if (o.metres_per_unit == 0) {
         if (!o.bytes) /* codes and photographs have no length */
@@ -129,6 +130,7 @@ static Status start_raster(Raster *raster, Opened *o)
     raster->ellipsoidal     = o->ellipsoidal;
     raster->metres_per_unit = o->metres_per_unit;
     raster->bytes           = o->bytes;
+    raster->whole           = o->whole;
     raster->crs             = o->crs;
     o->crs                  = NULL;
     if (OSRIsGeographic(raster->crs)) {

@@ -20,6 +20,7 @@ typedef struct Raster {
     bool    ellipsoidal;         /* the CRS is three-dimensional: heights above the ellipsoid */
     double  metres_per_unit;     /* of band 1 */
     bool    bytes;               /* its samples are octets: of a picture, or a class */
+    bool    whole;               /* they are whole numbers: no elevation in float */
     int     sheet_count;
     RasterSheet *sheet;
     /* private: */

@@ -44,4 +44,9 @@ check "a missing file ends it" [ "$code" = 1 ]
 check "and says which, and what to do" complained 'terrain\.elevation: cannot read /nowhere\.tif.*gdalinfo'
 replay "$tmp/demo.pcap" "$tmp/none" --set "terrain.cover=$data/autzen_cover_1m.tif"
 check "cover without elevation is refused" complained 'terrain\.cover needs terrain\.elevation'
+for wrong in cover orthophoto; do
+    replay "$tmp/demo.pcap" "$tmp/none" --set "terrain.elevation=$data/autzen_dtm_1m.tif" \
+        --set "terrain.$wrong=$data/autzen_dtm_1m.tif"
+    check "elevation as $wrong is refused" complained "terrain\\.$wrong: .*is it elevation"
+done
 finish
