@@ -1,0 +1,239 @@
+/* The tables of the air spoilt: a small set of them, written here, is refused with file and line, and nothing crashes. */
+#include "tests/check.h"
+#include "render/atmosphere.h"
+
+#include <sys/stat.h>
+
+typedef struct SmallFile {
+    const char *name, *text;
+} SmallFile;
+
+#define COLUMN_HEAD "height_m,extinction_b,scatter_b,extinction_g,scatter_g,extinction_r,scatter_r,extinction_nir," \
+                    "scatter_nir,extinction_mwir,scatter_mwir,extinction_lwir,scatter_lwir\n"
+#define COLUMN_ROWS "0,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1,0.2,0.1\n20000,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0\n"
+#define PATHS "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,1000,0.2\n0,9000,9000,1\n9000,0,9000,1\n" \
+              "9000,9000,100,0.01\n9000,9000,1000,0.1\n"
+#define THERMAL "observer_m,target_m,range_m,depth_sun,depth_250k,depth_300k,thermal_w_m2_sr\n" \
+                "0,0,100,0.02,0.02,0.02,1\n0,0,1000,0.2,0.2,0.2,9\n0,9000,9000,1,1,1,20\n9000,0,9000,1,1,1,20\n" \
+                "9000,9000,100,0.01,0.01,0.01,1\n"
+#define SIX "b,g,r,nir,mwir,lwir\n"
+
+static const SmallFile small_files[] = {
+    {"bands.csv", "band,sun_top_w_m2\nb,187\ng,185\nr,159\nnir,376\nmwir,12.8\nlwir,1.1\n"},
+    {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,300\n"},
+    {"m/temperature.csv", "height_m,temp_k\n0,288\n11000,217\n"},
+    {"m/phase.csv", "height_m,angle_deg," SIX "0,0,9,9,9,9,9,9\n0,180,0.5,0.5,0.5,0.5,0.5,0.5\n"},
+    {"m/clear/air.csv", COLUMN_HEAD COLUMN_ROWS},
+    {"m/clear/paths_b.csv", PATHS}, {"m/clear/paths_g.csv", PATHS}, {"m/clear/paths_r.csv", PATHS},
+    {"m/clear/paths_nir.csv", PATHS}, {"m/clear/paths_mwir.csv", THERMAL}, {"m/clear/paths_lwir.csv", THERMAL},
+    {"m/10000/haze.csv", COLUMN_HEAD COLUMN_ROWS},
+    {"m/10000/paths_b.csv", PATHS}, {"m/10000/paths_g.csv", PATHS}, {"m/10000/paths_r.csv", PATHS},
+    {"m/10000/paths_nir.csv", PATHS}, {"m/10000/paths_mwir.csv", THERMAL}, {"m/10000/paths_lwir.csv", THERMAL},
+    {"m/10000/sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.4,6\n0,90,1,30\n"},
+    {"m/10000/sun.csv", "observer_m,sun_zenith_deg,direct_b,direct_g,direct_r,direct_nir,direct_mwir,direct_lwir,"
+                        "diffuse_b,diffuse_g,diffuse_r,diffuse_nir,diffuse_mwir,diffuse_lwir\n"
+                        "0,0,90,90,90,200,8,0.7,60,40,30,50,0.1,0.01\n0,85,9,9,9,20,1,0.1,6,4,3,5,0.01,0\n"},
+    {"m/10000/sky_scattered.csv", "observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg," SIX
+                                  "0,0,0,0,9,8,7,6,0.1,0.01\n0,80,0,0,9,8,7,6,0.1,0.01\n"},
+    {"m/10000/scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
+                              "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n"
+                              "0,0,900,0,180,2,2,2,2,0.2,0\n0,180,50,0,0,1,1,1,1,0,0\n0,180,50,0,180,1,1,1,1,0,0\n"},
+};
+enum { small_count = sizeof small_files / sizeof *small_files };
+
+static char small_root[64];
+
+static void write_small(int which, const char *text, size_t octets)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/atmosphere/%s", small_root, small_files[which].name);
+    FILE *file = fopen(path, "wb");
+    CHECK(file && fwrite(text, 1, octets, file) == octets && fclose(file) == 0);
+}
+
+static void restore_small(int which) { write_small(which, small_files[which].text, strlen(small_files[which].text)); }
+
+static int make_small(void **state)
+{
+    (void)state;
+    strcpy(small_root, "/tmp/pitviper-test-XXXXXX");
+    if (!mkdtemp(small_root)) return -1;
+    static const char *const folder[] = {"atmosphere", "atmosphere/m", "atmosphere/m/clear", "atmosphere/m/10000"};
+    for (int i = 0; i < 4; i++) {
+        char path[256];
+        snprintf(path, sizeof path, "%s/%s", small_root, folder[i]);
+        if (mkdir(path, 0777) != 0) return -1;
+    }
+    for (int i = 0; i < small_count; i++) restore_small(i);
+    setenv("PITVIPER_ETC", small_root, 1);
+    log_set_sink(check_listen, NULL);
+    return 0;
+}
+
+static int remove_small(void **state)
+{
+    (void)state;
+    log_set_sink(NULL, NULL);
+    unsetenv("PITVIPER_ETC");
+    char path[256];
+    for (int i = 0; i < small_count; i++) {
+        snprintf(path, sizeof path, "%s/atmosphere/%s", small_root, small_files[i].name);
+        remove(path);
+    }
+    static const char *const folder[] = {"/atmosphere/m/10000", "/atmosphere/m/clear", "/atmosphere/m", "/atmosphere",
+                                         ""};
+    for (int i = 0; i < 5; i++) {
+        snprintf(path, sizeof path, "%s%s", small_root, folder[i]);
+        rmdir(path);
+    }
+    return 0;
+}
+
+static int small_index(const char *name)
+{
+    for (int i = 0; i < small_count; i++)
+        if (strcmp(small_files[i].name, name) == 0) return i;
+    fail_msg("no file %s", name);
+    return -1;
+}
+
+/* First wrong thing first: the last line logged is the model's, so the one before is kept. */
+static char first_said[1024];
+static void listen_first(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    if (level == LOG_ERROR && !first_said[0]) snprintf(first_said, sizeof first_said, "%s", line);
+}
+
+static void refuses_and_says_where(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *file, *text, *said;
+    } bad[] = {
+        {"bands.csv", "band,sun_top_w_m2\nb,187\nb,187\n", "bands.csv:3"},
+        {"bands.csv", "band,sun_top_w_m2\nb,187\ng,185\nr,159\nnir,376\nmwir,12.8\n", "lwir"},
+        {"bands.csv", "band,top\nb,187\n", "sun_top_w_m2"},
+        {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,nan\n", "visibilities.csv:2"},
+        {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n10000,300\n20000,290\n", "20000/haze.csv"},
+        {"m/visibilities.csv", "visibility_m,longwave_down_w_m2\n", "no rows"},
+        {"m/temperature.csv", "height_m,temp_k\n0,288\n0,289\n", "temperature.csv:3: this point is there twice"},
+        {"m/temperature.csv", "height_m,temp_k\n0,-288\n", "temp_k"},
+        {"m/phase.csv", "height_m,angle_deg," SIX "0,0,9,9,9,9,9,9\n90,180,1,1,1,1,1,1\n",
+         "phase.csv:3: a point is missing"},
+        {"m/clear/air.csv", COLUMN_HEAD "100,1,1,1,1,1,1,1,1,1,1,1,1\n200,1,1,1,1,1,1,1,1,1,1,1,1\n",
+         "from 0 upwards"},
+        {"m/clear/air.csv", COLUMN_HEAD "0,0,1,1,1,1,1,1,1,1,1,1,1\n", "air.csv:2"},
+        {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,9000,9000,1\n9000,0,900,1\n",
+         "paths_b.csv:4: range_m 900 is less"},
+        {"m/clear/paths_b.csv",
+         "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,9000,9000,1\n9000,9000,100,1\n",
+         "no path: observer_m=9000 target_m=0"},
+        {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,0.02\n0,0,100,0.02\n",
+         "paths_b.csv:3: this path is there twice"},
+        {"m/clear/paths_b.csv", "observer_m,target_m,range_m,depth_sun\n0,0,100,-1\n",
+         "paths_b.csv:2: column depth_sun"},
+        {"m/clear/paths_b.csv", "observer_m,target_m,range_m\n0,0,100\n", "depth_sun"},
+        {"m/clear/paths_mwir.csv", PATHS, "depth_<kelvin>k"},
+        {"m/10000/paths_lwir.csv",
+         "observer_m,target_m,range_m,depth_sun,depth_hotk,thermal_w_m2_sr\n0,0,100,1,1,1\n",
+         "depth_hotk"},
+        {"m/10000/paths_lwir.csv", "observer_m,target_m,range_m,depth_sun,depth_300k\n0,0,100,1,1\n",
+         "thermal_w_m2_sr"},
+        {"m/10000/sun.csv", "observer_m,sun_zenith_deg\n0,0\n", "direct_b"},
+        {"m/10000/scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
+         "0,0,100,0,0,1,1,1,1,0.1,0\n0,0,100,0,180,1,1,1,1,0.1,0\n0,0,900,0,0,2,2,2,2,0.2,0\n", "scattered.csv:4"},
+        {"m/10000/sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.4\n", "sky_thermal.csv:2"},
+    };
+    log_set_sink(listen_first, NULL);
+    Atmosphere *model = NULL;
+    CHECK(atmosphere_open(&model, "m") == STATUS_OK); /* whole as it stands */
+    atmosphere_close(model);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        const int which = small_index(bad[i].file);
+        write_small(which, bad[i].text, strlen(bad[i].text));
+        model = NULL;
+        first_said[0] = 0;
+        const Status status = atmosphere_open(&model, "m");
+        if (status == STATUS_OK || model || !strstr(first_said, bad[i].said))
+            fail_msg("case %zu: %s, said \"%s\", want \"%s\"", i, status_name(status), first_said, bad[i].said);
+        restore_small(which);
+    }
+    static const char *const names[] = {"", "nothing", "../m", "m/../m", "M", "a name"};
+    for (int i = 0; i < 6; i++) {
+        first_said[0] = 0;
+        CHECK(atmosphere_open(&model, names[i]) != STATUS_OK && !model && first_said[0]);
+    }
+    log_set_sink(check_listen, NULL);
+}
+
+/* Bytes and lines changed, lost and doubled: refused with a reason, or read and then of finite answers. */
+static void survives_any_spoiling(void **state)
+{
+    (void)state;
+    static const char *const word_in[] = {"nan", "1e999", "-1", "", ",", "\n", "1e308", "#", "\"", "0", "1e-300"};
+    int opened = 0, refused = 0;
+    for (int which = 0; which < small_count; which++) {
+        const char *text = small_files[which].text;
+        const size_t octets = strlen(text);
+        for (uint32_t k = 0; k < 60; k++) {
+            uint32_t r[4];
+            random_u32x4(r, (uint32_t[4]){k, (uint32_t)which, 0, 0}, (uint32_t[2]){7, 7});
+            char spoilt[4096];
+            const size_t at = r[0] % octets, length = 1 + r[1] % (k % 2 ? 3 : 60);
+            const size_t end = at + length < octets ? at + length : octets;
+            size_t n = 0;
+            memcpy(spoilt, text, at);
+            n = at;
+            if (k % 3 == 0) { /* some of it gone */
+                memcpy(spoilt + n, text + end, octets - end);
+                n += octets - end;
+            } else if (k % 3 == 1) { /* twice */
+                memcpy(spoilt + n, text + at, end - at);
+                n += end - at;
+                memcpy(spoilt + n, text + at, octets - at);
+                n += octets - at;
+            } else { /* something else */
+                const char *word = word_in[r[2] % 11];
+                memcpy(spoilt + n, word, strlen(word));
+                n += strlen(word);
+                memcpy(spoilt + n, text + end, octets - end);
+                n += octets - end;
+            }
+            write_small(which, spoilt, n);
+            Atmosphere *model = NULL;
+            check_said[0] = 0;
+            if (atmosphere_open(&model, "m") != STATUS_OK) {
+                CHECK(!model && check_said[0]);
+                refused++;
+                continue;
+            }
+            opened++;
+            for (int b = 0; b < AIR_BAND_COUNT; b++) {
+                const AirPath path = {100, 3000, 7000, 0.5, 1};
+                PathAir air;
+                SkyAir sky;
+                SunAir sun;
+                atmosphere_path(&air, model, 10000, (AirBand)b, &path, 300);
+                atmosphere_sky(&sky, model, 10000, (AirBand)b, 0, 1, 0.5, 1);
+                atmosphere_sun(&sun, model, 10000, (AirBand)b, 0, 0.5);
+                CHECK(air.transmittance >= 0 && air.transmittance <= 1 && isfinite(sun.direct_normal_w_m2));
+                CHECK(!isnan(air.thermal_w_m2_sr) && !isnan(air.scattered_w_m2_sr));
+                CHECK(!isnan(sky.thermal_w_m2_sr) && !isnan(sky.scattered_w_m2_sr));
+            }
+            atmosphere_close(model);
+        }
+        restore_small(which);
+    }
+    printf("  spoilt tables: %d refused, %d read\n", refused, opened);
+    CHECK(refused > 500 && opened > 50); /* both ways are walked */
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(refuses_and_says_where, make_small, remove_small),
+        cmocka_unit_test_setup_teardown(survives_any_spoiling, make_small, remove_small),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
