@@ -9,6 +9,14 @@ const char *air_band_name(AirBand band)
     return band >= 0 && band < AIR_BAND_COUNT ? name[band] : "?";
 }
 
+void air_band_edges(double *low_m, double *high_m, AirBand band)
+{
+    static const double low[AIR_BAND_COUNT] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6, 0.7e-6, 3.4e-6, 8e-6};
+    static const double high[AIR_BAND_COUNT] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6, 1.1e-6, 4.8e-6, 12e-6};
+    *low_m  = low[band];
+    *high_m = high[band];
+}
+
 int air_tabled_index(AirBand band)
 {
     for (int i = 0; i < air_tabled_count; i++)

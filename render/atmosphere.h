@@ -14,6 +14,8 @@
  * channels of render/materials.h. */
 typedef enum AirBand { AIR_B, AIR_G, AIR_R, AIR_PAN, AIR_NIR, AIR_MWIR, AIR_LWIR, AIR_BAND_COUNT } AirBand;
 const char *air_band_name(AirBand band); /* b g r pan nir mwir lwir */
+/* Where a band begins and ends, in vacuum: the one table of them. */
+void air_band_edges(double *low_m, double *high_m, AirBand band);
 
 typedef struct Atmosphere Atmosphere;
 

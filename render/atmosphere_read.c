@@ -422,8 +422,11 @@ Status atmosphere_open(Atmosphere **out, const char *model)
     Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);
     if (!atmosphere) return STATUS_NO_MEMORY;
     Status status = read_sun_top(atmosphere->sun_top_w_m2);
-    if (status == STATUS_OK) status = planck_table_create(&atmosphere->planck[0], 3.4e-6, 4.8e-6);
-    if (status == STATUS_OK) status = planck_table_create(&atmosphere->planck[1], 8e-6, 12e-6);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        double low_m, high_m;
+        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
+        status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
+    }
     if (status == STATUS_OK) status = open_model(atmosphere, folder);
     if (status != STATUS_OK) {
         log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);

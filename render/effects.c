@@ -8,9 +8,6 @@
 
 #include <stdlib.h>
 
-static const double band_low_m[effect_band_count] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6, 0.7e-6, 3.4e-6, 8e-6};
-static const double band_high_m[effect_band_count] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6, 1.1e-6, 4.8e-6, 12e-6};
-
 _Static_assert((int)effect_band_count == (int)veil_bands, "a volume's bands are the effects'");
 _Static_assert((int)effect_band_count == (int)AIR_BAND_COUNT && (int)effect_band_pan == (int)AIR_PAN &&
                (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
@@ -26,7 +23,9 @@ static double phase_per_sr(double asymmetry, double cosine)
 static double glow_w_m2_sr(int band, double temp_k)
 {
     if (band < effect_band_mwir && temp_k < 500) return 0;
-    return planck_band(band_low_m[band], band_high_m[band], temp_k, NULL);
+    double low_m, high_m;
+    air_band_edges(&low_m, &high_m, (AirBand)band);
+    return planck_band(low_m, high_m, temp_k, NULL);
 }
 
 typedef struct Placed {

@@ -36,12 +36,11 @@ int render_places(int samples, int edge_samples)
 
 double veil_taken(const Scratch *s, const Job *job, Band band, int sample)
 {
-    const int of[BAND_COUNT] = {[BAND_OPTICAL] = job->request->optical == OPTICAL_RGB   ? effect_band_g
-                                                 : job->request->optical == OPTICAL_NIR ? effect_band_nir
-                                                                                        : effect_band_pan,
-                                [BAND_MWIR] = effect_band_mwir, [BAND_LWIR] = effect_band_lwir, [BAND_RADAR] = -1};
-    if (!s->veil.any || of[band] < 0 || !has_band(job->request->bands, band)) return 0;
-    return 1 - (double)s->veil.transmittance[of[band]][sample];
+    int channel[3] = {0};
+    if (!s->veil.any || band == BAND_RADAR || !has_band(s->block.bands, band)) return 0;
+    int of = band == BAND_MWIR ? effect_band_mwir : effect_band_lwir;
+    if (band == BAND_OPTICAL) of = optical_channels(channel, s->block.bands, job->request->optical) == 3 ? channel[1] : channel[0];
+    return 1 - (double)s->veil.transmittance[of][sample];
 }
 
 /* What stands in the air before the block's hits. */
@@ -60,7 +59,7 @@ static void trace_veils(Scratch *s, const Job *job)
     const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
                                                                  &job->request->view, box[0], box[1], box[2], box[3]);
     veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m,
-              render_air_bands(job->request->bands, job->request->optical));
+              render_air_bands(block->bands, job->request->optical));
 }
 
 double pixel_cosine3(const View *view, int x, int y)
@@ -172,18 +171,6 @@ static void gather_around(Scratch *s, const Job *job)
                  key, &s->counters.visibility);
 }
 
-/* What warms the ground by its brightness is the ground's own pattern, for whose range (landscape_texture: 0.6 .. 1.4)
- * thermal.c has its law. A photograph's white roof is six times as bright as its class's mean, and by that law would be
- * colder than the air at noon. */
-static void find_temperatures(Scratch *s, const Job *job)
-{
-    const World *world = job->world;
-    float        pattern[hits_capacity];
-    for (int i = 0; i < s->hits.count; i++) pattern[i] = fminf(fmaxf(s->texture[optical_channel_pan][i], 0.6f), 1.4f);
-    thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
-                        pattern);
-}
-
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
@@ -194,7 +181,8 @@ static void shade_bands(Scratch *s, const Job *job)
     int        channel[3];
     const int  channels = optical_channels(channel, bands, request->optical);
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
-        find_temperatures(s, job);
+        thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
+                            s->texture[optical_channel_pan]);
     const unsigned air_bands = render_air_bands(bands, request->optical);
     if (air_bands) {
         air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
@@ -602,8 +590,12 @@ Status world_open(World *out, const Catalog *catalog, const Landscape *landscape
     }
     status = tracer_create(&world.tracer, catalog, isa);
     if (status == STATUS_OK) status = materials_open(&world.materials, materials, surfaces, catalog);
-    if (status == STATUS_OK) status = planck_table_create(&world.planck_mwir, 3.4e-6, 4.8e-6);
-    if (status == STATUS_OK) status = planck_table_create(&world.planck_lwir, 8e-6, 12e-6);
+    PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        double low_m, high_m;
+        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
+        status = planck_table_create(planck[k], low_m, high_m);
+    }
     if (status != STATUS_OK) {
         world_close(&world);
         return status;

@@ -32,9 +32,12 @@ static double passive_part_k(const Air *air, const Material *material, double n_
 }
 
 /* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
- * relative brightness into relative warmth (a guess; bright patches are also dry ones). */
-static double ground_k(const Air *air, const Materials *materials, int surface, const double n_enu[3], double texture)
+ * relative brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
+ * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that law
+ * would be colder than the air at noon. */
+static double ground_k(const Air *air, const Materials *materials, int surface, const double n_enu[3], float brightness)
 {
+    const double texture = fminf(fmaxf(brightness, 0.6f), 1.4f);
     const double slope_w_m2 = air->solar_direct_w_m2 * fmax(v3_dot(n_enu, air->sun_d_enu), 0) +
                               air->solar_diffuse_w_m2 * 0.5 * (1 + n_enu[2]);
     return air->weather.air_temp_k + materials->ground_rise_k[surface] * 1e-3 * slope_w_m2 * (1.5 - 0.5 * texture) -

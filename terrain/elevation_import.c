@@ -53,28 +53,6 @@ static int round_out(double posts)
     return (int)(posts < 0 ? floor(posts / level_ratio) : ceil(posts / level_ratio)) * level_ratio;
 }
 
-/* ENU box of a grid's outermost posts, at height 0. */
-static void grid_box(double low[2], double high[2], const Raster *raster, const LocalFrame *frame)
-{
-    enum { side = 16 };
-    low[0] = low[1] = INFINITY;
-    high[0] = high[1] = -INFINITY;
-    for (int edge = 0; edge < 4; edge++)
-        for (int k = 0; k <= side; k++) {
-            const double along = (double)k / side, w = raster->width - 1, h = raster->height - 1;
-            double       x = 0.5 + (edge < 2 ? along * w : edge == 2 ? 0 : w), y = 0.5 + (edge < 2 ? edge ? h : 0 : along * h);
-            double       p_ecef[3], p_enu[3];
-            raster_earth_from_px(raster, 1, &x, &y);
-            const Geodetic place = {.lat_rad = y, .lon_rad = x};
-            if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
-            enu_from_ecef(p_enu, frame, p_ecef);
-            for (int c = 0; c < 2; c++) {
-                low[c]  = fmin(low[c], p_enu[c]);
-                high[c] = fmax(high[c], p_enu[c]);
-            }
-        }
-}
-
 /* How far a grid's nearest edge is from the origin: positive inside, negative outside; and the farthest. */
 static void grid_reach(double reach_m[2], const Raster *raster, const LocalFrame *frame)
 {
@@ -132,11 +110,11 @@ static void plan_levels(Import *m)
 
     double low[2], high[2];
     int    first[2], last[2];
-    grid_box(low, high, raster, m->frame);
+    raster_enu_box(low, high, raster, m->frame, 0.5);
     for (int k = 0; k < m->grids; k++) { /* neighbours of about the same posting belong to it */
         double other_low[2], other_high[2];
         if (fmin(m->grid[k].units[0], m->grid[k].units[1]) > 2 * s || k == m->main) continue;
-        grid_box(other_low, other_high, m->grid[k].raster, m->frame);
+        raster_enu_box(other_low, other_high, m->grid[k].raster, m->frame, 0.5);
         for (int c = 0; c < 2; c++) {
             low[c]  = fmin(low[c], other_low[c]);
             high[c] = fmax(high[c], other_high[c]);

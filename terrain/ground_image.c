@@ -95,21 +95,8 @@ static bool finder_bounds(int box[4], Finder *f, int row)
 /* ENU rectangle of a raster about the origin, no wider than `half_m` each way, in whole blocks. */
 static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame, double cell_m, double half_m)
 {
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    for (int k = 0; k < 64; k++) {
-        const double along = (k / 4) / 15.0;
-        double       x = k % 4 == 0 || k % 4 == 1 ? along * raster->width : k % 4 == 2 ? 0 : raster->width;
-        double       y = k % 4 == 0 ? 0 : k % 4 == 1 ? raster->height : along * raster->height;
-        double       p_ecef[3], p_enu[3];
-        raster_earth_from_px(raster, 1, &x, &y);
-        const Geodetic place = {.lat_rad = y, .lon_rad = x};
-        if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
-        enu_from_ecef(p_enu, frame, p_ecef);
-        for (int c = 0; c < 2; c++) {
-            low[c]  = fmin(low[c], p_enu[c]);
-            high[c] = fmax(high[c], p_enu[c]);
-        }
-    }
+    double low[2], high[2];
+    raster_enu_box(low, high, raster, frame, 0);
     const double margin_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
     int n[2];
     for (int c = 0; c < 2; c++) {

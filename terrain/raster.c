@@ -425,6 +425,29 @@ done:
     return status;
 }
 
+void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px)
+{
+    enum { side = 16 };
+    low_m[0] = low_m[1] = INFINITY;
+    high_m[0] = high_m[1] = -INFINITY;
+    const double w = raster->width - 2 * inset_px, h = raster->height - 2 * inset_px;
+    for (int edge = 0; edge < 4; edge++)
+        for (int k = 0; k <= side; k++) {
+            const double along = (double)k / side;
+            double       x = inset_px + (edge < 2 ? along * w : edge == 2 ? 0 : w);
+            double       y = inset_px + (edge < 2 ? edge ? h : 0 : along * h);
+            double       p_ecef[3], p_enu[3];
+            raster_earth_from_px(raster, 1, &x, &y);
+            const Geodetic place = {.lat_rad = y, .lon_rad = x};
+            if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
+            enu_from_ecef(p_enu, frame, p_ecef);
+            for (int c = 0; c < 2; c++) {
+                low_m[c]  = fmin(low_m[c], p_enu[c]);
+                high_m[c] = fmax(high_m[c], p_enu[c]);
+            }
+        }
+}
+
 Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
 {
     Status       status = STATUS_OK;

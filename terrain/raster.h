@@ -7,7 +7,7 @@
 #ifndef TERRAIN_RASTER_H
 #define TERRAIN_RASTER_H
 
-#include "terrain/geodesy.h"
+#include "terrain/local_frame.h"
 
 typedef struct RasterSheet {
     char *path;
@@ -42,6 +42,9 @@ void   raster_set_close(RasterSet *set); /* accepts zeroes */
 /* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has none. */
 void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, double *lat_to_y);
 void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, double *y_to_lat);
+
+/* ENU box, x and y, of a rectangle inset_px within the raster's outline (0.5: of its outermost posts), at height 0. */
+void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px);
 
 /* band from 1, its scale and offset applied. out [height][width]; NaN for void, nodata, masked, and between sheets.
  * The window may reach beyond the raster. STATUS_IO, logged, when a file turns out to be damaged. */

@@ -1,5 +1,7 @@
 #include "sensor/detector/preset.h"
 
+#include "render/atmosphere.h"
+
 typedef struct Column {
     const char *name;
     size_t      offset;
@@ -44,17 +46,13 @@ enum { column_count = sizeof columns / sizeof columns[0] };
 
 void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel)
 {
-    static const double low_um[BAND_COUNT] = {0.4, 3.4, 8, NAN}, high_um[BAND_COUNT] = {0.7, 4.8, 12, NAN};
-    *low_m  = low_um[band] * 1e-6;
-    *high_m = high_um[band] * 1e-6;
-    if (band != BAND_OPTICAL) return;
-    if (optical == OPTICAL_NIR) {
-        *low_m  = 0.7e-6;
-        *high_m = 1.1e-6;
-    } else if (optical == OPTICAL_RGB && channel >= 0) { /* R first */
-        *low_m  = (0.6 - 0.1 * channel) * 1e-6;
-        *high_m = (0.7 - 0.1 * channel) * 1e-6;
-    }
+    static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
+    *low_m = *high_m = NAN;
+    if (band == BAND_RADAR) return;
+    AirBand air = band == BAND_MWIR ? AIR_MWIR : band == BAND_LWIR ? AIR_LWIR : AIR_PAN;
+    if (band == BAND_OPTICAL && optical == OPTICAL_NIR) air = AIR_NIR;
+    if (band == BAND_OPTICAL && optical == OPTICAL_RGB && channel >= 0) air = rgb[channel];
+    air_band_edges(low_m, high_m, air);
 }
 
 void preset_refresh(SensorPreset *p)
