@@ -446,7 +446,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         readable(value, sizeof value, row, from);
         if (row->type == SETTING_DOUBLE) memcpy(&number, (const char *)from + row->offset, sizeof number);
         const bool unset = isnan(number), hidden = unset || (shown && !shown[i]);
-        fprintf(to, "%s%s%s: ", indent, hidden ? "# " : "", key);
+        fprintf(to, "%s%s%s:%s", indent, hidden ? "# " : "", key, unset ? "" : " ");
         if (row->type == SETTING_TEXT && !is_plain(value)) put_quoted(to, value);
         else fputs(unset ? "" : value, to);
         fputc('\n', to);

@@ -202,3 +202,27 @@ Status config_check(const Config *config)
 }
 
 void config_text(char *out, size_t out_size, const Config *config) { settings_text(out, out_size, &table, config); }
+
+void config_write(FILE *to, const Config *config)
+{
+    static const bool none[key_count] = {false};
+    fputs("# Settings of pitviper " PITVIPER_VERSION ". Every key stands here with its default, behind a #: take that away to\n"
+          "# change it. A key without a value is chosen by the program, which prints its choice. `pitviper check FILE`\n"
+          "# says whether a file is good.\n", to);
+    settings_write(to, &table, config, none);
+}
+
+void config_write_given(FILE *to, const Config *config)
+{
+    char  text[16384];
+    char *at = text;
+    config_text(text, sizeof text, config);
+    for (int i = 0; i < key_count && *at; i++) {
+        char *end = strchr(at, '\n'), *equals = strchr(at, '=');
+        if (!end || !equals) return;
+        if (config->given[i])
+            fprintf(to, "  %.*s = %.*s%s%s\n", (int)(equals - at), at, (int)(end - equals - 1), equals + 1,
+                    *keys[i].unit ? " " : "", keys[i].unit);
+        at = end + 1;
+    }
+}

@@ -87,6 +87,10 @@ bool   config_given(const Config *config, const char *key);
 OpticalChannels config_optical(const Config *config);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
+/* A file to begin with: every key with its value, commented out, and what it means. */
+void   config_write(FILE *to, const Config *config);
+/* `key = value` of those that were given, a line each, indented. */
+void   config_write_given(FILE *to, const Config *config);
 /* The canonical text: every key and value, in table order. What config_sha256 hashes. */
 void   config_text(char *out, size_t out_size, const Config *config);
 

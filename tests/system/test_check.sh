@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Settings: the file to begin with is good, means nothing until a # is taken away, and then means what it says;
+# what is wrong is said with its line. labels: small
+. "$(dirname "$0")/common.sh"
+
+run check --default
+cp "$tmp/stdout" "$tmp/node.yaml"
+check "--default: exit code" [ $code = 0 ]
+check "every section is there" test "$(grep -cE '^(sensor|detector|exercise|terrain|weather):$' "$tmp/node.yaml")" = 5
+run check "$tmp/node.yaml"
+check "the file to begin with is good" [ $code = 0 ]
+check "and changes nothing" test "$(wc -l <"$tmp/stdout")" = 1
+
+sed -i 's/^  # width_px: .*/  width_px: 320/; s/^# seed: .*/seed: 9/' "$tmp/node.yaml"
+run check "$tmp/node.yaml"
+check "two lines changed: good" [ $code = 0 ]
+check "two lines changed: both said" test "$(grep -cE '^  (sensor.width_px = 320 px|seed = 9)$' "$tmp/stdout")" = 2
+
+# each default as a file of its own: it reads back, within its range
+section=
+mkdir "$tmp/one"
+while IFS= read -r line; do
+    case $line in
+        [a-z]*:) section=${line%:} ;;
+        '  # '*)
+            # a line of help may hold a colon too: keys are single words
+            [[ ${line#  # } =~ ^[a-z0-9_]+:\ . ]] &&
+                printf '%s:\n  %s\n' "$section" "${line#  # }" >"$tmp/one/$section.${line#  # }.yaml" ;;
+    esac
+done < <("$pitviper" check --default)
+run check "$tmp"/one/*.yaml
+check "defaults tried" [ "$(ls "$tmp/one" | wc -l)" -ge 50 ]
+check "each is good by itself" test -z "$(grep -vE 'needs (a sensor|terrain.elevation)' "$tmp/stderr")"
+
+printf 'sensor:\n  width_px: 7\n' >"$tmp/bad.yaml"
+run check "$tmp/node.yaml" "$tmp/bad.yaml"
+check "one of two is bad: exit code" [ $code = 1 ]
+check "one of two is bad: the good one is said" grep -q 'node.yaml: good' "$tmp/stdout"
+check "one of two is bad: file and line" complained "bad.yaml:2: sensor.width_px: '7' is not a whole number in 8 .. 8192 px"
+printf 'terrain:\n  elevation: %s/a,%s/node.yaml\n' "$tmp" "$tmp" >"$tmp/files.yaml"
+run check "$tmp/files.yaml"
+check "a file that is not there" complained "terrain.elevation: cannot read $tmp/a"
+check "one that is" test "$(grep -c 'cannot read' "$tmp/stderr")" = 1
+run check
+check "no file: exit code" [ $code = 2 ]
+run check --default "$tmp/node.yaml"
+check "--default and a file: exit code" [ $code = 2 ]
+run check "$tmp/nowhere.yaml"
+check "no such file" complained 'cannot open .*nowhere.yaml'
+if "$pitviper" check --default >/dev/full 2>"$tmp/stderr"; then fail "a full disk: exit code"; fi
+check "a full disk: said" complained 'cannot write'
+finish
