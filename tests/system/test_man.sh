@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# The manual page: every command, every option and every setting are on it, and roff has nothing to say against it.
+. "$(dirname "$0")/common.sh"
+
+etc/make_man "$pitviper" >"$tmp/pitviper.1" || fail "etc/make_man"
+for command in $("$pitviper" --help | sed -nE 's/^  ([a-z]+) +.*/\1/p'); do
+    check "$command has its section" grep -qx "\.SH PITVIPER ${command^^}" "$tmp/pitviper.1"
+    for option in $("$pitviper" "$command" --help | grep -oE '^ +--[a-z-]+'); do
+        check "$command $option" grep -qF -e "${option//-/\\-}" "$tmp/pitviper.1"
+    done
+done
+check "a setting" grep -q 'hfov_deg: 6' "$tmp/pitviper.1"
+if command -v groff >/dev/null; then
+    groff -man -ww -z "$tmp/pitviper.1" >"$tmp/said" 2>&1
+    check "groff has no complaint" test ! -s "$tmp/said"
+    groff -man -Tutf8 "$tmp/pitviper.1" >"$tmp/page" 2>/dev/null
+    check "nothing is lost on the way" grep -q -- '--causal' "$tmp/page"
+else
+    echo "skipped in part: no groff"
+fi
+finish
