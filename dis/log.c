@@ -434,6 +434,14 @@ static Status open_capture(pcap_t **out, const char *path)
     return STATUS_OK;
 }
 
+/* A file may say any time: what no clock shows (before 1970, after 2255) stands at the nearer end. */
+static double capture_s(const struct pcap_pkthdr *header)
+{
+    static const int64_t most_s = 9000000000;
+    const int64_t s = header->ts.tv_sec < 0 ? 0 : header->ts.tv_sec > most_s ? most_s : header->ts.tv_sec;
+    return dis_unix_s(s * 1000000000 + header->ts.tv_usec); /* nanoseconds: asked for */
+}
+
 static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
 {
     const int link = pcap_datalink(capture);
@@ -449,7 +457,7 @@ static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
     int                 result;
     while ((result = pcap_next_ex(capture, &header, &bytes)) == 1) {
         scan->log->counters.packets++;
-        scan->capture_s = (double)header->ts.tv_sec + 1e-9 * (double)header->ts.tv_usec; /* nanoseconds: asked for */
+        scan->capture_s = capture_s(header);
         read_frame(scan, link, (Span){bytes, header->caplen});
         if (scan->status != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
