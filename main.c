@@ -1,4 +1,6 @@
 /* main.c: the commands, as one table; and the probes and benchmarks, as the rooms list them. */
+#include "dis/bench.h"
+#include "entities/bench.h"
 #include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/probe.h"
@@ -70,6 +72,8 @@ static const struct BenchList {
     const BenchSuite *suite;
     const int        *count;
 } bench_lists[] = {
+    {dis_benches, &dis_bench_count},
+    {entities_benches, &entities_bench_count},
     {sensor_benches, &sensor_bench_count},
 };
 

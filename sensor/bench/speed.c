@@ -14,12 +14,12 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { views = 4, what_size = 160, vehicles = 20 };
+enum { views = 4, what_size = 160, vehicles = 20, vehicles_quick = 5 };
 
 static const struct {
     const char *name;
     double      back_m, above_m;
-} places[views] = {{"40 m up", 250, 40}, {"100 m up", 600, 100}, {"300 m up", 1500, 300}, {"1000 m up", 3000, 1000}};
+} places[views] = {{"40 m up", 300, 40}, {"100 m up", 600, 100}, {"300 m up", 1500, 300}, {"1000 m up", 3000, 1000}};
 static const double hfov_rad = 40 * (3.14159265358979323846 / 180);
 static const unsigned three_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
 
@@ -308,27 +308,42 @@ static Status time_picture(Speed *s, const char *name, const BenchScene *scene, 
     return many.status;
 }
 
-/* A catalog of one row: a file where there is one, else the built-in tank. */
+/* Into a file of this folder. */
+static bool write_text(const char *folder, const char *name, const char *format, const char *path)
+{
+    char text[128];
+    snprintf(text, sizeof text, "%s/%s", folder, name);
+    FILE      *file = fopen(text, "w");
+    const bool ok = file && fprintf(file, format, path) > 0;
+    return file && fclose(file) == 0 && ok;
+}
+
+/* A catalog of one row: --model, else BRL-CAD's K-Tank where there is one (+x is forward in it and +z up), else the
+ * built-in tank. */
 static Status open_close_scene(Speed *s)
 {
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
+    static const char *const   files[] = {"catalog.csv", "ktank.yaml"};
     const char *root = getenv("PITVIPER_DATA"), *file = bench_option(s->bench, "model");
-    char        path[1024], catalog[64] = "/tmp/pitviper-bench-XXXXXX";
-    if (!file && root && (size_t)snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root) < sizeof path &&
-        access(path, R_OK) == 0)
-        file = path;
-    char *absolute = file ? realpath(file, NULL) : NULL;
+    char        path[1024], folder[64] = "/tmp/pitviper-bench-XXXXXX", name[128];
+    const bool  ktank = !file && root && (size_t)snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root) < sizeof path &&
+                       access(path, R_OK) == 0;
+    char *absolute = file || ktank ? realpath(ktank ? path : file, NULL) : NULL;
     if (file && !absolute) {
         log_error("bench: cannot read %s: %s", file, strerror(errno));
         return STATUS_IO;
     }
-    const int   handle = mkstemp(catalog);
-    FILE       *out = handle >= 0 ? fdopen(handle, "w") : NULL;
+    bool ok = mkdtemp(folder) != NULL;
+    ok = ok && write_text(folder, "ktank.yaml", "file: %s\naxes: +x +z\norigin: auto\n", absolute ? absolute : "none");
+    ok = ok && write_text(folder, "catalog.csv", "type,model,origin\n1,%s,base\n", ktank ? "ktank.yaml" : absolute ? absolute : "tank");
+    snprintf(name, sizeof name, "%s/catalog.csv", folder);
+    const Status status = ok ? bench_scene_open(&s->close, &s->landscape, name, &tank, 1, 1) : STATUS_IO;
+    for (int k = 0; k < 2; k++) {
+        snprintf(name, sizeof name, "%s/%s", folder, files[k]);
+        remove(name);
+    }
+    remove(folder);
     const char *slash = absolute ? strrchr(absolute, '/') : NULL;
-    if (out) fprintf(out, "type,model,origin\n1,%s,base\n", absolute ? absolute : "tank");
-    Status status = out && fclose(out) == 0 ? STATUS_OK : STATUS_IO;
-    if (status == STATUS_OK) status = bench_scene_open(&s->close, &s->landscape, catalog, &tank, 1, 1);
-    if (handle >= 0) remove(catalog);
     snprintf(s->target, sizeof s->target, "%.60s%s", slash ? slash + 1 : "built-in tank", slash ? " (file)" : "");
     free(absolute);
     return status;
@@ -491,7 +506,7 @@ static bool pair_of(double out[2], const Bench *bench, const char *name, double 
 static Status open_speed(Speed *s)
 {
     const bool quick = bench_quick(s->bench);
-    double     size[2] = {quick ? 144 : 720, quick ? 96 : 486}, ground_km[2] = {quick ? 4 : 12, quick ? 8 : 16};
+    double     size[2] = {quick ? 96 : 720, quick ? 64 : 486}, ground_km[2] = {quick ? 2 : 12, quick ? 8 : 16};
     if (!pair_of(size, s->bench, "size", 16, 8192) || !pair_of(ground_km, s->bench, "ground", 1, 32)) return STATUS_BAD_VALUE;
     s->width   = (int)size[0];
     s->height  = (int)size[1];
@@ -515,7 +530,8 @@ static Status time_all(Speed *s)
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const double start_s = wall_clock_s();
     if (status == STATUS_OK)
-        status = bench_scene_open(&s->scene, &s->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
+        status = bench_scene_open(&s->scene, &s->landscape, catalog, types, sizeof types / sizeof *types,
+                                  bench_quick(s->bench) ? vehicles_quick : vehicles);
     if (status != STATUS_OK) return status;
     BenchRow row = bench_row("start: catalog, tracer, materials, air");
     row.median   = wall_clock_s() - start_s;
