@@ -51,6 +51,7 @@ typedef struct PathTable {
     int    *first;                   /* [pairs + 1]: rows of pair observer * nodes[1] + target */
     double *ln_range, *value;        /* [rows], [rows * values] */
     double  ln_range_low;            /* shortest of all */
+    int     shape;                   /* of an atmosphere's tables, those with equal nodes and ranges have the same */
     /* what the values are. Of clear air ln of the ratio of each weight's depth (0: the sun; then rising temperatures)
      * to the column's; of a visibility the ratio of the depth that haze adds to its column's, and, of thermal bands,
      * ln of the ratio of what the path would radiate if it were opaque to mean_black; of scattered.csv, which goes by

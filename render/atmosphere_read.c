@@ -402,6 +402,35 @@ static Status open_model(Atmosphere *atmosphere, const char *folder)
     return status;
 }
 
+/* ---- tables of one shape ------------------------------------------------------------------------ */
+
+static bool same_shape(const PathTable *a, const PathTable *b)
+{
+    if (a->rows != b->rows || a->nodes[0] != b->nodes[0] || a->nodes[1] != b->nodes[1]) return false;
+    for (int i = 0; i < 2; i++)
+        if (memcmp(a->axis[i], b->axis[i], (size_t)a->nodes[i] * sizeof a->axis[i][0]) != 0) return false;
+    const size_t pairs = (size_t)a->nodes[0] * (size_t)a->nodes[1];
+    return a->ln_range_low == b->ln_range_low && memcmp(a->first, b->first, (pairs + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->ln_range, b->ln_range, (size_t)a->rows * sizeof *a->ln_range) == 0;
+}
+
+/* The first gives its number to those that are like it. */
+static void number_shapes(Atmosphere *atmosphere)
+{
+    PathTable *table[(slices_max + 1) * AIR_BAND_COUNT + slices_max];
+    int        count = 0;
+    for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->clear_path[air_tabled[k]];
+    for (int s = 0; s < atmosphere->slices; s++) {
+        for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->slice[s].path[air_tabled[k]];
+        table[count++] = &atmosphere->slice[s].scattered;
+    }
+    for (int i = 0; i < count; i++) {
+        int first = 0;
+        while (first < i && !same_shape(table[first], table[i])) first++;
+        table[i]->shape = first;
+    }
+}
+
 Status atmosphere_open(Atmosphere **out, const char *model)
 {
     char name[96], folder[512];
@@ -433,6 +462,7 @@ Status atmosphere_open(Atmosphere **out, const char *model)
         atmosphere_close(atmosphere);
         return status;
     }
+    number_shapes(atmosphere);
     *out = atmosphere;
     return STATUS_OK;
 }
