@@ -41,13 +41,14 @@ static inline double exp_here(double x)
 
 /* ---- what a day is ------------------------------------------------------------------------------ */
 
-/* Extinction and scattering by height, clear air and the haze of this visibility, on the nodes of all columns. */
+/* Extinction and scattering by height on the nodes of all columns: clear air, and haze of the two tabled visibilities:
+ * what lies between them has a least that is asked at a place, not at nodes. */
 typedef struct DayColumn {
     int      nodes;
     double   top_m, per_bucket_m;
     double  *height_m;
-    double  *clear[AIR_BAND_COUNT], *clear_sum[AIR_BAND_COUNT], *haze[AIR_BAND_COUNT], *haze_sum[AIR_BAND_COUNT];
-    double  *clear_scatter[AIR_BAND_COUNT], *haze_scatter[AIR_BAND_COUNT];
+    double  *clear[AIR_BAND_COUNT], *clear_sum[AIR_BAND_COUNT], *haze[2][AIR_BAND_COUNT], *haze_sum[2][AIR_BAND_COUNT];
+    double  *clear_scatter[AIR_BAND_COUNT], *haze_scatter[2][AIR_BAND_COUNT];
     uint16_t start[buckets]; /* interval of each bucket's lower end */
 } DayColumn;
 
@@ -116,18 +117,22 @@ static Status fill_column(AirDay *day, Arena *arena)
     }
     for (AirBand b = 0; b < AIR_BAND_COUNT; b++) {
         if (!wants(day->parts, b)) continue;
-        double **const row[6] = {&c->clear[b], &c->clear_sum[b], &c->haze[b], &c->haze_sum[b], &c->clear_scatter[b], &c->haze_scatter[b]};
-        for (int k = 0; k < 6; k++)
+        double **const row[] = {&c->clear[b], &c->clear_sum[b], &c->clear_scatter[b],
+                                &c->haze[0][b], &c->haze_sum[0][b], &c->haze_scatter[0][b],
+                                &c->haze[1][b], &c->haze_sum[1][b], &c->haze_scatter[1][b]};
+        for (size_t k = 0; k < sizeof row / sizeof *row; k++)
             if (!(*row[k] = arena_alloc(arena, (size_t)c->nodes, sizeof(double)))) return STATUS_NO_MEMORY;
         for (int i = 0; i < c->nodes; i++) {
             const double h_m = c->height_m[i];
             c->clear[b][i]         = column_mean(&a->clear, b, h_m, h_m);
-            c->haze[b][i]          = blend_haze_mean(&day->blend, b, h_m, h_m);
             c->clear_scatter[b][i] = column_scatter(&a->clear, b, h_m);
-            c->haze_scatter[b][i]  = blend_haze_scatter(&day->blend, b, h_m);
+            for (int which = 0; which < 2; which++) {
+                c->haze[which][b][i]         = column_mean(from[1 + which], b, h_m, h_m);
+                c->haze_scatter[which][b][i] = column_scatter(from[1 + which], b, h_m);
+            }
         }
         add_up(c->clear_sum[b], c->clear[b], c->height_m, c->nodes);
-        add_up(c->haze_sum[b], c->haze[b], c->height_m, c->nodes);
+        for (int which = 0; which < 2; which++) add_up(c->haze_sum[which][b], c->haze[which][b], c->height_m, c->nodes);
     }
     return STATUS_OK;
 }
@@ -257,6 +262,29 @@ static double mean_of(const double *value, const double *sum, const Span *s)
     return (sum_at(value, sum, &s->b) - sum_at(value, sum, &s->a)) / s->rise_m;
 }
 
+static double clear_mean(const AirDay *day, AirBand band, const Span *s)
+{
+    return mean_of(day->column.clear[band], day->column.clear_sum[band], s);
+}
+
+/* As blend_haze of atmosphere.c has it. */
+static double haze_of(const AirDay *day, double low, double high)
+{
+    return day->hazes ? fmax(day->blend.haze_low * low + day->blend.haze_high * high, 0.1 * high) : day->blend.haze_low * low;
+}
+
+static double haze_mean(const AirDay *day, AirBand band, const Span *s)
+{
+    const DayColumn *c = &day->column;
+    return haze_of(day, mean_of(c->haze[0][band], c->haze_sum[0][band], s),
+                   day->hazes ? mean_of(c->haze[1][band], c->haze_sum[1][band], s) : 0);
+}
+
+static double haze_scatter(const AirDay *day, AirBand band, const Place *p)
+{
+    return haze_of(day, value_at(day->column.haze_scatter[0][band], p), value_at(day->column.haze_scatter[1][band], p));
+}
+
 /* ---- what a path takes away ---------------------------------------------------------------------- */
 
 /* A path in the tables; those of one shape share its stencil. */
@@ -320,8 +348,8 @@ static void depths_of(double value[3][row_values], double plain[2], Depths *d, c
         const PathTable *table = table_of(day, band, which);
         values_in(value[which], table, stencil_in(&d->stencils, table, p->observer_m, p->target_m, p->range_m));
     }
-    plain[0] = p->range_m * mean_of(day->column.clear[band], day->column.clear_sum[band], &d->span);
-    plain[1] = p->range_m * mean_of(day->column.haze[band], day->column.haze_sum[band], &d->span);
+    plain[0] = p->range_m * clear_mean(day, band, &d->span);
+    plain[1] = p->range_m * haze_mean(day, band, &d->span);
 }
 
 static double depth_of(const AirDay *day, const double plain[2], double clear, double low, double high)
@@ -440,8 +468,7 @@ static void parts_of(ScatterParts *out, const AirDay *day, AirBand band, const S
     sun_at_steps(direct, diffuse, day, band, s);
     for (int k = 0; k < s->count; k++) {
         const Span *span = &s->span[k];
-        depth[k + 1] = depth[k] + ratio * s->step_m[k] * (mean_of(c->clear[band], c->clear_sum[band], span) +
-                                                          mean_of(c->haze[band], c->haze_sum[band], span));
+        depth[k + 1] = depth[k] + ratio * s->step_m[k] * (clear_mean(day, band, span) + haze_mean(day, band, span));
     }
     for (int k = 0; k < steps_room; k++) left[k] = exp_here(-depth[k]);
     left[steps_room] = exp_here(-depth[steps_room]);
@@ -449,7 +476,7 @@ static void parts_of(ScatterParts *out, const AirDay *day, AirBand band, const S
         const double d = depth[k + 1] - depth[k];
         const double seen_m = s->step_m[k] * (d > 1e-6 ? (left[k] - left[k + 1]) / d : left[k]) / (4 * pi_rad);
         const double clear = seen_m * value_at(c->clear_scatter[band], &s->span[k].middle);
-        const double haze = seen_m * value_at(c->haze_scatter[band], &s->span[k].middle);
+        const double haze = seen_m * haze_scatter(day, band, &s->span[k].middle);
         const double sun = top * direct[k], sky = top * diffuse[k];
         out->clear += clear * sun;
         out->haze[s->phase_i[k]] += (1 - s->phase_t[k]) * haze * sun;
@@ -521,9 +548,7 @@ void air_day_scattered(double (*w_m2_sr)[AIR_BAND_COUNT], double sun[AIR_BAND_CO
         depths_of(value, plain, &d, day, b);
         sun[b] = depth_of(day, plain, value[0][0], value[1][0], value[2][0]);
         if (!lit) continue;
-        const double mean = mean_of(day->column.clear[b], day->column.clear_sum[b], &whole) +
-                            mean_of(day->column.haze[b], day->column.haze_sum[b], &whole);
-        parts_of(&parts[b], day, b, &steps, sun[b] / mean / p.range_m);
+        parts_of(&parts[b], day, b, &steps, sun[b] / (clear_mean(day, b, &whole) + haze_mean(day, b, &whole)) / p.range_m);
     }
     if (wants(day->bands, AIR_PAN)) pan_of(sun, day);
     if (!lit) return;

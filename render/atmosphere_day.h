@@ -1,9 +1,8 @@
 /* render/atmosphere_day.h: an atmosphere at one visibility and under one sun: what a frame asks of it by the hundred.
  *
- * The same answers as atmosphere_path, atmosphere_sky and atmosphere_sun give (to 1e-9 of them; beyond the tables'
- * visibilities to what their least haze is taken by, metre or mean; tests/render/test_atmosphere_day.c), at a tenth of
- * the cost: visibilities are blended and the sun is found in every table once, a place on a path serves every band,
- * a path every azimuth and every temperature. */
+ * The answers of atmosphere_path and atmosphere_sky (within 1e-12 of them: tests/render/test_atmosphere_day.c), at a
+ * tenth of the cost: the sun is found in every table once, a place on a path serves every band, a path every azimuth
+ * and every temperature. */
 #ifndef RENDER_ATMOSPHERE_DAY_H
 #define RENDER_ATMOSPHERE_DAY_H
 
