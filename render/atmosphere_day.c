@@ -68,6 +68,7 @@ struct AirDay {
     const Atmosphere *atmosphere;
     Blend             blend;
     bool              hazes;            /* two different slices */
+    bool              suns_alike;       /* both have the same heights */
     unsigned          bands, parts;     /* asked for; tabled ones that these are made of */
     double            sun_zenith_rad, sun_cos, sun_sin, top_m;
     DayColumn         column;
@@ -214,6 +215,8 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
         fill_sun(day, which);
         status = fill_scattered(day, which, arena);
     }
+    day->suns_alike = day->hazes && day->sun[0].nodes == day->sun[1].nodes && day->sun[0].nodes > 0 &&
+                      memcmp(day->sun[0].height_m, day->sun[1].height_m, (size_t)day->sun[0].nodes * sizeof(double)) == 0;
     for (int b = 0; b < 2; b++)
         for (int which = 0; which < 3; which++)
             for (int k = 0; k < temps; k++)
@@ -422,39 +425,60 @@ static void add_step(Steps *s, const AirDay *day, double a_m, double b_m, double
     s->span[k]   = (Span){k > 0 ? s->span[k - 1].b : place_at(&day->column, a_m), place_at(&day->column, b_m),
                           place_at(&day->column, middle_m),
                           clamp(b_m, 0, day->column.top_m) - clamp(a_m, 0, day->column.top_m)};
-    for (int which = 0; which <= day->hazes; which++)
-        s->sun_i[which][k] = interval_of(&s->sun_t[which][k], day->sun[which].height_m, day->sun[which].nodes, middle_m);
+    s->sun_i[0][k] = interval_of(&s->sun_t[0][k], day->sun[0].height_m, day->sun[0].nodes, middle_m);
+    if (day->hazes && day->suns_alike) {
+        s->sun_i[1][k] = s->sun_i[0][k];
+        s->sun_t[1][k] = s->sun_t[0][k];
+    } else if (day->hazes) {
+        s->sun_i[1][k] = interval_of(&s->sun_t[1][k], day->sun[1].height_m, day->sun[1].nodes, middle_m);
+    }
     const Grid *phase = &day->atmosphere->phase;
     s->phase_i[k] = interval_of(&s->phase_t[k], phase->axis[0], phase->nodes[0], middle_m);
 }
 
 static double between(const double *value, int i, double t) { return t > 0 ? value[i] + t * (value[i + 1] - value[i]) : value[i]; }
 
+/* Exponentials go in eights; the arrays behind the steps are there for that. */
+static int lanes_of(const Steps *s) { return (s->count + 7) & ~7; }
+
 /* Direct and diffuse sunlight over their top, at the middle of every step. */
 static void sun_at_steps(double direct[steps_room], double diffuse[steps_room], const AirDay *day, AirBand band, const Steps *s)
 {
-    double ln_depth[2][steps_room] = {{0}}, ln_diffuse[2][steps_room] = {{0}};
+    const int lanes = lanes_of(s);
+    double    ln_depth[2][steps_room] = {{0}}, ln_diffuse[2][steps_room] = {{0}};
     for (int which = 0; which <= day->hazes; which++)
         for (int k = 0; k < s->count; k++) {
             ln_depth[which][k]   = between(day->sun[which].ln_depth[band], s->sun_i[which][k], s->sun_t[which][k]);
             ln_diffuse[which][k] = between(day->sun[which].ln_diffuse[band], s->sun_i[which][k], s->sun_t[which][k]);
         }
     if (!day->hazes) {
-        for (int k = 0; k < steps_room; k++) {
+        for (int k = 0; k < lanes; k++) {
             direct[k]  = exp_here(-exp_here(ln_depth[0][k]));
             diffuse[k] = exp_here(ln_diffuse[0][k]);
         }
         return;
     }
     const double low = day->blend.haze_low, high = day->blend.haze_high;
-    for (int k = 0; k < steps_room; k++) {
+    for (int k = 0; k < lanes; k++) {
         const double clearest = exp_here(ln_depth[1][k]), depth = low * exp_here(ln_depth[0][k]) + high * clearest;
         direct[k] = exp_here(-(depth > 0.3 * clearest ? depth : 0.3 * clearest));
     }
-    for (int k = 0; k < steps_room; k++) {
+    for (int k = 0; k < lanes; k++) {
         const double clearest = exp_here(ln_diffuse[1][k]), d = low * exp_here(ln_diffuse[0][k]) + high * clearest;
         const double least = 0.3 * clearest;
         diffuse[k] = d < least ? least : d > 1 ? 1 : d;
+    }
+}
+
+/* Mean over each step, of which one begins where the last ended. */
+static void means_of(double out[steps_room], const double *value, const double *sum, const Steps *s)
+{
+    double before = sum_at(value, sum, &s->span[0].a);
+    for (int k = 0; k < s->count; k++) {
+        const Span  *span = &s->span[k];
+        const double behind = sum_at(value, sum, &span->b);
+        out[k] = fabs(span->rise_m) < 1 ? value_at(value, &span->middle) : (behind - before) / span->rise_m;
+        before = behind;
     }
 }
 
@@ -463,15 +487,18 @@ static void parts_of(ScatterParts *out, const AirDay *day, AirBand band, const S
 {
     const DayColumn *c = &day->column;
     const double     top = day->atmosphere->sun_top_w_m2[band];
-    double           direct[steps_room], diffuse[steps_room], depth[steps_room + 1] = {0}, left[steps_room + 1] = {0};
+    const int        lanes = lanes_of(s);
+    double           direct[steps_room], diffuse[steps_room], depth[steps_room + 1] = {0}, left[steps_room + 1];
+    double           clear_means[steps_room], low_means[steps_room], high_means[steps_room] = {0};
     *out = (ScatterParts){0};
     sun_at_steps(direct, diffuse, day, band, s);
-    for (int k = 0; k < s->count; k++) {
-        const Span *span = &s->span[k];
-        depth[k + 1] = depth[k] + ratio * s->step_m[k] * (clear_mean(day, band, span) + haze_mean(day, band, span));
-    }
-    for (int k = 0; k < steps_room; k++) left[k] = exp_here(-depth[k]);
-    left[steps_room] = exp_here(-depth[steps_room]);
+    means_of(clear_means, c->clear[band], c->clear_sum[band], s);
+    means_of(low_means, c->haze[0][band], c->haze_sum[0][band], s);
+    if (day->hazes) means_of(high_means, c->haze[1][band], c->haze_sum[1][band], s);
+    for (int k = 0; k < s->count; k++)
+        depth[k + 1] = depth[k] + ratio * s->step_m[k] * (clear_means[k] + haze_of(day, low_means[k], high_means[k]));
+    for (int k = 0; k < lanes; k++) left[k] = exp_here(-depth[k]);
+    left[s->count] = exp_here(-depth[s->count]);
     for (int k = 0; k < s->count; k++) {
         const double d = depth[k + 1] - depth[k];
         const double seen_m = s->step_m[k] * (d > 1e-6 ? (left[k] - left[k + 1]) / d : left[k]) / (4 * pi_rad);
