@@ -73,6 +73,9 @@ void   pool_run(Pool *pool, int count, PoolTask *task, void *user);
 /* Flush-to-zero and denormals-are-zero for the calling thread; main and the workers call it once. */
 void   thread_flush_denormals(void);
 
+/* Processors that this process may run on, at least 1. */
+int    thread_processors(void);
+
 /* Monotonic wall clock, s: for pacing and reports, never for anything that shows in a product. */
 double wall_clock_s(void);
 

@@ -4,7 +4,6 @@
  * both sides of a ratio. The median says what to expect, the best what the machine can. */
 #include "pitviper.h"
 
-#include <sched.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -185,13 +184,6 @@ void bench_add(Bench *bench, const BenchRow *row)
 
 /* ---- the machine ------------------------------------------------------------------------------ */
 
-static int processors(void)
-{
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-    return CPU_COUNT(&set) > 0 ? CPU_COUNT(&set) : 1;
-}
-
 static void processor_name(char out[128])
 {
     char  line[512];
@@ -212,7 +204,7 @@ static void machine_line(char out[512])
     double load = NAN;
     processor_name(name);
     if (getloadavg(&load, 1) != 1) load = NAN;
-    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s %s; pitviper %s; load %.1f", name, processors(),
+    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s %s; pitviper %s; load %.1f", name, thread_processors(),
              __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "no AVX2",
 #ifdef __clang__
              "clang", __clang_version__,
@@ -298,7 +290,7 @@ static bool parse(Bench *bench, const char **csv, int argc, char **argv, BenchNe
 
 int bench_command(int argc, char **argv, BenchNext *next)
 {
-    Bench       bench = {.threads = processors(), .terminal = isatty(STDERR_FILENO)};
+    Bench       bench = {.threads = thread_processors(), .terminal = isatty(STDERR_FILENO)};
     const char *csv = NULL;
     size_t      state[2] = {0};
     char        machine[512];

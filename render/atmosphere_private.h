@@ -155,7 +155,8 @@ static inline double path_up(const AirPath *path)
 static inline double mean_sag_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
 
 /* Depths of a path, of sunlight (temp_k NAN) or of what has a temperature. */
-double clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k);
+void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
+                    int temps);
 double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k);
 /* Direct and diffuse sunlight. */
 void   blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,

@@ -60,17 +60,22 @@ static void normalize_clear(PathTable *paths, const AirColumn *clear, AirBand ba
         }
 }
 
-/* clear_depth bends a long path around the Earth; the rows are of flat layers. */
-static double flat_clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k)
+/* clear_depths bends a long path around the Earth; the rows are of flat layers. */
+static void flat_clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path,
+                              const double *temp_k, int temps)
 {
     const AirColumn *clear = &atmosphere->clear;
     const double sag_m = mean_sag_m(path->range_m);
-    return clear_depth(atmosphere, band, path, temp_k) * column_mean(clear, band, path->observer_m, path->target_m) /
-           column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    const double flat = column_mean(clear, band, path->observer_m, path->target_m);
+    const double bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    clear_depths(out, atmosphere, band, path, temp_k, temps);
+    for (int t = 0; t < temps; t++) out[t] = out[t] * flat / bent;
 }
 
 static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const AirColumn *haze, AirBand band)
 {
+    double temp_k[path_max_weights] = {NAN}, clear[path_max_weights];
+    for (int w = 1; w < paths->weights; w++) temp_k[w] = paths->weight_temp_k[w];
     for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
         for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
             const AirPath path = path_of_row(paths, pair, row);
@@ -80,11 +85,8 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
                 const double opaque = value[paths->weights] / -expm1(-value[path_emission_weight(paths)]);
                 value[paths->weights] = log(opaque / mean_black(atmosphere, band, path.observer_m, path.target_m));
             }
-            for (int w = 0; w < paths->weights; w++) {
-                const double temp_k = w ? paths->weight_temp_k[w] : NAN;
-                value[w] = (value[w] - flat_clear_depth(atmosphere, band, &path, temp_k)) / fmax(plain, 1e-12);
-                value[w] = clamp(value[w], -1, 3);
-            }
+            flat_clear_depths(clear, atmosphere, band, &path, temp_k, paths->weights);
+            for (int w = 0; w < paths->weights; w++) value[w] = clamp((value[w] - clear[w]) / fmax(plain, 1e-12), -1, 3);
         }
 }
 
