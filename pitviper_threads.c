@@ -2,6 +2,7 @@
 #include "pitviper.h"
 
 #include <pthread.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <time.h>
 #include <xmmintrin.h>
@@ -123,6 +124,14 @@ void pool_run(Pool *pool, int count, PoolTask *task, void *user)
     pthread_mutex_lock(&pool->lock);
     while (pool->busy > 0) pthread_cond_wait(&pool->done, &pool->lock);
     pthread_mutex_unlock(&pool->lock);
+}
+
+int thread_processors(void)
+{
+    cpu_set_t set;
+    if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+    const int count = CPU_COUNT(&set);
+    return count > 0 ? count : 1;
 }
 
 double wall_clock_s(void)

@@ -1,6 +1,7 @@
 /* entities/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
 #include "entities/catalog.h"
 #include "entities/model_import.h"
+#include "entities/parametric.h"
 
 #include <stdlib.h>
 
@@ -45,7 +46,8 @@ static bool parse_type(int field[type_fields], const char *text)
     return false; /* an eighth field */
 }
 
-/* Index of the model of that name or file, built or read now if it is new. Files are beside the catalog at `path`. */
+/* Index of the model of that name or file; if it is new a file is read now, a built-in model is left to build_models.
+ * Files are beside the catalog at `path`. */
 static Status find_or_build(int *out, Catalog *catalog, const char *name, const char *path, double sag_m)
 {
     char        source[1024];
@@ -61,7 +63,8 @@ static Status find_or_build(int *out, Catalog *catalog, const char *name, const 
     }
     char *kept = strdup(source);
     if (!kept) return STATUS_NO_MEMORY;
-    const Status status = model_open(catalog->model + catalog->model_count, NULL, &imported, source, sag_m);
+    const Status status = parametric_known(source)
+                              ? STATUS_OK : model_open(catalog->model + catalog->model_count, NULL, &imported, source, sag_m);
     if (status != STATUS_OK) {
         free(kept);
         return status;
@@ -69,6 +72,40 @@ static Status find_or_build(int *out, Catalog *catalog, const char *name, const 
     catalog->source[catalog->model_count] = kept;
     *out = catalog->model_count++;
     return STATUS_OK;
+}
+
+/* The built-in models, each by whoever is free: what a model is does not depend on it, and its number is given. */
+typedef struct Building {
+    Catalog *catalog;
+    double   sag_m;
+    Status  *status; /* [model_count] */
+} Building;
+
+static void build_model(void *user, int worker, int m)
+{
+    const Building *building = user;
+    const char     *source = building->catalog->source[m];
+    (void)worker;
+    if (parametric_known(source))
+        building->status[m] = parametric_build(building->catalog->model + m, source, building->sag_m);
+}
+
+static Status build_models(Catalog *catalog, double sag_m)
+{
+    Building building = {catalog, sag_m, calloc((size_t)catalog->model_count, sizeof *building.status)};
+    Pool    *pool = NULL;
+    Status   status = building.status ? STATUS_OK : STATUS_NO_MEMORY;
+    const int threads = thread_processors() < catalog->model_count ? thread_processors() : catalog->model_count;
+    if (status == STATUS_OK) status = pool_create(&pool, threads);
+    if (status == STATUS_OK) pool_run(pool, catalog->model_count, build_model, &building);
+    for (int m = 0; m < catalog->model_count && status == STATUS_OK; m++) {
+        status = building.status[m];
+        if (status != STATUS_OK)
+            log_error("catalog: cannot build a model: model=\"%s\" reason=%s", catalog->source[m], status_name(status));
+    }
+    pool_destroy(pool);
+    free(building.status);
+    return status;
 }
 
 static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, int r, const int column[3], double sag_m)
@@ -143,6 +180,7 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
         for (; at > 0 && row_before(&row, catalog->row + at - 1); at--) catalog->row[at] = catalog->row[at - 1];
         catalog->row[at] = row;
     }
+    if (status == STATUS_OK) status = build_models(catalog, sag_m);
 
 done:
     table_close(&table);

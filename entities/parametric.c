@@ -36,24 +36,34 @@ static Status parametric_marker(Model *out, double sag_m)
     return mesh_builder_finish(out, b);
 }
 
+static const struct {
+    const char *name;
+    Status (*build)(Model *out, double sag_m);
+} builders[] = {
+    {"tank", parametric_tank},       {"truck", parametric_truck},     {"helicopter", parametric_helicopter},
+    {"missile", parametric_missile}, {"carrier", parametric_carrier}, {"launcher", parametric_launcher},
+    {"aircraft", parametric_aircraft}, {"ship", parametric_ship},     {"person", parametric_person},
+    {"building", parametric_building}, {"decoy", parametric_decoy},   {"flare", parametric_flare},
+    {"unknown", parametric_unknown}, {"marker", parametric_marker},
+};
+
+static int find_builder(const char *name)
+{
+    for (size_t i = 0; i < sizeof builders / sizeof *builders; i++)
+        if (strcmp(name, builders[i].name) == 0) return (int)i;
+    return -1;
+}
+
+bool parametric_known(const char *name) { return find_builder(name) >= 0; }
+
 Status parametric_build(Model *out, const char *name, double sag_m)
 {
-    static const struct {
-        const char *name;
-        Status (*build)(Model *out, double sag_m);
-    } table[] = {
-        {"tank", parametric_tank},       {"truck", parametric_truck},     {"helicopter", parametric_helicopter},
-        {"missile", parametric_missile}, {"carrier", parametric_carrier}, {"launcher", parametric_launcher},
-        {"aircraft", parametric_aircraft}, {"ship", parametric_ship},     {"person", parametric_person},
-        {"building", parametric_building}, {"decoy", parametric_decoy},   {"flare", parametric_flare},
-        {"unknown", parametric_unknown}, {"marker", parametric_marker},
-    };
     if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
         log_error("parametric: sag out of range: model=%s sag_m=%g range=1e-5..0.1", name, sag_m);
         return STATUS_BAD_VALUE;
     }
-    for (size_t i = 0; i < sizeof table / sizeof table[0]; i++)
-        if (!strcmp(name, table[i].name)) return table[i].build(out, sag_m);
+    const int builder = find_builder(name);
+    if (builder >= 0) return builders[builder].build(out, sag_m);
     log_error("parametric: no such model: name=%s", name);
     return STATUS_UNSUPPORTED;
 }

@@ -14,6 +14,7 @@
  *   at 1e-5 m              tank 0.7 M, truck 3 M, helicopter 4 M, aircraft 3 M, ship 7 M, decoy 11 M, person 1.6 M, in
  *                          one to twenty seconds */
 Status parametric_build(Model *out, const char *name, double sag_m);
+bool   parametric_known(const char *name);
 
 /* One builder a file; sag_m as above, already checked. */
 Status parametric_tank(Model *out, double sag_m);

@@ -157,34 +157,35 @@ static void set_lamp(Lamps *out, int k, const double sun_d_enu[3], const double 
     if (d_enu[2] > 0) place_in_sky(&out->place[k], sun_d_enu, d_enu, 0);
 }
 
-static void place_lamps(Lamps *out, const double sun_d_enu[3])
+/* A height of the grid; below, a ring about the sun. */
+static void place_grid(Lamps *out, int i, const double sun_d_enu[3])
 {
     static const double step_rad = 2 * 3.14159265358979323846 / lamp_azimuths;
-    int k = 0;
-    for (int i = 0; i < lamp_ups; i++) {
-        const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
-        const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
-        for (int a = 0; a < lamp_azimuths; a++) {
-            const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
-            const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
-            set_lamp(out, k++, sun_d_enu, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
-        }
+    const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
+    const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
+    for (int a = 0; a < lamp_azimuths; a++) {
+        const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
+        const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
+        set_lamp(out, i * lamp_azimuths + a, sun_d_enu, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
     }
+}
+
+static void place_ring(Lamps *out, int r, const double sun_d_enu[3])
+{
     double east[3] = {0}, other[3];
     east[fabs(sun_d_enu[0]) < 0.6 ? 0 : 1] = 1;
     v3_add_scaled(east, east, -v3_dot(east, sun_d_enu), sun_d_enu);
     v3_normalize(east, east);
     v3_cross(other, sun_d_enu, east);
-    for (int r = 0; r < lamp_rings; r++) {
-        const double a0 = rings_rad * r * r / (lamp_rings * lamp_rings);
-        const double a1 = rings_rad * (r + 1) * (r + 1) / (lamp_rings * lamp_rings), angle = 0.5 * (a0 + a1);
-        for (int p = 0; p < lamp_spokes; p++) {
-            const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes;
-            double d[3];
-            for (int c = 0; c < 3; c++)
-                d[c] = cos(angle) * sun_d_enu[c] + sin(angle) * (cos(turn) * east[c] + sin(turn) * other[c]);
-            set_lamp(out, k++, sun_d_enu, d, (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle));
-        }
+    const double a0 = rings_rad * r * r / (lamp_rings * lamp_rings);
+    const double a1 = rings_rad * (r + 1) * (r + 1) / (lamp_rings * lamp_rings), angle = 0.5 * (a0 + a1);
+    const double solid_angle = (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle);
+    const double along = cos(angle), across = sin(angle);
+    for (int p = 0; p < lamp_spokes; p++) {
+        const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes, c = across * cos(turn), s = across * sin(turn);
+        double d[3];
+        for (int k = 0; k < 3; k++) d[k] = along * sun_d_enu[k] + c * east[k] + s * other[k];
+        set_lamp(out, lamp_ups * lamp_azimuths + r * lamp_spokes + p, sun_d_enu, d, solid_angle);
     }
 }
 
@@ -210,21 +211,6 @@ static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double 
     return sum;
 }
 
-static void light_planes(Air *air, AirBand band, const float w_m2[lamps], const Lamps *lamp)
-{
-    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
-    const double sun_east = level > 1e-10 ? air->sun_d_enu[0] / level : 1;
-    const double sun_north = level > 1e-10 ? air->sun_d_enu[1] / level : 0;
-    for (int i = 0; i <= air_plane_ups; i++) {
-        const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
-        for (int p = 0; p <= air_plane_azimuths; p++) {
-            const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
-            const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
-            air->plane_w_m2[band][i][p] = (float)on_plane(w_m2, lamp, n_enu);
-        }
-    }
-}
-
 /* ---- all of it ---------------------------------------------------------------------------- */
 
 /* The sky is asked for at every second height and azimuth, over its brightness around the sun, and drawn between them
@@ -235,73 +221,73 @@ typedef struct AskedSky {
     double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
 } AskedSky;
 
+/* Asked of the day for all bands at once: how bright the sky is by angle from the sun, and by height and azimuth. */
+typedef struct SkyAnswers {
+    double around[air_sky_angles + 1][AIR_BAND_COUNT];
+    double scattered[asked_ups + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_ups + 1][2];
+} SkyAnswers;
+
 typedef struct SkyJob {
     Air *air;
-    const Atmosphere *atmosphere;
+    const AirDay *day;
+    TableJob *table;
     unsigned bands;
     bool eye_on_ground;
     double day_zenith_rad, thermal_scale[2], scattered_scale, diffuse_w_m2[AIR_BAND_COUNT];
-    AskedSky asked[AIR_BAND_COUNT][2]; /* from the ground, from the eye */
+    double azimuth_rad[asked_azimuths + 1];
+    SkyAnswers answer[2]; /* from the ground, from the eye */
     Lamps lamp;
+    float w_m2[AIR_BAND_COUNT][lamps];
 } SkyJob;
 
 static double height_of(const SkyJob *job, int from_eye) { return from_eye ? job->air->eye_height_m : 0; }
 
 /* How bright the sky is by angle from the sun: from it up over the zenith and down to the horizon behind, and beyond
  * that as there. */
-static void ask_around_sun(void *user, int worker, int task)
+static void ask_around_sun(SkyJob *job, int from_eye, int k)
 {
-    (void)worker;
-    SkyJob *job = user;
-    const int from_eye = task % 2, b = task / 2;
-    if (!(job->bands >> b & 1)) return;
-    AirSky *sky = from_eye ? &job->air->sky_eye[b] : &job->air->sky[b];
-    const int asked_eye = from_eye && !job->eye_on_ground;
-    for (int k = 0; k <= air_sky_angles; k++) {
-        const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
-        const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad);
-        SkyAir seen = {0};
-        if (b != AIR_LWIR)
-            atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b,
-                           height_of(job, asked_eye), fabs(zenith_rad), job->day_zenith_rad,
-                           zenith_rad < 0 ? pi_rad : 0);
-        sky->around_sun[k] = seen.scattered_w_m2_sr > 0 ? (float)seen.scattered_w_m2_sr : 1;
-    }
+    const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
+    const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad), azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
+    double thermal[2];
+    air_day_sky(&job->answer[from_eye].around[k], thermal, job->day, height_of(job, from_eye), fabs(zenith_rad), &azimuth_rad, 1);
+}
+
+/* One height of the sky. */
+static void ask_sky(SkyJob *job, int from_eye, int i)
+{
+    const double u = (double)i / asked_ups;
+    const int azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
+    SkyAnswers *answer = &job->answer[from_eye];
+    air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, from_eye), acos(u * u), job->azimuth_rad,
+                azimuths);
+    for (int a = azimuths; a <= asked_azimuths; a++)
+        memcpy(answer->scattered[i][a], answer->scattered[i][0], sizeof answer->scattered[i][a]);
+}
+
+static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
+{
+    for (int k = 0; k <= air_sky_angles; k++)
+        sky->around_sun[k] = b != AIR_LWIR && answer->around[k][b] > 0 ? (float)answer->around[k][b] : 1;
     sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
 }
 
-/* One height of one band's sky, from the ground or the eye. */
-static void ask_sky(void *user, int worker, int task)
+/* The sky over its ring: what is even enough to be drawn between few places. */
+static void without_ring(AskedSky *asked, const SkyJob *job, const AirSky *sky, const SkyAnswers *answer, int b)
 {
-    (void)worker;
-    SkyJob *job = user;
-    const int i = task % (asked_ups + 1), from_eye = task / (asked_ups + 1) % 2, b = task / (asked_ups + 1) / 2;
-    if (!(job->bands >> b & 1) || (from_eye && job->eye_on_ground)) return;
-    const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up), zenith_rad = acos(up);
-    AskedSky *asked = &job->asked[b][from_eye];
-    /* a sky of one everywhere but for the ring says what the ring is at each place */
-    AirSky ring = from_eye ? job->air->sky_eye[b] : job->air->sky[b];
-    for (int m = 0; m <= air_sky_ups; m++) {
-        ring.thermal_w_m2_sr[m] = 0;
-        for (int a = 0; a <= air_sky_azimuths; a++) ring.scattered_w_m2_sr[m][a] = 1;
-    }
     const double sun[3] = {sin(job->day_zenith_rad), 0, cos(job->day_zenith_rad)};
-    const int azimuths = b == AIR_LWIR || i == asked_ups ? 0 : asked_azimuths; /* even about; the zenith has none */
-    for (int a = 0; a <= azimuths; a++) {
-        const double azimuth_rad = a * pi_rad / asked_azimuths;
-        const double d[3] = {flat * cos(azimuth_rad), flat * sin(azimuth_rad), up};
-        SkyPlace place;
-        SkyAir seen;
-        place_in_sky(&place, sun, d, 0);
-        const double around = air_sky_there(&ring, &place);
-        atmosphere_sky(&seen, job->atmosphere, job->air->weather.visibility_m, (AirBand)b, height_of(job, from_eye),
-                       zenith_rad, job->day_zenith_rad, azimuth_rad);
-        asked->scattered_w_m2_sr[i][a] =
-            b == AIR_LWIR ? 0 : seen.scattered_w_m2_sr * job->scattered_scale / around;
-        asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? seen.thermal_w_m2_sr * job->thermal_scale[b - AIR_MWIR] : 0;
+    for (int i = 0; i <= asked_ups; i++) {
+        const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up);
+        for (int a = 0; a <= asked_azimuths; a++) {
+            const int azimuth = i == asked_ups ? 0 : a;
+            const double d[3] = {flat * cos(job->azimuth_rad[azimuth]), flat * sin(job->azimuth_rad[azimuth]), up};
+            SkyPlace place;
+            place_in_sky(&place, sun, d, 0);
+            const float *ring = &sky->around_sun[place.angle];
+            const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
+            asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->scattered_scale / around;
+        }
+        asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? answer->thermal[i][b - AIR_MWIR] * job->thermal_scale[b - AIR_MWIR] : 0;
     }
-    for (int a = azimuths + 1; a <= asked_azimuths; a++)
-        asked->scattered_w_m2_sr[i][a] = asked->scattered_w_m2_sr[i][0];
 }
 
 /* In full resolution; mirrored at both ends of azimuth, as the sky is. */
@@ -328,29 +314,98 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
     }
 }
 
-/* One band: drawn, scaled to add up as light, and what it gives to planes. */
-static void fill_sky(void *user, int worker, int task)
+/* One band: drawn, and scaled to add up as light. */
+static void fill_sky(SkyJob *job, int band)
 {
-    (void)worker;
-    SkyJob *job = user;
     Air *air = job->air;
-    if (!(job->bands >> task & 1)) return;
-    AirSky *sky = &air->sky[task], *sky_light = &air->sky_light[task];
+    if (!(job->bands >> band & 1)) return;
+    AirSky *sky = &air->sky[band], *sky_light = &air->sky_light[band], *sky_eye = &air->sky_eye[band];
     static const double up_enu[3] = {0, 0, 1};
-    float w_m2[lamps];
-    draw_sky(sky, &job->asked[task][0]);
-    draw_sky(&air->sky_eye[task], &job->asked[task][!job->eye_on_ground]);
+    AskedSky asked;
+    fill_around_sun(sky, &job->answer[0], band);
+    without_ring(&asked, job, sky, &job->answer[0], band);
+    draw_sky(sky, &asked);
+    if (job->eye_on_ground) {
+        *sky_eye = *sky;
+    } else {
+        fill_around_sun(sky_eye, &job->answer[1], band);
+        without_ring(&asked, job, sky_eye, &job->answer[1], band);
+        draw_sky(sky_eye, &asked);
+    }
     AirSky scattered = *sky;
     memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
-    light_lamps(w_m2, &job->lamp, &scattered);
-    const double adds_up_to = on_plane(w_m2, &job->lamp, up_enu);
-    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[task] / adds_up_to : 0;
+    light_lamps(job->w_m2[band], &job->lamp, &scattered);
+    const double adds_up_to = on_plane(job->w_m2[band], &job->lamp, up_enu);
+    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 0;
     *sky_light = *sky;
     for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
-    light_lamps(w_m2, &job->lamp, sky_light);
-    light_planes(air, (AirBand)task, w_m2, &job->lamp);
-    air->sky_scale[task] = scale;
-    air->sky_w_m2[task] = air->plane_w_m2[task][air_plane_ups][0];
+    light_lamps(job->w_m2[band], &job->lamp, sky_light);
+    air->sky_scale[band] = scale;
+}
+
+/* What the lamps give to planes of one height, in every band. */
+static void light_planes(SkyJob *job, int i)
+{
+    Air *air = job->air;
+    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
+    const double sun_east = level > 1e-10 ? air->sun_d_enu[0] / level : 1;
+    const double sun_north = level > 1e-10 ? air->sun_d_enu[1] / level : 0;
+    const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
+    for (int p = 0; p <= air_plane_azimuths; p++) {
+        const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
+        const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            if (job->bands >> b & 1) air->plane_w_m2[b][i][p] = (float)on_plane(job->w_m2[b], &job->lamp, n_enu);
+    }
+}
+
+/* ---- in three passes, each of tasks for a pool ------------------------------------------------ */
+
+enum { asks_of_sky = 2 * (asked_ups + 1), asks_around_sun = 2 * (air_sky_angles + 1), lamp_tasks = lamp_ups + lamp_rings };
+
+static void ask_task(void *user, int worker, int task)
+{
+    SkyJob   *job = user;
+    const int table = air_table_asks(job->table);
+    (void)worker;
+    if (task < table) {
+        air_table_ask(job->table, task);
+        return;
+    }
+    task -= table;
+    if (task < asks_of_sky + asks_around_sun) {
+        const int from_eye = task % 2, k = task / 2;
+        if (from_eye && job->eye_on_ground) return;
+        if (k <= asked_ups) ask_sky(job, from_eye, k);
+        else ask_around_sun(job, from_eye, k - (asked_ups + 1));
+        return;
+    }
+    task -= asks_of_sky + asks_around_sun;
+    if (task < lamp_ups) place_grid(&job->lamp, task, job->air->sun_d_enu);
+    else place_ring(&job->lamp, task - lamp_ups, job->air->sun_d_enu);
+}
+
+static void draw_task(void *user, int worker, int task)
+{
+    SkyJob *job = user;
+    (void)worker;
+    if (task < AIR_BAND_COUNT) fill_sky(job, task);
+    else air_table_draw(job->table, task - AIR_BAND_COUNT);
+}
+
+static void plane_task(void *user, int worker, int task)
+{
+    (void)worker;
+    light_planes(user, task);
+}
+
+/* The pool's, or in order where there is none. */
+static void run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool)
+        pool_run(pool, count, task, user);
+    else
+        for (int i = 0; i < count; i++) task(user, 0, i);
 }
 
 /* For temperatures: all wavelengths. */
@@ -415,7 +470,10 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     SkyJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;
     /* ten metres of air under the eye are nothing to the sky above it */
-    *job = (SkyJob){.air = out, .atmosphere = atmosphere, .bands = eye->bands, .eye_on_ground = out->eye_height_m < 10};
+    job->air = out;
+    job->bands = eye->bands;
+    job->eye_on_ground = out->eye_height_m < 10;
+    for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
     const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
     for (int k = 0; k < 2; k++)
         job->thermal_scale[k] =
@@ -437,20 +495,26 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     }
     /* sunlight for temperatures, also where nobody looks at it */
     out->sky_w_m2[AIR_PAN] = job->diffuse_w_m2[AIR_PAN];
-    place_lamps(&job->lamp, out->sun_d_enu);
-    air_run(pool, AIR_BAND_COUNT * 2, ask_around_sun, job);
-    air_run(pool, AIR_BAND_COUNT * 2 * (asked_ups + 1), ask_sky, job);
-    air_run(pool, AIR_BAND_COUNT, fill_sky, job);
-    /* the tables' own: the sum over our sky is there only when somebody asks for pan */
-    heat_balance(out, atmosphere, model_temp_k, job->diffuse_w_m2[AIR_PAN]);
-
-    TableInput input = {.atmosphere = atmosphere,
-                        .sun_zenith_rad = job->day_zenith_rad,
+    double temp_k[air_temps + 1];
+    memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
+    temp_k[air_temps] = out->weather.air_temp_k;
+    Status status = air_day_at(&job->day, atmosphere, weather->visibility_m, job->day_zenith_rad, eye->bands, temp_k, air_temps + 1,
+                               arena);
+    TableInput input = {.day = job->day,
                         .bands = eye->bands,
                         .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},
                         .scattered_scale = job->scattered_scale};
     look_where(&input, eye->view, out->sun_d_enu, out->eye_height_m);
-    return air_table_fill(out, &input, pool, arena);
+    if (status == STATUS_OK) status = air_table_begin(&job->table, out, &input, arena);
+    if (status != STATUS_OK) return status;
+    run(pool, air_table_asks(job->table) + asks_of_sky + asks_around_sun + lamp_tasks, ask_task, job);
+    run(pool, AIR_BAND_COUNT + air_table_draws(job->table), draw_task, job);
+    run(pool, air_plane_ups + 1, plane_task, job);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (eye->bands >> b & 1) out->sky_w_m2[b] = out->plane_w_m2[b][air_plane_ups][0];
+    /* the tables' own: the sum over our sky is there only when somebody asks for pan */
+    heat_balance(out, atmosphere, model_temp_k, job->diffuse_w_m2[AIR_PAN]);
+    return STATUS_OK;
 }
 
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],

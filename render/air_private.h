@@ -3,6 +3,7 @@
 #define RENDER_AIR_PRIVATE_H
 
 #include "render/air.h"
+#include "render/atmosphere_day.h"
 
 /* Paths from one eye. What they take away, and the air's own light, by the far end's height and the range, both in
  * octaves (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that a number's own bits say
@@ -66,18 +67,22 @@ static inline float air_step_up(double low, int steps, int shift)
     return to;
 }
 
-/* Fills air->table for the bands given, between two azimuths from the sun and two slopes, up to a height.
+/* What air->table is of: these bands, between two azimuths from the sun and two slopes, up to a height.
  * thermal_scale: for air of another temperature than the model's; scattered_scale: twilight and the sun's distance. */
 typedef struct TableInput {
-    const Atmosphere *atmosphere;
-    double sun_zenith_rad, thermal_scale[2], scattered_scale;
+    const AirDay *day;        /* its temperatures: emitter_temp_k and, behind them, the air's */
+    double thermal_scale[2], scattered_scale;
     double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
-Status air_table_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena);
 
-/* The pool's, or in order where there is none. */
-void air_run(Pool *pool, int count, PoolTask *task, void *user);
+/* First every ask, in any order and by any thread, then every draw. */
+typedef struct TableJob TableJob;
+Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena);
+int    air_table_asks(const TableJob *job);
+void   air_table_ask(TableJob *job, int ask);
+int    air_table_draws(const TableJob *job);
+void   air_table_draw(TableJob *job, int draw);
 
 /* Straight-on cubic through four points a step apart, at t of the middle step. */
 static inline double cubic_between(double a, double b, double c, double d, double t)

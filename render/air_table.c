@@ -25,29 +25,31 @@ typedef double Coarse[coarse_nodes]; /* by slope, share */
 typedef double Side[side_nodes];
 typedef double Octaves[air_octaves + 1];
 
-typedef struct TableJob {
+struct TableJob {
     Air *air;
     TableInput in;
     int turns, middle; /* steps of azimuth asked for, and the one asked for in full */
+    double azimuth_rad[coarse_turns + 1];
     Coarse log2_source[AIR_BAND_COUNT];            /* of scattered light at the middle azimuth */
     Side   side[AIR_BAND_COUNT][coarse_turns + 1]; /* the same elsewhere */
-} TableJob;
+};
 
-/* log2(1 / tau) a metre. */
-static double extinction(double transmittance, double range_m)
+/* log2(1 / tau) a metre, of a depth. */
+static double extinction(double depth, double range_m)
 {
-    return -log2(clamp(transmittance, 1e-30, 1)) / range_m;
+    static const double deepest = 69.07755278982137, log2_e = 1.4426950408889634; /* ln 1e30 */
+    return clamp(depth, 0, deepest) * log2_e / range_m;
 }
 
 /* Radiance over what the path takes away; a clear path has no source. */
-static double mean_source(double radiance_w_m2_sr, double transmittance)
+static double mean_source(double radiance_w_m2_sr, double depth)
 {
-    return transmittance < 1 - 1e-12 ? radiance_w_m2_sr / (1 - transmittance) : 0;
+    return depth > 1e-12 ? radiance_w_m2_sr / -expm1(-depth) : 0;
 }
 
-static double log2_source(const TableJob *job, const PathAir *air)
+static double log2_source(const TableJob *job, double scattered_w_m2_sr, double depth)
 {
-    return log2(fmax(mean_source(air->scattered_w_m2_sr * job->in.scattered_scale, air->sun_transmittance), 1e-30));
+    return log2(fmax(mean_source(scattered_w_m2_sr * job->in.scattered_scale, depth), 1e-30));
 }
 
 /* A band whose scattered light is asked for: sunlight is below a thousandth of what 8-12 um emits. */
@@ -59,15 +61,12 @@ static bool scatters(const TableJob *job, int band)
 static double azimuth_rad(double turn) { return acos(clamp(1 - turn * turn, -1, 1)); }
 static double turn_of(double azimuth) { return sqrt(fmax(1 - cos(azimuth), 0)); }
 
-static void ask(PathAir *out, const TableJob *job, int band, const AirPath *path, double temp_k)
-{
-    atmosphere_path(out, job->in.atmosphere, job->air->weather.visibility_m, (AirBand)band, path, temp_k);
-}
-
 /* ---- what paths take away -------------------------------------------------------------------------- */
 
-/* Cubic in the octaves' logarithm, cut evenly. */
-static void cut_octaves(float *out, int stride, const Octaves in, bool times_range)
+/* A curve of every range, between the octaves by their cubic, cut evenly. */
+typedef float Curve[air_ranges + 1];
+
+static void cut_octaves(Curve out, const Octaves in, bool times_range)
 {
     static const double log2_cut[air_range_cuts] = {0,
                                                     0.16992500144231237,
@@ -77,62 +76,66 @@ static void cut_octaves(float *out, int stride, const Octaves in, bool times_ran
                                                     0.70043971814109216,
                                                     0.80735492205760410,
                                                     0.90689059560851848};
-    for (int r = 0; r <= air_ranges; r++) {
-        const int i = r < air_ranges ? r / air_range_cuts : air_octaves - 1;
+    for (int i = 0; i < air_octaves; i++) {
         const double b = in[i], c = in[i + 1];
         const double a = i > 0 ? in[i - 1] : 3 * (b - c) + in[2];
         const double d = i + 2 <= air_octaves ? in[i + 2] : 3 * (c - b) + in[i - 1];
-        const double value = r < air_ranges ? cubic_between(a, b, c, d, log2_cut[r % air_range_cuts]) : c;
-        const double range_m = times_range ? air_near_m * (double)air_step_up(1, r, air_range_shift) : 1;
-        out[r * stride] = (float)(fmax(value, 0) * range_m);
+        for (int r = 0; r < air_range_cuts; r++) {
+            /* the cuts of an octave are its eighths */
+            const double range_m = times_range ? ldexp(air_near_m, i) * (1 + r * (1.0 / air_range_cuts)) : 1;
+            const double value = cubic_between(a, b, c, d, log2_cut[r]);
+            out[i * air_range_cuts + r] = (float)((value > 0 ? value : 0) * range_m);
+        }
     }
+    out[air_ranges] = (float)(fmax(in[air_octaves], 0) * (times_range ? ldexp(air_near_m, air_octaves) : 1));
+}
+
+static void put_curve(float *out, int stride, const Curve curve)
+{
+    for (int r = 0; r <= air_ranges; r++) out[r * stride] = curve[r];
 }
 
 /* One height: every range. */
-static void ask_height(void *user, int worker, int row)
+static void ask_height(TableJob *job, int row)
 {
-    (void)worker;
-    const TableJob *job = user;
     const Air      *air = job->air;
     const AirTable *table = air->table;
     Octaves sun[AIR_BAND_COUNT], own[2], source[2], emitted[2][air_temps];
+    Curve   curve, warm[2][air_temps + 2]; /* of emitters; own, source */
+    DayPath here;
     AirPath path = {.observer_m = air->eye_height_m,
-                    .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m),
-                    .sun_zenith_rad = pi_rad}; /* its scattered light is not asked for */
+                    .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
     const double straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(job->in.bands >> b & 1)) continue;
-        for (int r = 0; r <= air_octaves; r++) {
-            /* shorter than straight up or down there is no path: the nodes hold that one */
-            path.range_m = fmax(ldexp(air_near_m, r), straight_m);
-            const bool again = r > 0 && ldexp(air_near_m, r) <= straight_m;
-            PathAir here;
-            if (!again) ask(&here, job, b, &path, air->weather.air_temp_k);
-            sun[b][r] = again ? sun[b][r - 1] : extinction(here.sun_transmittance, path.range_m);
-            if (b < AIR_MWIR) continue;
-            const int t = b - AIR_MWIR;
-            own[t][r] = again ? own[t][r - 1] : extinction(here.transmittance, path.range_m);
-            source[t][r] = again ? source[t][r - 1]
-                                 : mean_source(here.thermal_w_m2_sr * job->in.thermal_scale[t], here.transmittance);
-            for (int k = 0; k < air_temps; k++) {
-                if (!again) ask(&here, job, b, &path, emitter_temp_k[k]);
-                emitted[t][k][r] = again ? emitted[t][k][r - 1] : extinction(here.transmittance, path.range_m);
-            }
+    for (int r = 0; r <= air_octaves; r++) {
+        /* shorter than straight up or down there is no path: the nodes hold that one */
+        path.range_m = fmax(ldexp(air_near_m, r), straight_m);
+        if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->in.day, &path);
+        for (int b = 0; b < AIR_BAND_COUNT; b++) sun[b][r] = extinction(here.sun[b], path.range_m);
+        for (int t = 0; t < 2; t++) {
+            own[t][r]    = extinction(here.emitted[t][air_temps], path.range_m);
+            source[t][r] = mean_source(here.thermal_w_m2_sr[t] * job->in.thermal_scale[t], here.emitted[t][air_temps]);
+            for (int k = 0; k < air_temps; k++) emitted[t][k][r] = extinction(here.emitted[t][k], path.range_m);
         }
     }
     const int first = row * air_range_row;
     for (int g = 0; g < table->lights; g++)
-        for (int lane = 0; lane < table->light[g]->bands; lane++)
-            cut_octaves(&table->light[g]->depth[first][lane], air_lights, sun[table->light[g]->band[lane]], true);
+        for (int lane = 0; lane < table->light[g]->bands; lane++) {
+            cut_octaves(curve, sun[table->light[g]->band[lane]], true);
+            put_curve(&table->light[g]->depth[first][lane], air_lights, curve);
+        }
     for (int t = 0; t < 2; t++) {
         if (!(job->in.bands >> (AIR_MWIR + t) & 1)) continue;
+        for (int k = 0; k < air_temps; k++) cut_octaves(warm[t][k], emitted[t][k], true);
+        cut_octaves(warm[t][air_temps], own[t], true);
+        cut_octaves(warm[t][air_temps + 1], source[t], false);
         for (int k = 0; k < air_temps - 1; k++) {
-            enum { values = 2 * air_warm_values };
             float *out = &table->heat->value[k][first][t * air_warm_values];
-            cut_octaves(out + air_warm_own, values, own[t], true);
-            cut_octaves(out + air_warm_low, values, emitted[t][k], true);
-            cut_octaves(out + air_warm_high, values, emitted[t][k + 1], true);
-            cut_octaves(out + air_warm_source, values, source[t], false);
+            for (int r = 0; r <= air_ranges; r++, out += 2 * air_warm_values) {
+                out[air_warm_own]    = warm[t][air_temps][r];
+                out[air_warm_low]    = warm[t][k][r];
+                out[air_warm_high]   = warm[t][k + 1][r];
+                out[air_warm_source] = warm[t][air_temps + 1][r];
+            }
         }
     }
 }
@@ -140,7 +143,7 @@ static void ask_height(void *user, int worker, int row)
 /* ---- scattered light ------------------------------------------------------------------------------- */
 
 /* The path of a coarse node. */
-static AirPath path_at(const TableJob *job, int slope_step, int share_step, int turn)
+static AirPath path_at(const TableJob *job, int slope_step, int share_step)
 {
     const AirTable *table = job->air->table;
     const double eye_m = job->air->eye_height_m;
@@ -149,31 +152,25 @@ static AirPath path_at(const TableJob *job, int slope_step, int share_step, int 
     const double whole_m = slope < 0 ? fmax(eye_m, air_least_fall_m) : air_top_m - eye_m;
     const double end_m = clamp(whole_m / fmax(fabs(slope), 1e-9), air_shortest_way_m, air_longest_way_m);
     const double share = fmax((double)share_step / coarse_shares, 0.01); /* not quite nothing */
-    const double steps = (double)turn * table->turns / job->turns;
-    AirPath path = {.observer_m = eye_m, .range_m = share * share * end_m, .sun_zenith_rad = job->in.sun_zenith_rad};
-    path.rel_azimuth_rad = azimuth_rad((double)table->turn_low + steps / (double)table->turn_steps);
-    path.target_m = clamp(eye_m + slope * path.range_m, 0, air_top_m);
-    return path;
+    const double range_m = share * share * end_m;
+    return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};
 }
 
-/* One slope at one azimuth. */
-static void ask_slope(void *user, int worker, int task)
+/* One slope: at the middle azimuth, and on every so-manieth path at all of them. */
+static void ask_slope(TableJob *job, int i)
 {
-    (void)worker;
-    TableJob *job = user;
-    const int turn = task / (coarse_slopes + 1), i = task % (coarse_slopes + 1);
-    const bool full = turn == job->middle;
-    if (!full && i > side_slopes) return;
-    for (int c = 0; c <= (full ? coarse_shares : side_shares); c++) {
-        const AirPath path = full ? path_at(job, i, c, turn) : path_at(job, side_stride * i, side_stride * c, turn);
+    double seen[coarse_turns + 1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
+    const double *azimuth = job->azimuth_rad;
+    for (int c = 0; c <= coarse_shares; c++) {
+        const AirPath path = path_at(job, i, c);
+        const bool    all = i % side_stride == 0 && c % side_stride == 0;
+        if (all) air_day_scattered(seen, sun, job->in.day, &path, azimuth, job->turns + 1);
+        else air_day_scattered(seen + job->middle, sun, job->in.day, &path, azimuth + job->middle, 1);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!scatters(job, b)) continue;
-            PathAir here;
-            ask(&here, job, b, &path, job->air->weather.air_temp_k);
-            if (full)
-                job->log2_source[b][i * coarse_row + c] = log2_source(job, &here);
-            else
-                job->side[b][turn][i * side_row + c] = log2_source(job, &here);
+            job->log2_source[b][i * coarse_row + c] = log2_source(job, seen[job->middle][b], sun[b]);
+            for (int a = 0; a <= job->turns && all; a++)
+                job->side[b][a][i / side_stride * side_row + c / side_stride] = log2_source(job, seen[a][b], sun[b]);
         }
     }
 }
@@ -201,10 +198,8 @@ static void halve_both(double *fine, const double *coarse, int slopes, int share
     for (int i = 0; i <= 2 * slopes; i++) halve_steps(fine + i * row, 1, wide + i * (shares + 1), 1, shares);
 }
 
-static void draw_light(void *user, int worker, int task)
+void air_table_draw(TableJob *job, int task)
 {
-    (void)worker;
-    TableJob *job = user;
     const AirTable *table = job->air->table;
     const int group = task / air_lights, lane = task % air_lights;
     if (group >= table->lights || lane >= table->light[group]->bands) return;
@@ -236,14 +231,6 @@ static void draw_light(void *user, int worker, int task)
 
 /* ---- all of it ------------------------------------------------------------------------------------- */
 
-void air_run(Pool *pool, int count, PoolTask *task, void *user)
-{
-    if (pool)
-        pool_run(pool, count, task, user);
-    else
-        for (int i = 0; i < count; i++) task(user, 0, i);
-}
-
 /* As fine as there is room for. */
 static void choose_rows(AirTable *table, double high_m)
 {
@@ -258,7 +245,7 @@ static void choose_rows(AirTable *table, double high_m)
     table->row_shift = 21; /* nine octaves hold the tables' top in 36 */
 }
 
-Status air_table_fill(Air *air, const TableInput *input, Pool *pool, Arena *arena)
+Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena)
 {
     TableJob *job = arena_alloc(arena, 1, sizeof *job);
     AirTable *table = air->table = arena_alloc(arena, 1, sizeof *table);
@@ -291,9 +278,29 @@ Status air_table_fill(Air *air, const TableInput *input, Pool *pool, Arena *aren
         table->heat = arena_alloc(arena, 1, sizeof *table->heat);
         if (!table->heat) return STATUS_NO_MEMORY;
     }
-    air_run(pool, table->rows + 1, ask_height, job);
-    if (!table->scattered) return STATUS_OK;
-    air_run(pool, (job->turns + 1) * (coarse_slopes + 1), ask_slope, job);
-    air_run(pool, 2 * air_lights, draw_light, job);
+    for (int a = 0; a <= job->turns; a++) {
+        const double steps = (double)a * table->turns / job->turns;
+        job->azimuth_rad[a] = azimuth_rad((double)table->turn_low + steps / (double)table->turn_steps);
+    }
+    *out = job;
     return STATUS_OK;
 }
+
+/* Slopes first: each takes longer than a height. */
+static int slope_asks(const TableJob *job)
+{
+    bool any = false;
+    for (int b = 0; b < AIR_BAND_COUNT; b++) any |= scatters(job, b);
+    return any ? coarse_slopes + 1 : 0;
+}
+
+int air_table_asks(const TableJob *job) { return slope_asks(job) + job->air->table->rows + 1; }
+
+void air_table_ask(TableJob *job, int ask)
+{
+    const int slopes = slope_asks(job);
+    if (ask < slopes) ask_slope(job, ask);
+    else ask_height(job, ask - slopes);
+}
+
+int air_table_draws(const TableJob *job) { return slope_asks(job) > 0 ? 2 * air_lights : 0; }

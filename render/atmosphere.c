@@ -186,11 +186,11 @@ static double look_ln_opaque(const Look *look)
     return low == high ? value : blend_of(blend, value, stencil_value(&look->high, high, high->weights));
 }
 
-double clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k)
+void clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k, int temps)
 {
     Look look;
     look_at(&look, atmosphere, NULL, band, path);
-    return look_depth(&look, temp_k);
+    for (int t = 0; t < temps; t++) out[t] = look_depth(&look, temp_k[t]);
 }
 
 double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k)

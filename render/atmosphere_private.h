@@ -51,6 +51,7 @@ typedef struct PathTable {
     int    *first;                   /* [pairs + 1]: rows of pair observer * nodes[1] + target */
     double *ln_range, *value;        /* [rows], [rows * values] */
     double  ln_range_low;            /* shortest of all */
+    int     shape;                   /* of an atmosphere's tables, those with equal nodes and ranges have the same */
     /* what the values are. Of clear air ln of the ratio of each weight's depth (0: the sun; then rising temperatures)
      * to the column's; of a visibility the ratio of the depth that haze adds to its column's, and, of thermal bands,
      * ln of the ratio of what the path would radiate if it were opaque to mean_black; of scattered.csv, which goes by
@@ -154,7 +155,8 @@ static inline double path_up(const AirPath *path)
 static inline double mean_sag_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
 
 /* Depths of a path, of sunlight (temp_k NAN) or of what has a temperature. */
-double clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k);
+void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
+                    int temps);
 double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k);
 /* Direct and diffuse sunlight. */
 void   blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,

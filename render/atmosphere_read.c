@@ -60,17 +60,22 @@ static void normalize_clear(PathTable *paths, const AirColumn *clear, AirBand ba
         }
 }
 
-/* clear_depth bends a long path around the Earth; the rows are of flat layers. */
-static double flat_clear_depth(const Atmosphere *atmosphere, AirBand band, const AirPath *path, double temp_k)
+/* clear_depths bends a long path around the Earth; the rows are of flat layers. */
+static void flat_clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path,
+                              const double *temp_k, int temps)
 {
     const AirColumn *clear = &atmosphere->clear;
     const double sag_m = mean_sag_m(path->range_m);
-    return clear_depth(atmosphere, band, path, temp_k) * column_mean(clear, band, path->observer_m, path->target_m) /
-           column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    const double flat = column_mean(clear, band, path->observer_m, path->target_m);
+    const double bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    clear_depths(out, atmosphere, band, path, temp_k, temps);
+    for (int t = 0; t < temps; t++) out[t] = out[t] * flat / bent;
 }
 
 static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const AirColumn *haze, AirBand band)
 {
+    double temp_k[path_max_weights] = {NAN}, clear[path_max_weights];
+    for (int w = 1; w < paths->weights; w++) temp_k[w] = paths->weight_temp_k[w];
     for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
         for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
             const AirPath path = path_of_row(paths, pair, row);
@@ -80,11 +85,8 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
                 const double opaque = value[paths->weights] / -expm1(-value[path_emission_weight(paths)]);
                 value[paths->weights] = log(opaque / mean_black(atmosphere, band, path.observer_m, path.target_m));
             }
-            for (int w = 0; w < paths->weights; w++) {
-                const double temp_k = w ? paths->weight_temp_k[w] : NAN;
-                value[w] = (value[w] - flat_clear_depth(atmosphere, band, &path, temp_k)) / fmax(plain, 1e-12);
-                value[w] = clamp(value[w], -1, 3);
-            }
+            flat_clear_depths(clear, atmosphere, band, &path, temp_k, paths->weights);
+            for (int w = 0; w < paths->weights; w++) value[w] = clamp((value[w] - clear[w]) / fmax(plain, 1e-12), -1, 3);
         }
 }
 
@@ -402,6 +404,35 @@ static Status open_model(Atmosphere *atmosphere, const char *folder)
     return status;
 }
 
+/* ---- tables of one shape ------------------------------------------------------------------------ */
+
+static bool same_shape(const PathTable *a, const PathTable *b)
+{
+    if (a->rows != b->rows || a->nodes[0] != b->nodes[0] || a->nodes[1] != b->nodes[1]) return false;
+    for (int i = 0; i < 2; i++)
+        if (memcmp(a->axis[i], b->axis[i], (size_t)a->nodes[i] * sizeof a->axis[i][0]) != 0) return false;
+    const size_t pairs = (size_t)a->nodes[0] * (size_t)a->nodes[1];
+    return a->ln_range_low == b->ln_range_low && memcmp(a->first, b->first, (pairs + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->ln_range, b->ln_range, (size_t)a->rows * sizeof *a->ln_range) == 0;
+}
+
+/* The first gives its number to those that are like it. */
+static void number_shapes(Atmosphere *atmosphere)
+{
+    PathTable *table[(slices_max + 1) * AIR_BAND_COUNT + slices_max];
+    int        count = 0;
+    for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->clear_path[air_tabled[k]];
+    for (int s = 0; s < atmosphere->slices; s++) {
+        for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->slice[s].path[air_tabled[k]];
+        table[count++] = &atmosphere->slice[s].scattered;
+    }
+    for (int i = 0; i < count; i++) {
+        int first = 0;
+        while (first < i && !same_shape(table[first], table[i])) first++;
+        table[i]->shape = first;
+    }
+}
+
 Status atmosphere_open(Atmosphere **out, const char *model)
 {
     char name[96], folder[512];
@@ -433,6 +464,7 @@ Status atmosphere_open(Atmosphere **out, const char *model)
         atmosphere_close(atmosphere);
         return status;
     }
+    number_shapes(atmosphere);
     *out = atmosphere;
     return STATUS_OK;
 }

@@ -7,7 +7,6 @@
 #include <errno.h>
 #include <getopt.h>
 #include <libgen.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -48,14 +47,6 @@ static const char help[] =
     "  --no-png           no display pictures, only EXR\n";
 
 /* ---- command line --------------------------------------------------------------------------- */
-
-static int processors(void)
-{
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-    const int count = CPU_COUNT(&set);
-    return count > 0 ? count : 1;
-}
 
 static bool set_size(Config *config, const char *text)
 {
@@ -411,7 +402,7 @@ static Status open_run(Run *run)
 
 int replay_command(int argc, char **argv)
 {
-    Run run = {.options = {.out = "out", .isa = "avx2", .threads = processors(), .speed = INFINITY, .png = true,
+    Run run = {.options = {.out = "out", .isa = "avx2", .threads = thread_processors(), .speed = INFINITY, .png = true,
                            .config = config_default()}};
     const int stop = parse(&run.options, argc, argv);
     if (stop) return stop - 1;

@@ -10,7 +10,7 @@ check "--help lists replay" grep -qx replay <<<"$commands"
 check "--help lists inspect" grep -qx inspect <<<"$commands"
 check "--help lists record" grep -qx record <<<"$commands"
 
-for command in replay inspect record; do
+for command in $commands; do
     run $command --help
     check "$command --help ends well" [ $code = 0 ]
     check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
