@@ -102,31 +102,50 @@ static int albedo_of_channel(int channel)
          : channel == optical_channel_b ? albedo_blue : albedo_all;
 }
 
-/* What each hit is made of, and how bright the ground's own pattern is there. */
+/* What each hit is made of. */
 static void resolve_materials(Scratch *s, const Job *job)
 {
-    const World *world       = job->world;
-    const double px_per_m    = job->request->view.focal_px * s->block.n;
-    for (int i = 0; i < s->hits.count; i++) {
-        for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = 1;
-        s->material[i] = 0;
-        if (s->hits.entity[i]) {
-            const int damage = visibility_damage(job->visibility, (int)s->hits.entity[i] - 1);
+    const Materials *materials = &job->world->materials;
+    uint16_t         of_class[256] = {0};
+    for (int c = SURFACE_NONE + 1; c < SURFACE_COUNT; c++) of_class[c] = (uint16_t)materials->surface[c];
+    for (int i = 0; i < s->hits.count; i++) s->material[i] = of_class[s->hits.surface[i]];
+    for (int i = 0; i < s->hits.count; i++)
+        if (s->hits.entity[i])
             s->material[i] =
-                (uint16_t)material_of_part(&world->materials, s->hits.model[i], s->hits.part[i] - 1, damage);
-        } else if (s->hits.surface[i]) {
-            const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
-            s->material[i]             = (uint16_t)world->materials.surface[surface];
-            /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
-            double graze = 0;
-            for (int k = 0; k < 3; k++) graze -= s->hits.n_geo[k][i] * s->rays.d_enu[k][i];
-            const double x_m = s->hits.p_enu[0][i], y_m = s->hits.p_enu[1][i];
-            const double footprint_m = s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01));
-            const float  texture = (float)landscape_texture(world->landscape, surface, x_m, y_m, footprint_m);
-            float        albedo[albedo_channels];
-            landscape_albedo(albedo, world->landscape, surface, x_m, y_m, footprint_m);
-            for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = texture * albedo[albedo_of_channel(c)];
-        }
+                (uint16_t)material_of_part(materials, s->hits.model[i], s->hits.part[i] - 1,
+                                           visibility_damage(job->visibility, (int)s->hits.entity[i] - 1));
+}
+
+/* How bright the ground's own pattern is at each hit, in the optical channels that somebody asks for and in that by
+ * which ground warms. */
+static void resolve_textures(Scratch *s, const Job *job)
+{
+    const Landscape *landscape = job->world->landscape;
+    const Hits      *hits = &s->hits;
+    const Rays      *rays = &s->rays;
+    const double     px_per_m = job->request->view.focal_px * s->block.n;
+    int              channel[4] = {optical_channel_pan};
+    const int        channels = 1 + optical_channels(channel + 1, s->block.bands, job->request->optical);
+    float           *pattern = s->texture[optical_channel_pan], *footprint_m = s->footprint_m;
+    /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
+    for (int i = 0; i < hits->count; i++) {
+        float graze = 0;
+        for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
+        footprint_m[i] = (float)(hits->range_m[i] / px_per_m) / (graze > 0.01f ? graze : 0.01f);
+        pattern[i] = 1;
+    }
+    if (landscape)
+        landscape_textures(pattern, landscape, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1], footprint_m);
+    for (int c = 1; c < channels; c++)
+        if (channel[c] != optical_channel_pan) memcpy(s->texture[channel[c]], pattern, (size_t)hits->count * sizeof *pattern);
+    if (!landscape || !landscape_has_photo(landscape)) return;
+    for (int i = 0; i < hits->count; i++) {
+        float albedo[albedo_channels];
+        if (!hits->surface[i]) continue;
+        landscape_albedo(albedo, landscape, (SurfaceClass)hits->surface[i], hits->p_enu[0][i], hits->p_enu[1][i],
+                         (double)footprint_m[i]);
+        for (int c = 0; c < channels; c++)
+            if (c == 0 || channel[c] != optical_channel_pan) s->texture[channel[c]][i] *= albedo[albedo_of_channel(channel[c])];
     }
 }
 
@@ -257,6 +276,7 @@ void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
     resolve_materials(s, job);
+    resolve_textures(s, job);
     trace_veils(s, job);
     if (job->request->sky_samples > 0) gather_around(s, job);
     shade_bands(s, job);

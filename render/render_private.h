@@ -64,6 +64,7 @@ typedef struct Scratch {
     RadarReturns   radar;
     float          out[hits_capacity], temp_k[hits_capacity];
     float          texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground, a channel */
+    float          footprint_m[hits_capacity];    /* of a sample along the ground */
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     Gathered       gathered; /* with sky_samples only */
