@@ -104,9 +104,11 @@ void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3])
 }
 
 void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
-                const uint16_t *material)
+                const uint16_t *material, const HitList *list)
 {
-    for (int i = 0; i < hits->count; i++) {
+    const int count = list ? list->count : hits->count;
+    for (int k = 0; k < count; k++) {
+        const int i = list ? list->of[k] : k;
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         air_plane_place(&out->plane[i], air, n_enu);

@@ -13,7 +13,7 @@ double optical_ground_w_m2(int channel, const Air *air, const Materials *materia
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing)
+                   const float *around_w_m2, const Veils *veils, const Facing *facing, const HitList *list)
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->sun_d_enu, sun_w_m2 = air->sun_w_m2[channel];
@@ -23,11 +23,13 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
     const Veils *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
-        air_facing(&found, air, materials, hits, rays, material);
+        air_facing(&found, air, materials, hits, rays, material, list);
         facing = &found;
     }
 
-    for (int i = 0; i < hits->count; i++) {
+    const int count = list ? list->count : hits->count;
+    for (int k = 0; k < count; k++) {
+        const int    i = list ? list->of[k] : k;
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
             /* ground beyond the terrain's edge, or sky */

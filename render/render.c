@@ -190,38 +190,57 @@ static void gather_around(Scratch *s, const Job *job)
                  key, &s->counters.visibility);
 }
 
+/* A band's radiance is done: what hangs in the air before it, and on to whom it belongs. */
+static void finish_band(Scratch *s, const Job *job, AirBand band, int veil_band, int plane)
+{
+    s->out = s->radiance[band];
+    veil_apply(s->out, &s->veil, veil_band, s->hits.count);
+    deliver(s, job, plane);
+}
+
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
     const World         *world   = job->world;
-    const unsigned       bands   = s->block.bands;
-
-    const bool gathered = request->sky_samples > 0;
-    int        channel[3];
-    const int  channels = optical_channels(channel, bands, request->optical);
+    const unsigned       bands   = s->block.bands, air_bands = render_air_bands(bands, request->optical);
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
                             s->texture[optical_channel_pan]);
-    const unsigned air_bands = render_air_bands(bands, request->optical);
-    if (air_bands) {
-        air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
-        air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material);
+    if (!air_bands) return;
+    air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+
+    /* the ground in all bands together, the rest one by one */
+    const bool  gathered = request->sky_samples > 0;
+    GroundBlock ground = {.hits = &s->hits, .rays = &s->rays, .temp_k = s->temp_k, .shadow = s->shadow, .veils = s->air};
+    float      *out[AIR_BAND_COUNT] = {NULL};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!(air_bands >> b & 1)) continue;
+        out[b] = s->radiance[b];
+        if (b < optical_channel_count) ground.texture[b] = s->texture[b];
+        if (gathered) ground.around_w_m2[b] = s->gathered.w_m2[b];
     }
+    ground_light_shade(out, &job->ground_light, &ground);
+    s->others.count = 0;
+    for (int i = 0; i < s->hits.count; i++)
+        if (s->hits.surface[i] == SURFACE_NONE) s->others.of[s->others.count++] = i;
+    air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material, &s->others);
+
+    int       channel[3];
+    const int channels = optical_channels(channel, bands, request->optical);
     for (int c = 0; c < channels; c++) {
-        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
-                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL,
-                      &s->air[channel[c]], &s->facing);
-        veil_apply(s->out, &s->veil, channel[c], s->hits.count);
-        deliver(s, job, picture_optical + c);
+        const AirBand b = (AirBand)channel[c];
+        optical_shade(out[b], channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material, s->texture[b],
+                      s->shadow, ground.around_w_m2[b], &s->air[b], &s->facing, &s->others);
+        finish_band(s, job, b, channel[c], picture_optical + c);
     }
-    for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
-        if (has_band(bands, band)) {
-            thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL,
-                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR], &s->facing);
-            veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
-            deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
-        }
+    for (Band band = BAND_MWIR; band <= BAND_LWIR; band++) {
+        const AirBand b = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
+        if (!has_band(bands, band)) continue;
+        thermal_shade(out[b], band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k, s->shadow,
+                      ground.around_w_m2[b], &s->air[b], &s->facing, &s->others);
+        finish_band(s, job, b, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir,
+                    band == BAND_MWIR ? picture_mwir : picture_lwir);
+    }
 }
 
 /* Of the picture's samples, those before which a small target stands count by what it leaves of their pixel. */
@@ -253,6 +272,7 @@ static void shade_radar(Scratch *s, const Job *job)
     const World *world = job->world;
     radar_shade(&s->radar, &world->radar, job->visibility, &world->materials, &s->hits, &s->rays, s->material,
                 job->request->hidden_entity, &s->counters.visibility);
+    s->out = s->radiance[0];
     for (int i = 0; i < s->hits.count; i++) {
         double sum = 0;
         for (int b = 0; b < radar_bounces; b++) sum += s->radar.power[b][i];
@@ -575,6 +595,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
                                    request->no_skip, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;
+    ground_light_prepare(&job.ground_light, air, &world->materials);
     if (request->truth || request->target_samples > 0 || looks_for_edges(request))
         pool_run(pool, snapshot->count, project_target, &job);
     if (request->target_samples > 0) status = footprints_plan(&job, arena);

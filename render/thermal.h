@@ -14,9 +14,10 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* band: BAND_MWIR or BAND_LWIR. shadow: used in MWIR's reflected sun only. around_w_m2: what sky and surroundings send
  * to each hit (render/gather.h); NULL: sky and ground by what its tilt sees of them. veils: of this band and these
- * temperatures; facing: of these hits; either NULL: asked for here. out: W/(m2 sr). */
+ * temperatures; facing: of these hits; either NULL: asked for here. list: the hits to shade, NULL: all. out: W/(m2 sr).
+ * Ground has a quicker way (render/ground_light.h), for which this is the measure. */
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing);
+                   const float *around_w_m2, const Veils *veils, const Facing *facing, const HitList *list);
 
 #endif

@@ -54,6 +54,22 @@ static inline EightInt eight_of_u16(const uint16_t *p)
 }
 static inline Eight eight_gather(const float *p, EightInt at) { return _mm256_i32gather_ps(p, at, 4); }
 
+/* Rows of eight to columns of eight, in place. */
+static inline void eight_turn(Eight r[8])
+{
+    Eight a[8], b[8];
+    for (int k = 0; k < 8; k += 2) a[k] = _mm256_unpacklo_ps(r[k], r[k + 1]), a[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+    for (int k = 0; k < 8; k += 4)
+        for (int half = 0; half < 2; half++) {
+            b[k + 2 * half] = _mm256_shuffle_ps(a[k + half], a[k + 2 + half], 0x44);
+            b[k + 2 * half + 1] = _mm256_shuffle_ps(a[k + half], a[k + 2 + half], 0xee);
+        }
+    for (int k = 0; k < 4; k++) {
+        r[k] = _mm256_permute2f128_ps(b[k], b[k + 4], 0x20);
+        r[k + 4] = _mm256_permute2f128_ps(b[k], b[k + 4], 0x31);
+    }
+}
+
 /* 2^x for x < 128, relative error below 2e-7, exact at 0; below -126 as there. Minimax over half a step either way. */
 static inline Eight eight_exp2(Eight x)
 {
