@@ -104,11 +104,9 @@ void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3])
 }
 
 void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
-                const uint16_t *material, const HitList *list)
+                const uint16_t *material)
 {
-    const int count = list ? list->count : hits->count;
-    for (int k = 0; k < count; k++) {
-        const int i = list ? list->of[k] : k;
+    for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         air_plane_place(&out->plane[i], air, n_enu);

@@ -92,14 +92,13 @@ typedef struct PlanePlace {
 void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3]);
 void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3]);
 
-/* Both for each hit of a block (list: of these alone): of its normal, and of the direction its mirror shows, where it
- * has any gloss. */
+/* Both for each hit of a block: of its normal, and of the direction its mirror shows, where it has any gloss. */
 typedef struct Facing {
     PlanePlace plane[hits_capacity];
     SkyPlace   mirror[hits_capacity];
 } Facing;
 void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
-                const uint16_t *material, const HitList *list);
+                const uint16_t *material);
 
 static inline double air_sky_there(const AirSky *sky, const SkyPlace *p)
 {

@@ -26,9 +26,4 @@ typedef struct Hits {
     uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
 } Hits;
 
-/* Some of a block's hits, ascending. */
-typedef struct HitList {
-    int count, of[hits_capacity];
-} HitList;
-
 #endif

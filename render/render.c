@@ -198,6 +198,22 @@ static void finish_band(Scratch *s, const Job *job, AirBand band, int veil_band,
     deliver(s, job, plane);
 }
 
+/* Rays that met nothing. */
+static void shade_beyond(Scratch *s, const Job *job, float *const out[AIR_BAND_COUNT])
+{
+    double ground_w_m2[optical_channel_count];
+    for (int c = 0; c < optical_channel_count; c++)
+        ground_w_m2[c] = optical_ground_w_m2(c, job->air, &job->world->materials);
+    for (int i = 0; i < s->hits.count; i++) {
+        if (s->hits.range_m[i] < INFINITY) continue;
+        const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+        for (int c = 0; c < optical_channel_count; c++)
+            if (out[c]) out[c][i] = optical_beyond(c, job->air, ground_w_m2[c], d_enu, &s->air[c], i);
+        if (out[AIR_MWIR]) out[AIR_MWIR][i] = thermal_beyond(BAND_MWIR, job->air, d_enu, &s->air[AIR_MWIR], i);
+        if (out[AIR_LWIR]) out[AIR_LWIR][i] = thermal_beyond(BAND_LWIR, job->air, d_enu, &s->air[AIR_LWIR], i);
+    }
+}
+
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
@@ -209,38 +225,24 @@ static void shade_bands(Scratch *s, const Job *job)
     if (!air_bands) return;
     air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
 
-    /* the ground in all bands together, the rest one by one */
-    const bool  gathered = request->sky_samples > 0;
-    GroundBlock ground = {.hits = &s->hits, .rays = &s->rays, .temp_k = s->temp_k, .shadow = s->shadow, .veils = s->air};
-    float      *out[AIR_BAND_COUNT] = {NULL};
+    const bool   gathered = request->sky_samples > 0;
+    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->material, .temp_k = s->temp_k,
+                          .shadow = s->shadow, .veils = s->air};
+    float       *out[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(air_bands >> b & 1)) continue;
         out[b] = s->radiance[b];
-        if (b < optical_channel_count) ground.texture[b] = s->texture[b];
-        if (gathered) ground.around_w_m2[b] = s->gathered.w_m2[b];
+        if (b < optical_channel_count) block.texture[b] = s->texture[b];
+        if (gathered) block.around_w_m2[b] = s->gathered.w_m2[b];
     }
-    ground_light_shade(out, &job->ground_light, &ground);
-    s->others.count = 0;
-    for (int i = 0; i < s->hits.count; i++)
-        if (s->hits.surface[i] == SURFACE_NONE) s->others.of[s->others.count++] = i;
-    air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material, &s->others);
+    surface_light_shade(out, &job->surface_light, &block);
+    shade_beyond(s, job, out);
 
     int       channel[3];
     const int channels = optical_channels(channel, bands, request->optical);
-    for (int c = 0; c < channels; c++) {
-        const AirBand b = (AirBand)channel[c];
-        optical_shade(out[b], channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material, s->texture[b],
-                      s->shadow, ground.around_w_m2[b], &s->air[b], &s->facing, &s->others);
-        finish_band(s, job, b, channel[c], picture_optical + c);
-    }
-    for (Band band = BAND_MWIR; band <= BAND_LWIR; band++) {
-        const AirBand b = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
-        if (!has_band(bands, band)) continue;
-        thermal_shade(out[b], band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k, s->shadow,
-                      ground.around_w_m2[b], &s->air[b], &s->facing, &s->others);
-        finish_band(s, job, b, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir,
-                    band == BAND_MWIR ? picture_mwir : picture_lwir);
-    }
+    for (int c = 0; c < channels; c++) finish_band(s, job, (AirBand)channel[c], channel[c], picture_optical + c);
+    if (has_band(bands, BAND_MWIR)) finish_band(s, job, AIR_MWIR, effect_band_mwir, picture_mwir);
+    if (has_band(bands, BAND_LWIR)) finish_band(s, job, AIR_LWIR, effect_band_lwir, picture_lwir);
 }
 
 /* Of the picture's samples, those before which a small target stands count by what it leaves of their pixel. */
@@ -595,7 +597,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
                                    request->no_skip, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;
-    ground_light_prepare(&job.ground_light, air, &world->materials);
+    status = surface_light_prepare(&job.surface_light, air, &world->materials, arena);
+    if (status != STATUS_OK) return status;
     if (request->truth || request->target_samples > 0 || looks_for_edges(request))
         pool_run(pool, snapshot->count, project_target, &job);
     if (request->target_samples > 0) status = footprints_plan(&job, arena);

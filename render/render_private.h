@@ -13,7 +13,7 @@
 
 #include "render/effects.h"
 #include "render/gather.h"
-#include "render/ground_light.h"
+#include "render/surface_light.h"
 #include "render/render.h"
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
@@ -73,8 +73,6 @@ typedef struct Scratch {
     int            some_index[hits_capacity];
     VeilRays       veil;
     Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
-    Facing         facing; /* of others */
-    HitList        others; /* parts and sky */
     int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
@@ -90,7 +88,7 @@ typedef struct Job {
     const Air           *air;
     const Visibility    *visibility;
     EffectScene          effects;   /* smoke, dust, flames and bursts */
-    GroundLight          ground_light;
+    SurfaceLight          surface_light;
     Picture             *picture;   /* truth planes where asked for or where edges are looked for */
     Scratch            **scratch;   /* a worker */
     HiddenBy            *pairs;     /* [tiles][pairs_per_tile] */

@@ -84,34 +84,37 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* ---- radiance ----------------------------------------------------------------------------- */
 
+float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Veils *v, int i)
+{
+    const AirBand air_band = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
+    double seen = air->ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
+    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[AIR_MWIR] * air_sun_disc(air, d_enu);
+    return (float)seen;
+}
+
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing, const HitList *list)
+                   const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const bool mwir = band == BAND_MWIR;
     const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
     const PlanckTable *planck = mwir ? air->planck_mwir : air->planck_lwir;
     const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
-    const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0, sun_eye_w_m2 = mwir ? air->sun_eye_w_m2[AIR_MWIR] : 0;
+    const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0;
     Veils own;
     if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
     const Veils *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
-        air_facing(&found, air, materials, hits, rays, material, list);
+        air_facing(&found, air, materials, hits, rays, material);
         facing = &found;
     }
 
-    const int count = list ? list->count : hits->count;
-    for (int k = 0; k < count; k++) {
-        const int    i = list ? list->of[k] : k;
+    for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
-            /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2_sr * v->air_transmittance[i] + v->added_w_m2_sr[i];
-            if (!(v->range_m[i] < INFINITY)) seen += sun_eye_w_m2 * air_sun_disc(air, d_enu);
-            out[i] = (float)seen;
+            out[i] = thermal_beyond(band, air, d_enu, v, i);
             continue;
         }
         const Material *m = &materials->material[material[i]];

@@ -145,7 +145,7 @@ static void sphere_over_a_plane(void **state)
     for (int run = 0; run < 2; run++) {
         gather_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
         optical_shade(out[run], optical_channel_pan, &stage.air, &stage.materials, &hits, &rays, material, texture,
-                      shadow, gathered.w_m2[AIR_PAN], NULL, NULL, NULL);
+                      shadow, gathered.w_m2[AIR_PAN], NULL, NULL);
     }
     for (int i = 0; i < points; i++)
         print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name,

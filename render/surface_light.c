@@ -1,6 +1,6 @@
-/* render/ground_light.c: see ground_light.h. Formulas, and why they are, stand in optical.c, thermal.c and materials.c;
+/* render/surface_light.c: see surface_light.h. Formulas, and why they are, stand in optical.c, thermal.c and materials.c;
  * here are the forms of them that keep their digits in float. */
-#include "render/ground_light.h"
+#include "render/surface_light.h"
 
 #include "render/optical.h"
 #include "terrain/eight.h"
@@ -11,26 +11,26 @@ static const double water_index2 = 1.7673876858061457; /* of a reflectance of 0.
 
 /* ---- once a frame ------------------------------------------------------------------------- */
 
-static void fill_rows(GroundLight *out, const Materials *materials)
+static void fill_row(float rho[surface_light_bands], float gloss[surface_light_bands], const Material *m)
 {
-    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
-        const Material *m = &materials->material[materials->surface[s]];
-        const double    roughness = (double)m->roughness, smooth = 1 - fmin(roughness, 1);
-        for (int c = 0; c < optical_channel_count; c++) out->rho[s][c] = m->rho[c];
-        out->rho[s][AIR_MWIR] = m->rho_mwir, out->rho[s][AIR_LWIR] = m->rho_lwir;
-        out->gloss[s][gloss_share] = m->gloss;
-        out->gloss[s][gloss_roughness] = m->roughness;
-        out->gloss[s][gloss_per_roughness] = (float)(1 / fmax(roughness, 0.01));
-        out->gloss[s][gloss_smooth2] = (float)(smooth * smooth);
-        out->gloss[s][gloss_slope2] = (float)material_slope2(roughness);
-        out->any_gloss[s] = m->gloss > 0;
-    }
+    const double roughness = (double)m->roughness, smooth = 1 - fmin(roughness, 1);
+    for (int c = 0; c < optical_channel_count; c++) rho[c] = m->rho[c];
+    rho[AIR_MWIR] = m->rho_mwir, rho[AIR_LWIR] = m->rho_lwir;
+    gloss[gloss_share] = m->gloss;
+    gloss[gloss_roughness] = m->roughness;
+    gloss[gloss_per_roughness] = (float)(1 / fmax(roughness, 0.01));
+    gloss[gloss_smooth2] = (float)(smooth * smooth);
+    gloss[gloss_slope2] = (float)material_slope2(roughness);
 }
 
-void ground_light_prepare(GroundLight *out, const Air *air, const Materials *materials)
+Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials *materials, Arena *arena)
 {
     memset(out, 0, sizeof *out);
     out->air = air;
+    out->rho = arena_alloc(arena, (size_t)materials->count, sizeof *out->rho);
+    out->gloss = arena_alloc(arena, (size_t)materials->count, sizeof *out->gloss);
+    if (!out->rho || !out->gloss) return STATUS_NO_MEMORY;
+    for (int m = 0; m < materials->count; m++) fill_row(out->rho[m], out->gloss[m], &materials->material[m]);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         const AirSky *sky = &air->sky[b];
         for (int i = 0; i <= air_plane_ups; i++)
@@ -45,7 +45,7 @@ void ground_light_prepare(GroundLight *out, const Air *air, const Materials *mat
         out->sun_w_m2[b] = b == AIR_LWIR ? 0 : (float)air->sun_w_m2[b];
         if (out->sun_w_m2[b] > 0) out->any_sun = true;
     }
-    fill_rows(out, materials);
+    return STATUS_OK;
 }
 
 /* ---- places in the tables ------------------------------------------------------------------- */
@@ -99,14 +99,14 @@ static inline void look_up(Eight out[8], const float *table, int row, Steps up, 
     _mm256_storeu_si256((EightInt *)at, _mm256_add_epi32(_mm256_mullo_epi32(up.at, eight_int(row)), aside.at));
     eight_store(u, up.share), eight_store(v, aside.share);
     for (int k = 0; k < 8; k++) {
-        const float *low = table + (ptrdiff_t)at[k] * ground_light_bands, *high = low + row * ground_light_bands;
+        const float *low = table + (ptrdiff_t)at[k] * surface_light_bands, *high = low + row * surface_light_bands;
         const Eight  a = _mm256_set1_ps(v[k]);
         out[k] = eight_mix(eight_mix(eight_load(low), eight_load(low + 8), a),
                            eight_mix(eight_load(high), eight_load(high + 8), a), _mm256_set1_ps(u[k]));
     }
 }
 
-static inline void light_on_plane(Eight out[8], const GroundLight *light, Three n, Three sun)
+static inline void light_on_plane(Eight out[8], const SurfaceLight *light, Three n, Three sun)
 {
     const Steps up = steps_of((one() + n.z) * eight_all(0.5 * air_plane_ups), air_plane_ups);
     const Steps azimuth = steps_of(azimuth_from_sun(n, sun) * eight_all(air_plane_azimuths / pi_rad), air_plane_azimuths);
@@ -115,7 +115,7 @@ static inline void light_on_plane(Eight out[8], const GroundLight *light, Three 
 }
 
 /* Sky in the direction d, nothing about the sun finer than blur_rad. */
-static inline void sky_towards(Eight out[8], const GroundLight *light, Three d, Three sun, Eight blur_rad)
+static inline void sky_towards(Eight out[8], const SurfaceLight *light, Three d, Three sun, Eight blur_rad)
 {
     const Steps up = steps_of(eight_sqrt(eight_clamp(d.z, 0, 1)) * eight_all(air_sky_ups), air_sky_ups);
     const Steps azimuth = steps_of(azimuth_from_sun(d, sun) * eight_all(air_sky_azimuths / pi_rad), air_sky_azimuths);
@@ -192,35 +192,31 @@ static inline Eight lobe(Eight slope2, Three n, Three eye, Three sun, Eight n_ey
 
 /* ---- eight hits ------------------------------------------------------------------------------ */
 
-/* Eight rows of a table by class, turned: of one class as a rule. */
-static inline void class_rows(Eight out[8], float (*table)[ground_light_bands], const uint8_t class[8], bool same)
+/* Eight rows of a table by material, turned: of one material as a rule. */
+static inline void material_rows(Eight out[8], float (*table)[surface_light_bands], const uint16_t material[8], bool same)
 {
     if (same) {
-        for (int k = 0; k < 8; k++) out[k] = _mm256_set1_ps(table[class[0]][k]);
+        for (int k = 0; k < 8; k++) out[k] = _mm256_set1_ps(table[material[0]][k]);
         return;
     }
-    for (int k = 0; k < 8; k++) out[k] = eight_load(table[class[k]]);
+    for (int k = 0; k < 8; k++) out[k] = eight_load(table[material[k]]);
     eight_turn(out);
 }
 
-static void shade_eight(float *const out[AIR_BAND_COUNT], const GroundLight *light, const GroundBlock *b, int i)
+static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
 {
     const Hits *hits = b->hits;
     const Rays *rays = b->rays;
     const Air  *air  = light->air;
-    uint8_t     class[8];
-    uint64_t    classes, first;
-    bool        glossy = false;
-    memcpy(&classes, hits->surface + i, 8);
-    first = (classes & 0xff) * 0x0101010101010101u;
-    for (int k = 0; k < 8; k++) {
-        class[k] = i + k < hits->count && hits->surface[i + k] < SURFACE_COUNT ? hits->surface[i + k] : SURFACE_NONE;
-        glossy |= light->any_gloss[class[k]];
-    }
-    const bool same = classes == first && i + 8 <= hits->count;
+    uint16_t    material[8] = {0};
+    const int   some = hits->count - i < 8 ? hits->count - i : 8;
+    memcpy(material, b->material + i, (size_t)some * sizeof *material);
+    const __m128i rows = _mm_loadu_si128((const __m128i *)material);
+    const bool    same = _mm_movemask_epi8(_mm_cmpeq_epi16(rows, _mm_set1_epi16((short)material[0]))) == 0xffff;
     Eight rho[8], of[8], plane[8], sky[8];
-    class_rows(rho, (float(*)[ground_light_bands])light->rho, class, same);
-    class_rows(of, (float(*)[ground_light_bands])light->gloss, class, same);
+    material_rows(rho, light->rho, material, same);
+    material_rows(of, light->gloss, material, same);
+    const bool glossy = eight_bits(eight_more(of[gloss_share], zero())) != 0;
 
     const Three sun = {eight_all(air->sun_d_enu[0]), eight_all(air->sun_d_enu[1]), eight_all(air->sun_d_enu[2])};
     const Three n = {eight_load(hits->n_enu[0] + i), eight_load(hits->n_enu[1] + i), eight_load(hits->n_enu[2] + i)};
@@ -276,11 +272,12 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const GroundLight *lig
     }
 }
 
-void ground_light_shade(float *const out[AIR_BAND_COUNT], const GroundLight *light, const GroundBlock *block)
+void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block)
 {
-    for (int i = 0; i < block->hits->count; i += 8) {
+    const Hits *hits = block->hits;
+    for (int i = 0; i < hits->count; i += 8) {
         bool any = false;
-        for (int k = i; k < i + 8 && k < block->hits->count; k++) any |= block->hits->surface[k] != SURFACE_NONE;
+        for (int k = i; k < i + 8 && k < hits->count; k++) any |= hits->range_m[k] < INFINITY;
         if (any) shade_eight(out, light, block, i);
     }
 }
