@@ -149,11 +149,26 @@ static void resolve_textures(Scratch *s, const Job *job)
     }
 }
 
+/* Pixels of the block from p on that lie side by side. */
+static int run_from(const Block *block, int p)
+{
+    int run = 1;
+    while (p + run < block->pixels && block->y[p + run] == block->y[p] && block->x[p + run] == block->x[p] + run) run++;
+    return run;
+}
+
 /* Mean over each pixel's samples, into a plane. */
 static void average(float *plane, const Scratch *s, const Job *job)
 {
     const Block *block = &s->block;
     const int    samples = block->n * block->n;
+    if (samples == 1) {
+        for (int p = 0, run; p < block->pixels; p += run) {
+            run = run_from(block, p);
+            memcpy(plane + pixel_index(job, block->x[p], block->y[p]), s->out + p, (size_t)run * sizeof *plane);
+        }
+        return;
+    }
     for (int p = 0; p < block->pixels; p++) {
         double sum = 0;
         for (int k = 0; k < samples; k++) sum += s->out[p * samples + k];
@@ -324,19 +339,25 @@ static int centre_sample(int n)
 
 static void write_truth(const Scratch *s, const Job *job)
 {
-    Picture     *picture = job->picture;
-    const Block *block   = &s->block;
-    const int    centre  = centre_sample(block->n);
-    for (int p = 0; p < block->pixels; p++) {
-        const int    i  = p * block->n * block->n + centre;
+    const Picture *picture = job->picture;
+    const Block   *block   = &s->block;
+    const Hits    *hits    = &s->hits;
+    const int      samples = block->n * block->n, centre = centre_sample(block->n);
+    for (int p = 0, run; p < block->pixels; p += run) {
+        run = run_from(block, p);
+        /* plane by plane: one stream of writes at a time */
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
-        picture->range_m[px]  = (float)s->hits.range_m[i];
-        picture->entity[px]   = s->hits.entity[i];
-        picture->part[px]     = s->hits.part[i];
-        picture->material[px] = s->material[i];
-        picture->temp_k[px]   = s->temp_k[i];
-        for (int k = 0; k < 3; k++) picture->normal[k][px] = s->hits.n_enu[k][i];
-        if (job->shadow) job->shadow[px] = s->shadow[i];
+        const int    first = p * samples + centre;
+        float       *range_m = picture->range_m + px;
+        uint32_t    *entity = picture->entity + px, *part = picture->part + px, *material = picture->material + px;
+        for (int k = 0; k < run; k++) range_m[k] = (float)hits->range_m[first + k * samples];
+        for (int k = 0; k < run; k++) entity[k] = hits->entity[first + k * samples];
+        for (int k = 0; k < run; k++) part[k] = hits->part[first + k * samples];
+        for (int k = 0; k < run; k++) material[k] = s->material[first + k * samples];
+        for (int k = 0; k < run; k++) picture->temp_k[px + (size_t)k] = s->temp_k[first + k * samples];
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < run; k++) picture->normal[c][px + (size_t)k] = hits->n_enu[c][first + k * samples];
+        for (int k = 0; job->shadow && k < run; k++) job->shadow[px + (size_t)k] = s->shadow[first + k * samples];
     }
 }
 
