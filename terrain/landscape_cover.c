@@ -135,7 +135,7 @@ static unsigned near_border(const PlotCell *cell, Eight x, Eight y, EightInt sit
 {
     const Eight    own_x = eight_gather(cell->x_m, site), own_y = eight_gather(cell->y_m, site);
     const EightInt own = plot_look(cell->field, site);
-    const Eight    reach = eight_all(4 * track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
+    const Eight    reach = eight_all(track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
     Eight          near = eight_all(0);
     for (int n = 0; n < plot_sites; n++) {
         const Eight sx = _mm256_set1_ps(cell->x_m[n]), sy = _mm256_set1_ps(cell->y_m[n]);
