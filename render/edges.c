@@ -159,8 +159,7 @@ void spread_ground(Scratch *s, const Job *job)
             s->hits.p_enu[k][i] = view->p_enu[k] + range_m * d_enu[k];
             s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
         }
-        s->hits.surface[i] =
-            (uint8_t)landscape_surface(job->world->landscape, s->hits.p_enu[0][i], s->hits.p_enu[1][i]);
         s->shadow[i] = job->shadow[px];
     }
+    landscape_surfaces(s->hits.surface, job->world->landscape, s->hits.count, s->hits.p_enu[0], s->hits.p_enu[1]);
 }

@@ -314,6 +314,13 @@ static double smith_shadow(double slope, double cosine)
     return a >= 1.6 ? 1 : a * (3.535 + 2.181 * a) / (1 + a * (2.276 + 2.577 * a));
 }
 
+double material_slope2(double roughness_rad)
+{
+    /* the sun's disc, 4.65 mrad in radius, blurs the lobe as slopes of half that would; it also keeps a perfect
+     * mirror finite */
+    return roughness_rad * roughness_rad + 0.0023 * 0.0023;
+}
+
 double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3])
 {
     const double n_eye = v3_dot(n, towards_eye), n_sun = v3_dot(n, towards_sun);
@@ -323,9 +330,7 @@ double material_lobe(double roughness_rad, const double n[3], const double towar
     if (!v3_normalize(half, half)) return 0;
     const double n_half = v3_dot(n, half), n_half2 = n_half * n_half;
     if (!(n_half > 1e-3)) return 0;
-    /* the sun's disc, 4.65 mrad in radius, blurs the lobe as slopes of half that would; it also keeps a perfect
-     * mirror finite */
-    const double slope2 = roughness_rad * roughness_rad + 0.0023 * 0.0023;
+    const double slope2 = material_slope2(roughness_rad);
     const double tangent2 = (1 - n_half2) / n_half2;
     if (tangent2 > 40 * slope2) return 0; /* e^-40 */
     const double slopes = exp(-tangent2 / slope2) / (pi_rad * slope2 * n_half2 * n_half2), slope = sqrt(slope2);

@@ -58,9 +58,11 @@ static inline int material_of_part(const Materials *m, int model, int part, int 
  * material_split: that, and what is left of the diffuse share so that their sum never passes 1.
  * material_lobe: radiance over irradiance facing the sun, 1/sr, for a reflectance of 1: Beckmann's slopes of
  * rms roughness_rad with Smith's masking; its whole over all directions is at most the cosine n_sun.
- * All vectors are unit; n and towards_eye must be on the same side. 0 when the sun is behind. */
+ * All vectors are unit; n and towards_eye must be on the same side. 0 when the sun is behind.
+ * material_slope2: square of the slopes of that lobe, the sun's disc in it. */
 double material_fresnel(double gloss_rho, double roughness_rad, double cosine);
 void   material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine);
+double material_slope2(double roughness_rad);
 double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3]);
 
 #endif

@@ -11,6 +11,13 @@ double optical_ground_w_m2(int channel, const Air *air, const Materials *materia
            (air->sun_w_m2[channel] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[channel]);
 }
 
+float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *v, int i)
+{
+    double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
+    if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
+    return (float)seen;
+}
+
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
                    const float *around_w_m2, const Veils *veils, const Facing *facing)
@@ -30,10 +37,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
     for (int i = 0; i < hits->count; i++) {
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         if (!(hits->range_m[i] < INFINITY)) {
-            /* ground beyond the terrain's edge, or sky */
-            double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
-            if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
-            out[i] = (float)seen;
+            out[i] = optical_beyond(channel, air, ground_w_m2, d_enu, v, i);
             continue;
         }
         const Material *m = &materials->material[material[i]];

@@ -5,6 +5,8 @@
  * nothing: positive terms summed where the edges are close, tails subtracted where they are not. */
 #include "render/planck.h"
 
+#include "terrain/eight.h"
+
 #include <stdlib.h>
 
 /* Exact since the 2019 SI. */
@@ -164,6 +166,7 @@ struct PlanckTable {
     double u0, cells_per_u;
     double knot[table_cells + 1];       /* radiance, falling: cell 0 is the hottest */
     double c[table_cells][4];           /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
+    float  narrow[table_cells][4];      /* the same */
 };
 
 Status planck_table_create(PlanckTable **out, double low_m, double high_m)
@@ -192,6 +195,7 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m)
             c[1] = last_slope;
             c[2] = 3 * rise - 2 * last_slope - slope;
             c[3] = last_slope + slope - 2 * rise;
+            for (int k = 0; k < 4; k++) table->narrow[i - 1][k] = (float)c[k];
         }
         last_value = value;
         last_slope = slope;
@@ -215,6 +219,29 @@ double planck_table_radiance(const PlanckTable *table, double temp_k)
     if (cell >= table_cells) cell = table_cells - 1;
     const double t = at - cell, *c = table->c[cell];
     return c[0] + t * (c[1] + t * (c[2] + t * c[3]));
+}
+
+void planck_table_radiance8(float radiance[8], const PlanckTable *table, const float temp_k[8])
+{
+    const Eight temp = eight_load(temp_k);
+    const Eight within = eight_and(eight_less(temp, eight_all(table_high_k)), eight_more(temp, eight_all(table_low_k)));
+    const Eight u = eight_all(1) / eight_clamp(temp, table_low_k, table_high_k) - eight_all(table->u0);
+    const Eight at = eight_clamp(u * eight_all(table->cells_per_u), 0, table_cells - 1e-3), cell = eight_floor(at);
+    int32_t     of[8];
+    __m128      row[8];
+    _mm256_storeu_si256((EightInt *)of, eight_to_ints(cell));
+    for (int k = 0; k < 8; k++) row[k] = _mm_loadu_ps(table->narrow[of[k]]);
+    Eight pair[4];
+    for (int k = 0; k < 4; k++) pair[k] = _mm256_set_m128(row[k + 4], row[k]);
+    const Eight a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
+    const Eight c = _mm256_unpacklo_ps(pair[2], pair[3]), d = _mm256_unpackhi_ps(pair[2], pair[3]);
+    const Eight c0 = _mm256_shuffle_ps(a, c, 0x44), c1 = _mm256_shuffle_ps(a, c, 0xee);
+    const Eight c2 = _mm256_shuffle_ps(b, d, 0x44), c3 = _mm256_shuffle_ps(b, d, 0xee), t = at - cell;
+    eight_store(radiance, eight_fma(t, eight_fma(t, eight_fma(t, c3, c2), c1), c0));
+    for (unsigned other = ~eight_bits(within) & 0xff; other; other &= other - 1) {
+        const int k = __builtin_ctz(other);
+        radiance[k] = (float)planck_table_radiance(table, (double)temp_k[k]);
+    }
 }
 
 double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr)

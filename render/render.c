@@ -102,32 +102,59 @@ static int albedo_of_channel(int channel)
          : channel == optical_channel_b ? albedo_blue : albedo_all;
 }
 
-/* What each hit is made of, and how bright the ground's own pattern is there. */
+/* What each hit is made of. */
 static void resolve_materials(Scratch *s, const Job *job)
 {
-    const World *world       = job->world;
-    const double px_per_m    = job->request->view.focal_px * s->block.n;
-    for (int i = 0; i < s->hits.count; i++) {
-        for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = 1;
-        s->material[i] = 0;
-        if (s->hits.entity[i]) {
-            const int damage = visibility_damage(job->visibility, (int)s->hits.entity[i] - 1);
+    const Materials *materials = &job->world->materials;
+    uint16_t         of_class[256] = {0};
+    for (int c = SURFACE_NONE + 1; c < SURFACE_COUNT; c++) of_class[c] = (uint16_t)materials->surface[c];
+    for (int i = 0; i < s->hits.count; i++) s->material[i] = of_class[s->hits.surface[i]];
+    for (int i = 0; i < s->hits.count; i++)
+        if (s->hits.entity[i])
             s->material[i] =
-                (uint16_t)material_of_part(&world->materials, s->hits.model[i], s->hits.part[i] - 1, damage);
-        } else if (s->hits.surface[i]) {
-            const SurfaceClass surface = (SurfaceClass)s->hits.surface[i];
-            s->material[i]             = (uint16_t)world->materials.surface[surface];
-            /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
-            double graze = 0;
-            for (int k = 0; k < 3; k++) graze -= s->hits.n_geo[k][i] * s->rays.d_enu[k][i];
-            const double x_m = s->hits.p_enu[0][i], y_m = s->hits.p_enu[1][i];
-            const double footprint_m = s->hits.range_m[i] / (px_per_m * fmax(graze, 0.01));
-            const float  texture = (float)landscape_texture(world->landscape, surface, x_m, y_m, footprint_m);
-            float        albedo[albedo_channels];
-            landscape_albedo(albedo, world->landscape, surface, x_m, y_m, footprint_m);
-            for (int c = 0; c < optical_channel_count; c++) s->texture[c][i] = texture * albedo[albedo_of_channel(c)];
-        }
+                (uint16_t)material_of_part(materials, s->hits.model[i], s->hits.part[i] - 1,
+                                           visibility_damage(job->visibility, (int)s->hits.entity[i] - 1));
+}
+
+/* How bright the ground's own pattern is at each hit, in the optical channels that somebody asks for and in that by
+ * which ground warms. */
+static void resolve_textures(Scratch *s, const Job *job)
+{
+    const Landscape *landscape = job->world->landscape;
+    const Hits      *hits = &s->hits;
+    const Rays      *rays = &s->rays;
+    const double     px_per_m = job->request->view.focal_px * s->block.n;
+    int              channel[4] = {optical_channel_pan};
+    const int        channels = 1 + optical_channels(channel + 1, s->block.bands, job->request->optical);
+    float           *pattern = s->texture[optical_channel_pan], *footprint_m = s->footprint_m;
+    /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
+    for (int i = 0; i < hits->count; i++) {
+        float graze = 0;
+        for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
+        footprint_m[i] = (float)(hits->range_m[i] / px_per_m) / (graze > 0.01f ? graze : 0.01f);
+        pattern[i] = 1;
     }
+    if (landscape)
+        landscape_textures(pattern, landscape, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1], footprint_m);
+    for (int c = 1; c < channels; c++)
+        if (channel[c] != optical_channel_pan) memcpy(s->texture[channel[c]], pattern, (size_t)hits->count * sizeof *pattern);
+    if (!landscape || !landscape_has_photo(landscape)) return;
+    for (int i = 0; i < hits->count; i++) {
+        float albedo[albedo_channels];
+        if (!hits->surface[i]) continue;
+        landscape_albedo(albedo, landscape, (SurfaceClass)hits->surface[i], hits->p_enu[0][i], hits->p_enu[1][i],
+                         (double)footprint_m[i]);
+        for (int c = 0; c < channels; c++)
+            if (c == 0 || channel[c] != optical_channel_pan) s->texture[channel[c]][i] *= albedo[albedo_of_channel(channel[c])];
+    }
+}
+
+/* Pixels of the block from p on that lie side by side. */
+static int run_from(const Block *block, int p)
+{
+    int run = 1;
+    while (p + run < block->pixels && block->y[p + run] == block->y[p] && block->x[p + run] == block->x[p] + run) run++;
+    return run;
 }
 
 /* Mean over each pixel's samples, into a plane. */
@@ -135,6 +162,13 @@ static void average(float *plane, const Scratch *s, const Job *job)
 {
     const Block *block = &s->block;
     const int    samples = block->n * block->n;
+    if (samples == 1) {
+        for (int p = 0, run; p < block->pixels; p += run) {
+            run = run_from(block, p);
+            memcpy(plane + pixel_index(job, block->x[p], block->y[p]), s->out + p, (size_t)run * sizeof *plane);
+        }
+        return;
+    }
     for (int p = 0; p < block->pixels; p++) {
         double sum = 0;
         for (int k = 0; k < samples; k++) sum += s->out[p * samples + k];
@@ -171,38 +205,59 @@ static void gather_around(Scratch *s, const Job *job)
                  key, &s->counters.visibility);
 }
 
+/* A band's radiance is done: what hangs in the air before it, and on to whom it belongs. */
+static void finish_band(Scratch *s, const Job *job, AirBand band, int veil_band, int plane)
+{
+    s->out = s->radiance[band];
+    veil_apply(s->out, &s->veil, veil_band, s->hits.count);
+    deliver(s, job, plane);
+}
+
+/* Rays that met nothing. */
+static void shade_beyond(Scratch *s, const Job *job, float *const out[AIR_BAND_COUNT])
+{
+    double ground_w_m2[optical_channel_count];
+    for (int c = 0; c < optical_channel_count; c++)
+        ground_w_m2[c] = optical_ground_w_m2(c, job->air, &job->world->materials);
+    for (int i = 0; i < s->hits.count; i++) {
+        if (s->hits.range_m[i] < INFINITY) continue;
+        const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+        for (int c = 0; c < optical_channel_count; c++)
+            if (out[c]) out[c][i] = optical_beyond(c, job->air, ground_w_m2[c], d_enu, &s->air[c], i);
+        if (out[AIR_MWIR]) out[AIR_MWIR][i] = thermal_beyond(BAND_MWIR, job->air, d_enu, &s->air[AIR_MWIR], i);
+        if (out[AIR_LWIR]) out[AIR_LWIR][i] = thermal_beyond(BAND_LWIR, job->air, d_enu, &s->air[AIR_LWIR], i);
+    }
+}
+
 static void shade_bands(Scratch *s, const Job *job)
 {
     const RenderRequest *request = job->request;
     const World         *world   = job->world;
-    const unsigned       bands   = s->block.bands;
-
-    const bool gathered = request->sky_samples > 0;
-    int        channel[3];
-    const int  channels = optical_channels(channel, bands, request->optical);
+    const unsigned       bands   = s->block.bands, air_bands = render_air_bands(bands, request->optical);
     if (has_band(bands, BAND_MWIR) || has_band(bands, BAND_LWIR) || request->truth)
         thermal_temperature(s->temp_k, job->air, &world->materials, world->catalog, job->snapshot, &s->hits, s->material,
                             s->texture[optical_channel_pan]);
-    const unsigned air_bands = render_air_bands(bands, request->optical);
-    if (air_bands) {
-        air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
-        air_facing(&s->facing, job->air, &world->materials, &s->hits, &s->rays, s->material);
+    if (!air_bands) return;
+    air_veils_of(s->air, job->air, air_bands, &s->hits, &s->rays, s->temp_k);
+
+    const bool   gathered = request->sky_samples > 0;
+    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->material, .temp_k = s->temp_k,
+                          .shadow = s->shadow, .veils = s->air};
+    float       *out[AIR_BAND_COUNT] = {NULL};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!(air_bands >> b & 1)) continue;
+        out[b] = s->radiance[b];
+        if (b < optical_channel_count) block.texture[b] = s->texture[b];
+        if (gathered) block.around_w_m2[b] = s->gathered.w_m2[b];
     }
-    for (int c = 0; c < channels; c++) {
-        optical_shade(s->out, channel[c], job->air, &world->materials, &s->hits, &s->rays, s->material,
-                      s->texture[channel[c]], s->shadow, gathered ? s->gathered.w_m2[channel[c]] : NULL,
-                      &s->air[channel[c]], &s->facing);
-        veil_apply(s->out, &s->veil, channel[c], s->hits.count);
-        deliver(s, job, picture_optical + c);
-    }
-    for (Band band = BAND_MWIR; band <= BAND_LWIR; band++)
-        if (has_band(bands, band)) {
-            thermal_shade(s->out, band, job->air, &world->materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow, gathered ? s->gathered.w_m2[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR] : NULL,
-                          &s->air[band == BAND_MWIR ? AIR_MWIR : AIR_LWIR], &s->facing);
-            veil_apply(s->out, &s->veil, band == BAND_MWIR ? effect_band_mwir : effect_band_lwir, s->hits.count);
-            deliver(s, job, band == BAND_MWIR ? picture_mwir : picture_lwir);
-        }
+    surface_light_shade(out, &job->surface_light, &block);
+    shade_beyond(s, job, out);
+
+    int       channel[3];
+    const int channels = optical_channels(channel, bands, request->optical);
+    for (int c = 0; c < channels; c++) finish_band(s, job, (AirBand)channel[c], channel[c], picture_optical + c);
+    if (has_band(bands, BAND_MWIR)) finish_band(s, job, AIR_MWIR, effect_band_mwir, picture_mwir);
+    if (has_band(bands, BAND_LWIR)) finish_band(s, job, AIR_LWIR, effect_band_lwir, picture_lwir);
 }
 
 /* Of the picture's samples, those before which a small target stands count by what it leaves of their pixel. */
@@ -234,6 +289,7 @@ static void shade_radar(Scratch *s, const Job *job)
     const World *world = job->world;
     radar_shade(&s->radar, &world->radar, job->visibility, &world->materials, &s->hits, &s->rays, s->material,
                 job->request->hidden_entity, &s->counters.visibility);
+    s->out = s->radiance[0];
     for (int i = 0; i < s->hits.count; i++) {
         double sum = 0;
         for (int b = 0; b < radar_bounces; b++) sum += s->radar.power[b][i];
@@ -257,6 +313,7 @@ void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
     resolve_materials(s, job);
+    resolve_textures(s, job);
     trace_veils(s, job);
     if (job->request->sky_samples > 0) gather_around(s, job);
     shade_bands(s, job);
@@ -282,19 +339,25 @@ static int centre_sample(int n)
 
 static void write_truth(const Scratch *s, const Job *job)
 {
-    Picture     *picture = job->picture;
-    const Block *block   = &s->block;
-    const int    centre  = centre_sample(block->n);
-    for (int p = 0; p < block->pixels; p++) {
-        const int    i  = p * block->n * block->n + centre;
+    const Picture *picture = job->picture;
+    const Block   *block   = &s->block;
+    const Hits    *hits    = &s->hits;
+    const int      samples = block->n * block->n, centre = centre_sample(block->n);
+    for (int p = 0, run; p < block->pixels; p += run) {
+        run = run_from(block, p);
+        /* plane by plane: one stream of writes at a time */
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
-        picture->range_m[px]  = (float)s->hits.range_m[i];
-        picture->entity[px]   = s->hits.entity[i];
-        picture->part[px]     = s->hits.part[i];
-        picture->material[px] = s->material[i];
-        picture->temp_k[px]   = s->temp_k[i];
-        for (int k = 0; k < 3; k++) picture->normal[k][px] = s->hits.n_enu[k][i];
-        if (job->shadow) job->shadow[px] = s->shadow[i];
+        const int    first = p * samples + centre;
+        float       *range_m = picture->range_m + px;
+        uint32_t    *entity = picture->entity + px, *part = picture->part + px, *material = picture->material + px;
+        for (int k = 0; k < run; k++) range_m[k] = (float)hits->range_m[first + k * samples];
+        for (int k = 0; k < run; k++) entity[k] = hits->entity[first + k * samples];
+        for (int k = 0; k < run; k++) part[k] = hits->part[first + k * samples];
+        for (int k = 0; k < run; k++) material[k] = s->material[first + k * samples];
+        for (int k = 0; k < run; k++) picture->temp_k[px + (size_t)k] = s->temp_k[first + k * samples];
+        for (int c = 0; c < 3; c++)
+            for (int k = 0; k < run; k++) picture->normal[c][px + (size_t)k] = hits->n_enu[c][first + k * samples];
+        for (int k = 0; job->shadow && k < run; k++) job->shadow[px + (size_t)k] = s->shadow[first + k * samples];
     }
 }
 
@@ -555,6 +618,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
                                    request->no_skip, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;
+    status = surface_light_prepare(&job.surface_light, air, &world->materials, arena);
+    if (status != STATUS_OK) return status;
     if (request->truth || request->target_samples > 0 || looks_for_edges(request))
         pool_run(pool, snapshot->count, project_target, &job);
     if (request->target_samples > 0) status = footprints_plan(&job, arena);

@@ -13,6 +13,7 @@
 
 #include "render/effects.h"
 #include "render/gather.h"
+#include "render/surface_light.h"
 #include "render/render.h"
 
 enum { tile_side_samples = 32, pairs_per_tile = 16 };
@@ -62,15 +63,16 @@ typedef struct Scratch {
     Rays           rays, some;
     Hits           hits, all;
     RadarReturns   radar;
-    float          out[hits_capacity], temp_k[hits_capacity];
+    float          radiance[AIR_BAND_COUNT][hits_capacity], temp_k[hits_capacity];
+    float         *out;                                           /* the band that is being given to its planes */
     float          texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground, a channel */
+    float          footprint_m[hits_capacity];    /* of a sample along the ground */
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
     VeilRays       veil;
     Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
-    Facing         facing;
     int           *veil_list; /* [volumes of the effects] */
     int           *list;    /* [snapshot count] */
     TargetCount   *target;  /* [snapshot count] */
@@ -86,6 +88,7 @@ typedef struct Job {
     const Air           *air;
     const Visibility    *visibility;
     EffectScene          effects;   /* smoke, dust, flames and bursts */
+    SurfaceLight          surface_light;
     Picture             *picture;   /* truth planes where asked for or where edges are looked for */
     Scratch            **scratch;   /* a worker */
     HiddenBy            *pairs;     /* [tiles][pairs_per_tile] */

@@ -128,7 +128,6 @@ static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const Gr
         v3_scale(n_enu, -1, n_enu);
     }
     store_normals(hits, i, n_geo, n_enu, d);
-    hits->surface[i] = (uint8_t)landscape_surface(v->landscape, x_m, y_m);
 }
 
 static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, const double o[3],
@@ -142,6 +141,18 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+}
+
+/* What the ground is where it was met. */
+static void classify_ground(Hits *hits, const Landscape *landscape)
+{
+    double x_m[hits_capacity], y_m[hits_capacity];
+    for (int i = 0; i < hits->count; i++) {
+        const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0;
+        x_m[i] = ground ? hits->p_enu[0][i] : NAN;
+        y_m[i] = ground ? hits->p_enu[1][i] : NAN;
+    }
+    landscape_surfaces(hits->surface, landscape, hits->count, x_m, y_m);
 }
 
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
@@ -193,6 +204,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
+    if (v->landscape) classify_ground(hits, v->landscape);
 }
 
 /* ---- shadows ------------------------------------------------------------------------------ */

@@ -1,147 +1,213 @@
 /* terrain/landscape_cover.c: what grows and lies on the ground. Invented: irregular fields, tracks and hedges between
  * some of them, scrub and rock where it is steep or nobody ploughs. Real: what the cover files say, else the same in
- * the lowlands and woods on the slopes. Pure functions of the place. */
-#include "terrain/landscape_private.h"
+ * the lowlands and woods on the slopes. Pure functions of the place, eight places at once. */
+#include "terrain/landscape_eight_private.h"
 
 #include <stdlib.h>
 
-/* ---- noise -------------------------------------------------------------------------------- */
+/* ---- slope ---------------------------------------------------------------------------------- */
 
-/* Smooth value noise of one wavelength, -1 .. 1, mean 0. */
-static double noise_at(uint64_t seed, double x_m, double y_m, double wavelength_m)
-{
-    const double  fx = x_m / wavelength_m, fy = y_m / wavelength_m, cx = floor(fx), cy = floor(fy);
-    const int64_t i = (int64_t)cx, j = (int64_t)cy;
-    double        u = fx - cx, v = fy - cy;
-    u = u * u * (3 - 2 * u);
-    v = v * v * (3 - 2 * v);
-    const double a = unit_from_hash(landscape_hash(seed, i, j)), b = unit_from_hash(landscape_hash(seed, i + 1, j));
-    const double c = unit_from_hash(landscape_hash(seed, i, j + 1));
-    const double d = unit_from_hash(landscape_hash(seed, i + 1, j + 1));
-    return 2 * (a + u * (b - a) + v * (c - a) + u * v * (a - b - c + d)) - 1;
-}
-
-/* ---- fields ------------------------------------------------------------------------------- */
-
-typedef struct Plot {
-    uint64_t id;          /* of the field */
-    double   x_m, y_m;    /* a place that belongs to the field as a whole */
-    uint64_t border;      /* of the pair of fields at the nearest border */
-    double   border_m;    /* distance to it */
-} Plot;
-
-static const double plot_m = 160;
-
-/* Fields are the cells of a jittered grid, some joined in twos and fours. */
-static uint64_t field_of_site(uint64_t seed, int64_t i, int64_t j)
-{
-    const double four = unit_from_hash(landscape_hash(seed + 1, i >> 1, j >> 1));
-    if (four < 0.25) return landscape_hash(seed + 2, i >> 1, j >> 1);
-    if (four < 0.45) return landscape_hash(seed + 3, i >> 1, j);
-    if (four < 0.60) return landscape_hash(seed + 4, i, j >> 1);
-    return landscape_hash(seed + 5, i, j);
-}
-
-static Plot plot_at(uint64_t seed, double x_m, double y_m)
-{
-    static const double jitter = 0.8;
-    double              site_x[9], site_y[9], near[9];
-    int64_t             site_i[9], site_j[9];
-    const int64_t       ci = (int64_t)floor(x_m / plot_m), cj = (int64_t)floor(y_m / plot_m);
-    int                 best = 0;
-    for (int n = 0; n < 9; n++) {
-        site_i[n] = ci + n % 3 - 1;
-        site_j[n] = cj + n / 3 - 1;
-        const uint64_t h = landscape_hash(seed, site_i[n], site_j[n]);
-        const double   ux = (double)(h & 0xffffffffu) * 0x1p-32 - 0.5, uy = (double)(h >> 32) * 0x1p-32 - 0.5;
-        site_x[n] = ((double)site_i[n] + 0.5 + jitter * ux) * plot_m;
-        site_y[n] = ((double)site_j[n] + 0.5 + jitter * uy) * plot_m;
-        near[n] = (site_x[n] - x_m) * (site_x[n] - x_m) + (site_y[n] - y_m) * (site_y[n] - y_m);
-        if (near[n] < near[best]) best = n;
-    }
-
-    Plot plot = {.id = field_of_site(seed, site_i[best], site_j[best]),
-                 .x_m = (double)(site_i[best] >> 1) * 2 * plot_m,
-                 .y_m = (double)(site_j[best] >> 1) * 2 * plot_m,
-                 .border_m = INFINITY};
-    for (int n = 0; n < 9; n++) {
-        if (n == best) continue;
-        /* distance to the perpendicular bisector; cheap test first, the hash only for a new best */
-        const double apart_m = hypot(site_x[n] - site_x[best], site_y[n] - site_y[best]);
-        const double border_m = 0.5 * (near[n] - near[best]) / fmax(apart_m, 1e-3);
-        if (border_m >= plot.border_m) continue;
-        const uint64_t other = field_of_site(seed, site_i[n], site_j[n]);
-        if (other == plot.id) continue;
-        plot.border_m = border_m;
-        plot.border = landscape_hash(seed + 6, (int64_t)(other ^ plot.id), 0);
-    }
-    return plot;
-}
-
-static SurfaceClass crop_of_field(uint64_t id, bool arable)
-{
-    static const struct {
-        double       arable, pasture; /* up to this share */
-        SurfaceClass surface;
-    } share[] = {
-        {0.38, 0.10, SURFACE_CROP},      {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
-        {0.88, 0.62, SURFACE_GRASS},     {1.00, 0.90, SURFACE_DRY_GRASS}, {1.00, 1.00, SURFACE_SCRUB},
-    };
-    const double u = unit_from_hash(landscape_hash(id, 7, 0));
-    for (size_t n = 0; n < sizeof share / sizeof share[0]; n++)
-        if (u < (arable ? share[n].arable : share[n].pasture)) return share[n].surface;
-    return SURFACE_GRASS;
-}
+static const double arm_m = 10;
 
 /* Slope over some 20 m, so that what grows does not follow the edges of single triangles. 0 at the very rim. */
 static double slope_about(const Elevation *elevation, double x_m, double y_m)
 {
-    static const double arm_m = 10;
     const double dx = elevation_height(elevation, x_m + arm_m, y_m, NULL) - elevation_height(elevation, x_m - arm_m, y_m, NULL);
     const double dy = elevation_height(elevation, x_m, y_m + arm_m, NULL) - elevation_height(elevation, x_m, y_m - arm_m, NULL);
     const double slope = sqrt(dx * dx + dy * dy) / (2 * arm_m);
     return isfinite(slope) ? slope : 0;
 }
 
-static SurfaceClass invented_surface(const Landscape *landscape, double x_m, double y_m)
+/* Places in a level's own cells; far off and NaN: outside. */
+static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
 {
-    static const double track_half_m = 2, hedge_half_m = 1.5;
-    const Cover        *cover = landscape->cover;
-    const uint64_t seed = cover->seed;
-    const double   steep = slope_about(&landscape->elevation, x_m, y_m);
-
-    /* beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there */
-    const double far_lean = sqrt(x_m * x_m + y_m * y_m) / 6371e3;
-    const double slope = fmax(steep - far_lean, 0);
-
-    /* wild patches, wider where it is steep; rock shows through in their hearts */
-    const double wild = noise_at(seed + 10, x_m, y_m, 310) + 0.5 * noise_at(seed + 11, x_m, y_m, 83) +
-                        0.2 * noise_at(seed + 12, x_m, y_m, 17) + 4 * slope;
-    if (wild > 1.24 - 0.12 * clamp(slope / 0.2, 0, 1)) return SURFACE_ROCK;
-
-    const Plot plot = plot_at(seed, x_m, y_m);
-    if (plot.border_m < track_half_m && unit_from_hash(plot.border) < 0.24) return SURFACE_TRACK;
-    if (wild > 0.88) return SURFACE_SCRUB;
-    if (plot.border_m < hedge_half_m && unit_from_hash(plot.border) > 0.66) return SURFACE_SCRUB;
-    if (wild > 0.78) return SURFACE_DRY_GRASS;
-    return crop_of_field(plot.id, noise_at(seed + 13, plot.x_m, plot.y_m, 1900) > -0.15);
+    const __m256d x0 = _mm256_set1_pd(x0_m), most = _mm256_set1_pd(1 << 20), least = _mm256_set1_pd(-(1 << 20));
+    double        cells[8];
+    for (int k = 0; k < 8; k += 4) {
+        const __m256d g = (_mm256_loadu_pd(x_m + k) - x0) * _mm256_set1_pd(per_m);
+        _mm256_storeu_pd(cells + k, _mm256_min_pd(_mm256_max_pd(g, least), most));
+    }
+    return lattice_of(cells, 1);
 }
 
-/* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
- * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. */
-static SurfaceClass unmapped_surface(const Landscape *landscape, double x_m, double y_m, double z_m)
+/* Moved by some of a cell. */
+static Lattice moved(Lattice at, Eight by)
 {
-    const Cover   *cover = landscape->cover;
+    const Eight share = at.share + by, whole = eight_floor(share);
+    return (Lattice){_mm256_add_epi32(at.cell, eight_to_ints(whole)), share - whole};
+}
+
+/* Heights in the level's own steps, of lanes that lie in one of its cells. Two posts of a row come with one look. */
+static Eight level_heights(const ElevationLevel *level, Lattice x, Lattice y, Eight lanes)
+{
+    const EightInt post = _mm256_set1_epi32(0xffff), none = eight_int(0), mask = _mm256_castps_si256(lanes);
+    const EightInt at = _mm256_add_epi32(_mm256_mullo_epi32(y.cell, eight_int(level->nx)), x.cell);
+    const EightInt south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->post, at, mask, 2);
+    const EightInt north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at, mask, 2);
+    const Eight    sw = eight_of_ints(_mm256_and_si256(south, post)), se = eight_of_ints(_mm256_srli_epi32(south, 16));
+    const Eight    nw = eight_of_ints(_mm256_and_si256(north, post)), ne = eight_of_ints(_mm256_srli_epi32(north, 16));
+    const Eight    south_east = eight_fma(x.share, se - sw, y.share * (ne - se));
+    const Eight    north_west = eight_fma(x.share, ne - nw, y.share * (nw - sw));
+    return sw + eight_pick(eight_less(x.share, y.share), north_west, south_east);
+}
+
+/* Slope about eight places, of those whose arms end on one level together; the others' are asked for one by one. Within
+ * 1e-5 of slope_about. */
+static Eight slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+{
+    const EightInt outside = eight_int(-1);
+    Eight          slope = eight_all(0);
+    unsigned       left = lanes, alone = 0; /* not yet found; on the seam of two levels */
+    for (int n = 0; n < elevation->level_count && left; n++) {
+        const ElevationLevel *level = &elevation->level[n];
+        const double          per_m = 1 / level->spacing_m;
+        const Eight           arm = eight_all(arm_m * per_m), back = eight_all(-arm_m * per_m);
+        const Lattice         x = level_cells(x_m, level->x0_m, per_m), y = level_cells(y_m, level->y0_m, per_m);
+        const Lattice         west = moved(x, back), east = moved(x, arm), south = moved(y, back), north = moved(y, arm);
+        const EightInt        nx = eight_int(level->nx), ny = eight_int(level->ny), one = eight_int(1);
+        /* cells 0 .. n - 2; about them and the outline */
+        EightInt in = _mm256_and_si256(_mm256_cmpgt_epi32(west.cell, outside), _mm256_cmpgt_epi32(south.cell, outside));
+        in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(nx, one), east.cell));
+        in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(ny, one), north.cell));
+        EightInt by = _mm256_and_si256(_mm256_cmpgt_epi32(east.cell, eight_int(-2)), _mm256_cmpgt_epi32(north.cell, eight_int(-2)));
+        by = _mm256_and_si256(by, _mm256_cmpgt_epi32(nx, west.cell));
+        by = _mm256_and_si256(by, _mm256_cmpgt_epi32(ny, south.cell));
+        const unsigned here = eight_bits(_mm256_castsi256_ps(in)) & left;
+        const unsigned near = eight_bits(_mm256_castsi256_ps(by)) & left;
+        alone |= near & ~here;
+        left &= ~(near | here);
+        if (!here) continue;
+        const Eight found = eight_mask(here);
+        const Eight dx = level_heights(level, east, y, found) - level_heights(level, west, y, found);
+        const Eight dy = level_heights(level, x, north, found) - level_heights(level, x, south, found);
+        const Eight rise = eight_sqrt(eight_fma(dx, dx, dy * dy)) * eight_all(level->step_m / (2 * arm_m));
+        slope = eight_pick(found, rise, slope);
+    }
+    if (alone) {
+        float one[8];
+        eight_store(one, slope);
+        for (; alone; alone &= alone - 1) {
+            const int k = __builtin_ctz(alone);
+            one[k] = (float)slope_about(elevation, x_m[k], y_m[k]);
+        }
+        slope = eight_load(one);
+    }
+    return slope;
+}
+
+/* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there. */
+static Eight slopes_of_country(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+{
+    const Eight x = eight_of_doubles(x_m), y = eight_of_doubles(y_m);
+    const Eight lean = eight_sqrt(eight_fma(x, x, y * y)) * eight_all(1 / 6371e3);
+    return eight_max(slopes_about(elevation, x_m, y_m, lanes) - lean, eight_all(0));
+}
+
+/* ---- invented cover ------------------------------------------------------------------------- */
+
+static const double track_half_m = 2, hedge_half_m = 1.5;
+
+/* What stands on the border of two fields, at a place near one; SURFACE_NONE: nothing. */
+static SurfaceClass border_surface(const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m, bool scrubby)
+{
+    double       near[plot_sites], border_m = INFINITY;
+    uint64_t     border = 0;
+    for (int n = 0; n < plot_sites; n++) {
+        const double dx = (double)(x_m - cell->x_m[n]), dy = (double)(y_m - cell->y_m[n]);
+        near[n] = dx * dx + dy * dy;
+    }
+    for (int n = 0; n < plot_sites; n++) {
+        if (cell->field[n] == cell->field[site]) continue;
+        /* distance to the perpendicular bisector */
+        const double dx = (double)(cell->x_m[n] - cell->x_m[site]), dy = (double)(cell->y_m[n] - cell->y_m[site]);
+        const double apart_m = sqrt(dx * dx + dy * dy), here_m = 0.5 * (near[n] - near[site]) / fmax(apart_m, 1e-3);
+        if (here_m >= border_m) continue;
+        border_m = here_m;
+        border = landscape_hash(seed + 6, (int64_t)(cell->id[n] ^ cell->id[site]), 0);
+    }
+    if (border_m < track_half_m && unit_from_hash(border) < 0.24) return SURFACE_TRACK;
+    if (scrubby || (border_m < hedge_half_m && unit_from_hash(border) > 0.66)) return SURFACE_SCRUB;
+    return SURFACE_NONE;
+}
+
+/* Lanes within reach of a border to another field than their own. */
+static unsigned near_border(const PlotCell *cell, Eight x, Eight y, EightInt site, Eight least)
+{
+    const Eight    own_x = eight_gather(cell->x_m, site), own_y = eight_gather(cell->y_m, site);
+    const EightInt own = plot_look(cell->field, site);
+    const Eight    reach = eight_all(track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
+    Eight          near = eight_all(0);
+    for (int n = 0; n < plot_sites; n++) {
+        const Eight sx = _mm256_set1_ps(cell->x_m[n]), sy = _mm256_set1_ps(cell->y_m[n]);
+        const Eight dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
+        const Eight more = eight_fma(dx, dx, dy * dy) - least, apart = eight_fma(ax, ax, ay * ay);
+        const Eight same = _mm256_castsi256_ps(_mm256_cmpeq_epi32(own, eight_int(cell->field[n])));
+        near = eight_or(near, eight_but(eight_less(more * more, reach * eight_all(4) * apart), same));
+    }
+    return eight_bits(near);
+}
+
+static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells *cells, const double x_m[8],
+                              const double y_m[8], Eight slope, unsigned lanes)
+{
     const uint64_t seed = cover->seed;
-    const double   far_m = sqrt(x_m * x_m + y_m * y_m);
-    const double   slope = fmax(slope_about(&landscape->elevation, x_m, y_m) - far_m / 6371e3, 0);
-    double         ellipsoid_m, dz_per_h;
+    /* wild patches, wider where it is steep; rock shows through in their hearts */
+    Eight wild = noise_eight(seed + 10, 310, x_m, y_m);
+    wild = eight_fma(eight_all(0.5), noise_eight(seed + 11, 83, x_m, y_m), wild);
+    wild = eight_fma(eight_all(0.2), noise_eight(seed + 12, 17, x_m, y_m), wild);
+    wild = eight_fma(eight_all(4), slope, wild);
+    const Eight    rock = eight_more(wild, eight_all(1.24) - eight_all(0.12) * eight_clamp(slope * eight_all(5), 0, 1));
+    const Eight    scrub = eight_more(wild, eight_all(0.88)), dry = eight_more(wild, eight_all(0.78));
+    const unsigned is_rock = eight_bits(rock), is_scrub = eight_bits(scrub);
+
+    double   i[8], j[8];
+    float    in_x[8], in_y[8];
+    int32_t  site_of[8];
+    Eight    x, y;
+    EightInt class = eight_int(SURFACE_NONE);
+    plot_cells_of(i, j, &x, &y, x_m, y_m);
+    SurfaceClass on_border[8];
+    unsigned     bordered = 0;
+    for (unsigned left = lanes, same; left; left &= ~same) {
+        same = plot_cell_lanes(i, j, left);
+        const int       first = __builtin_ctz(left);
+        const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
+        EightInt        site;
+        const Eight     least = plot_nearest(&site, cell, x, y);
+        class = _mm256_blendv_epi8(class, plot_look(cell->crop, site), _mm256_castps_si256(eight_mask(same)));
+        unsigned near = near_border(cell, x, y, site, least) & same & ~is_rock;
+        if (!near) continue;
+        _mm256_storeu_si256((EightInt *)site_of, site);
+        eight_store(in_x, x), eight_store(in_y, y);
+        for (; near; near &= near - 1) {
+            const int k = __builtin_ctz(near);
+            on_border[k] = border_surface(cell, seed, site_of[k], in_x[k], in_y[k], is_scrub >> k & 1);
+            if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
+        }
+    }
+    class = _mm256_blendv_epi8(class, eight_int(SURFACE_DRY_GRASS), _mm256_castps_si256(dry));
+    class = _mm256_blendv_epi8(class, eight_int(SURFACE_SCRUB), _mm256_castps_si256(scrub));
+    class = _mm256_blendv_epi8(class, eight_int(SURFACE_ROCK), _mm256_castps_si256(rock));
+    int32_t found[8];
+    _mm256_storeu_si256((EightInt *)found, class);
+    for (; bordered; bordered &= bordered - 1) found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
+    for (int k = 0; k < 8; k++)
+        if (lanes >> k & 1) surface[k] = found[k];
+}
+
+/* ---- real cover ----------------------------------------------------------------------------- */
+
+/* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
+ * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. SURFACE_NONE:
+ * as invented. */
+static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope, double patchy,
+                                     double woods)
+{
+    const double far_m = sqrt(x_m * x_m + y_m * y_m);
+    double       ellipsoid_m, dz_per_h;
     curve_at(&cover->curve, x_m, y_m, &ellipsoid_m, &dz_per_h);
     const double h_msl_m = (z_m - ellipsoid_m) / dz_per_h - cover->geoid_m;
     if (fabs(h_msl_m) < 1 + 5e-5 * far_m && slope < 0.002) return SURFACE_WATER; /* the geoid tilts by so much */
-
-    const double patchy = noise_at(seed + 14, x_m, y_m, 700) + 0.6 * noise_at(seed + 15, x_m, y_m, 190) +
-                          0.3 * noise_at(seed + 16, x_m, y_m, 41);
     if (slope + 0.12 * patchy > 0.84) return SURFACE_ROCK;
     const double above_m = h_msl_m - cover->treeline_m + 150 * patchy;
     if (above_m > 700) return SURFACE_ROCK;
@@ -149,158 +215,100 @@ static SurfaceClass unmapped_surface(const Landscape *landscape, double x_m, dou
     if (slope + 0.08 * patchy > 0.16) {
         if (patchy < -0.75) return SURFACE_DRY_GRASS;
         if (patchy < -0.5) return SURFACE_SCRUB;
-        return above_m > -1200 + 500 * noise_at(seed + 17, x_m, y_m, 2300) ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
+        return above_m > -1200 + 500 * woods ? SURFACE_FOREST_CONIFER : SURFACE_FOREST_BROADLEAF;
     }
-    return invented_surface(landscape, x_m, y_m);
+    return SURFACE_NONE;
+}
+
+/* What the cover files say; fills those lanes and returns the others. */
+static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8], const double y_m[8],
+                                unsigned lanes)
+{
+    if (!cover->grid[0].surface && !cover->grid[1].surface) return lanes;
+    /* borders of coarse cells wander by half a cell, as nothing in the country runs in stairs of 30 m */
+    const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
+    Eight        dx = eight_all(0), dy = eight_all(0);
+    for (int octave = 0; away_m > 0 && octave < 3; octave++) {
+        const double wave_m = cell_m * exp2(-octave);
+        const Eight  share = eight_all(away_m * 0.57 * exp2(-octave));
+        dx = eight_fma(share, noise_eight(cover->seed + 40 + (uint64_t)octave, wave_m, x_m, y_m), dx);
+        dy = eight_fma(share, noise_eight(cover->seed + 50 + (uint64_t)octave, wave_m, x_m, y_m), dy);
+    }
+    float    off_x[8], off_y[8];
+    unsigned none = 0;
+    eight_store(off_x, dx), eight_store(off_y, dy);
+    for (int k = 0; k < 8; k++) {
+        if (!(lanes >> k & 1)) continue;
+        surface[k] = (int32_t)cover_grid_at(cover->grid, x_m[k] + (double)off_x[k], y_m[k] + (double)off_y[k]);
+        if (surface[k] == SURFACE_NONE) none |= 1u << k;
+    }
+    return none;
+}
+
+static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCells *cells, const double x_m[8],
+                          const double y_m[8], unsigned lanes)
+{
+    const Cover   *cover = landscape->cover;
+    const uint64_t seed = cover->seed;
+    lanes = mapped_surfaces(surface, cover, x_m, y_m, lanes);
+    if (!lanes) return;
+    const Eight slopes = slopes_of_country(&landscape->elevation, x_m, y_m, lanes);
+    Eight       patches = noise_eight(seed + 14, 700, x_m, y_m);
+    patches = eight_fma(eight_all(0.6), noise_eight(seed + 15, 190, x_m, y_m), patches);
+    patches = eight_fma(eight_all(0.3), noise_eight(seed + 16, 41, x_m, y_m), patches);
+    float    slope[8], patchy[8], woods[8];
+    unsigned invented = 0;
+    eight_store(slope, slopes), eight_store(patchy, patches);
+    eight_store(woods, noise_eight(seed + 17, 2300, x_m, y_m));
+    for (int k = 0; k < 8; k++) {
+        if (!(lanes >> k & 1)) continue;
+        const double z_m = elevation_height(&landscape->elevation, x_m[k], y_m[k], NULL);
+        surface[k] = (int32_t)unmapped_surface(cover, x_m[k], y_m[k], z_m, (double)slope[k], (double)patchy[k], (double)woods[k]);
+        if (surface[k] == SURFACE_NONE) invented |= 1u << k;
+    }
+    if (invented) invented_surfaces(surface, cover, cells, x_m, y_m, slopes, invented);
+}
+
+/* ---- both ----------------------------------------------------------------------------------- */
+
+/* Lanes where there is ground: the outermost level encloses the others. NaN: none. */
+static unsigned grounded(const Elevation *elevation, const double x_m[8], const double y_m[8])
+{
+    if (elevation->level_count == 0) return 0;
+    const ElevationLevel *level = &elevation->level[elevation->level_count - 1];
+    const double          per_m = 1 / level->spacing_m, nx = level->nx - 1, ny = level->ny - 1;
+    unsigned              lanes = 0;
+    for (int k = 0; k < 8; k++) {
+        const double fx = (x_m[k] - level->x0_m) * per_m, fy = (y_m[k] - level->y0_m) * per_m;
+        lanes |= (unsigned)((fx >= 0) & (fy >= 0) & (fx <= nx) & (fy <= ny)) << k;
+    }
+    return lanes;
+}
+
+void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m)
+{
+    const Cover *cover = landscape->cover;
+    PlotCells    cells;
+    for (int k = 0; k < plot_cells_kept; k++) cells.cell[k].known = false;
+    for (int first = 0; first < count; first += 8) {
+        double    x[8], y[8];
+        int32_t   found[8] = {0};
+        const int some = count - first < 8 ? count - first : 8;
+        for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
+        const unsigned lanes = cover ? grounded(&landscape->elevation, x, y) : 0;
+        if (lanes && cover->real)
+            real_surfaces(found, landscape, &cells, x, y, lanes);
+        else if (lanes)
+            invented_surfaces(found, cover, &cells, x, y, slopes_of_country(&landscape->elevation, x, y, lanes), lanes);
+        for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
+    }
 }
 
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m)
 {
-    const Cover *cover = landscape->cover;
-    const double z_m = cover ? elevation_height(&landscape->elevation, x_m, y_m, NULL) : NAN;
-    if (!isfinite(z_m)) return SURFACE_NONE;
-    if (!cover->real) return invented_surface(landscape, x_m, y_m);
-    if (cover->grid[0].surface || cover->grid[1].surface) {
-        /* borders of coarse cells wander by half a cell, as nothing in the country runs in stairs of 30 m */
-        const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
-        double       dx = 0, dy = 0;
-        for (int octave = 0; away_m > 0 && octave < 3; octave++) {
-            const double wave_m = cell_m * exp2(-octave), share = 0.57 * exp2(-octave);
-            dx += share * noise_at(cover->seed + 40 + (uint64_t)octave, x_m, y_m, wave_m);
-            dy += share * noise_at(cover->seed + 50 + (uint64_t)octave, x_m, y_m, wave_m);
-        }
-        const SurfaceClass surface = cover_grid_at(cover->grid, x_m + away_m * dx, y_m + away_m * dy);
-        if (surface != SURFACE_NONE) return surface;
-    }
-    return unmapped_surface(landscape, x_m, y_m, z_m);
-}
-
-/* ---- texture ------------------------------------------------------------------------------ */
-
-static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
-enum { octave_count = sizeof octave_m / sizeof octave_m[0] };
-
-/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The
- * rows are invented, to look right. */
-static const float amplitude[SURFACE_COUNT][octave_count] = {
-    [SURFACE_NONE] = {0},
-    [SURFACE_GRASS] = {.07f, .06f, .05f, .05f, .05f, .05f, .05f},
-    [SURFACE_DRY_GRASS] = {.08f, .08f, .07f, .06f, .05f, .04f, .05f},
-    [SURFACE_CROP] = {.07f, .05f, .03f, .03f, .03f, .04f, .05f},
-    [SURFACE_BARE_SOIL] = {.06f, .06f, .05f, .04f, .04f, .05f, .06f},
-    [SURFACE_PLOUGHED] = {.09f, .07f, .04f, .03f, .03f, .04f, .05f},
-    [SURFACE_TRACK] = {.06f, .07f, .06f, .06f, .04f, .03f, .02f},
-    [SURFACE_ROCK] = {.08f, .09f, .09f, .08f, .06f, .04f, .02f},
-    [SURFACE_SCRUB] = {.09f, .10f, .11f, .09f, .05f, .03f, .02f},
-    [SURFACE_WATER] = {.01f, .01f, .01f, .01f, .01f, .01f, .01f},
-    [SURFACE_FOREST_BROADLEAF] = {.06f, .08f, .10f, .12f, .12f, .04f, .03f},
-    [SURFACE_FOREST_CONIFER] = {.06f, .08f, .12f, .14f, .10f, .04f, .03f},
-    [SURFACE_BUILT] = {.03f, .04f, .06f, .10f, .14f, .10f, .04f},
-    [SURFACE_ROAD] = {.03f, .03f, .03f, .03f, .02f, .02f, .02f},
-    [SURFACE_SAND] = {.04f, .04f, .03f, .03f, .03f, .04f, .04f},
-    [SURFACE_SNOW] = {.01f, .01f, .02f, .02f, .02f, .02f, .02f},
-    [SURFACE_WETLAND] = {.08f, .08f, .07f, .07f, .08f, .07f, .05f},
-};
-
-/* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
-static double fade(double wavelength_m, double footprint_m)
-{
-    return 1 - smooth_step(0.25, 0.5, footprint_m / wavelength_m);
-}
-
-/* Rows of a field, along a direction of its own; a smooth wave of mean 0. */
-static double rows_at(uint64_t seed, double x_m, double y_m, double apart_m)
-{
-    const uint64_t h = landscape_hash(plot_at(seed, x_m, y_m).id, 8, 0);
-    double         dx = unit_from_hash(h) - 0.5, dy = unit_from_hash(landscape_hash(h, 9, 0)) - 0.5;
-    const double   length = fmax(sqrt(dx * dx + dy * dy), 1e-3);
-    dx /= length;
-    dy /= length;
-    const double f = (x_m * dx + y_m * dy) / apart_m, t = fabs(2 * (f - floor(f)) - 1); /* 1 .. 0 .. 1 */
-    return 2 * t * t * (3 - 2 * t) - 1;
-}
-
-static bool photo_covers(const Photo *photo, double x_m, double y_m)
-{
-    double linear[photo_channels];
-    return photo->mips > 0 && photo_at(linear, photo, x_m, y_m, photo->cell_m) > 0.5;
-}
-
-double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m)
-{
-    static const double crop_rows_m = 0.75, furrows_m = 1.1;
-    const Cover        *cover = landscape->cover;
-    if (!cover || !isfinite(x_m) || !isfinite(y_m) || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return 1;
-
-    const uint64_t seed = cover->seed + 20;
-    footprint_m = footprint_m > 0 ? footprint_m : 0;
-    /* what the photograph shows already is not invented once more */
-    const double seen_m = photo_covers(&cover->photo, x_m, y_m) ? 2 * cover->photo.cell_m : INFINITY;
-    double       sum = 1;
-    for (int n = octave_count - 1; n >= 0; n--) {
-        const double share = fade(octave_m[n], footprint_m);
-        if (octave_m[n] >= seen_m) continue;
-        if (!(share > 0)) break; /* the shorter ones are gone too */
-        sum += share * amplitude[surface][n] * noise_at(seed + (uint64_t)n, x_m, y_m, octave_m[n]);
-    }
-    const double row_m = surface == SURFACE_CROP ? crop_rows_m : surface == SURFACE_PLOUGHED ? furrows_m : 0;
-    if (row_m > 0 && row_m < seen_m) {
-        const double share = fade(row_m, footprint_m);
-        if (share > 0) sum += 0.08 * share * rows_at(cover->seed, x_m, y_m, row_m);
-    }
-    return clamp(sum, 0.6, 1.4);
-}
-
-/* ---- photograph ----------------------------------------------------------------------------- */
-
-void cover_measure_photo(Landscape *landscape)
-{
-    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would blow up the others */
-    static const double enough = 200, most = 400e3;
-    Cover *cover = landscape->cover;
-    Photo *p = &cover->photo;
-    if (p->mips == 0) return;
-    int k = 0;
-    while (k < p->mips - 1 && (double)p->nx[k] * p->ny[k] > most) k++;
-    const double cell_m = p->cell_m * exp2(k);
-    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0}, total = 0;
-    for (int j = 0; j < p->ny[k]; j++)
-        for (int i = 0; i < p->nx[k]; i++) {
-            const double x_m = p->x0_m + (i + 0.5) * cell_m, y_m = p->y0_m + (j + 0.5) * cell_m;
-            double       linear[photo_channels];
-            const double share = photo_at(linear, p, x_m, y_m, cell_m);
-            if (!(share > 0)) continue;
-            const SurfaceClass surface = landscape_surface(landscape, x_m, y_m);
-            for (int c = 0; c < photo_channels; c++) {
-                sum[surface][c] += share * linear[c];
-                all[c] += share * linear[c];
-            }
-            count[surface] += share;
-            total += share;
-        }
-    for (int s = 0; s < SURFACE_COUNT; s++)
-        for (int c = 0; c < photo_channels; c++) {
-            const double mean_all = total > 0 ? all[c] / total : 1;
-            p->mean[s][c] = (float)fmax((sum[s][c] + enough * mean_all) / (count[s] + enough), 1e-4);
-        }
-}
-
-void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m,
-                      double footprint_m)
-{
-    static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
-    const Cover *cover = landscape->cover;
-    double       linear[photo_channels], share = 0, all = 0;
-    for (int c = 0; c < albedo_channels; c++) factor[c] = 1;
-    if (!cover || cover->photo.mips == 0 || !(surface > SURFACE_NONE && surface < SURFACE_COUNT)) return;
-    share = photo_at(linear, &cover->photo, x_m, y_m, footprint_m);
-    if (!(share > 0)) return;
-    for (int c = 0; c < photo_channels; c++) {
-        const double ratio = fmin(linear[c] / (double)cover->photo.mean[surface][c], brightest);
-        factor[c] = (float)(1 + share * (ratio - 1));
-        all += factor[c] / photo_channels;
-    }
-    factor[albedo_all] = (float)all;
+    uint8_t surface;
+    landscape_surfaces(&surface, landscape, 1, &x_m, &y_m);
+    return (SurfaceClass)surface;
 }
 
 void cover_free(Cover *cover)

@@ -6,7 +6,9 @@
  * landscape_fit.c    which fixes to believe, and the last centimetres on the posts themselves
  * landscape_clear.c  what clear lines allow
  * landscape_near.c   points by place
- * landscape_cover.c  fields, tracks, texture; what cover files and photographs say */
+ * landscape_plots.c  invented fields
+ * landscape_cover.c  what grows and lies on the ground: tracks, hedges, woods; what cover files say
+ * landscape_texture.c how bright it is there; what photographs say */
 #ifndef TERRAIN_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_PRIVATE_H
 

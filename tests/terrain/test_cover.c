@@ -1,0 +1,223 @@
+/* Ground cover and texture of eight places at once: against a plain reading of what they are defined to be, one place at
+ * a time in double, written here; against the paper statistics of value noise; and in whatever company. */
+#include "tests/check.h"
+
+#include "terrain/landscape.h"
+
+/* ---- the plain reading ------------------------------------------------------------------------ */
+
+static uint64_t mixed(uint64_t seed, int64_t a, int64_t b)
+{
+    uint64_t h = seed + (uint64_t)a * 0x9e3779b97f4a7c15u + (uint64_t)b * 0xd1b54a32d192ed03u;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
+    return h ^ (h >> 31);
+}
+
+static double unit(uint64_t h) { return (double)(h >> 11) * 0x1p-53; }
+
+static double corner(uint32_t key, int64_t i, int64_t j)
+{
+    uint32_t h = key + (uint32_t)i * 0x9e3779b1u + (uint32_t)j * 0x85ebca77u;
+    h = (h ^ (h >> 16)) * 0x7feb352du;
+    h = (h ^ (h >> 15)) * 0x846ca68bu;
+    return (double)(int32_t)h * 0x1p-31;
+}
+
+static double noise(uint64_t seed, double wavelength_m, double x_m, double y_m)
+{
+    const uint32_t key = (uint32_t)(mixed(seed, 0, 0) >> 32);
+    const double   fx = x_m / wavelength_m, fy = y_m / wavelength_m, i = floor(fx), j = floor(fy);
+    double         sum = 0;
+    for (int n = 0; n < 4; n++) {
+        const double u = n & 1 ? fx - i : 1 - (fx - i), v = n & 2 ? fy - j : 1 - (fy - j);
+        sum += corner(key, (int64_t)i + (n & 1), (int64_t)j + (n >> 1)) * u * u * (3 - 2 * u) * v * v * (3 - 2 * v);
+    }
+    return sum;
+}
+
+static uint64_t field_of(uint64_t seed, int64_t i, int64_t j)
+{
+    const double four = unit(mixed(seed + 1, i >> 1, j >> 1));
+    return four < 0.25   ? mixed(seed + 2, i >> 1, j >> 1)
+           : four < 0.45 ? mixed(seed + 3, i >> 1, j)
+           : four < 0.60 ? mixed(seed + 4, i, j >> 1)
+                         : mixed(seed + 5, i, j);
+}
+
+static SurfaceClass crop(uint64_t seed, uint64_t id, int64_t i, int64_t j)
+{
+    static const double arable[] = {0.38, 0.58, 0.70, 0.88, 1, 1}, pasture[] = {0.10, 0.15, 0.20, 0.62, 0.90, 1};
+    static const SurfaceClass surface[] = {SURFACE_CROP,  SURFACE_PLOUGHED,  SURFACE_BARE_SOIL,
+                                           SURFACE_GRASS, SURFACE_DRY_GRASS, SURFACE_SCRUB};
+    const double *share = noise(seed + 13, 1900, (double)(i >> 1) * 320, (double)(j >> 1) * 320) > -0.15 ? arable : pasture;
+    const double  u = unit(mixed(id, 7, 0));
+    int           n = 0;
+    while (u >= share[n]) n++;
+    return surface[n];
+}
+
+static SurfaceClass plain_surface(const Landscape *land, uint64_t seed, double x_m, double y_m)
+{
+    static const double arm_m = 10, cell_m = 160;
+    const Elevation    *e = &land->elevation;
+    if (!isfinite(elevation_height(e, x_m, y_m, NULL))) return SURFACE_NONE;
+    const double dx = elevation_height(e, x_m + arm_m, y_m, NULL) - elevation_height(e, x_m - arm_m, y_m, NULL);
+    const double dy = elevation_height(e, x_m, y_m + arm_m, NULL) - elevation_height(e, x_m, y_m - arm_m, NULL);
+    const double steep = sqrt(dx * dx + dy * dy) / (2 * arm_m);
+    const double slope = fmax((isfinite(steep) ? steep : 0) - sqrt(x_m * x_m + y_m * y_m) / 6371e3, 0);
+    const double wild = noise(seed + 10, 310, x_m, y_m) + 0.5 * noise(seed + 11, 83, x_m, y_m) +
+                        0.2 * noise(seed + 12, 17, x_m, y_m) + 4 * slope;
+    if (wild > 1.24 - 0.12 * fmin(slope / 0.2, 1)) return SURFACE_ROCK;
+
+    double    site[9][3]; /* place, square of the distance */
+    uint64_t  id[9];
+    const int64_t ci = (int64_t)floor(x_m / cell_m), cj = (int64_t)floor(y_m / cell_m);
+    int       best = 0;
+    for (int n = 0; n < 9; n++) {
+        const int64_t  i = ci + n % 3 - 1, j = cj + n / 3 - 1;
+        const uint64_t h = mixed(seed, i, j);
+        site[n][0] = ((double)i + 0.5 + 0.8 * ((double)(h & 0xffffffffu) * 0x1p-32 - 0.5)) * cell_m;
+        site[n][1] = ((double)j + 0.5 + 0.8 * ((double)(h >> 32) * 0x1p-32 - 0.5)) * cell_m;
+        site[n][2] = pow(site[n][0] - x_m, 2) + pow(site[n][1] - y_m, 2);
+        id[n] = field_of(seed, i, j);
+        if (site[n][2] < site[best][2]) best = n;
+    }
+    double   border_m = INFINITY;
+    uint64_t border = 0;
+    for (int n = 0; n < 9; n++) {
+        if (id[n] == id[best]) continue;
+        const double apart_m = hypot(site[n][0] - site[best][0], site[n][1] - site[best][1]);
+        const double here_m = 0.5 * (site[n][2] - site[best][2]) / apart_m;
+        if (here_m < border_m) border_m = here_m, border = mixed(seed + 6, (int64_t)(id[n] ^ id[best]), 0);
+    }
+    if (border_m < 2 && unit(border) < 0.24) return SURFACE_TRACK;
+    if (wild > 0.88 || (border_m < 1.5 && unit(border) > 0.66)) return SURFACE_SCRUB;
+    if (wild > 0.78) return SURFACE_DRY_GRASS;
+    return crop(seed, id[best], ci + best % 3 - 1, cj + best / 3 - 1);
+}
+
+/* ---- the ground that is asked ------------------------------------------------------------------ */
+
+enum { places = 120000 };
+static double   x_m[places], y_m[places];
+static uint8_t  surface[places];
+static float    texture[places], footprint_m[places];
+static Landscape land;
+static uint64_t  cover_seed;
+
+static int make_land(void **state)
+{
+    (void)state;
+    LandscapeConfig config = landscape_default_config();
+    LocalFrame      frame;
+    const Geodetic  origin = {0.6, -1.9, 700};
+    config.seed = 3;
+    config.half_width_m = 1500;
+    config.horizon_m = 30000;
+    cover_seed = mixed(config.seed, 2, 0);
+    if (local_frame_at(&frame, &origin) != STATUS_OK) return -1;
+    return landscape_create(&land, &config, &frame, NULL, 0, NULL, 0) == STATUS_OK ? 0 : -1;
+}
+
+static int drop_land(void **state)
+{
+    (void)state;
+    landscape_destroy(&land);
+    return 0;
+}
+
+/* All levels and their seams, runs of neighbours and places by themselves, and some where there is no ground. */
+static void choose_places(void)
+{
+    for (int n = 0; n < places; n++) {
+        const uint64_t k = (uint64_t)(n % 3 == 0 ? n : n / 24 * 24);
+        const double   half_m = k % 2 ? 31000 : 2200;
+        x_m[n] = half_m * (2 * random_uniform(11, 0, 0, k) - 1) + (n % 3 == 0 ? 0 : n % 24);
+        y_m[n] = half_m * (2 * random_uniform(11, 1, 0, k) - 1);
+        footprint_m[n] = (float)(0.05 * pow(2000, random_uniform(11, 2, 0, (uint64_t)n)));
+    }
+    x_m[7] = NAN, y_m[9] = INFINITY, x_m[12] = 1e300;
+}
+
+static void cover_is_what_it_is_defined_to_be(void **state)
+{
+    (void)state;
+    int differ = 0, of_class[SURFACE_COUNT] = {0};
+    choose_places();
+    landscape_surfaces(surface, &land, places, x_m, y_m);
+    for (int n = 0; n < places; n++) {
+        const SurfaceClass plain = plain_surface(&land, cover_seed, x_m[n], y_m[n]);
+        of_class[plain]++;
+        differ += plain != surface[n];
+        CHECK((plain == SURFACE_NONE) == (surface[n] == SURFACE_NONE));
+    }
+    print_message("%d of %d places differ\n", differ, (int)places);
+    /* float moves borders by 1e-4 m, of wild patches (which change by some 0.01 a metre) by 1e-3 m, and there is a border
+     * every 10 m or so */
+    CHECK(differ < places * 1e-4);
+    CHECK(of_class[SURFACE_NONE] > 100 && of_class[SURFACE_TRACK] > 300 && of_class[SURFACE_ROCK] > 100 && of_class[SURFACE_SCRUB] > 1000);
+}
+
+/* Of grass seen with pixels of 5.75 m two octaves are left, 0.05 strong. */
+static void texture_is_what_it_is_defined_to_be(void **state)
+{
+    (void)state;
+    double sum = 0, square = 0, worst = 0;
+    choose_places();
+    memset(surface, SURFACE_GRASS, sizeof surface);
+    for (int n = 0; n < places; n++) footprint_m[n] = 5.75f; /* a quarter of 23 m: that octave is whole, 7.5 m is gone */
+    landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
+    int count = 0;
+    for (int n = 13; n < places; n++) {
+        const double plain = 1 + (double)0.05f * (noise(cover_seed + 25, 23, x_m[n], y_m[n]) + noise(cover_seed + 26, 71, x_m[n], y_m[n]));
+        worst = fmax(worst, fabs((double)texture[n] - plain));
+        if (n % 3) continue; /* by themselves: independent */
+        sum += (double)texture[n] - 1;
+        square += ((double)texture[n] - 1) * ((double)texture[n] - 1);
+        count++;
+    }
+    print_message("worst %.1e; mean %.1e, variance %.4g\n", worst, sum / count, square / count);
+    CHECK(worst < 3e-7); /* two steps of float at 1 */
+    /* even corners of -1 .. 1 have variance 1/3; smoothstep weights keep (26/35)^2 of it, in each of two octaves */
+    const double variance = 2 * 0.05 * 0.05 / 3 * pow(26.0 / 35, 2);
+    CHECK_NEAR(sum / count, 0, 5 * sqrt(variance / count));
+    CHECK_NEAR(square / count, variance, 5 * variance * sqrt(2.0 / count));
+}
+
+static void company_changes_nothing(void **state)
+{
+    (void)state;
+    enum { some = 20000 };
+    static uint8_t again[some];
+    static float   texture_again[some];
+    choose_places();
+    landscape_surfaces(surface, &land, places, x_m, y_m);
+    landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
+    for (int n = 0; n < some; n++) {
+        CHECK(landscape_surface(&land, x_m[n], y_m[n]) == surface[n]);
+        CHECK(landscape_texture(&land, (SurfaceClass)surface[n], x_m[n], y_m[n], (double)footprint_m[n]) == (double)texture[n]);
+    }
+    /* in another order, from another place in the eight */
+    static double   back_x_m[some], back_y_m[some];
+    static float    back_footprint_m[some];
+    static uint8_t  back_surface[some];
+    for (int n = 0; n < some - 3; n++) {
+        const int from = some - 1 - n;
+        back_x_m[n] = x_m[from], back_y_m[n] = y_m[from], back_footprint_m[n] = footprint_m[from], back_surface[n] = surface[from];
+    }
+    landscape_surfaces(again, &land, some - 3, back_x_m, back_y_m);
+    landscape_textures(texture_again, &land, some - 3, back_surface, back_x_m, back_y_m, back_footprint_m);
+    for (int n = 0; n < some - 3; n++)
+        CHECK(again[n] == surface[some - 1 - n] && texture_again[n] == texture[some - 1 - n]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cover_is_what_it_is_defined_to_be),
+        cmocka_unit_test(texture_is_what_it_is_defined_to_be),
+        cmocka_unit_test(company_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, make_land, drop_land);
+}
