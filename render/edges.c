@@ -138,7 +138,8 @@ void spread_ground(Scratch *s, const Job *job)
     const Picture *p       = job->picture;
     const Block   *block   = &s->block;
     const int      samples = block->n * block->n;
-    s->hits.count = s->rays.count = block->pixels * samples;
+    s->hits.count   = s->rays.count = block->pixels * samples;
+    s->hits.columns = s->rays.columns = 0;
     for (int i = 0; i < s->hits.count; i++) {
         const int    x = block->x[i / samples], y = block->y[i / samples];
         const size_t px = pixel_index(job, x, y);

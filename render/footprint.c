@@ -241,7 +241,8 @@ static void keep_target(Footprint *f, Scratch *s, int first_cell)
         }
         s->rays.far_m[kept++] = s->rays.far_m[i];
     }
-    to->count = s->rays.count = kept;
+    to->count   = s->rays.count = kept;
+    to->columns = s->rays.columns = 0;
 }
 
 static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
@@ -264,7 +265,8 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
         }
         s->rays.far_m[i] = INFINITY;
     }
-    s->rays.count = count;
+    s->rays.count   = count;
+    s->rays.columns = 0;
     visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
                          &s->counters.visibility);
     s->counters.rays_primary += (uint64_t)count;

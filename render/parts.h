@@ -57,6 +57,13 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
                        double far_m, bool ask_all);
 /* Whether any triangle is ahead. */
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
+/* The same of rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where one is
+ * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. */
+void parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
+/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. */
+void parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+                    const double *far_m, const int *list, int count, bool ask_all);
 /* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
 void parts_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedEntity *entity, const PartHit *hit,
                    const double o_enu[3], const double d_enu[3], double range_m);

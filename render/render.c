@@ -82,6 +82,7 @@ static void make_rays(Rays *rays, const Block *block, const View *view)
 {
     const int samples = block->n * block->n;
     rays->count       = block->pixels * samples;
+    rays->columns     = block->columns;
     for (int i = 0; i < rays->count; i++) {
         double    place[2], d_enu[3];
         const int pixel = i / samples;
@@ -347,6 +348,7 @@ static void render_tile(void *user, int worker, int task)
     Block     *block = &s->block;
 
     *block = (Block){.n = job->request->samples, .sign = 1, .writes = true, .bands = job->request->bands};
+    if (block->n == 1) block->columns = tile.x1 - tile.x0;
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
             block->x[block->pixels]   = (uint16_t)x;

@@ -24,6 +24,7 @@ typedef struct Footprint Footprint;
 /* Pixels of n x n samples, all samples of a pixel together; or the cells of a footprint that met their target. */
 typedef struct Block {
     int      n, pixels;
+    int      columns;                          /* of a whole tile with n = 1: its pixels lie in rows; else 0 */
     int      sign;                             /* -1: takes back from the sums what these samples gave before */
     bool     writes;                           /* into the planes */
     unsigned bands;                            /* 1 << Band: those to shade */
