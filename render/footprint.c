@@ -201,9 +201,25 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
 static void count_hidden(Footprint *f, Scratch *s, const Job *job, int first_cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
+    s->some.count = s->some.columns = 0;
     for (int i = 0; i < s->all.count; i++) {
-        if (!s->meets[i] && s->all.entity[i] != id) continue;
+        const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
+        const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+        if (s->all.entity[i] == id ||
+            !visibility_may_lie_beyond(job->visibility, f->entity, o_enu, d_enu, s->all.range_m[i])) continue;
+        const int to = s->some.count++;
+        for (int k = 0; k < 3; k++) {
+            s->some.o_enu[k][to] = o_enu[k];
+            s->some.d_enu[k][to] = d_enu[k];
+        }
+        s->some.far_m[to] = INFINITY;
+        s->some_index[to] = i;
+    }
+    if (s->some.count > 0) visibility_entity_only(s->meets, job->visibility, &s->some, f->entity);
+    for (int i = 0, asked = 0; i < s->all.count; i++) {
+        const bool meets = asked < s->some.count && s->some_index[asked] == i && s->meets[asked];
+        asked += asked < s->some.count && s->some_index[asked] == i;
+        if (!meets && s->all.entity[i] != id) continue;
         const double area = footprint_area(f, first_cell + i);
         f->amodal += area;
         over_pixels(f, first_cell + i, grow_amodal, f->amodal_box);

@@ -78,22 +78,34 @@ float *picture_plane(const Picture *picture, int plane)
     return picture->optical[plane - picture_optical];
 }
 
+/* view_ray for all samples, in arrays. */
 static void make_rays(Rays *rays, const Block *block, const View *view)
 {
-    const int samples = block->n * block->n;
-    rays->count       = block->pixels * samples;
-    rays->columns     = block->columns;
-    for (int i = 0; i < rays->count; i++) {
-        double    place[2], d_enu[3];
-        const int pixel = i / samples;
-        sample_place(place, block->n, i % samples);
-        view_ray(d_enu, view, block->x[pixel] + place[0], block->y[pixel] + place[1]);
-        for (int k = 0; k < 3; k++) {
-            rays->o_enu[k][i] = view->p_enu[k];
-            rays->d_enu[k][i] = d_enu[k];
+    const int     samples = block->n * block->n;
+    const double *r = view->r_enu_from_cam, centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
+    const double  focal_px = view->focal_px;
+    double        place[256][2], column_px[hits_capacity], row_px[hits_capacity];
+    double *const restrict dx = rays->d_enu[0], *const restrict dy = rays->d_enu[1], *const restrict dz = rays->d_enu[2];
+    const int     count = block->pixels * samples;
+    for (int k = 0; k < samples; k++) sample_place(place[k], block->n, k);
+    for (int p = 0, i = 0; p < block->pixels; p++)
+        for (int k = 0; k < samples; k++, i++) {
+            column_px[i] = block->x[p] + place[k][0];
+            row_px[i]    = block->y[p] + place[k][1];
         }
+    for (int i = 0; i < count; i++) {
+        const double x_cam = (column_px[i] - centre_x) / focal_px, y_cam = (row_px[i] - centre_y) / focal_px;
+        const double n = 1 / sqrt(x_cam * x_cam + y_cam * y_cam + 1), x = n * x_cam, y = n * y_cam, z = n * 1;
+        dx[i] = r[0] * x + r[1] * y + r[2] * z;
+        dy[i] = r[3] * x + r[4] * y + r[5] * z;
+        dz[i] = r[6] * x + r[7] * y + r[8] * z;
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) rays->o_enu[k][i] = view->p_enu[k];
         rays->far_m[i] = INFINITY;
     }
+    rays->count   = count;
+    rays->columns = block->columns;
 }
 
 /* What a photograph says of a channel: its own colour, or the brightness of all three. */
@@ -257,6 +269,9 @@ void trace_shadows(Scratch *s, const Job *job)
 void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
+    if (job->picture->target && !s->block.footprint)
+        for (int p = 0; p < s->block.pixels; p++)
+            s->cosine3[p] = pixel_cosine3(&job->request->view, s->block.x[p], s->block.y[p]);
     resolve_materials(s, job);
     trace_veils(s, job);
     if (job->request->sky_samples > 0) gather_around(s, job);

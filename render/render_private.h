@@ -69,6 +69,7 @@ typedef struct Scratch {
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
+    double         cosine3[hits_capacity]; /* of the block's pixels, where truth is wanted */
     VeilRays       veil;
     Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
     Facing         facing;

@@ -154,13 +154,14 @@ static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const Gr
     hits->surface[i] = (uint8_t)landscape_surface(v->landscape, x_m, y_m);
 }
 
-static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, const double o[3],
-                              const double d[3])
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
+                              PosedFacet *facet, const double o[3], const double d[3])
 {
     const PosedEntity *posed = &v->entity[entity];
     const Model       *model = tracer_model(v->tracer, posed->model);
     double             n_geo[3], n_enu[3];
-    parts_normals(n_geo, n_enu, model, posed, hit, o, d, hits->range_m[i]);
+    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
+    parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
     store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
@@ -183,7 +184,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     hits->count   = count;
     hits->columns = rays->columns;
     ground_first_hits(hits->range_m, ground_hit, &v->ground, count, o, d, rays->far_m);
-    for (int i = 0; i < count; i++) limit_m[i] = fmin(hits->range_m[i], rays->far_m[i]);
+    for (int i = 0; i < count; i++) limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
     const int asked_count = list_count < 0 ? v->count : list_count;
     uint64_t  asked = 0, drawable = 0;
@@ -213,13 +214,14 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
 
+    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
     for (int i = 0; i < count; i++) {
         const uint32_t entity = hits->entity[i];
         clear_hit(hits, i);
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
         for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o_enu[c] + hits->range_m[i] * d_enu[c];
-        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], o_enu, d_enu);
+        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
 }
@@ -333,6 +335,20 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
     const int listed = list_asked(list, order, meets, rays->count);
     memset(meets, 0, (size_t)rays->count);
     parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, v->no_skip);
+}
+
+bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
+{
+    const PosedEntity *entity = &v->entity[index];
+    double             m[3], across[3];
+    if (v->no_skip) return true;
+    if (entity->model < 0) return false;
+    v3_sub(m, entity->centre_enu, o_enu);
+    const double along = v3_dot(m, d_enu), past_m = range_m - along;
+    if (!(past_m < entity->radius_m)) return false;
+    v3_add_scaled(across, m, -along, d_enu);
+    const double left = entity->radius_m * entity->radius_m - v3_dot(across, across);
+    return left > 0 && (past_m <= 0 || past_m * past_m < left);
 }
 
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
