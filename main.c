@@ -1,7 +1,10 @@
-/* main.c: the commands, as one table; and the probes, as the rooms list them. */
+/* main.c: the commands, as one table; and the probes and benchmarks, as the rooms list them. */
+#include "dis/bench.h"
+#include "entities/bench.h"
 #include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/probe.h"
+#include "sensor/bench.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
@@ -63,6 +66,27 @@ static int probe_command(int argc, char **argv)
     return 2;
 }
 
+/* ---- bench: the rooms' lists ------------------------------------------------------------------ */
+
+static const struct BenchList {
+    const BenchSuite *suite;
+    const int        *count;
+} bench_lists[] = {
+    {dis_benches, &dis_bench_count},
+    {entities_benches, &entities_bench_count},
+    {sensor_benches, &sensor_bench_count},
+};
+
+/* state: list, place in it. */
+static const BenchSuite *next_bench(size_t state[2])
+{
+    for (; state[0] < sizeof bench_lists / sizeof *bench_lists; state[0]++, state[1] = 0)
+        if (state[1] < (size_t)*bench_lists[state[0]].count) return &bench_lists[state[0]].suite[state[1]++];
+    return NULL;
+}
+
+static int run_bench(int argc, char **argv) { return bench_command(argc, argv, next_bench); }
+
 static const struct Command {
     const char *name;
     int (*run)(int argc, char **argv);
@@ -72,6 +96,7 @@ static const struct Command {
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
     {"model", model_command, "say what a model is made of, built in or from a file"},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},
+    {"bench", run_bench, "measure this build on this machine: times, and the errors beside them"},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
 

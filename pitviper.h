@@ -145,6 +145,64 @@ typedef struct Probe {
  * through; a bad row gets its reason and empty results. STATUS_BAD_VALUE, logged, when a column is missing. */
 Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out);
 
+/* ---- benchmarks: time beside error ---------------------------------------------------------------- */
+
+/* One line of a table. What has no answer is NaN, or NULL for text; bench_row gives a row of those. */
+typedef struct BenchRow {
+    const char *what;
+    double      median, best;      /* of an item; unit "s" is shown as ns .. s, any other as it is */
+    const char *unit;
+    double      rate;              /* items a second, as unit says */
+    const char *rate_unit;
+    double      ratio;             /* to what `to` names */
+    const char *to;
+    double      error, error_limit;/* holds when error <= limit; no limit: measured, not judged */
+    const char *error_unit, *against;
+} BenchRow;
+
+typedef struct Bench Bench;
+
+/* What `pitviper bench NAME` runs. Each room lists its own in <room>/bench.h; those of one name run one after another. */
+typedef struct BenchSuite {
+    const char *name, *help;
+    const char *options;           /* beyond those of every bench, as usage shows them: "size=WxH,model=FILE"; NULL */
+    Status    (*run)(Bench *bench);/* on failure logs why */
+} BenchSuite;
+
+BenchRow bench_row(const char *what);
+void     bench_add(Bench *bench, const BenchRow *row);
+bool     bench_quick(const Bench *bench);                         /* seconds, not minutes: fewer rounds, smaller scenes */
+int      bench_threads(const Bench *bench);
+const char *bench_option(const Bench *bench, const char *name);   /* NULL: not given */
+void     bench_progress(Bench *bench, const char *what);          /* on a terminal */
+
+/* Something to be timed: `run` does `items` of it. Takes inputs the compiler cannot see, hands results to bench_keep. */
+typedef struct BenchWork {
+    void (*run)(void *user);
+    void  *user;
+    double items;
+} BenchWork;
+enum { bench_rounds_max = 64 };
+typedef struct BenchTime {
+    int    rounds;
+    double item_s[bench_rounds_max]; /* of each round */
+    double median_s, best_s;         /* of an item */
+} BenchTime;
+/* Median and best of item_s[rounds]. */
+void   bench_time_finish(BenchTime *time);
+/* Runs all of them in turn, round after round, after one round that does not count. */
+void   bench_time(BenchTime *out, Bench *bench, const BenchWork *work, int count);
+double bench_ratio(const BenchTime *a, const BenchTime *b); /* median over the rounds of a / b */
+/* Row of a time: median, best and items a second. */
+BenchRow bench_row_of(const char *what, const BenchTime *time, const char *rate_unit, double per_rate);
+/* The compiler must take this memory for read. */
+static inline void bench_keep(const void *memory) { __asm__ volatile("" : : "g"(memory) : "memory"); }
+
+/* The command: argv[0] NAME, then options; suites are walked by next(&state) from a zeroed state. Exit code: 1 when a
+ * suite failed or an error is beyond its limit. */
+typedef const BenchSuite *BenchNext(size_t state[2]);
+int bench_command(int argc, char **argv, BenchNext *next);
+
 /* ---- small vectors ------------------------------------------------------------------------ */
 /* Matrices are row by row: r_a_from_b[3 * row + column]. */
 

@@ -577,14 +577,20 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     if (request->target_samples > 0) status = footprints_plan(&job, arena);
     if (status != STATUS_OK) return status;
     if (looks_for_edges(request)) mark_boxes(&job);
-    picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
+    const double prepared_s = wall_clock_s();
+    picture.times.prepare_ms = 1e3 * (prepared_s - start_s);
 
     if (job.footprints > 0) {
         pool_run(pool, job.footprints, footprint_task, &job);
         footprints_cover(&job);
     }
+    const double small_s = wall_clock_s();
     pool_run(pool, job.tiles_x * job.tiles_y, render_tile, &job);
+    const double base_s = wall_clock_s();
     if (looks_for_edges(request)) pool_run(pool, job.tiles_x * job.tiles_y, refine_tile, &job);
+    picture.times.footprints_ms = 1e3 * (small_s - prepared_s);
+    picture.times.base_ms       = 1e3 * (base_s - small_s);
+    picture.times.edges_ms      = 1e3 * (wall_clock_s() - base_s);
     gather(&job, workers);
     footprints_put_on(&job);
     if (!request->truth) forget_truth(&picture);

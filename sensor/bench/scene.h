@@ -1,0 +1,54 @@
+/* sensor/bench/scene.h: what frames are timed on: a bare ground, vehicles on it, the sun of a summer noon, and an eye. */
+#ifndef SENSOR_BENCH_SCENE_H
+#define SENSOR_BENCH_SCENE_H
+
+#include "entities/entity_table.h"
+#include "render/render.h"
+#include "sensor/node/truth.h"
+#include "sensor/publish/plane_hash.h"
+
+typedef struct BenchScene {
+    const Landscape *landscape;   /* not its own */
+    Catalog         *catalog;
+    World            world;
+    EntityTable     *table;
+    double           unix_s, sun_now_s;
+} BenchScene;
+
+/* vehicles: so many in rows of five, 40 m apart, about the origin, turrets and guns turned; types: theirs, in turn. */
+Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
+                        int type_count, int vehicles);
+void   bench_scene_close(BenchScene *scene);
+
+/* A view of the origin from this far south of it and this high above it. */
+View bench_view(const BenchScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
+
+/* The stages of a frame, in order. Of those summed over threads the share of one: on one thread they add up to the
+ * frame. The passes tell the same time otherwise: by what is being sampled. */
+typedef enum BenchStage {
+    STAGE_FRAME, STAGE_SNAPSHOT, STAGE_AIR, STAGE_PREPARE, STAGE_VISIBILITY, STAGE_SUN, STAGE_SHADE, STAGE_RADAR,
+    STAGE_REST,     /* of the pixels: truth planes, areas of targets, edges found */
+    STAGE_TRUTH, STAGE_FOOTPRINTS, STAGE_BASE, STAGE_EDGES, BENCH_STAGE_COUNT
+} BenchStage;
+
+/* One frame as a node makes it, up to the planes; all in the arena, which is reset first. */
+typedef struct BenchFrame {
+    const BenchScene *scene;
+    RenderRequest     request;
+    Pool             *pool;
+    Arena            *arena;
+    Status            status;
+    Snapshot          snapshot;
+    Sun               sun;
+    Air               air;
+    Picture           picture;
+    int               targets;
+    double            stage_s[BENCH_STAGE_COUNT];
+} BenchFrame;
+
+/* user: a BenchFrame. */
+void   bench_frame(void *user);
+/* Every plane of its picture. */
+Status bench_frame_hash(char out[sha256_text_size], const BenchFrame *frame);
+
+#endif

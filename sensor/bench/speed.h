@@ -1,0 +1,9 @@
+/* sensor/bench/speed.h: `pitviper bench speed`: what a frame costs, and what its rays alone cost. */
+#ifndef SENSOR_BENCH_SPEED_H
+#define SENSOR_BENCH_SPEED_H
+
+#include "pitviper.h"
+
+Status bench_speed(Bench *bench);
+
+#endif
