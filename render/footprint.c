@@ -197,32 +197,36 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
     box[3] = y + 1 > box[3] ? y + 1 : box[3];
 }
 
+/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked. With
+ * no_skip all stay. */
+static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
+{
+    const int count = s->rays.count;
+    int       kept = 0;
+    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
+    for (int i = 0; i < count; i++) {
+        if (!s->meets[i] && !job->request->no_skip) continue;
+        s->block.cell[kept] = first_cell + i;
+        s->meets[kept]      = s->meets[i];
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][kept] = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept] = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    s->rays.count = kept;
+}
+
 /* What hides the target where its own samples did not meet it first. */
-static void count_hidden(Footprint *f, Scratch *s, const Job *job, int first_cell)
+static void count_hidden(Footprint *f, const Scratch *s)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    s->some.count = s->some.columns = 0;
     for (int i = 0; i < s->all.count; i++) {
-        const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
-        const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
-        if (s->all.entity[i] == id ||
-            !visibility_may_lie_beyond(job->visibility, f->entity, o_enu, d_enu, s->all.range_m[i])) continue;
-        const int to = s->some.count++;
-        for (int k = 0; k < 3; k++) {
-            s->some.o_enu[k][to] = o_enu[k];
-            s->some.d_enu[k][to] = d_enu[k];
-        }
-        s->some.far_m[to] = INFINITY;
-        s->some_index[to] = i;
-    }
-    if (s->some.count > 0) visibility_entity_only(s->meets, job->visibility, &s->some, f->entity);
-    for (int i = 0, asked = 0; i < s->all.count; i++) {
-        const bool meets = asked < s->some.count && s->some_index[asked] == i && s->meets[asked];
-        asked += asked < s->some.count && s->some_index[asked] == i;
-        if (!meets && s->all.entity[i] != id) continue;
-        const double area = footprint_area(f, first_cell + i);
+        if (!s->meets[i]) continue;
+        const int    cell = s->block.cell[i];
+        const double area = footprint_area(f, cell);
         f->amodal += area;
-        over_pixels(f, first_cell + i, grow_amodal, f->amodal_box);
+        over_pixels(f, cell, grow_amodal, f->amodal_box);
         if (s->all.entity[i] == id) continue;
         if (s->all.entity[i]) {
             f->hidden_entity += area;
@@ -234,7 +238,7 @@ static void count_hidden(Footprint *f, Scratch *s, const Job *job, int first_cel
 }
 
 /* Samples that met the target, close together: nobody else's are shaded here. */
-static void keep_target(Footprint *f, Scratch *s, int first_cell)
+static void keep_target(const Footprint *f, Scratch *s)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
     const Hits    *from = &s->all;
@@ -242,7 +246,7 @@ static void keep_target(Footprint *f, Scratch *s, int first_cell)
     int            kept = 0;
     for (int i = 0; i < from->count; i++) {
         if (from->entity[i] != id) continue;
-        s->block.cell[kept] = first_cell + i;
+        s->block.cell[kept] = s->block.cell[i];
         to->range_m[kept]   = from->range_m[i];
         to->entity[kept]    = from->entity[i];
         to->part[kept]      = from->part[i];
@@ -283,13 +287,14 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
     }
     s->rays.count   = count;
     s->rays.columns = 0;
-    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
-                         &s->counters.visibility);
     s->counters.rays_primary += (uint64_t)count;
     s->counters.rays_small_targets += (uint64_t)count;
-    if (job->picture->target) count_hidden(f, s, job, first_cell);
+    keep_amodal(f, s, job, first_cell);
+    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
+                         &s->counters.visibility);
+    if (job->picture->target) count_hidden(f, s);
     s->visibility_s += wall_clock_s() - t0;
-    keep_target(f, s, first_cell);
+    keep_target(f, s);
     if (s->hits.count == 0) return;
     trace_shadows(s, job);
     shade_block(s, job);

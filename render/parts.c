@@ -101,6 +101,26 @@ static void measure_facet(Facet *f, const Model *model, uint32_t triangle)
     }
 }
 
+/* Each once, in the order in which triangles come to them. */
+static Status list_corners(NodeMesh *mesh)
+{
+    const Model *model = mesh->model;
+    uint8_t     *seen = calloc((size_t)model->vertex_count + 1, 1);
+    mesh->corner = calloc(3 * (size_t)mesh->triangle_count, sizeof *mesh->corner);
+    if (!seen || !mesh->corner) {
+        free(seen);
+        return STATUS_NO_MEMORY;
+    }
+    for (int t = 0; t < mesh->triangle_count; t++)
+        for (int c = 0; c < 3; c++) {
+            const uint32_t v = model->triangle[mesh->triangle[t]][c];
+            if (!seen[v]) v3_scale(mesh->corner[mesh->corner_count++], 1, model->vertex[v]);
+            seen[v] = 1;
+        }
+    free(seen);
+    return STATUS_OK;
+}
+
 static Status commit_mesh(NodeMesh *mesh, Tracer *tracer)
 {
     mesh->scene = rtcNewScene(tracer->device);
@@ -137,6 +157,7 @@ static Status build_mesh(NodeMesh *mesh, Tracer *tracer, const ModelMeshes *mesh
         if (part->node == node && hidden_group(part) == hidden_group_of(hidden)) mesh->triangle[at++] = (uint32_t)t;
     }
     for (int t = 0; t < triangle_count; t++) measure_facet(&mesh->facet[t], model, mesh->triangle[t]);
+    if (list_corners(mesh) != STATUS_OK) return STATUS_NO_MEMORY;
     bound_mesh(mesh);
     return commit_mesh(mesh, tracer);
 }
@@ -223,6 +244,7 @@ void tracer_destroy(Tracer *tracer)
             if (meshes->mesh[k].scene) rtcReleaseScene(meshes->mesh[k].scene);
             free(meshes->mesh[k].triangle);
             free(meshes->mesh[k].facet);
+            free(meshes->mesh[k].corner);
         }
         free(meshes->mesh);
     }
@@ -235,10 +257,10 @@ int          tracer_model_count(const Tracer *tracer) { return tracer->count; }
 const Model *tracer_model(const Tracer *tracer, int model) { return tracer->model[model].model; }
 int          parts_node_count(const Tracer *tracer, int model) { return tracer->model[model].count; }
 
-const uint32_t *parts_node_triangles(const PosedNode *node, int *count)
+const double (*parts_node_corners(const PosedNode *node, int *count))[3]
 {
-    *count = node->mesh->triangle_count;
-    return node->mesh->triangle;
+    *count = node->mesh->corner_count;
+    return (const double (*)[3])node->mesh->corner;
 }
 
 /* ---- posing ------------------------------------------------------------------------------- */

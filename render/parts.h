@@ -41,8 +41,8 @@ typedef struct PartHit {
     uint32_t triangle; /* of the model */
 } PartHit;
 
-/* The triangles of a posed node, as indices into the model's. */
-const uint32_t *parts_node_triangles(const PosedNode *node, int *count);
+/* All vertices of a posed node, each once, in its axes. */
+const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
 /* The most nodes that posing an entity of this model needs room for. */
 int parts_node_count(const Tracer *tracer, int model);

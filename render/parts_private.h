@@ -20,6 +20,8 @@ struct NodeMesh {
     int          triangle_count;
     uint32_t    *triangle;      /* of the model, ascending */
     Facet       *facet;         /* in the same order, which is Embree's too */
+    int          corner_count;
+    double     (*corner)[3];    /* every vertex of its triangles, once */
     double       centre[3];     /* of a sphere and a box round its vertices, node axes */
     double       radius_m;      /* both with room for the narrowing to float */
     double       half[3];

@@ -356,28 +356,27 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
     const PosedEntity *entity = &v->entity[index];
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    const Model *model = tracer_model(v->tracer, entity->model);
+    const double centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
-        int              triangle_count;
-        const uint32_t  *triangle = parts_node_triangles(node, &triangle_count);
+        int              count;
+        const double   (*corner)[3] = parts_node_corners(node, &count);
         double           r_cam_from_node[9], from_eye[3], p_cam[3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
-        for (int t = 0; t < triangle_count; t++)
-            for (int c = 0; c < 3; c++) {
-                double at[3];
-                m3_mul_v3(at, r_cam_from_node, model->vertex[model->triangle[triangle[t]][c]]);
-                v3_add(at, at, p_cam);
-                if (!(at[2] > 0)) return false;
-                const double column = 0.5 * view->width + view->focal_px * at[0] / at[2];
-                const double row    = 0.5 * view->height + view->focal_px * at[1] / at[2];
-                box[0] = fmin(box[0], column);
-                box[1] = fmin(box[1], row);
-                box[2] = fmax(box[2], column);
-                box[3] = fmax(box[3], row);
-            }
+        for (int c = 0; c < count; c++) {
+            double at[3];
+            m3_mul_v3(at, r_cam_from_node, corner[c]);
+            v3_add(at, at, p_cam);
+            if (!(at[2] > 0)) return false;
+            const double column = centre_x + view->focal_px * at[0] / at[2];
+            const double row    = centre_y + view->focal_px * at[1] / at[2];
+            box[0] = column < box[0] ? column : box[0];
+            box[1] = row < box[1] ? row : box[1];
+            box[2] = column > box[2] ? column : box[2];
+            box[3] = row > box[3] ? row : box[3];
+        }
     }
     memcpy(box_px, box, sizeof box);
     return true;
