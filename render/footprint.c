@@ -214,7 +214,8 @@ static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell
         }
         s->rays.far_m[kept++] = s->rays.far_m[i];
     }
-    s->rays.count = kept;
+    s->rays.count   = kept;
+    s->rays.columns = 0;
 }
 
 /* What hides the target where its own samples did not meet it first. */
@@ -286,7 +287,7 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
         s->rays.far_m[i] = INFINITY;
     }
     s->rays.count   = count;
-    s->rays.columns = 0;
+    s->rays.columns = f->columns;
     s->counters.rays_primary += (uint64_t)count;
     s->counters.rays_small_targets += (uint64_t)count;
     keep_amodal(f, s, job, first_cell);
@@ -321,8 +322,10 @@ void footprint_task(void *user, int worker, int index)
     const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
                                                  f->box[2], f->box[3], job->request->hidden_entity);
     s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
-    for (int cell = 0; cell < cells; cell += hits_capacity)
-        sample_cells(f, s, job, cell, cells - cell < hits_capacity ? cells - cell : hits_capacity, listed);
+    /* whole rows, and fours of them where they fit: their rays go in squares */
+    const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
+    for (int cell = 0; cell < cells; cell += block)
+        sample_cells(f, s, job, cell, cells - cell < block ? cells - cell : block, listed);
 }
 
 /* ---- into the picture ----------------------------------------------------------------------- */

@@ -384,12 +384,48 @@ typedef struct Refinement {
     int      n;
 } Refinement;
 
+/* Whether the planes still hold all that a pixel's own sample gave to the sums. With no_skip it is traced again. */
+static bool planes_remember(const Job *job)
+{
+    return job->request->samples == 1 && !job->picture->profile && job->effects.count == 0 && !job->request->no_skip;
+}
+
+/* Takes from the sums what the block's pixels gave with one sample each, as the planes say; before they change. */
+static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+{
+    const Picture *picture = job->picture;
+    Block         *block   = &s->block;
+    block->n    = 1;
+    block->sign = -1;
+    make_rays(&s->rays, block, &job->request->view);
+    s->hits.count = block->pixels;
+    s->veil.any   = false;
+    for (int p = 0; p < block->pixels; p++) {
+        const size_t px = pixel_index(job, block->x[p], block->y[p]);
+        s->cosine3[p]      = pixel_cosine3(&job->request->view, block->x[p], block->y[p]);
+        s->hits.entity[p]  = picture->entity[px];
+        s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
+    }
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const Band   band  = plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR
+                           : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+        const float *value = picture_plane(picture, plane);
+        if (!value || !has_band(block->bands, band)) continue;
+        for (int p = 0; p < block->pixels; p++) s->out[p] = value[pixel_index(job, block->x[p], block->y[p])];
+        add_radiance(s, job, plane);
+    }
+    if (pairs) count_targets(s, job, listed, pairs);
+}
+
 /* The block's pixels once more with n samples a side, in place of what they had. */
 static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
 {
-    Block *block  = &s->block;
-    block->n      = how->n;
+    Block     *block = &s->block;
+    const bool areas = job->picture->target && !(how->has & refine_sun);
+    const bool sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
     block->bands  = how->bands;
+    if (sums && remembered && !(how->has & refine_ground)) take_back(s, job, listed, areas ? pairs : NULL);
+    block->n      = how->n;
     block->sign   = 1;
     block->writes = true;
     if (how->has & refine_ground) {
@@ -397,10 +433,9 @@ static void refine_block(Scratch *s, const Job *job, const Refinement *how, int 
         shade_block(s, job);
         return;
     }
-    const bool areas = job->picture->target && !(how->has & refine_sun);
     render_block(s, job, listed, areas ? pairs : NULL);
     s->counters.rays_edges += (uint64_t)s->rays.count;
-    if (!job->picture->target && !job->picture->profile) return;
+    if (!sums || remembered) return;
     block->n      = job->request->samples;
     block->sign   = -1;
     block->writes = false;
