@@ -81,10 +81,22 @@ Status footprints_plan(Job *job, Arena *arena)
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
     job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
-    if (!job->footprint || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
+    job->footprint_turn = arena_alloc(arena, (size_t)count, sizeof *job->footprint_turn);
+    if (!job->footprint || !job->footprint_turn || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     for (int i = 0; i < job->snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
+    /* the largest first, so that no worker is left with one when the others are done */
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        int              at = n;
+        for (; at > 0; at--) {
+            const Footprint *before = &job->footprint[job->footprint_turn[at - 1]];
+            if (before->columns * before->rows >= f->columns * f->rows) break;
+            job->footprint_turn[at] = job->footprint_turn[at - 1];
+        }
+        job->footprint_turn[at] = n;
+    }
     return status;
 }
 
@@ -315,7 +327,7 @@ void footprint_task(void *user, int worker, int index)
 {
     const Job *job = user;
     Scratch   *s = job->scratch[worker];
-    Footprint *f = &job->footprint[index];
+    Footprint *f = &job->footprint[job->footprint_turn[index]];
     const int  cells = f->columns * f->rows;
     s->counters.small_targets++;
     if (cells == 0) return;

@@ -461,9 +461,11 @@ static void refine_tile(void *user, int worker, int task)
         {refine_ground, refine_all | refine_step | refine_sun, no_radar, 2},
         {refine_ground | refine_sun, refine_all | refine_step, lwir, 2},
     };
+    uint8_t flags_of[hits_capacity];
+    refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
-            const unsigned flags = refine_flags(job, x, y);
+            const unsigned flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
             job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
             any |= flags;
             s->counters.pixels_refined += flags != 0;

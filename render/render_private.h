@@ -95,6 +95,7 @@ typedef struct Job {
     TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
     Footprint           *footprint; /* [footprints], by entity */
     int                  footprints;
+    int                 *footprint_turn; /* [footprints]: in which order they are sampled */
     bool                *is_small;  /* [snapshot count]: left to its footprint; pixels do not see it */
     /* planes; NULL: none wanted */
     int32_t             *coverer;   /* snapshot index of the small target that covers most; where any does */
@@ -150,8 +151,8 @@ typedef enum RefineFlag {
 /* Marks what must be refined whoever stands beside it: boxes of targets of middling size, and where a target's
  * shadow falls. */
 void mark_boxes(Job *job);
-/* The flags of a pixel, those marked included. Reads the truth planes and the shadow plane. */
-unsigned refine_flags(const Job *job, int x, int y);
+/* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the shadow plane. */
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
 /* The block's samples as places on the planes of their pixels' hits, which are of ground: rays, hits and shadow. */
 void spread_ground(Scratch *s, const Job *job);
 
