@@ -117,17 +117,51 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
 }
 
-unsigned refine_flags(const Job *job, int x, int y)
+/* 1 where `count` pixels from a on and those from b on are plainly of one kind, as most are: in arrays, and never where
+ * edge_between would find anything. */
+static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_t b, int count)
 {
+    const Picture  *p = job->picture;
+    const float    *nx = p->normal[0], *ny = p->normal[1], *nz = p->normal[2], *range_m = p->range_m;
+    const uint32_t *entity = p->entity, *part = p->part, *material = p->material;
+    const float     cosine = (float)sharp_cosine * 1.0001f, step = (float)step_part * 0.999f;
+    for (int i = 0; i < count; i++) {
+        const size_t   k = a + (size_t)i, l = b + (size_t)i;
+        const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
+                               (uint32_t)(job->shadow[k] ^ job->shadow[l]);
+        const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
+        const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
+        const float    deep_m = fabsf(range_m[k] - range_m[l]);
+        plain[i] = (uint32_t)(other == 0) & (uint32_t)(turn > cosine) & (uint32_t)(deep_m <= step * near_m);
+    }
+}
+
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1)
+{
+    enum { side = tile_side_samples };
     static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
     const View      *view  = &job->request->view;
-    unsigned         flags = job->refine[pixel_index(job, x, y)];
-    for (int k = 0; k < 4 && !(flags & refine_all); k++) {
-        const int xb = x + beside[k][0], yb = y + beside[k][1];
-        if (xb >= 0 && yb >= 0 && xb < view->width && yb < view->height) flags |= edge_between(job, x, y, xb, yb);
+    const int        width = x1 - x0;
+    uint32_t         across[side + 1], above[side], below[side]; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    const int        left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
+    if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
+    for (int y = y0; y < y1; y++) {
+        find_plain(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
+        if (y + 1 < view->height) find_plain(below, job, pixel_index(job, x0, y), pixel_index(job, x0, y + 1), width);
+        for (int x = x0; x < x1; x++) {
+            const int       k = x - x0;
+            const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
+            unsigned        flag = job->refine[pixel_index(job, x, y)];
+            for (int n = 0; n < 4 && !(flag & refine_all); n++) {
+                const int xb = x + beside[n][0], yb = y + beside[n][1];
+                if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
+                flag |= edge_between(job, x, y, xb, yb);
+            }
+            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
+            flags[(y - y0) * width + k] = (uint8_t)flag;
+        }
+        if (y + 1 < y1) memcpy(above, below, sizeof above);
     }
-    if (job->request->samples > 1) flags &= ~(unsigned)(refine_step | refine_ground); /* they have no more to give */
-    return flags;
 }
 
 /* ---- ground --------------------------------------------------------------------------------- */
@@ -138,7 +172,8 @@ void spread_ground(Scratch *s, const Job *job)
     const Picture *p       = job->picture;
     const Block   *block   = &s->block;
     const int      samples = block->n * block->n;
-    s->hits.count = s->rays.count = block->pixels * samples;
+    s->hits.count   = s->rays.count = block->pixels * samples;
+    s->hits.columns = s->rays.columns = 0;
     for (int i = 0; i < s->hits.count; i++) {
         const int    x = block->x[i / samples], y = block->y[i / samples];
         const size_t px = pixel_index(job, x, y);

@@ -81,10 +81,22 @@ Status footprints_plan(Job *job, Arena *arena)
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
     job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
-    if (!job->footprint || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
+    job->footprint_turn = arena_alloc(arena, (size_t)count, sizeof *job->footprint_turn);
+    if (!job->footprint || !job->footprint_turn || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     for (int i = 0; i < job->snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
+    /* the largest first, so that no worker is left with one when the others are done */
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        int              at = n;
+        for (; at > 0; at--) {
+            const Footprint *before = &job->footprint[job->footprint_turn[at - 1]];
+            if (before->columns * before->rows >= f->columns * f->rows) break;
+            job->footprint_turn[at] = job->footprint_turn[at - 1];
+        }
+        job->footprint_turn[at] = n;
+    }
     return status;
 }
 
@@ -197,16 +209,37 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
     box[3] = y + 1 > box[3] ? y + 1 : box[3];
 }
 
+/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked. With
+ * no_skip all stay. */
+static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
+{
+    const int count = s->rays.count;
+    int       kept = 0;
+    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
+    for (int i = 0; i < count; i++) {
+        if (!s->meets[i] && !job->request->no_skip) continue;
+        s->block.cell[kept] = first_cell + i;
+        s->meets[kept]      = s->meets[i];
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][kept] = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept] = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    s->rays.count   = kept;
+    s->rays.columns = 0;
+}
+
 /* What hides the target where its own samples did not meet it first. */
-static void count_hidden(Footprint *f, Scratch *s, const Job *job, int first_cell)
+static void count_hidden(Footprint *f, const Scratch *s)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
     for (int i = 0; i < s->all.count; i++) {
-        if (!s->meets[i] && s->all.entity[i] != id) continue;
-        const double area = footprint_area(f, first_cell + i);
+        if (!s->meets[i]) continue;
+        const int    cell = s->block.cell[i];
+        const double area = footprint_area(f, cell);
         f->amodal += area;
-        over_pixels(f, first_cell + i, grow_amodal, f->amodal_box);
+        over_pixels(f, cell, grow_amodal, f->amodal_box);
         if (s->all.entity[i] == id) continue;
         if (s->all.entity[i]) {
             f->hidden_entity += area;
@@ -218,7 +251,7 @@ static void count_hidden(Footprint *f, Scratch *s, const Job *job, int first_cel
 }
 
 /* Samples that met the target, close together: nobody else's are shaded here. */
-static void keep_target(Footprint *f, Scratch *s, int first_cell)
+static void keep_target(const Footprint *f, Scratch *s)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
     const Hits    *from = &s->all;
@@ -226,7 +259,7 @@ static void keep_target(Footprint *f, Scratch *s, int first_cell)
     int            kept = 0;
     for (int i = 0; i < from->count; i++) {
         if (from->entity[i] != id) continue;
-        s->block.cell[kept] = first_cell + i;
+        s->block.cell[kept] = s->block.cell[i];
         to->range_m[kept]   = from->range_m[i];
         to->entity[kept]    = from->entity[i];
         to->part[kept]      = from->part[i];
@@ -241,7 +274,8 @@ static void keep_target(Footprint *f, Scratch *s, int first_cell)
         }
         s->rays.far_m[kept++] = s->rays.far_m[i];
     }
-    to->count = s->rays.count = kept;
+    to->count   = s->rays.count = kept;
+    to->columns = s->rays.columns = 0;
 }
 
 static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
@@ -264,14 +298,16 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
         }
         s->rays.far_m[i] = INFINITY;
     }
-    s->rays.count = count;
-    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
-                         &s->counters.visibility);
+    s->rays.count   = count;
+    s->rays.columns = f->columns;
     s->counters.rays_primary += (uint64_t)count;
     s->counters.rays_small_targets += (uint64_t)count;
-    if (job->picture->target) count_hidden(f, s, job, first_cell);
+    keep_amodal(f, s, job, first_cell);
+    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
+                         &s->counters.visibility);
+    if (job->picture->target) count_hidden(f, s);
     s->visibility_s += wall_clock_s() - t0;
-    keep_target(f, s, first_cell);
+    keep_target(f, s);
     if (s->hits.count == 0) return;
     trace_shadows(s, job);
     shade_block(s, job);
@@ -291,15 +327,17 @@ void footprint_task(void *user, int worker, int index)
 {
     const Job *job = user;
     Scratch   *s = job->scratch[worker];
-    Footprint *f = &job->footprint[index];
+    Footprint *f = &job->footprint[job->footprint_turn[index]];
     const int  cells = f->columns * f->rows;
     s->counters.small_targets++;
     if (cells == 0) return;
     const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
                                                  f->box[2], f->box[3], job->request->hidden_entity);
     s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
-    for (int cell = 0; cell < cells; cell += hits_capacity)
-        sample_cells(f, s, job, cell, cells - cell < hits_capacity ? cells - cell : hits_capacity, listed);
+    /* whole rows, and fours of them where they fit: their rays go in squares */
+    const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
+    for (int cell = 0; cell < cells; cell += block)
+        sample_cells(f, s, job, cell, cells - cell < block ? cells - cell : block, listed);
 }
 
 /* ---- into the picture ----------------------------------------------------------------------- */

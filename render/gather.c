@@ -154,7 +154,7 @@ void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, uns
     Paths paths;
     double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
 
-    paths.rays.count = 0;
+    paths.rays.count = paths.rays.columns = 0;
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);

@@ -8,6 +8,7 @@ enum { hits_capacity = 1024 }; /* samples in one block; arrays are padded to a m
 
 typedef struct Rays {
     int    count;
+    int    columns;                 /* of a picture, in rows one after another; 0: in no such order. For speed alone */
     double o_enu[3][hits_capacity]; /* origins */
     double d_enu[3][hits_capacity]; /* unit directions */
     double far_m[hits_capacity];    /* nothing beyond; INFINITY: to the sky */
@@ -15,7 +16,7 @@ typedef struct Rays {
 
 /* A ray that met nothing: range_m INFINITY, everything else 0. */
 typedef struct Hits {
-    int      count;
+    int      count, columns;            /* as Rays */
     double   range_m[hits_capacity];
     double   p_enu[3][hits_capacity];
     float    n_geo[3][hits_capacity];   /* unit geometric normal, ENU, on the ray's side */

@@ -41,8 +41,8 @@ typedef struct PartHit {
     uint32_t triangle; /* of the model */
 } PartHit;
 
-/* The triangles of a posed node, as indices into the model's. */
-const uint32_t *parts_node_triangles(const PosedNode *node, int *count);
+/* All vertices of a posed node, each once, in its axes. */
+const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
 /* The most nodes that posing an entity of this model needs room for. */
 int parts_node_count(const Tracer *tracer, int model);
@@ -57,7 +57,27 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
                        double far_m, bool ask_all);
 /* Whether any triangle is ahead. */
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
+/* The same of rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where one is
+ * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. */
+void parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
+/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. */
+void parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+                    const double *far_m, const int *list, int count, bool ask_all);
+/* A triangle that was met, as it stands now: for as many hits as meet it. */
+typedef struct PosedFacet {
+    const PosedNode *node;     /* NULL: none */
+    uint32_t triangle;
+    bool     even;             /* one shading normal for all of it */
+    double   corner[3], ab[3], ac[3], n[3], area2; /* node axes */
+    double   geo_enu[3];       /* unit; 0: a triangle without area */
+    double   even_enu[3];      /* unit */
+} PosedFacet;
+
+void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit);
 /* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
+void parts_facet_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedFacet *facet,
+                         const double o_enu[3], const double d_enu[3], double range_m);
 void parts_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedEntity *entity, const PartHit *hit,
                    const double o_enu[3], const double d_enu[3], double range_m);
 

@@ -78,21 +78,34 @@ float *picture_plane(const Picture *picture, int plane)
     return picture->optical[plane - picture_optical];
 }
 
+/* view_ray for all samples, in arrays. */
 static void make_rays(Rays *rays, const Block *block, const View *view)
 {
-    const int samples = block->n * block->n;
-    rays->count       = block->pixels * samples;
-    for (int i = 0; i < rays->count; i++) {
-        double    place[2], d_enu[3];
-        const int pixel = i / samples;
-        sample_place(place, block->n, i % samples);
-        view_ray(d_enu, view, block->x[pixel] + place[0], block->y[pixel] + place[1]);
-        for (int k = 0; k < 3; k++) {
-            rays->o_enu[k][i] = view->p_enu[k];
-            rays->d_enu[k][i] = d_enu[k];
+    const int     samples = block->n * block->n;
+    const double *r = view->r_enu_from_cam, centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
+    const double  focal_px = view->focal_px;
+    double        place[256][2], column_px[hits_capacity], row_px[hits_capacity];
+    double *const restrict dx = rays->d_enu[0], *const restrict dy = rays->d_enu[1], *const restrict dz = rays->d_enu[2];
+    const int     count = block->pixels * samples;
+    for (int k = 0; k < samples; k++) sample_place(place[k], block->n, k);
+    for (int p = 0, i = 0; p < block->pixels; p++)
+        for (int k = 0; k < samples; k++, i++) {
+            column_px[i] = block->x[p] + place[k][0];
+            row_px[i]    = block->y[p] + place[k][1];
         }
+    for (int i = 0; i < count; i++) {
+        const double x_cam = (column_px[i] - centre_x) / focal_px, y_cam = (row_px[i] - centre_y) / focal_px;
+        const double n = 1 / sqrt(x_cam * x_cam + y_cam * y_cam + 1), x = n * x_cam, y = n * y_cam, z = n * 1;
+        dx[i] = r[0] * x + r[1] * y + r[2] * z;
+        dy[i] = r[3] * x + r[4] * y + r[5] * z;
+        dz[i] = r[6] * x + r[7] * y + r[8] * z;
+    }
+    for (int i = 0; i < count; i++) {
+        for (int k = 0; k < 3; k++) rays->o_enu[k][i] = view->p_enu[k];
         rays->far_m[i] = INFINITY;
     }
+    rays->count   = count;
+    rays->columns = block->columns;
 }
 
 /* What a photograph says of a channel: its own colour, or the brightness of all three. */
@@ -312,6 +325,9 @@ void trace_shadows(Scratch *s, const Job *job)
 void shade_block(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
+    if (job->picture->target && !s->block.footprint)
+        for (int p = 0; p < s->block.pixels; p++)
+            s->cosine3[p] = pixel_cosine3(&job->request->view, s->block.x[p], s->block.y[p]);
     resolve_materials(s, job);
     resolve_textures(s, job);
     trace_veils(s, job);
@@ -410,6 +426,7 @@ static void render_tile(void *user, int worker, int task)
     Block     *block = &s->block;
 
     *block = (Block){.n = job->request->samples, .sign = 1, .writes = true, .bands = job->request->bands};
+    if (block->n == 1) block->columns = tile.x1 - tile.x0;
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
             block->x[block->pixels]   = (uint16_t)x;
@@ -430,12 +447,48 @@ typedef struct Refinement {
     int      n;
 } Refinement;
 
+/* Whether the planes still hold all that a pixel's own sample gave to the sums. With no_skip it is traced again. */
+static bool planes_remember(const Job *job)
+{
+    return job->request->samples == 1 && !job->picture->profile && job->effects.count == 0 && !job->request->no_skip;
+}
+
+/* Takes from the sums what the block's pixels gave with one sample each, as the planes say; before they change. */
+static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+{
+    const Picture *picture = job->picture;
+    Block         *block   = &s->block;
+    block->n    = 1;
+    block->sign = -1;
+    make_rays(&s->rays, block, &job->request->view);
+    s->hits.count = block->pixels;
+    s->veil.any   = false;
+    for (int p = 0; p < block->pixels; p++) {
+        const size_t px = pixel_index(job, block->x[p], block->y[p]);
+        s->cosine3[p]      = pixel_cosine3(&job->request->view, block->x[p], block->y[p]);
+        s->hits.entity[p]  = picture->entity[px];
+        s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
+    }
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const Band   band  = plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR
+                           : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+        const float *value = picture_plane(picture, plane);
+        if (!value || !has_band(block->bands, band)) continue;
+        for (int p = 0; p < block->pixels; p++) s->out[p] = value[pixel_index(job, block->x[p], block->y[p])];
+        add_radiance(s, job, plane);
+    }
+    if (pairs) count_targets(s, job, listed, pairs);
+}
+
 /* The block's pixels once more with n samples a side, in place of what they had. */
 static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
 {
-    Block *block  = &s->block;
-    block->n      = how->n;
+    Block     *block = &s->block;
+    const bool areas = job->picture->target && !(how->has & refine_sun);
+    const bool sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
     block->bands  = how->bands;
+    if (sums && remembered && !(how->has & refine_ground)) take_back(s, job, listed, areas ? pairs : NULL);
+    block->n      = how->n;
     block->sign   = 1;
     block->writes = true;
     if (how->has & refine_ground) {
@@ -443,10 +496,9 @@ static void refine_block(Scratch *s, const Job *job, const Refinement *how, int 
         shade_block(s, job);
         return;
     }
-    const bool areas = job->picture->target && !(how->has & refine_sun);
     render_block(s, job, listed, areas ? pairs : NULL);
     s->counters.rays_edges += (uint64_t)s->rays.count;
-    if (!job->picture->target && !job->picture->profile) return;
+    if (!sums || remembered) return;
     block->n      = job->request->samples;
     block->sign   = -1;
     block->writes = false;
@@ -472,9 +524,11 @@ static void refine_tile(void *user, int worker, int task)
         {refine_ground, refine_all | refine_step | refine_sun, no_radar, 2},
         {refine_ground | refine_sun, refine_all | refine_step, lwir, 2},
     };
+    uint8_t flags_of[hits_capacity];
+    refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
     for (int y = tile.y0; y < tile.y1; y++)
         for (int x = tile.x0; x < tile.x1; x++) {
-            const unsigned flags = refine_flags(job, x, y);
+            const unsigned flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
             job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
             any |= flags;
             s->counters.pixels_refined += flags != 0;

@@ -25,6 +25,7 @@ typedef struct Footprint Footprint;
 /* Pixels of n x n samples, all samples of a pixel together; or the cells of a footprint that met their target. */
 typedef struct Block {
     int      n, pixels;
+    int      columns;                          /* of a whole tile with n = 1: its pixels lie in rows; else 0 */
     int      sign;                             /* -1: takes back from the sums what these samples gave before */
     bool     writes;                           /* into the planes */
     unsigned bands;                            /* 1 << Band: those to shade */
@@ -71,6 +72,7 @@ typedef struct Scratch {
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     Gathered       gathered; /* with sky_samples only */
     int            some_index[hits_capacity];
+    double         cosine3[hits_capacity]; /* of the block's pixels, where truth is wanted */
     VeilRays       veil;
     Veils          air[AIR_BAND_COUNT]; /* of the block's bands */
     int           *veil_list; /* [volumes of the effects] */
@@ -96,6 +98,7 @@ typedef struct Job {
     TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
     Footprint           *footprint; /* [footprints], by entity */
     int                  footprints;
+    int                 *footprint_turn; /* [footprints]: in which order they are sampled */
     bool                *is_small;  /* [snapshot count]: left to its footprint; pixels do not see it */
     /* planes; NULL: none wanted */
     int32_t             *coverer;   /* snapshot index of the small target that covers most; where any does */
@@ -151,8 +154,8 @@ typedef enum RefineFlag {
 /* Marks what must be refined whoever stands beside it: boxes of targets of middling size, and where a target's
  * shadow falls. */
 void mark_boxes(Job *job);
-/* The flags of a pixel, those marked included. Reads the truth planes and the shadow plane. */
-unsigned refine_flags(const Job *job, int x, int y);
+/* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the shadow plane. */
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
 /* The block's samples as places on the planes of their pixels' hits, which are of ground: rays, hits and shadow. */
 void spread_ground(Scratch *s, const Job *job);
 

@@ -82,7 +82,7 @@ static void count_seen(TargetCount *count, int index, const Scratch *s, const Jo
     int64_t       seen;
     const int64_t whole = sample_steps(&seen, s, job, px);
     count->visible += seen;
-    for (int b = 0; b < BAND_COUNT; b++)
+    for (int b = 0; b < BAND_COUNT && s->veil.any; b++)
         count->veiled[b] += llrint((double)seen * veil_taken(s, job, (Band)b, sample));
     count->amodal += whole;
     grow_box(count->box, x, y);
@@ -107,14 +107,18 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
                 count_seen(count, index, s, job, pairs, i);
                 continue;
             }
+            const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
+            const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+            if (!visibility_may_lie_beyond(job->visibility, index, o_enu, d_enu, s->hits.range_m[i])) continue;
             const int to      = s->some.count++;
             s->some_index[to] = i;
             for (int k = 0; k < 3; k++) {
-                s->some.o_enu[k][to] = s->rays.o_enu[k][i];
-                s->some.d_enu[k][to] = s->rays.d_enu[k][i];
+                s->some.o_enu[k][to] = o_enu[k];
+                s->some.d_enu[k][to] = d_enu[k];
             }
             s->some.far_m[to] = INFINITY;
         }
+        if (s->some.count == 0) continue;
         visibility_entity_only(s->meets, job->visibility, &s->some, index);
         for (int k = 0; k < s->some.count; k++) {
             if (!s->meets[k]) continue;
@@ -135,17 +139,24 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
 
 void add_radiance(Scratch *s, const Job *job, int plane)
 {
-    const Block *block   = &s->block;
-    const int    samples = block->n * block->n;
+    const Block  *block   = &s->block;
+    const int     samples = block->n * block->n;
+    const double  per_quantum = 1 / job->radiance_quantum; /* powers of two: exact */
+    const float  *covered = job->picture->covered;
+    uint32_t      of = 0;
+    int64_t       sum = 0;
     for (int i = 0; i < s->hits.count; i++) {
         if (!s->hits.entity[i] || !isfinite(s->out[i])) continue;
-        const int    x = block->x[i / samples], y = block->y[i / samples];
-        const size_t px = pixel_index(job, x, y);
-        const double area = (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) / samples;
+        if (s->hits.entity[i] != of) {
+            if (of) s->target[of - 1].radiance[plane] += sum;
+            of = s->hits.entity[i], sum = 0;
+        }
+        const int    pixel = samples == 1 ? i : i / samples;
+        const double open = covered ? 1 - (double)covered[pixel_index(job, block->x[pixel], block->y[pixel])] : 1;
         const double value = clamp(s->out[i], -job->radiance_limit, job->radiance_limit);
-        s->target[s->hits.entity[i] - 1].radiance[plane] +=
-            block->sign * llrint(value * area * pixel_cosine3(&job->request->view, x, y) / job->radiance_quantum);
+        sum += block->sign * llrint(value * (open / samples) * s->cosine3[pixel] * per_quantum);
     }
+    if (of) s->target[of - 1].radiance[plane] += sum;
 }
 
 /* ---- after the tiles ------------------------------------------------------------------------ */

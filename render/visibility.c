@@ -90,6 +90,29 @@ static void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3]
     }
 }
 
+/* Rays of a picture's rows in squares of 4 x 4, which go through a tracer together; others as they are. */
+static void order_rays(int order[hits_capacity], int count, int columns)
+{
+    const bool squares = columns > 1 && columns <= count && count % columns == 0;
+    const int  width = squares ? columns : count, height = squares ? count / columns : 1;
+    int        at = 0;
+    for (int y0 = 0; y0 < height; y0 += 4)
+        for (int x0 = 0; x0 < width; x0 += 4)
+            for (int y = y0; y < y0 + 4 && y < height; y++)
+                for (int x = x0; x < x0 + 4 && x < width; x++) order[at++] = y * width + x;
+}
+
+/* Which of them are to be asked, in that order. */
+static int list_asked(int list[hits_capacity], const int order[hits_capacity], const uint8_t *ask, int count)
+{
+    int listed = 0;
+    for (int k = 0; k < count; k++) {
+        list[listed] = order[k];
+        listed += ask[order[k]] != 0;
+    }
+    return listed;
+}
+
 /* The shading normal leans with the curved surface that the facets stand for; where it leans away from the
  * ray it is brought back to edge-on. */
 static void store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
@@ -130,13 +153,14 @@ static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const Gr
     store_normals(hits, i, n_geo, n_enu, d);
 }
 
-static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit, const double o[3],
-                              const double d[3])
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
+                              PosedFacet *facet, const double o[3], const double d[3])
 {
     const PosedEntity *posed = &v->entity[entity];
     const Model       *model = tracer_model(v->tracer, posed->model);
     double             n_geo[3], n_enu[3];
-    parts_normals(n_geo, n_enu, model, posed, hit, o, d, hits->range_m[i]);
+    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
+    parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
     store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
@@ -164,30 +188,36 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     GroundHit           ground_hit[hits_capacity];
     PartHit             part_hit[hits_capacity];
     double              limit_m[hits_capacity]; /* of what may still be nearer */
+    double              nearer_m[hits_capacity];
+    int                 order[hits_capacity], asked_ray[hits_capacity];
     uint8_t             ask[hits_capacity];
 
-    hits->count = count;
+    hits->count   = count;
+    hits->columns = rays->columns;
     ground_first_hits(hits->range_m, ground_hit, &v->ground, count, o, d, rays->far_m);
-    for (int i = 0; i < count; i++) {
-        hits->entity[i] = 0;
-        limit_m[i] = fmin(hits->range_m[i], rays->far_m[i]);
-    }
+    for (int i = 0; i < count; i++) limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
+    memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
     const int asked_count = list_count < 0 ? v->count : list_count;
     uint64_t  asked = 0, drawable = 0;
     for (int k = 0; k < v->count; k++) drawable += k != hidden && v->entity[k].model >= 0;
+    bool ordered = false;
     for (int k = 0; k < asked_count; k++) {
         const int          index = list_count < 0 ? k : list[k];
         const PosedEntity *entity = &v->entity[index];
         if (index == hidden || entity->model < 0) continue;
         if (v->no_skip) memset(ask, 1, sizeof ask);
         else rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
-        for (int i = 0; i < count; i++) {
-            if (!ask[i]) continue;
-            const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
-            const double range_m = parts_first_hit(&part_hit[i], entity, o_enu, d_enu, limit_m[i], v->no_skip);
-            asked++;
-            if (!(range_m < INFINITY)) continue;
-            hits->range_m[i] = limit_m[i] = range_m;
+        if (!ordered) order_rays(order, count, rays->columns);
+        ordered = true;
+        const int listed = list_asked(asked_ray, order, ask, count);
+        if (listed == 0) continue;
+        asked += (uint64_t)listed;
+        for (int n = 0; n < listed; n++) nearer_m[asked_ray[n]] = INFINITY;
+        parts_first_hits(nearer_m, part_hit, entity, o, d, limit_m, asked_ray, listed, v->no_skip);
+        for (int n = 0; n < listed; n++) {
+            const int i = asked_ray[n];
+            if (!(nearer_m[i] < INFINITY)) continue;
+            hits->range_m[i] = limit_m[i] = nearer_m[i];
             hits->entity[i]  = (uint32_t)index + 1;
         }
     }
@@ -195,13 +225,14 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
 
+    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
     for (int i = 0; i < count; i++) {
         const uint32_t entity = hits->entity[i];
         clear_hit(hits, i);
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
         for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o_enu[c] + hits->range_m[i] * d_enu[c];
-        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], o_enu, d_enu);
+        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
     if (v->landscape) classify_ground(hits, v->landscape);
@@ -241,11 +272,13 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
 {
     static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
     double  start[3][hits_capacity], towards[3][hits_capacity], far_m[hits_capacity], range_m[hits_capacity];
-    int     hit_of[hits_capacity], count = 0;
+    int     hit_of[hits_capacity], order[hits_capacity], in_turn[hits_capacity], list[hits_capacity], count = 0;
     uint8_t dark[hits_capacity], ask[hits_capacity];
 
     /* the lit candidates, close together: neither sky nor turned away */
-    for (int i = 0; i < hits->count; i++) {
+    order_rays(order, hits->count, hits->columns);
+    for (int k = 0; k < hits->count; k++) {
+        const int i = order[k];
         shadow[i] = 0;
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
@@ -259,6 +292,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         }
         far_m[count]    = INFINITY;
         dark[count]     = 0;
+        in_turn[count]  = count;
         hit_of[count++] = i;
     }
     if (count == 0) return;
@@ -274,12 +308,10 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         if (v->no_skip) memset(ask, 1, sizeof ask);
         else if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
         else rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
-        for (int i = 0; i < count; i++) {
-            if (!ask[i] || (dark[i] && !v->no_skip)) continue;
-            const double o_enu[3] = {o[0][i], o[1][i], o[2][i]};
-            dark[i] |= parts_occluded(entity, o_enu, d_enu, v->no_skip);
-            asked++;
-        }
+        for (int i = 0; i < count && !v->no_skip; i++) ask[i] &= !dark[i];
+        const int listed = list_asked(list, in_turn, ask, count);
+        parts_any_hits(dark, entity, o, d, far_m, list, listed, v->no_skip);
+        asked += (uint64_t)listed;
     }
     counters->rays_sun_parts += asked;
     counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
@@ -310,12 +342,25 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
     }
     if (v->no_skip) memset(meets, 1, (size_t)rays->count);
     else rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
-    for (int i = 0; i < rays->count; i++) {
-        if (!meets[i]) continue;
-        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
-        PartHit      hit;
-        meets[i] = parts_first_hit(&hit, entity, o_enu, d_enu, rays->far_m[i], v->no_skip) < INFINITY;
-    }
+    int       order[hits_capacity], list[hits_capacity];
+    order_rays(order, rays->count, rays->columns);
+    const int listed = list_asked(list, order, meets, rays->count);
+    memset(meets, 0, (size_t)rays->count);
+    parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, v->no_skip);
+}
+
+bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
+{
+    const PosedEntity *entity = &v->entity[index];
+    double             m[3], across[3];
+    if (v->no_skip) return true;
+    if (entity->model < 0) return false;
+    v3_sub(m, entity->centre_enu, o_enu);
+    const double along = v3_dot(m, d_enu), past_m = range_m - along;
+    if (!(past_m < entity->radius_m)) return false;
+    v3_add_scaled(across, m, -along, d_enu);
+    const double left = entity->radius_m * entity->radius_m - v3_dot(across, across);
+    return left > 0 && (past_m <= 0 || past_m * past_m < left);
 }
 
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
@@ -323,28 +368,27 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
     const PosedEntity *entity = &v->entity[index];
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    const Model *model = tracer_model(v->tracer, entity->model);
+    const double centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
-        int              triangle_count;
-        const uint32_t  *triangle = parts_node_triangles(node, &triangle_count);
+        int              count;
+        const double   (*corner)[3] = parts_node_corners(node, &count);
         double           r_cam_from_node[9], from_eye[3], p_cam[3];
         m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
         v3_sub(from_eye, node->p_enu, view->p_enu);
         m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
-        for (int t = 0; t < triangle_count; t++)
-            for (int c = 0; c < 3; c++) {
-                double at[3];
-                m3_mul_v3(at, r_cam_from_node, model->vertex[model->triangle[triangle[t]][c]]);
-                v3_add(at, at, p_cam);
-                if (!(at[2] > 0)) return false;
-                const double column = 0.5 * view->width + view->focal_px * at[0] / at[2];
-                const double row    = 0.5 * view->height + view->focal_px * at[1] / at[2];
-                box[0] = fmin(box[0], column);
-                box[1] = fmin(box[1], row);
-                box[2] = fmax(box[2], column);
-                box[3] = fmax(box[3], row);
-            }
+        for (int c = 0; c < count; c++) {
+            double at[3];
+            m3_mul_v3(at, r_cam_from_node, corner[c]);
+            v3_add(at, at, p_cam);
+            if (!(at[2] > 0)) return false;
+            const double column = centre_x + view->focal_px * at[0] / at[2];
+            const double row    = centre_y + view->focal_px * at[1] / at[2];
+            box[0] = column < box[0] ? column : box[0];
+            box[1] = row < box[1] ? row : box[1];
+            box[2] = column > box[2] ? column : box[2];
+            box[3] = row > box[3] ? row : box[3];
+        }
     }
     memcpy(box_px, box, sizeof box);
     return true;

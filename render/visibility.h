@@ -58,6 +58,10 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
 void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index);
 
+/* Whether any of entity `index` may lie farther along a ray than the first hit there, at range_m, which was looked for
+ * with it: else it is not in the ray's way at all. True with no_skip. */
+bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
+
 /* Bounding box of an entity's vertices on the image, clipped to nothing: x0, y0, x1, y1 in px. False when any
  * of its box is behind the eye. */
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index);

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include "entities/model_import.h"
 #include "render/parts.h"
 
 typedef struct Scene {
@@ -335,6 +336,151 @@ static void faces_in_one_place_are_the_lowest(void **state)
     hand_free(&model);
 }
 
+/* Rays from all around at places on the model, many of them on edges and corners; in twos and threes from one place. */
+static void aim(double o[3][hits_capacity], double d[3][hits_capacity], int count, const Model *model)
+{
+    for (int i = 0; i < count; i++) {
+        const uint32_t *corner = model->triangle[(int)hand_uniform(0, model->triangle_count)];
+        double          w[3] = {hand_uniform(0, 1), i % 3 ? hand_uniform(0, 1) : 0, i % 5 ? hand_uniform(0, 1) : 0}, way[3];
+        const double    sum = w[0] + w[1] + w[2], away_m = exp(hand_uniform(-3, 8)), aside_m = i % 2 ? 0 : 2e-5;
+        hand_direction(way);
+        for (int c = 0; c < 3; c++) {
+            const double at = (w[0] * model->vertex[corner[0]][c] + w[1] * model->vertex[corner[1]][c] +
+                               w[2] * model->vertex[corner[2]][c]) / sum + hand_uniform(-aside_m, aside_m);
+            d[c][i] = i % 4 == 3 ? d[c][i - 1] : way[c];
+            o[c][i] = i % 4 == 1 ? o[c][i - 1] : at - away_m * way[c];
+        }
+        double between[3] = {0, 0, 0};
+        if (i % 4 != 1) continue;
+        for (int c = 0; c < 3; c++) between[c] = model->vertex[corner[0]][c] - o[c][i];
+        v3_normalize(between, between);
+        for (int c = 0; c < 3; c++) d[c][i] = between[c];
+    }
+}
+
+/* A ray's answer is its own: alone, or with others in any order and number, by any instructions, asked or skipped. */
+static void check_company(const Model *model, int blocks)
+{
+    static const char *const isa[3] = {"avx2", "sse4.2", ""};
+    static double o[3][hits_capacity], d[3][hits_capacity], far_m[hits_capacity];
+    PosedEntity   entity[3] = {0};
+    Tracer       *tracer[3];
+    double        attitude[9];
+    int           met_count = 0, missed_count = 0;
+    NodePose     *pose = calloc((size_t)model->node_count, sizeof *pose);
+    model_pose(pose, model, NULL);
+    m3_identity(attitude);
+    for (int k = 0; k < 3; k++) {
+        assert_int_equal(tracer_create_models(&tracer[k], &model, 1, isa[k]), STATUS_OK);
+        entity[k].node = calloc((size_t)parts_node_count(tracer[k], 0), sizeof *entity[k].node);
+        parts_pose(&entity[k], tracer[k], 0, pose, (const double[3]){0, 0, 0}, attitude, 0);
+    }
+    for (int b = 0; b < blocks; b++) {
+        const int     count = b % 3 ? hits_capacity : (int)hand_uniform(1, 40);
+        const double *const o_enu[3] = {o[0], o[1], o[2]}, *const d_enu[3] = {d[0], d[1], d[2]};
+        int           list[hits_capacity];
+        aim(o, d, count, model);
+        for (int i = 0; i < count; i++) {
+            far_m[i] = b % 4 ? INFINITY : exp(hand_uniform(-3, 8));
+            const int other = (int)hand_uniform(0, i + 1);
+            list[i] = i == other ? i : list[other];
+            list[other] = i;
+        }
+        for (int k = 0; k < 3; k++) {
+            double  range_m[hits_capacity];
+            PartHit hit[hits_capacity] = {{0}};
+            uint8_t met[hits_capacity] = {0};
+            for (int i = 0; i < count; i++) range_m[i] = INFINITY;
+            parts_first_hits(range_m, hit, &entity[k], o_enu, d_enu, far_m, list, count, b % 2);
+            parts_any_hits(met, &entity[k], o_enu, d_enu, far_m, list, count, b % 2);
+            for (int i = 0; i < count; i++) {
+                const double one_o[3] = {o[0][i], o[1][i], o[2][i]}, one_d[3] = {d[0][i], d[1][i], d[2][i]};
+                PartHit      alone = {0};
+                const double want_m = parts_first_hit(&alone, &entity[0], one_o, one_d, far_m[i], false);
+                if (!(range_m[i] == want_m && hit[i].node == alone.node && hit[i].triangle == alone.triangle))
+                    fail_msg("%s: block %d ray %d: %.17g m, triangle %u; alone %.17g, %u", isa[k], b, i, range_m[i],
+                             hit[i].triangle, want_m, alone.triangle);
+                /* of ties the lowest is the first hit: up to 0.1 mm beyond the nearest */
+                if (far_m[i] < INFINITY) CHECK(met[i] || !(want_m < INFINITY));
+                else CHECK(met[i] == (want_m < INFINITY) && met[i] == parts_occluded(&entity[k], one_o, one_d, b % 2));
+                *(want_m < INFINITY ? &met_count : &missed_count) += 1;
+            }
+        }
+    }
+    CHECK(met_count > 500 && missed_count > 50);
+    for (int k = 0; k < 3; k++) {
+        tracer_destroy(tracer[k]);
+        free(entity[k].node);
+    }
+    free(pose);
+}
+
+static void company_does_not_show(void **state)
+{
+    (void)state;
+    Model model;
+    hand_model(&model, 1, 16, 24);
+    hand_box_into(&model, 0, (const double[3]){-1, -0.7, -0.9}, (const double[3]){1, 0.8, 1.1});
+    hand_box_into(&model, 0, (const double[3]){-0.6, -0.71, -0.9}, (const double[3]){1, 0.8, 0.3});
+    check_company(&model, 30);
+    hand_free(&model);
+    hand_sphere(&model, 2, 48); /* 48 triangles meet at its poles */
+    check_company(&model, 30);
+    hand_free(&model);
+}
+
+static void company_does_not_show_on(const char *name, int blocks)
+{
+    char        path[512];
+    Model       model;
+    ModelImport report;
+    if (!reference_path(path, name)) skip();
+    assert_int_equal(model_import(&model, &report, path), STATUS_OK);
+    check_company(&model, blocks);
+    model_destroy(&model);
+}
+
+/* Regions with faces in one place. */
+static void company_does_not_show_on_a_tank(void **state)
+{
+    (void)state;
+    company_does_not_show_on("models/brlcad/ktank.obj", 20);
+}
+
+static void company_does_not_show_on_a_truck(void **state)
+{
+    (void)state;
+    company_does_not_show_on("models/brlcad/truck.obj.gz", 20);
+}
+
+/* More triangles in one place than are kept: the lowest of all, found by looking at each. */
+static void a_crowd_is_asked_again(void **state)
+{
+    (void)state;
+    enum { sheets = 40 };
+    Model   model;
+    Tracer *tracer;
+    hand_model(&model, 1, 3 * sheets, sheets);
+    for (int k = 0; k < sheets; k++) { /* the highest number nearest, the last dozen within 0.1 mm of it */
+        const double x = k < sheets - 12 ? 0.01 * (sheets - k) : -1e-6 * k;
+        const int    a = hand_vertex(&model, x, -1, 0), b = hand_vertex(&model, x, 1, 0), c = hand_vertex(&model, x, 0, -2);
+        hand_triangle(&model, 0, a, b, c);
+    }
+    const Model   *models = &model;
+    const NodePose pose = at_rest();
+    PosedNode      node[1];
+    PosedEntity    entity = {.node = node};
+    assert_int_equal(tracer_create_models(&tracer, &models, 1, ""), STATUS_OK);
+    parts_pose(&entity, tracer, 0, &pose, (const double[3]){0, 0, 0}, (const double[9]){1, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
+    PartHit      hit;
+    const double want_m = 5 - 1e-6 * (sheets - 12);
+    CHECK_NEAR(parts_first_hit(&hit, &entity, (const double[3]){-5, 0, -0.5}, (const double[3]){1, 0, 0}, INFINITY, false),
+               want_m, 1e-14);
+    assert_int_equal(hit.triangle, sheets - 12);
+    tracer_destroy(tracer);
+    hand_free(&model);
+}
+
 static void a_wrong_instruction_set_is_refused(void **state)
 {
     (void)state;
@@ -358,6 +504,10 @@ int main(void)
         cmocka_unit_test(edge_on_stays_between_the_corners),
         cmocka_unit_test(every_set_of_instructions_agrees),
         cmocka_unit_test(faces_in_one_place_are_the_lowest),
+        cmocka_unit_test(company_does_not_show),
+        cmocka_unit_test(company_does_not_show_on_a_tank),
+        cmocka_unit_test(company_does_not_show_on_a_truck),
+        cmocka_unit_test(a_crowd_is_asked_again),
         cmocka_unit_test(a_wrong_instruction_set_is_refused),
     };
     thread_flush_denormals();
