@@ -144,6 +144,13 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
 }
 
+static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
+                        const double *const d[3], const double *far_m)
+{
+    if (v->no_skip) ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    else ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+}
+
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters)
 {
@@ -156,7 +163,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     uint8_t             ask[hits_capacity];
 
     hits->count = count;
-    ground_first_hits(hits->range_m, ground_hit, &v->ground, count, o, d, rays->far_m);
+    ground_hits(hits->range_m, ground_hit, v, count, o, d, rays->far_m);
     for (int i = 0; i < count; i++) {
         hits->entity[i] = 0;
         limit_m[i] = fmin(hits->range_m[i], rays->far_m[i]);
@@ -280,7 +287,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
         hit_of[left++] = hit_of[i];
     }
-    ground_first_hits(range_m, NULL, &v->ground, left, o, d, far_m);
+    ground_hits(range_m, NULL, v, left, o, d, far_m);
     for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
     counters->rays_sun_ground += (uint64_t)left;
 }
