@@ -30,10 +30,6 @@ static bool level_interval(LevelRay *r, const GroundLevel *g)
     return r->first_m < r->last_m;
 }
 
-/* Farther along a ray than this is no ground: from 1e9 m out, either the track would be past it, or the ray is
- * so steep that it comes over the level's rectangle far under or over the Earth. */
-static const double farthest_m = 1e10;
-
 static void add_piece(GroundRay *out, int level, double first_m, double last_m)
 {
     if (!(first_m < last_m && first_m < farthest_m)) return;

@@ -1,5 +1,5 @@
-/* render/ground.h: rays against the nested height field, in double; one ray at a time (ground.c) and eight
- * at a time (ground8.c), to the same bits.
+/* render/ground.h: rays against the nested height field, in double; one ray at a time (ground.c), eight at a time
+ * (ground8.c), and tiles of rays that keep together (ground_together.c), all to the same bits.
  *
  * Along a ray, its height over the surface is linear between the places where its track crosses a line of
  * posts or a cell's diagonal. The hit is the first change of sign between two such places, so no ray slips
@@ -48,6 +48,11 @@ double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu
  * the bit, in whatever company a ray comes. */
 void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
                        const double *const d_enu[3], const double *far_m);
+
+/* The same, to the bit, in a half to a fifth of the time for rays that keep together: those of a tile from one eye,
+ * or from its hits to the sun (tests/render/test_ground_together.c). No slower for others. */
+void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *ground, int count,
+                                const double *const o_enu[3], const double *const d_enu[3], const double *far_m);
 
 /* Upward unit normal of the triangle that was hit, and the one interpolated between central differences at
  * its posts, for shading. */

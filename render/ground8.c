@@ -1,16 +1,12 @@
 /* Eight rays walk the pyramid side by side, each at its own node; a lane that is done takes the next ray of
  * the list. A step is the same for every lane, in two vectors of four; looking up posts, the triangles of a
- * cell and changes of ray are done a lane at a time. Written with intrinsics because the compiler finds
- * control flow in these selections and gives up (half the speed).
+ * cell and changes of ray are done a lane at a time.
  *
  * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
-#include <immintrin.h>
-
-#include "render/ground_private.h"
+#include "render/ground_lanes.h"
 
 enum { lanes = 8 };
 
-typedef __m256d Four;
 
 /* Where the lanes are: all that a step reads and writes. */
 typedef struct Walk {
@@ -27,18 +23,6 @@ typedef struct Seen {
     Four node_i, node_j, at_u, at_v, next_m;
     Four clear; /* mask: above everything in the node */
 } Seen;
-
-static inline Four set(double x) { return _mm256_set1_pd(x); }
-static inline Four load(const double *p) { return _mm256_load_pd(p); }
-static inline Four less(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-static inline Four at_most(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-static inline Four both(Four a, Four b) { return _mm256_and_pd(a, b); }
-static inline Four either(Four a, Four b) { return _mm256_or_pd(a, b); }
-static inline Four unless(Four not, Four a) { return _mm256_andnot_pd(not, a); }
-static inline Four pick(Four mask, Four yes, Four no) { return _mm256_blendv_pd(no, yes, mask); }
-static inline Four smaller(Four a, Four b) { return _mm256_min_pd(a, b); } /* a < b ? a : b */
-static inline Four larger(Four a, Four b) { return _mm256_max_pd(a, b); }  /* a > b ? a : b */
-static inline unsigned bits(Four mask) { return (unsigned)_mm256_movemask_pd(mask); }
 
 /* Highest posts of four lanes' nodes. */
 static inline Four look_up(Four node_i, Four node_j, Four k, const GroundLevel *const level[4])
@@ -68,19 +52,6 @@ static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
     return s;
 }
 
-/* ground_cell_at, four times. */
-static inline Four cell_at(Four p0, Four dp, Four per_dp, Four t, Four last)
-{
-    const Four zero = set(0), one = set(1);
-    Four       e = _mm256_floor_pd(p0 + t * dp);
-    e = smaller(larger(e, zero), last);
-    const Four at_low = (e - p0) * per_dp, at_high = (e + one - p0) * per_dp;
-    const Four out = at_most(pick(per_dp, at_low, at_high), t), early = less(t, pick(per_dp, at_high, at_low));
-    const Four sign = either(one, both(set(-0.0), per_dp)); /* of the way along this axis */
-    e = e + both(out, sign) - both(unless(out, early), sign);
-    return smaller(larger(e, zero), last);
-}
-
 /* Lanes whose mask says so go on to the next node, up a level where they leave a parent; the others go down.
  * Returns the bits of those that came to their end. */
 static inline unsigned move(Walk *w, int l, const Seen *s, Four on)
@@ -107,8 +78,9 @@ static inline unsigned move(Walk *w, int l, const Seen *s, Four on)
 typedef struct Stream {
     const Ground        *ground;
     int                  count, next;
+    const int           *list; /* which; NULL: all */
     const double *const *o, *const *d;
-    const double        *far_m;
+    const double        *far_m, *from_m; /* from_m NULL: from the origins */
     double              *range_m;
     GroundHit           *hit;
     int                  ray_of[lanes];
@@ -116,7 +88,8 @@ typedef struct Stream {
     GroundRay            ray[lanes];
 } Stream;
 
-static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m)
+static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m,
+                      int k)
 {
     w->u0[l] = r->u0, w->v0[l] = r->v0, w->w0[l] = r->w0;
     w->du[l] = r->du, w->dv[l] = r->dv, w->dw[l] = r->dw;
@@ -127,7 +100,7 @@ static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, d
     w->t_m[l] = start_m;
     w->i[l] = ground_cell_at(r->u0, r->du, r->per_du, start_m, g->cells_x);
     w->j[l] = ground_cell_at(r->v0, r->dv, r->per_dv, start_m, g->cells_y);
-    w->k[l] = ground_start_level(g, r), w->size[l] = 1 << ground_start_level(g, r), w->per_size[l] = 1 / w->size[l];
+    w->k[l] = k, w->size[l] = 1 << k, w->per_size[l] = 1 / w->size[l];
 }
 
 /* Gives the lane its ray's next piece over a level, or the next ray; false when there are no more. */
@@ -143,13 +116,18 @@ static bool refill(Stream *stream, Walk *w, int l)
             r->first_m = ray->first_m[p];
             r->last_m  = ray->last_m[p];
             ground_walk(&start_m, &stop_m, g, r, stream->far_m[stream->ray_of[l]]);
+            int k = ground_start_level(g, r);
+            if (stream->from_m && stream->from_m[stream->ray_of[l]] > start_m) {
+                start_m = stream->from_m[stream->ray_of[l]];
+                k = k < 2 ? k : 2;
+            }
             if (!(start_m < stop_m)) continue;
             stream->level[l] = g;
-            put_piece(w, l, g, r, start_m, stop_m);
+            put_piece(w, l, g, r, start_m, stop_m, k);
             return true;
         }
         if (stream->next >= stream->count) return false;
-        const int    n = stream->ray_of[l] = stream->next++;
+        const int    m = stream->next++, n = stream->ray_of[l] = stream->list ? stream->list[m] : m;
         const double o[3] = {stream->o[0][n], stream->o[1][n], stream->o[2][n]};
         const double d[3] = {stream->d[0][n], stream->d[1][n], stream->d[2][n]};
         stream->range_m[n] = INFINITY;
@@ -173,21 +151,22 @@ static bool meets_cell(Stream *stream, const Walk *w, int l)
     return true;
 }
 
-void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
-                       const double *const d_enu[3], const double *far_m)
+void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *ground, int count,
+                            const double *const o_enu[3], const double *const d_enu[3], const double *far_m,
+                            const double *from_m, const int *list)
 {
     if (ground->level_count == 0) {
-        for (int n = 0; n < count; n++) range_m[n] = INFINITY;
+        for (int n = 0; n < count; n++) range_m[list ? list[n] : n] = INFINITY;
         return;
     }
     Walk     w;
-    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m,
+    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m, .from_m = from_m, .list = list,
                        .range_m = range_m, .hit = hit};
     unsigned busy = 0;
     for (int l = 0; l < lanes; l++) {
         /* an idle lane stands in the first cell of level 0 and is not listened to */
         const GroundLevel *g = stream.level[l] = &ground->level[0];
-        put_piece(&w, l, g, &(LevelRay){.per_du = 1, .per_dv = 1, .last_m = 1}, 0, 1);
+        put_piece(&w, l, g, &(LevelRay){.per_du = 1, .per_dv = 1, .last_m = 1}, 0, 1, 0);
         if (refill(&stream, &w, l)) busy |= 1u << l;
     }
     while (busy) {
@@ -207,4 +186,10 @@ void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, in
             if (!refill(&stream, &w, l)) busy &= ~(1u << l);
         }
     }
+}
+
+void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
+                       const double *const d_enu[3], const double *far_m)
+{
+    ground_first_hits_from(range_m, hit, ground, count, o_enu, d_enu, far_m, NULL, NULL);
 }

@@ -15,6 +15,10 @@
  * a few roundings is 3e-11 post). */
 static const double ground_clear_posts = 1e-6;
 
+/* Farther along a ray than this is no ground: from 1e9 m out, either the track would be past it, or the ray is
+ * so steep that it comes over the level's rectangle far under or over the Earth. */
+static const double farthest_m = 1e10;
+
 typedef struct LevelRay {
     double u0, v0, w0, du, dv, dw;
     double per_du, per_dv, per_duv; /* 1 / du, 1 / dv, 1 / (dv - du); never infinite */
@@ -144,5 +148,26 @@ static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, in
     *north_west = r->u0 + middle * r->du - i < r->v0 + middle * r->dv - j;
     return hit;
 }
+
+/* ---- rays that keep together ------------------------------------------------------------------ */
+
+enum { ground_together = 1024 }; /* rays at most, of the two below */
+
+/* Distances before which rays from one eye meet nothing: from_m[i], INFINITY where that is everywhere. False:
+ * nothing is known, from_m is not written. */
+bool ground_sweep(double *from_m, const Ground *ground, int count, const double o_enu[3],
+                  const double *const d_enu[3]);
+
+/* Decides what can be decided quickly, from from_m on; of the others left[] tells the numbers and from_m where to
+ * go on. start_level: of the pyramid. Returns how many are left. */
+int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *ground, int count,
+                     const double *const o_enu[3], const double *const d_enu[3], const double *far_m, double *from_m,
+                     int start_level);
+
+/* ground_first_hits for the count rays whose numbers are in list (NULL: 0 .. count - 1), of which nothing meets
+ * anything before from_m (NULL: 0). */
+void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *ground, int count,
+                            const double *const o_enu[3], const double *const d_enu[3], const double *far_m,
+                            const double *from_m, const int *list);
 
 #endif

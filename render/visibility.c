@@ -179,6 +179,13 @@ static void classify_ground(Hits *hits, const Landscape *landscape)
     landscape_surfaces(hits->surface, landscape, hits->count, x_m, y_m);
 }
 
+static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
+                        const double *const d[3], const double *far_m)
+{
+    if (v->no_skip) ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    else ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+}
+
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters)
 {
@@ -194,7 +201,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
 
     hits->count   = count;
     hits->columns = rays->columns;
-    ground_first_hits(hits->range_m, ground_hit, &v->ground, count, o, d, rays->far_m);
+    ground_hits(hits->range_m, ground_hit, v, count, o, d, rays->far_m);
     for (int i = 0; i < count; i++) limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
     const int asked_count = list_count < 0 ? v->count : list_count;
@@ -324,7 +331,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
         hit_of[left++] = hit_of[i];
     }
-    ground_first_hits(range_m, NULL, &v->ground, left, o, d, far_m);
+    ground_hits(range_m, NULL, v, left, o, d, far_m);
     for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
     counters->rays_sun_ground += (uint64_t)left;
 }

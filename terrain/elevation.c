@@ -2,6 +2,20 @@
 #include "terrain/elevation.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
+
+/* Zeroed heights. A ray touches a few of hundreds of megabytes: what is large lies on large pages where the system
+ * has them, or half of a look would be looking up its page. NULL: no memory. */
+static uint16_t *heights_create(size_t count)
+{
+    static const size_t page = (size_t)1 << 21;
+    const size_t        bytes = count * sizeof(uint16_t);
+    if (bytes < 2 * page) return calloc(count, sizeof(uint16_t));
+    void *heights = aligned_alloc(page, (bytes + page - 1) / page * page);
+    if (!heights) return NULL;
+    madvise(heights, bytes, MADV_HUGEPAGE); /* a wish: where it is not granted nothing changes but the time */
+    return memset(heights, 0, bytes);
+}
 
 Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, double x0_m, double y0_m,
                               double spacing_m, double z0_m, double step_m)
@@ -13,11 +27,11 @@ Status elevation_level_create(Elevation *elevation, int index, int nx, int ny, d
 
     ElevationLevel level = {.nx = nx, .ny = ny, .x0_m = x0_m, .y0_m = y0_m,
                             .spacing_m = spacing_m, .z0_m = z0_m, .step_m = step_m};
-    level.post = calloc((size_t)nx * ny, sizeof *level.post);
+    level.post = heights_create((size_t)nx * ny);
     bool whole = level.post != NULL;
     for (int w = nx - 1, h = ny - 1; whole; w = (w + 1) / 2, h = (h + 1) / 2) {
         const int k = level.pyramid_count;
-        level.pyramid[k] = calloc((size_t)w * h, sizeof **level.pyramid);
+        level.pyramid[k] = heights_create((size_t)w * h);
         level.pyramid_nx[k] = w;
         level.pyramid_ny[k] = h;
         whole = level.pyramid[k] != NULL;
