@@ -1,7 +1,7 @@
 /* pitviper.h: the few words everyone shares.
  *
  * Status and log, memory that lives one frame, one pool of threads, counter-based random numbers,
- * text tables, and small vectors. Knows nothing of DIS, Earth or light. */
+ * text tables, settings, and small vectors. Knows nothing of DIS, Earth or light. */
 #ifndef PITVIPER_H
 #define PITVIPER_H
 
@@ -116,6 +116,62 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 
 /* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
+
+/* ---- settings: what people write in YAML files ------------------------------------------------ */
+
+typedef enum SettingType {
+    SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
+    SETTING_NUMBERS /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
+} SettingType;
+
+enum { number_list_capacity = 256 };
+typedef struct NumberList {
+    int    count;
+    double number[number_list_capacity];
+} NumberList;
+
+/* One key of a struct. SETTING_AT(Config, sensor.width_px) gives offset and size. */
+typedef struct Setting {
+    const char *name;          /* `section.key`, or `key` at the top */
+    SettingType type;
+    size_t      offset, size;
+    double      low, high;     /* of each number; low NaN: any finite one */
+    const char *choices;       /* of text: one of these, separated by `|`; NULL: any */
+    const char *unit, *help;
+} Setting;
+#define SETTING_AT(type, member) offsetof(type, member), sizeof(((type *)0)->member)
+
+/* A section that is a list of mappings, `vehicles: [{...}, {...}]`: each fills one item. */
+typedef struct SettingTable SettingTable;
+typedef struct SettingList {
+    const char         *name;
+    const SettingTable *item;
+    void             *(*add)(void *owner); /* a new item with its defaults; NULL: there are too many */
+} SettingList;
+
+struct SettingTable {
+    const char        *module; /* whose messages these are: `config` */
+    const Setting     *row;
+    int                count;
+    const SettingList *list;   /* NULL: none */
+    int                list_count;
+};
+
+enum { settings_file_octets = 1 << 20, settings_depth = 8 };
+
+/* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
+ * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL, is
+ * set for each key met at the top. On failure *out is half filled: read into a copy. */
+Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
+/* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
+Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
+                    const char *source);
+int    settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
+/* Every key and value, in table order, one a line: what is hashed. */
+void   settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);
+/* A file that reads back as *from: sections, each key with its help, unit and range as a comment. Keys for which
+ * shown (may be NULL) is false, and those that are unset (NaN), are commented out. */
+void   settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
 
 /* ---- probes: one model at a time, held against anybody else's numbers --------------------------- */
 

@@ -1,0 +1,145 @@
+/* Settings: what is wrong is refused with its line; lists and numbers; what is written reads back the same. */
+#include "tests/check.h"
+
+#include "pitviper.h"
+
+typedef struct Thing {
+    double     size_m;
+    char       name[8];
+    NumberList way;
+} Thing;
+
+typedef struct Box {
+    int       count, deep;
+    double    weight_kg, unset;
+    bool      open;
+    long long seed;
+    char      label[24];
+    Thing     thing[2];
+    int       things;
+} Box;
+
+static void *add_thing(void *owner)
+{
+    Box *box = owner;
+    return box->things < 2 ? &box->thing[box->things++] : NULL;
+}
+
+static const Setting thing_rows[] = {
+    {"size_m", SETTING_DOUBLE, SETTING_AT(Thing, size_m), 0, 10, NULL, "m", ""},
+    {"name", SETTING_TEXT, SETTING_AT(Thing, name), 0, 0, NULL, "", ""},
+    {"way", SETTING_NUMBERS, SETTING_AT(Thing, way), -100, 100, NULL, "m", ""},
+};
+static const SettingTable thing_table = {.module = "test", .row = thing_rows, .count = 3};
+static const SettingList  lists[] = {{"things", &thing_table, add_thing}};
+static const Setting box_rows[] = {
+    {"count", SETTING_INT, SETTING_AT(Box, count), 0, 9, NULL, "", "how many"},
+    {"inside.deep", SETTING_INT, SETTING_AT(Box, deep), -5, 5, NULL, "px", "of it"},
+    {"inside.weight_kg", SETTING_DOUBLE, SETTING_AT(Box, weight_kg), NAN, NAN, NULL, "kg", ""},
+    {"inside.unset", SETTING_DOUBLE, SETTING_AT(Box, unset), 0, 1, NULL, "", "or not"},
+    {"inside.open", SETTING_BOOL, SETTING_AT(Box, open), 0, 1, NULL, "", ""},
+    {"inside.label", SETTING_TEXT, SETTING_AT(Box, label), 0, 0, NULL, "", "on the lid"},
+    {"seed", SETTING_LONG, SETTING_AT(Box, seed), 0, 1e15, NULL, "", ""},
+};
+static const SettingTable table = {.module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1};
+
+static Status read_text(Box *box, bool *given, const char *text)
+{
+    char path[text_file_size];
+    text_file(path, text);
+    check_said[0] = 0;
+    log_set_sink(check_listen, NULL);
+    const Status status = settings_read(box, given, &table, path);
+    remove(path);
+    return status;
+}
+
+static void sections_lists_and_numbers(void **state)
+{
+    (void)state;
+    Box  box = {.deep = 3};
+    bool given[7] = {false};
+    assert_int_equal(read_text(&box, given, "count: 4\ninside:\n  weight_kg: -1e300\n  open: true\nseed: 123456789012\n"
+                                            "things:\n  - name: a\n    way: [[1, 2], [3, -4.5]]\n  - {size_m: 2, way: [7]}\n"),
+                     STATUS_OK);
+    CHECK(box.count == 4 && box.deep == 3 && box.open && box.seed == 123456789012);
+    CHECK_NEAR(box.weight_kg, -1e300, 0);
+    CHECK(given[0] && !given[1] && given[2] && !given[5]);
+    assert_int_equal(box.things, 2);
+    assert_string_equal(box.thing[0].name, "a");
+    assert_int_equal(box.thing[0].way.count, 4);
+    CHECK_NEAR(box.thing[0].way.number[3], -4.5, 0);
+    CHECK(box.thing[1].way.count == 1 && box.thing[1].size_m == 2);
+    assert_int_equal(read_text(&box, NULL, ""), STATUS_OK);
+    assert_int_equal(read_text(&box, NULL, "inside:\n"), STATUS_OK); /* a section with nothing in it */
+}
+
+static void what_is_wrong_is_said_with_its_line(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said;
+    } bad[] = {
+        {"count: 4\ncuont: 5\n", ":2: no such key: cuont"},
+        {"count: 4\ncount: 5\n", ":2: count is given twice"},
+        {"count: 10\n", ":1: count: '10' is not a whole number in 0 .. 9"},
+        {"count: 1.5\n", "'1.5' is not a whole number"},
+        {"inside:\n  deep: 6\n", ":2: inside.deep: '6' is not a whole number in -5 .. 5 px"},
+        {"inside: 3\n", "no such key: inside"},
+        {"inside.deep: {a: 1}\n", "needs one value"},
+        {"things: 3\n", "things: expected a list"},
+        {"things: [3]\n", ":1: things: expected `- key: value`"},
+        {"things:\n  - name: a\n  - name: b\n  - name: c\n", ":4: things: no room for more"},
+        {"things:\n  - name: a\n    name: b\n", ":3: name is given twice"},
+        {"things:\n  - nmae: a\n", ":2: no such key: nmae"},
+        {"things:\n  - way: [1, [2, [3]]]\n", "needs a list of at most 256 numbers in -100 .. 100 m"},
+        {"things:\n  - way: [1, 101]\n", "needs a list"},
+        {"count: 1\n---\ncount: 2\n", "a second document"},
+        {"count: \"1\\0\"\n", "is not a whole number"},
+        {"[1]: 2\n", "a key must be a word"},
+        {"a: &x [*x]\n", "no such key"},
+        {"things: &x [*x]\n", "things: expected `- key: value`"},
+        {"- a\n", "expected `section:`"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        Box box = {0};
+        if (read_text(&box, NULL, bad[i].text) == STATUS_OK) fail_msg("accepted: %s", bad[i].text);
+        if (!strstr(check_said, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", check_said, bad[i].said);
+    }
+    Box box = {0};
+    assert_int_equal(settings_read(&box, NULL, &table, "/dev/zero"), STATUS_BAD_VALUE); /* endless, and not YAML */
+    assert_int_equal(settings_read(&box, NULL, &table, "/nowhere/at/all"), STATUS_IO);
+    assert_int_equal(settings_read(&box, NULL, &table, "/"), STATUS_IO);
+}
+
+static void written_settings_read_back(void **state)
+{
+    (void)state;
+    const Box box = {.count = 7, .deep = -2, .weight_kg = 0.1 + 0.2, .unset = NAN, .open = true, .seed = 999999999999,
+                     .label = "it's: #1 'here'"};
+    char  path[text_file_size];
+    text_file(path, "");
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    settings_write(file, &table, &box, NULL);
+    assert_int_equal(fclose(file), 0);
+
+    Box back = {.unset = NAN};
+    assert_int_equal(settings_read(&back, NULL, &table, path), STATUS_OK);
+    remove(path);
+    char want[512], got[512];
+    settings_text(want, sizeof want, &table, &box);
+    settings_text(got, sizeof got, &table, &back);
+    assert_string_equal(got, want);
+    CHECK(strstr(want, "inside.weight_kg=0.30000000000000004\n"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(sections_lists_and_numbers),
+        cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+        cmocka_unit_test(written_settings_read_back),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
