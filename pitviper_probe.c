@@ -177,6 +177,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
         status = STATUS_IO;
     }
 done:
+    if (status == STATUS_NO_MEMORY) log_error("probe: %s: out of memory", probe->name);
     if (opened && probe->close) probe->close(state);
     free(value);
     free(line);

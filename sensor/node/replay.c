@@ -99,7 +99,10 @@ static bool read_config(Config *config, int argc, char **argv)
 {
     bool   ok   = true;
     char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
-    if (!copy) return false;
+    if (!copy) {
+        log_error("replay: out of memory");
+        return false;
+    }
     memcpy(copy, argv, (size_t)argc * sizeof *copy);
     optind = 0; /* start anew */
     opterr = 0; /* the pass over all options speaks */
@@ -425,6 +428,8 @@ int replay_command(int argc, char **argv)
         if (one != STATUS_OK) failed = one; /* the others are still shown */
     }
     if (status == STATUS_OK) status = failed;
+    if (status == STATUS_NO_MEMORY)
+        log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 
     pool_destroy(run.pool);
     catalog_close(run.catalog);
