@@ -206,7 +206,7 @@ static int munitions(const ScenarioShot *shot) { return shot->entity ? shot->rou
 bool scenario_ids(int *ids, const Scenario *scenario)
 {
     enum { all = 65534 };
-    bool *taken = calloc(all, sizeof *taken), fits = taken != NULL;
+    bool taken[all] = {false}, fits = true;
     const int groups = scenario->group_count, items = groups + scenario->shot_count;
     /* those that name theirs first */
     for (int pass = 0; pass < 2 && fits; pass++) {
@@ -229,7 +229,6 @@ bool scenario_ids(int *ids, const Scenario *scenario)
             if (!named) next = first + size;
         }
     }
-    free(taken);
     return fits;
 }
 

@@ -336,13 +336,15 @@ int exercise_command(int argc, char **argv)
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    if (read_scenario(&scenario, &o) != STATUS_OK) return 1;
+    Status status = read_scenario(&scenario, &o);
+    if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
+    if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
         if (!apply_set(&scenario, o.set[i])) {
             scenario_destroy(&scenario);
             return 2;
         }
-    Status status = scenario_check(&scenario);
+    status = scenario_check(&scenario);
     if (status == STATUS_OK) status = cast_create(&cast, &scenario);
     if (status == STATUS_OK) {
         catch_signals();
@@ -350,6 +352,7 @@ int exercise_command(int argc, char **argv)
         status = open_outputs(&run, &o, epoch_unix_s);
         if (status == STATUS_OK) status = play(&run, cast, epoch_unix_s, o.speed);
     }
+    if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (dis_recorder_close(run.recorder) != STATUS_OK) status = STATUS_IO;
     if (run.udp) {
         const DisUdpCounters counters = dis_udp_counters(run.udp);
