@@ -6,6 +6,7 @@
 #include "render/probe.h"
 #include "sensor/node/check.h"
 #include "sensor/bench.h"
+#include "sensor/node/exercise.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
@@ -97,6 +98,7 @@ static const struct Command {
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
     {"check", check_command, "say whether a file of settings is good; or print one to begin with"},
+    {"exercise", exercise_command, "write or send an exercise from a scenario"},
     {"record", record_command, "record the exercise on the network"},
     {"model", model_command, "say what a model is made of, built in or from a file"},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},

@@ -158,9 +158,14 @@ struct SettingTable {
     int                count;
     const SettingList *list;   /* NULL: none */
     int                list_count;
+    size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
 };
 
 enum { settings_file_octets = 1 << 20, settings_depth = 8 };
+
+/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document. What is not YAML at all
+ * passes: its reader says where. Time in proportion to octets; logs what is too much. */
+Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
  * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL, is

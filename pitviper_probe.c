@@ -31,17 +31,21 @@ static int read_columns(Column *column, const char *list)
     return count;
 }
 
-/* False at the end of the file. A line longer than the limit is read to its end, and cut. */
-static bool read_line(char *line, FILE *in, bool *cut)
+/* False at the end of the file. A line longer than the limit, or with a NUL in it, is read to its end, and why it
+ * cannot be used is said. */
+static bool read_line(char *line, FILE *in, const char **error)
 {
-    *cut = false;
-    if (!fgets(line, row_max_octets, in)) return false;
-    size_t length = strlen(line);
-    if (length == row_max_octets - 1 && line[length - 1] != '\n') {
-        *cut = true;
-        for (int c = fgetc(in); c != EOF && c != '\n'; c = fgetc(in)) {}
+    size_t length = 0;
+    int    c = getc(in);
+    *error = NULL;
+    if (c == EOF) return false;
+    for (; c != EOF && c != '\n'; c = getc(in)) {
+        if (c == 0) *error = "the line holds a NUL octet";
+        else if (length < row_max_octets - 1) line[length++] = (char)c;
+        else if (!*error) *error = "line too long";
     }
-    while (length > 0 && (line[length - 1] == '\n' || line[length - 1] == '\r')) line[--length] = 0;
+    while (length > 0 && line[length - 1] == '\r') length--;
+    line[length] = 0;
     return true;
 }
 
@@ -108,12 +112,13 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
     char       *line = malloc(row_max_octets), *copy = malloc(row_max_octets);
     char       *cell[row_max_cells];
     void       *state = NULL;
-    bool        cut, opened = false;
+    bool        opened = false;
+    const char *unusable;
     Status      status = STATUS_NO_MEMORY;
     if (!value || !line || !copy) goto done;
 
     do {
-        if (!read_line(line, in, &cut)) {
+        if (!read_line(line, in, &unusable)) {
             log_error("probe: %s: no header on standard input; it needs %s ($: text, ?: may be missing)", probe->name,
                       probe->in);
             status = STATUS_BAD_VALUE;
@@ -121,12 +126,13 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
         }
         /* a spreadsheet's mark */
         if (strncmp(line, "\xef\xbb\xbf", 3) == 0) memmove(line, line + 3, strlen(line + 3) + 1);
-    } while (!*line || *line == '#');
+    } while (!unusable && (!*line || *line == '#'));
     strcpy(copy, line);
     const int cells = text_split(cell, row_max_cells, copy);
-    status          = cells < 0 || cells > row_max_cells || cut ? STATUS_BAD_VALUE : STATUS_OK;
+    status          = cells < 0 || cells > row_max_cells || unusable ? STATUS_BAD_VALUE : STATUS_OK;
     if (status != STATUS_OK) {
-        log_error("probe: %s: the header is not CSV of at most %d columns", probe->name, row_max_cells);
+        log_error("probe: %s: the header is not CSV of at most %d columns%s%s", probe->name, row_max_cells,
+                  unusable ? ": " : "", unusable ? unusable : "");
         goto done;
     }
     status = find_columns(column, columns, probe, cell, cells);
@@ -137,12 +143,12 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
     fputs(line, out);
     for (int i = 0; i < results; i++) fprintf(out, ",%s", result[i].name);
     fputs(",error\n", out);
-    while (read_line(line, in, &cut)) {
+    while (read_line(line, in, &unusable)) {
         char reason[128];
-        if (!*line || *line == '#') continue;
+        if (!unusable && (!*line || *line == '#')) continue;
         strcpy(copy, line);
         const int   count = text_split(cell, row_max_cells, copy);
-        const char *error = cut ? "line too long" : count < 0 ? "a quote is not closed" : NULL;
+        const char *error = unusable ? unusable : count < 0 ? "a quote is not closed" : NULL;
         if (!error && count != cells) {
             snprintf(reason, sizeof reason, "%d columns where the header has %d", count, cells);
             error = reason;
@@ -171,6 +177,7 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
         status = STATUS_IO;
     }
 done:
+    if (status == STATUS_NO_MEMORY) log_error("probe: %s: out of memory", probe->name);
     if (opened && probe->close) probe->close(state);
     free(value);
     free(line);

@@ -17,6 +17,7 @@ int settings_find(const SettingTable *table, const char *name)
 static bool is_choice(const char *choices, const char *value)
 {
     const size_t length = strlen(value);
+    if (strchr(value, '|')) return false;
     for (const char *at = choices; at; at = strchr(at, '|'), at = at ? at + 1 : NULL)
         if (strncmp(at, value, length) == 0 && (at[length] == '|' || !at[length])) return true;
     return false;
@@ -197,6 +198,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
             free(seen);
             return item ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
         }
+        if (list->item->line_at) *(int *)((char *)item + list->item->line_at) = line_of(node);
         const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node, depth + 1);
         free(seen);
         if (status != STATUS_OK) return status;
@@ -291,7 +293,8 @@ static Status parse(void *out, bool *given, const SettingTable *table, const cha
 {
     yaml_parser_t   parser;
     yaml_document_t document;
-    Status          status;
+    Status          status = yaml_check(table->module, path, text, octets);
+    if (status != STATUS_OK) return status;
     if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
     if (!yaml_parser_load(&parser, &document)) {

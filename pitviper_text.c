@@ -164,8 +164,9 @@ Status table_open(Table *out, const char *path)
     table.path = strdup(path);
     if (!table.path) goto fail;
 
-    int lines = 1;
-    for (const char *c = table.text; *c; c++) lines += *c == '\n';
+    int    lines = 1;
+    size_t octets = 0;
+    for (const char *c = table.text; *c; c++, octets++) lines += *c == '\n';
     table.line = calloc((size_t)lines, sizeof *table.line);
     if (!table.line) goto fail;
 
@@ -181,7 +182,10 @@ Status table_open(Table *out, const char *path)
         if (table.rows < 0) {
             int columns = 1;
             for (const char *c = line; *c; c++) columns += *c == ',';
-            table.cell = calloc((size_t)columns * (size_t)lines, sizeof *table.cell);
+            /* a row has an octet a column at least: a wide header over many blank lines asks for no more than that */
+            size_t cells_most = (size_t)columns * (size_t)lines;
+            if (cells_most > octets + (size_t)columns) cells_most = octets + (size_t)columns;
+            table.cell = calloc(cells_most, sizeof *table.cell);
             if (!table.cell) goto fail;
             table.columns = columns;
         }

@@ -11,6 +11,7 @@ typedef struct CatalogRow {
     int    field[type_fields]; /* any: a star */
     int    length;             /* fields up to the last one named */
     int    named;              /* fields that are not a star */
+    int    order;              /* in the file */
     int    model;
     Origin origin;
 } CatalogRow;
@@ -139,10 +140,13 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
     return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
 }
 
-/* Longer first, then more fields named; equal rows stay in the order of the file (it is the search order). */
-static bool row_before(const CatalogRow *a, const CatalogRow *b)
+/* Longer first, then more fields named, then the order of the file: it is the search order. */
+static int row_order(const void *x, const void *y)
 {
-    return a->length != b->length ? a->length > b->length : a->named > b->named;
+    const CatalogRow *a = x, *b = y;
+    if (a->length != b->length) return a->length > b->length ? -1 : 1;
+    if (a->named != b->named) return a->named > b->named ? -1 : 1;
+    return (a->order > b->order) - (a->order < b->order);
 }
 
 Status catalog_open(Catalog **out, const char *path, double sag_m)
@@ -173,14 +177,12 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
     status = find_or_build(&unknown, catalog, "unknown", "", sag_m);
     if (status != STATUS_OK) log_error("catalog: cannot build the unknown model: %s", status_name(status));
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        CatalogRow row;
-        status = read_row(&row, catalog, &table, r, column, sag_m);
-        if (status != STATUS_OK) break;
-        int at = catalog->row_count++;
-        for (; at > 0 && row_before(&row, catalog->row + at - 1); at--) catalog->row[at] = catalog->row[at - 1];
-        catalog->row[at] = row;
+        CatalogRow *row = catalog->row + catalog->row_count;
+        status = read_row(row, catalog, &table, r, column, sag_m);
+        row->order = catalog->row_count++;
     }
     if (status == STATUS_OK) status = build_models(catalog, sag_m);
+    qsort(catalog->row, (size_t)catalog->row_count, sizeof *catalog->row, row_order);
 
 done:
     table_close(&table);

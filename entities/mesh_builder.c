@@ -122,17 +122,18 @@ Status mesh_builder_finish(Model *out, MeshBuilder *b)
         m->triangle_part = malloc((size_t)(m->triangle_count ? m->triangle_count : 1) * sizeof *m->triangle_part);
         if (!m->triangle_part) b->status = STATUS_NO_MEMORY;
     }
-    const Status status = b->status;
+    Status status = b->status;
     if (status == STATUS_OK) {
         for (int part = 0; part < m->part_count; part++) {
             const ModelPart *p = &m->part[part];
             for (int t = 0; t < p->triangle_count; t++) m->triangle_part[p->first_triangle + t] = (uint16_t)part;
         }
-        model_measure(m);
-        *out = *m;
-    } else {
-        model_destroy(m);
+        status = model_measure(m);
     }
+    if (status == STATUS_OK)
+        *out = *m;
+    else
+        model_destroy(m);
     free(b);
     return status;
 }

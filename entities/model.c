@@ -154,17 +154,17 @@ static double farthest(const Model *model, int index, Drum drum, int samples)
     return drum_reach(&drum);
 }
 
-void model_measure(Model *model)
+Status model_measure(Model *model)
 {
-    for (int i = 0; i < 3; i++) {
-        model->box_low[i]  = INFINITY;
-        model->box_high[i] = -INFINITY;
-    }
-    model->radius_m = 0;
     NodePose *pose = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *pose);
     double (*box)[2][3] = calloc((size_t)(model->node_count ? model->node_count : 1), sizeof *box);
-    /* without memory for two small arrays: an empty box, which model_validate refuses */
-    if (pose && box) {
+    const bool enough = pose && box;
+    if (enough) {
+        for (int i = 0; i < 3; i++) {
+            model->box_low[i]  = INFINITY;
+            model->box_high[i] = -INFINITY;
+        }
+        model->radius_m = 0;
         model_pose(pose, model, NULL);
         for (int n = 0; n < model->node_count; n++)
             for (int i = 0; i < 3; i++) {
@@ -203,12 +203,13 @@ void model_measure(Model *model)
             }
         }
         model->radius_m *= 1 + 1e-12; /* rounding of the sums above */
+        model->length_m = model->box_high[0] - model->box_low[0];
+        model->width_m  = model->box_high[1] - model->box_low[1];
+        model->height_m = model->box_high[2] - model->box_low[2];
     }
     free(pose);
     free(box);
-    model->length_m = model->box_high[0] - model->box_low[0];
-    model->width_m  = model->box_high[1] - model->box_low[1];
-    model->height_m = model->box_high[2] - model->box_low[2];
+    return enough ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 /* ---- validation ------------------------------------------------------------------------------- */

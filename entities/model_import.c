@@ -506,8 +506,8 @@ static Status build_model(Build *b)
     if (status != STATUS_OK) return status;
     name_model(b);
     warn_unused(b);
-    model_measure(&b->model);
-    status = model_check(&b->model);
+    status = model_measure(&b->model);
+    if (status == STATUS_OK) status = model_check(&b->model);
     return status == STATUS_OK ? model_edges(&b->report->edges, &b->model) : status;
 }
 

@@ -108,7 +108,9 @@ static int print_info(const char *name, double sag_m)
     ModelImport report = {0};
     ModelEdges edges;
     bool imported;
-    if (model_open(&model, &report, &imported, name, sag_m) != STATUS_OK) return 1;
+    const Status status = model_open(&model, &report, &imported, name, sag_m);
+    if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
+    if (status != STATUS_OK) return 1; /* all else was said where it happened */
     if (model_edges(&edges, &model) != STATUS_OK) {
         model_destroy(&model);
         log_error("model: no memory: %s", name);

@@ -651,8 +651,9 @@ Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t oc
     yaml_parser_t parser;
     yaml_document_t document;
     Reader r = {.path = path, .document = &document, .sidecar = &filled};
-    Status status = STATUS_OK;
+    Status status = yaml_check("sidecar", path, text, octets);
 
+    if (status != STATUS_OK) return status;
     snprintf(filled.path, sizeof filled.path, "%s", path);
     if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);

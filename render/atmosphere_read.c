@@ -312,8 +312,9 @@ static Status read_sun_top(double sun_top_w_m2[AIR_BAND_COUNT])
     char path[1024];
     if (!etc_path(path, sizeof path, "atmosphere/bands.csv")) return STATUS_BAD_VALUE;
     Table table = {0};
-    if (table_open(&table, path) != STATUS_OK) return STATUS_BAD_VALUE;
-    Status status = STATUS_BAD_VALUE;
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    status = STATUS_BAD_VALUE;
     const int name = table_column(&table, "band"), top = table_column(&table, "sun_top_w_m2");
     if (name < 0 || top < 0) {
         log_error("atmosphere: %s:%d: column missing: %s", path, table.line[0], name < 0 ? "band" : "sun_top_w_m2");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <vector>
 
 namespace {
@@ -27,6 +28,8 @@ try {
     out->lon_rad = std::min(pi_rad, std::max(-pi_rad, lon_deg * rad_per_deg));
     out->h_m = h_m;
     return STATUS_OK;
+} catch (const std::bad_alloc &) {
+    return STATUS_NO_MEMORY;
 } catch (...) {
     return STATUS_BAD_VALUE;
 }
@@ -52,6 +55,8 @@ try {
     p_ecef[1] = y_m;
     p_ecef[2] = z_m;
     return STATUS_OK;
+} catch (const std::bad_alloc &) {
+    return STATUS_NO_MEMORY;
 } catch (...) {
     return STATUS_BAD_VALUE;
 }

@@ -623,7 +623,8 @@ int inspect_command(int argc, char **argv)
 
     DisLog log;
     Status status = dis_log_open(&log, options.path, (int)options.port);
-    if (status != STATUS_OK) return 1; /* said where it happened */
+    if (status == STATUS_NO_MEMORY) log_error("inspect: %s: %s", options.path, status_name(status));
+    if (status != STATUS_OK) return 1; /* all else was said where it happened */
     if (log.retimed)
         log_warn("inspect: packet times do not keep pace with the time stamps; the stamps are taken as the clock");
     if (log.any_port && options.port == dis_port_default)

@@ -86,19 +86,19 @@ static const struct option options[] = {
     {"no-png", 0, NULL, NO_PNG}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
 
 /* The configuration file first, whatever its place on the line: options override it. */
-static bool read_config(Config *config, int argc, char **argv)
+static Status read_config(Config *config, int argc, char **argv)
 {
-    bool   ok   = true;
+    Status status = STATUS_OK;
     char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
-    if (!copy) return false;
+    if (!copy) return STATUS_NO_MEMORY;
     memcpy(copy, argv, (size_t)argc * sizeof *copy);
     optind = 0; /* start anew */
     opterr = 0; /* the pass over all options speaks */
-    for (int option; ok && (option = getopt_long(argc, copy, "", options, NULL)) != -1;)
-        if (option == CONFIG) ok = config_read(config, optarg) == STATUS_OK;
+    for (int option; status == STATUS_OK && (option = getopt_long(argc, copy, "", options, NULL)) != -1;)
+        if (option == CONFIG) status = config_read(config, optarg);
     opterr = 1;
     free(copy);
-    return ok;
+    return status;
 }
 
 /* 0: go on; else exit with this code - 1. */
@@ -109,7 +109,9 @@ static int parse(Options *o, int argc, char **argv)
         {SAMPLES, "sensor.samples"}, {SEED, "seed"}};
     long long number;
 
-    if (!read_config(&o->config, argc, argv)) return 1 + 2;
+    const Status status = read_config(&o->config, argc, argv);
+    if (status == STATUS_NO_MEMORY) log_error("replay: out of memory");
+    if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
     optind = 0;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         bool ok = true;
@@ -416,6 +418,8 @@ int replay_command(int argc, char **argv)
         if (one != STATUS_OK) failed = one; /* the others are still shown */
     }
     if (status == STATUS_OK) status = failed;
+    if (status == STATUS_NO_MEMORY)
+        log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 
     pool_destroy(run.pool);
     catalog_close(run.catalog);

@@ -85,7 +85,6 @@ static void headers_are_checked(void **state)
     log_set_sink(NULL, NULL);
 }
 
-/* A line beyond the limit is refused as one row, and the next row is read from its own beginning. */
 /* A spreadsheet's UTF-8 mark and line ends are not part of a name. */
 static void spreadsheets_are_read(void **state)
 {
@@ -95,6 +94,24 @@ static void spreadsheets_are_read(void **state)
     assert_string_equal(out, "a,b,name,quotient,extra_again,said,error\n6,2,y,3,,<y>,\n");
 }
 
+/* What stands behind a NUL is not silently left out. */
+static void a_nul_is_not_an_end(void **state)
+{
+    (void)state;
+    static const char text[] = "a,b,name\n6,2,y\0 and more\n\0\n8,2,y\n";
+    char  out[4096] = {0}, argument[] = "divide", *name = argument;
+    FILE *in = fmemopen((void *)(uintptr_t)text, sizeof text - 1, "r"), *to = fmemopen(out, sizeof out, "w");
+    CHECK(in && to);
+    CHECK(probe_run(&divide, 1, &name, in, to) == STATUS_OK);
+    fclose(in);
+    fclose(to);
+    assert_string_equal(out, "a,b,name,quotient,extra_again,said,error\n"
+                             "6,2,y and more,,,,the line holds a NUL octet\n"
+                             ",,,,the line holds a NUL octet\n"
+                             "8,2,y,4,,<y>,\n");
+}
+
+/* A line beyond the limit is refused as one row, and the next row is read from its own beginning. */
 static void a_long_line_is_one_row(void **state)
 {
     (void)state;
@@ -120,6 +137,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(rows_pass_through), cmocka_unit_test(numbers_read_back),
                                        cmocka_unit_test(headers_are_checked), cmocka_unit_test(spreadsheets_are_read),
-                                       cmocka_unit_test(a_long_line_is_one_row)};
+                                       cmocka_unit_test(a_nul_is_not_an_end), cmocka_unit_test(a_long_line_is_one_row)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,6 +50,28 @@ static void malformed_tables_are_refused_with_the_line(void **state)
     assert_null(table.cell);
 }
 
+/* Room for cells follows what the file holds, not its header's width times its lines: here 0.3 TB. */
+static void a_wide_header_over_blank_lines_is_small(void **state)
+{
+    (void)state;
+    enum { columns = 20000, blanks = 2000000 };
+    char *text = malloc(2 * columns + blanks + 2 * columns + 8), *at = text, path[text_file_size];
+    CHECK(text);
+    for (int row = 0; row < 2; row++) {
+        for (int i = 0; i < columns; i++) *at++ = 'a', *at++ = i < columns - 1 ? ',' : '\n';
+        for (int i = 0; row == 0 && i < blanks; i++) *at++ = '\n';
+    }
+    *at = 0;
+    text_file(path, text);
+    Table table;
+    CHECK(table_open(&table, path) == STATUS_OK);
+    CHECK(table.rows == 1 && table.columns == columns && table.line[1] == blanks + 2);
+    assert_string_equal(table_text(&table, 0, columns - 1), "a");
+    table_close(&table);
+    remove(path);
+    free(text);
+}
+
 static void numbers_are_whole_strings(void **state)
 {
     (void)state;
@@ -93,6 +115,7 @@ int main(void)
         cmocka_unit_test(a_message_is_one_line),
         cmocka_unit_test(a_table_reads_comments_quotes_and_numbers),
         cmocka_unit_test(malformed_tables_are_refused_with_the_line),
+        cmocka_unit_test(a_wide_header_over_blank_lines_is_small),
         cmocka_unit_test(numbers_are_whole_strings),
         cmocka_unit_test(foreign_bytes_are_escaped),
     };

@@ -4,10 +4,7 @@
 
 #include "dis/log.h"
 
-#include <stdio.h>
 #include <stdlib.h>
-#include <sys/mman.h>
-#include <unistd.h>
 
 const int fuzz_rounds = 5000;
 
@@ -50,23 +47,20 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     log_set_level((LogLevel)(LOG_ERROR + 1));
-    const int fd = memfd_create("capture", 0);
-    char      path[64];
-    if (fd < 0) return 0;
-    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (write(fd, data, size) == (ssize_t)size) {
-        DisLog log;
-        if (dis_log_open(&log, path, (uint16_t)(size % 2 ? dis_port : 0)) == STATUS_OK) {
-            size_t   kept = 0;
-            unsigned sum = 0;
-            for (int i = 0; i < log.count; i++) {
-                kept += log.datagram[i].octets;
-                for (uint32_t k = 0; k < log.datagram[i].octets; k++) sum += log.datagram[i].bytes[k];
-            }
-            if (kept > size || sum > 255 * kept) abort();
-            dis_log_close(&log);
+    char      path[fuzz_path_size];
+    const int file = fuzz_file(path, data, size);
+    if (file < 0) return 0;
+    DisLog log;
+    if (dis_log_open(&log, path, (uint16_t)(size % 2 ? dis_port : 0)) == STATUS_OK) {
+        size_t   kept = 0;
+        unsigned sum = 0;
+        for (int i = 0; i < log.count; i++) {
+            kept += log.datagram[i].octets;
+            for (uint32_t k = 0; k < log.datagram[i].octets; k++) sum += log.datagram[i].bytes[k];
         }
+        if (kept > size || sum > 255 * kept) abort();
+        dis_log_close(&log);
     }
-    close(fd);
+    close(file);
     return 0;
 }

@@ -1,5 +1,4 @@
-/* tests/fuzz/fuzz_pdu.c: any octets as a datagram: walked, decoded, encoded again, timed.
- Without a
+/* tests/fuzz/fuzz_pdu.c: any octets as a datagram: walked, decoded, encoded again, timed. Without a
  * fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
