@@ -434,6 +434,14 @@ static Status open_capture(pcap_t **out, const char *path)
     return STATUS_OK;
 }
 
+/* A file may say any time: what no clock shows (before 1970, after 2255) stands at the nearer end. */
+static double capture_s(const struct pcap_pkthdr *header)
+{
+    static const int64_t most_s = 9000000000;
+    const int64_t s = header->ts.tv_sec < 0 ? 0 : header->ts.tv_sec > most_s ? most_s : header->ts.tv_sec;
+    return dis_unix_s(s * 1000000000 + header->ts.tv_usec); /* nanoseconds: asked for */
+}
+
 static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
 {
     const int link = pcap_datalink(capture);
@@ -449,7 +457,7 @@ static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
     int                 result;
     while ((result = pcap_next_ex(capture, &header, &bytes)) == 1) {
         scan->log->counters.packets++;
-        scan->capture_s = (double)header->ts.tv_sec + 1e-9 * (double)header->ts.tv_usec; /* nanoseconds: asked for */
+        scan->capture_s = capture_s(header);
         read_frame(scan, link, (Span){bytes, header->caplen});
         if (scan->status != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
@@ -494,7 +502,7 @@ static Status open_port(DisLog *out, const char *path, uint16_t port)
     return STATUS_OK;
 }
 
-Status dis_log_open(DisLog *out, const char *path, int port)
+Status dis_log_open_as_heard(DisLog *out, const char *path, int port)
 {
     DisLog log;
     if (port < dis_port_default || port > UINT16_MAX) return STATUS_BAD_VALUE;
@@ -507,9 +515,15 @@ Status dis_log_open(DisLog *out, const char *path, int port)
         log.any_port = true;
     }
     log.any_port |= port == dis_port_any;
-    log.retimed = dis_log_retime(&log);
     *out = log;
     return STATUS_OK;
+}
+
+Status dis_log_open(DisLog *out, const char *path, int port)
+{
+    const Status status = dis_log_open_as_heard(out, path, port);
+    if (status == STATUS_OK) out->retimed = dis_log_retime(out);
+    return status;
 }
 
 void dis_log_close(DisLog *log)

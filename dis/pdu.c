@@ -196,3 +196,22 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
     *at = end; /* so that asking again does not count again */
     return false;
 }
+
+int64_t dis_unix_ns_until(double unix_s)
+{
+    static const double most_s = 9e9;
+    if (!(unix_s > 0)) return unix_s == 0 ? 0 : -1;
+    if (unix_s >= most_s) return (int64_t)most_s * 1000000000;
+    /* doubles are 2 us apart at most here: the answer is within this of the obvious guess */
+    const int64_t around = 4096, whole_s = (int64_t)unix_s;
+    const int64_t guess = whole_s * 1000000000 + (int64_t)((unix_s - (double)whole_s) * 1e9);
+    int64_t       low = guess > around ? guess - around : 0, high = guess + around;
+    while (low < high) { /* the last that is not after */
+        const int64_t middle = high - (high - low) / 2;
+        if (dis_unix_s(middle) <= unix_s)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}

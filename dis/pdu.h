@@ -101,4 +101,16 @@ static inline bool dis_pdu_sender(uint16_t site_application[2], const DisHeader 
     return true;
 }
 
+/* ---- arrival times ------------------------------------------------------------------------------- */
+
+/* Unix time, whole nanoseconds >= 0 -> seconds: the one conversion, so that a node that heard a datagram and one that
+ * reads it from a recording have the same double. Never decreasing; neighbours within 0.24 us may come out equal. */
+static inline double dis_unix_s(int64_t unix_ns)
+{
+    return (double)(unix_ns / 1000000000) + 1e-9 * (double)(unix_ns % 1000000000);
+}
+
+/* The last nanosecond whose dis_unix_s is not after unix_s; -1: before 1970. Beyond 9e9 s (2255): 9e9 s. */
+int64_t dis_unix_ns_until(double unix_s);
+
 #endif

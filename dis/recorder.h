@@ -7,14 +7,21 @@
 
 typedef struct DisRecorder DisRecorder;
 
-/* comment: of the section, e.g. what made it; may be NULL; pcap has no place for it. STATUS_IO, logged with the path.
- * The folder must exist. A file that is there already is replaced. */
+enum { dis_recorder_ipv4_octets = 65507, dis_recorder_ipv6_octets = 65527 }; /* the most a datagram holds */
+
+/* comment: of the section, e.g. what made it; may be NULL; pcap has no place for it. STATUS_IO, logged with the path;
+ * the beginning of the file is written by then, so a place that takes nothing is known at once. The folder must exist.
+ * A file that is there already is replaced. */
 Status dis_recorder_open(DisRecorder **out, const char *path, const char *comment);
-/* from: IPv4 as ::ffff:a.b.c.d, NULL: loopback. IPv4 or IPv6 by what it is; sent to the loopback broadcast or ff02::1.
- * octets <= 65507. Buffered. The first failure is logged; every later call returns STATUS_IO without a word. */
+/* Where the datagrams went: what a reader filters by. Until told: the broadcast of loopback, or ff02::1, port 3000.
+ * to: IPv4 as ::ffff:a.b.c.d; NULL: as until told. A sender of the other family keeps the address of before. */
+void   dis_recorder_to(DisRecorder *recorder, const uint8_t to[16], uint16_t port);
+/* capture_ns: Unix time. from, port: of the sender; IPv4 as ::ffff:a.b.c.d, else IPv6; NULL: loopback.
+ * STATUS_BAD_VALUE, and nothing is written: more octets than IP carries, a time before 1970 (pcap: after 2106).
+ * Buffered. The first failure of the disk is logged; every later call returns STATUS_IO without a word. */
 Status dis_recorder_add(DisRecorder *recorder, int64_t capture_ns, const uint8_t from[16], uint16_t port,
                         const uint8_t *bytes, size_t octets);
-/* To the disk, so that what a killed program had recorded is whole. */
+/* To the system, so that what a killed program had recorded is whole. */
 Status dis_recorder_flush(DisRecorder *recorder);
 /* NULL is fine. STATUS_IO when anything was not written. */
 Status dis_recorder_close(DisRecorder *recorder);

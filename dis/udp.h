@@ -1,30 +1,37 @@
 /* dis/udp.h: DIS datagrams over UDP: unicast, broadcast or multicast, IPv4 or IPv6, on a chosen interface.
  *
  * A thread of its own takes datagrams off the socket as they come, so that nobody who is busy loses any; what it took
- * waits in a bounded queue. Arrival times are the kernel's, non-decreasing, whole nanoseconds. */
+ * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds. Memory is taken at
+ * dis_udp_open and never grows, whatever the network sends. Linux only. */
 #ifndef DIS_UDP_H
 #define DIS_UDP_H
 
 #include "dis/pdu.h"
 
-enum { dis_udp_address_size = 64, dis_max_datagram = 65535, dis_udp_error_size = 160 };
+enum { dis_udp_address_size = 64, dis_max_datagram = 65535 };
 
 /* Where to listen and to send. */
 typedef struct DisUdpConfig {
-    char address[dis_udp_address_size];   /* IPv4 or IPv6, numeric: of a host, a broadcast or a multicast group (which is
-                                           * joined); empty: listen on all, send to 255.255.255.255 */
-    char interface[32];                   /* name, `eth0`; empty: the system's choice */
-    int  port;                            /* 1 .. 65535 */
-    int  ttl;                             /* hops of multicast, 0 .. 255; 0: this machine alone */
-    int  queue_octets;                    /* most that waits to be taken; beyond: the oldest stay, new ones are counted lost */
+    char address[dis_udp_address_size]; /* IPv4 or IPv6 in numbers, where to send. What is heard on the port:
+                                         * a multicast group: it is joined, nothing else is heard
+                                         * an address of this machine: what comes to it, and nobody else may listen
+                                         * a broadcast, or empty for 255.255.255.255: whatever comes by IPv4
+                                         * another machine's: whatever comes, and nobody else may listen */
+    char interface[32];                 /* name, `eth0`: nothing comes or leaves elsewhere (an address of this machine
+                                         * is that already); empty: all, and the system chooses where to send */
+    int  port;                          /* 1 .. 65535 */
+    int  ttl;                           /* hops of multicast, 0 .. 255; 0: this machine alone */
+    int  queue_octets;                  /* most that waits to be taken, headers of 32 octets included, 131072 .. 2^30;
+                                         * beyond: the oldest stay, new ones are counted lost */
 } DisUdpConfig;
 
+/* Broadcast on port 3000, 1 hop, a queue of 32 MiB: 100 000 Entity States. */
 DisUdpConfig dis_udp_default_config(void);
 
 typedef struct DisUdpCounters {
-    uint64_t datagrams, octets;
-    uint64_t lost_kernel;  /* the kernel's own count (SO_RXQ_OVFL) */
-    uint64_t lost_queue;   /* nobody took them in time */
+    uint64_t datagrams, octets; /* off the socket: taken + waiting + lost_queue */
+    uint64_t lost_kernel;       /* came and found the socket full: the kernel's own count */
+    uint64_t lost_queue;        /* nobody took them in time */
     uint64_t sent, send_failed;
 } DisUdpCounters;
 
@@ -32,8 +39,8 @@ typedef struct DisUdp DisUdp;
 
 /* One datagram as taken; bytes are the taker's until its next take. */
 typedef struct DisArrival {
-    int64_t        capture_ns;    /* Unix time */
-    uint32_t       octets;
+    int64_t        capture_ns;    /* Unix time; dis_unix_s makes it what a recording says */
+    uint32_t       octets;        /* may be 0 */
     const uint8_t *bytes;
     uint8_t        from[16];      /* IPv4 as ::ffff:a.b.c.d */
     uint16_t       from_port;
@@ -42,13 +49,15 @@ typedef struct DisArrival {
 /* STATUS_BAD_VALUE or STATUS_IO with one logged line that names address, port or interface, why, and what to do next. */
 Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);   /* listens, and may send */
 Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends only: no port is bound */
+/* NULL is fine. Nobody may be inside another function by then. */
 void   dis_udp_close(DisUdp *udp);
 
-/* Everything that arrived up to now waits to be taken: after this has returned, no datagram will come out of
- * dis_udp_take with an arrival time at or before until_ns. What the kernel stamped so early and arrives later is given
- * until_ns + 1. That is how a live node closes a frame's tick, and why its recording replays to the same bits. */
+/* What has arrived by now is in the queue, and after this has returned nothing more gets an arrival time at or before
+ * until_ns: what the kernel stamped so early and arrives later is given until_ns + 1. Then dis_udp_take(.., until_ns)
+ * until it says false. That is how a live node closes a frame's tick, and why its recording replays to the same bits:
+ * dis_unix_ns_until says which until_ns a frame time stands for. One thread at a time. */
 void   dis_udp_close_tick(DisUdp *udp, int64_t until_ns);
-/* The next in order of arrival, not after until_ns (INT64_MAX: any). False when none waits. */
+/* The next in order of arrival, not after until_ns (INT64_MAX: any). False when none waits. One thread at a time. */
 bool   dis_udp_take(DisArrival *out, DisUdp *udp, int64_t until_ns);
 /* Waits until something waits to be taken or the Unix time until_ns has come; true for the former. */
 bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
@@ -57,5 +66,7 @@ Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
 /* Unix time in the nanoseconds that arrivals are stamped in. */
 int64_t dis_udp_now_ns(void);
+/* Where dis_udp_send sends: as DisArrival's from. */
+void    dis_udp_destination(uint8_t to[16], const DisUdp *udp);
 
 #endif

@@ -1,0 +1,378 @@
+/* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
+ *
+ * Two locks, in this order. receive: who may take from the socket and give out arrival times (the thread, or for a
+ * moment whoever closes a tick). queue: the ring and the counters, held for as long as some copies take. */
+#include "dis/udp.h"
+#include "dis/udp_socket.h"
+
+#include <assert.h>
+#include <errno.h>
+#include <linux/sock_diag.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <sys/eventfd.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32, pause_ms = 100 };
+
+static const int64_t ns_per_s = 1000000000;
+
+/* What lies in the ring before each datagram; both in whole units, so that a gap at the end holds at least this. */
+typedef struct Record {
+    int64_t  capture_ns;
+    uint32_t octets; /* skip: nothing more before the end of the ring */
+    uint16_t from_port;
+    uint8_t  from[16];
+} Record;
+
+_Static_assert(sizeof(Record) == unit, "a record is one unit");
+static const uint32_t skip = UINT32_MAX;
+
+struct DisUdp {
+    int              socket, wake; /* wake: an eventfd that ends the thread; -1 in a sender */
+    DisSocketAddress to;
+    char             name[dis_udp_address_size];
+
+    /* under receive */
+    pthread_mutex_t  receive;
+    pthread_cond_t   turn;         /* the tick is closed, the thread may go on */
+    int64_t          last_ns;      /* no arrival time is below this */
+    bool             complained;
+    struct mmsghdr   message[batch];
+    struct iovec     vector[batch];
+    DisSocketAddress from[batch];
+    uint8_t         *buffer;       /* [batch][buffer_octets] */
+    _Alignas(struct cmsghdr) uint8_t control[batch][control_octets];
+
+    /* under queue. Positions count octets since the beginning: held <= next <= end <= held + ring_octets */
+    pthread_mutex_t  queue;
+    pthread_cond_t   arrived;
+    bool             somebody_waits;
+    uint8_t         *ring;
+    uint64_t         ring_octets, held, next, end; /* held .. next: the taker's */
+    uint32_t         kernel_drops;                 /* its counter, modulo 2^32 */
+    DisUdpCounters   counters;
+
+    atomic_bool          closing, stopping;
+    atomic_uint_fast64_t sent, send_failed;
+    bool                 running;
+    pthread_t            thread;
+};
+
+DisUdpConfig dis_udp_default_config(void)
+{
+    return (DisUdpConfig){.port = dis_port, .ttl = 1, .queue_octets = 32 << 20};
+}
+
+int64_t dis_udp_now_ns(void)
+{
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    return (int64_t)now.tv_sec * ns_per_s + now.tv_nsec;
+}
+
+void dis_udp_destination(uint8_t to[16], const DisUdp *udp) { dis_socket_address_octets16(to, &udp->to); }
+
+/* ---- the queue: all under its lock ----------------------------------------------------------------- */
+
+static Record *record_at(const DisUdp *u, uint64_t position)
+{
+    return (Record *)(void *)(u->ring + position % u->ring_octets); /* whole units: aligned */
+}
+
+static uint64_t units(uint64_t octets) { return (octets + unit - 1) / unit * unit; }
+
+static void put_arrival(DisUdp *u, const Record *head, const uint8_t *bytes)
+{
+    const uint64_t octets = units(sizeof *head + head->octets), to_end = u->ring_octets - u->end % u->ring_octets;
+    const uint64_t gap = octets > to_end ? to_end : 0;
+    u->counters.datagrams++;
+    u->counters.octets += head->octets;
+    if (u->end - u->held + gap + octets > u->ring_octets) {
+        u->counters.lost_queue++;
+        return;
+    }
+    if (gap) record_at(u, u->end)->octets = skip;
+    u->end += gap;
+    Record *record = record_at(u, u->end);
+    *record = *head;
+    if (head->octets) memcpy(record + 1, bytes, head->octets);
+    u->end += octets;
+}
+
+/* The kernel's count comes with datagrams and by asking, so an older one may come after a newer. */
+static void note_drops(DisUdp *u, uint32_t drops)
+{
+    const uint32_t more = drops - u->kernel_drops;
+    if (more > INT32_MAX) return;
+    u->kernel_drops = drops;
+    u->counters.lost_kernel += more;
+}
+
+bool dis_udp_take(DisArrival *out, DisUdp *u, int64_t until_ns)
+{
+    bool taken = false;
+    pthread_mutex_lock(&u->queue);
+    u->held = u->next;
+    if (u->next != u->end) {
+        const Record *record = record_at(u, u->next);
+        if (record->octets == skip) {
+            u->next += u->ring_octets - u->next % u->ring_octets;
+            u->held = u->next;
+            record = record_at(u, u->next);
+        }
+        taken = record->capture_ns <= until_ns;
+        if (taken) {
+            *out = (DisArrival){.capture_ns = record->capture_ns,
+                                .octets = record->octets,
+                                .bytes = (const uint8_t *)(record + 1),
+                                .from_port = record->from_port};
+            memcpy(out->from, record->from, sizeof out->from);
+            u->next += units(sizeof *record + record->octets);
+        }
+    }
+    pthread_mutex_unlock(&u->queue);
+    return taken;
+}
+
+bool dis_udp_wait(DisUdp *u, int64_t until_ns)
+{
+    const int64_t         end_ns = until_ns < 0 ? 0 : until_ns;
+    const struct timespec until = {(time_t)(end_ns / ns_per_s), (long)(end_ns % ns_per_s)};
+    pthread_mutex_lock(&u->queue);
+    while (u->next == u->end) {
+        u->somebody_waits = true;
+        if (pthread_cond_timedwait(&u->arrived, &u->queue, &until) != 0) break;
+    }
+    u->somebody_waits = false;
+    const bool waits = u->next != u->end;
+    pthread_mutex_unlock(&u->queue);
+    return waits;
+}
+
+DisUdpCounters dis_udp_counters(const DisUdp *udp)
+{
+    DisUdp   *u = (DisUdp *)udp; /* locks and the kernel's count: nothing the caller sees as a change */
+    uint32_t  info[SK_MEMINFO_VARS] = {0};
+    socklen_t octets = sizeof info;
+    const bool told = u->wake >= 0 && getsockopt(u->socket, SOL_SOCKET, SO_MEMINFO, info, &octets) == 0 &&
+                      octets > SK_MEMINFO_DROPS * sizeof *info;
+    pthread_mutex_lock(&u->queue);
+    if (told) note_drops(u, info[SK_MEMINFO_DROPS]);
+    DisUdpCounters counters = u->counters;
+    pthread_mutex_unlock(&u->queue);
+    counters.sent = atomic_load(&u->sent);
+    counters.send_failed = atomic_load(&u->send_failed);
+    return counters;
+}
+
+/* ---- the socket: all under the receive lock ---------------------------------------------------------- */
+
+/* What the kernel says beside a datagram: when it came, and how many did not. */
+static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, struct msghdr *header)
+{
+    for (struct cmsghdr *c = CMSG_FIRSTHDR(header); c; c = CMSG_NXTHDR(header, c)) {
+        if (c->cmsg_level != SOL_SOCKET) continue;
+        if (c->cmsg_type == SCM_TIMESTAMPNS) {
+            struct timespec came;
+            memcpy(&came, CMSG_DATA(c), sizeof came);
+            *kernel_ns = (int64_t)came.tv_sec * ns_per_s + came.tv_nsec;
+        } else if (c->cmsg_type == SO_RXQ_OVFL) {
+            memcpy(drops, CMSG_DATA(c), sizeof *drops);
+            *dropped = true;
+        }
+    }
+}
+
+/* Takes what is there, up to a batch, and never waits. Returns how many came, -1 after a failure; *newest_ns: latest
+ * time of the kernel's among them. */
+static int receive_batch(DisUdp *u, int64_t *newest_ns)
+{
+    for (int i = 0; i < batch; i++) {
+        u->vector[i] = (struct iovec){u->buffer + (size_t)i * buffer_octets, buffer_octets};
+        u->message[i].msg_hdr = (struct msghdr){.msg_name = &u->from[i],
+                                                .msg_namelen = sizeof u->from[i],
+                                                .msg_iov = &u->vector[i],
+                                                .msg_iovlen = 1,
+                                                .msg_control = u->control[i],
+                                                .msg_controllen = control_octets};
+    }
+    const int came = recvmmsg(u->socket, u->message, batch, MSG_DONTWAIT, NULL);
+    if (came < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? 0 : -1;
+
+    *newest_ns = 0;
+    pthread_mutex_lock(&u->queue);
+    for (int i = 0; i < came; i++) {
+        struct msghdr *header = &u->message[i].msg_hdr;
+        int64_t        kernel_ns = 0;
+        uint32_t       drops = 0;
+        bool           dropped = false;
+        read_control(&kernel_ns, &drops, &dropped, header);
+        if (!kernel_ns) kernel_ns = dis_udp_now_ns();
+        if (kernel_ns > *newest_ns) *newest_ns = kernel_ns;
+        if (kernel_ns > u->last_ns) u->last_ns = kernel_ns;
+        if (dropped) note_drops(u, drops);
+
+        Record record = {.capture_ns = u->last_ns, .octets = u->message[i].msg_len};
+        if (header->msg_namelen >= sizeof u->from[i].v4) {
+            const bool v6 = u->from[i].any.sa_family == AF_INET6;
+            dis_socket_address_octets16(record.from, &u->from[i]);
+            record.from_port = ntohs(v6 ? u->from[i].v6.sin6_port : u->from[i].v4.sin_port);
+        }
+        put_arrival(u, &record, u->vector[i].iov_base);
+    }
+    if (u->somebody_waits && u->next != u->end) pthread_cond_signal(&u->arrived);
+    pthread_mutex_unlock(&u->queue);
+    return came;
+}
+
+/* A network that went away is said once; whoever came back is heard again. */
+static void complain(DisUdp *u)
+{
+    const int error = errno;
+    if (!u->complained) log_warn("udp: cannot receive on %s: %s; trying on", u->name, strerror(error));
+    u->complained = true;
+}
+
+static void *receive_loop(void *user)
+{
+    DisUdp       *u = user;
+    struct pollfd what[2] = {{.fd = u->socket, .events = POLLIN}, {.fd = u->wake, .events = POLLIN}};
+    while (!atomic_load(&u->stopping)) {
+        int64_t newest_ns;
+        poll(what, 2, -1);
+        if (!what[0].revents) continue;
+        pthread_mutex_lock(&u->receive);
+        /* a flood must not keep whoever closes a tick from its turn */
+        while (atomic_load(&u->closing)) pthread_cond_wait(&u->turn, &u->receive);
+        const bool failed = receive_batch(u, &newest_ns) < 0;
+        if (failed) complain(u);
+        pthread_mutex_unlock(&u->receive);
+        if (failed) poll(&what[1], 1, pause_ms);
+    }
+    return NULL;
+}
+
+void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
+{
+    const int64_t called_ns = dis_udp_now_ns();
+    int64_t       newest_ns;
+    assert(until_ns < INT64_MAX);
+    atomic_store(&u->closing, true);
+    pthread_mutex_lock(&u->receive);
+    /* until the socket is empty, or what comes out of it came after the call: a flood never ends by itself */
+    while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {}
+    if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
+    atomic_store(&u->closing, false);
+    pthread_cond_signal(&u->turn);
+    pthread_mutex_unlock(&u->receive);
+}
+
+/* ---- sending ------------------------------------------------------------------------------------------ */
+
+Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
+{
+    ssize_t sent;
+    do
+        sent = sendto(u->socket, bytes, octets, MSG_DONTWAIT | MSG_NOSIGNAL, &u->to.any,
+                      dis_socket_address_octets(&u->to));
+    while (sent < 0 && errno == EINTR);
+    if (sent < 0) {
+        atomic_fetch_add(&u->send_failed, 1);
+        return STATUS_IO;
+    }
+    atomic_fetch_add(&u->sent, 1);
+    return STATUS_OK;
+}
+
+/* ---- life ------------------------------------------------------------------------------------------------- */
+
+/* A thread takes no signals: they are for the program's own. */
+static bool start_thread(DisUdp *u)
+{
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    u->running = pthread_create(&u->thread, NULL, receive_loop, u) == 0;
+    pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return u->running;
+}
+
+static DisUdp *make(const DisUdpConfig *config)
+{
+    DisUdp *u = calloc(1, sizeof *u);
+    if (!u) return NULL;
+    u->socket = u->wake = -1;
+    snprintf(u->name, sizeof u->name, "%.40s port %d", config->address[0] ? config->address : "all addresses",
+             config->port);
+    pthread_mutex_init(&u->receive, NULL);
+    pthread_mutex_init(&u->queue, NULL);
+    pthread_cond_init(&u->turn, NULL);
+    pthread_cond_init(&u->arrived, NULL);
+    return u;
+}
+
+Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config)
+{
+    DisUdp *u = make(config);
+    if (!u) return STATUS_NO_MEMORY;
+    const Status status = dis_udp_socket(&u->socket, &u->to, config, false);
+    if (status != STATUS_OK)
+        dis_udp_close(u);
+    else
+        *out = u;
+    return status;
+}
+
+Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
+{
+    DisUdp *u = make(config);
+    if (!u) return STATUS_NO_MEMORY;
+    Status status = dis_udp_socket(&u->socket, &u->to, config, true);
+    if (status != STATUS_OK) goto fail;
+
+    u->ring_octets = (uint64_t)config->queue_octets / unit * unit;
+    u->ring = aligned_alloc(unit, u->ring_octets);
+    u->buffer = malloc((size_t)batch * buffer_octets);
+    if (!u->ring || !u->buffer) {
+        log_error("udp: no memory for a queue of %d octets; ask for less", config->queue_octets);
+        status = STATUS_NO_MEMORY;
+        goto fail;
+    }
+    u->wake = eventfd(0, EFD_CLOEXEC);
+    if (u->wake < 0 || !start_thread(u)) {
+        log_error("udp: cannot start the thread that listens on %s: %s", u->name, strerror(errno));
+        status = STATUS_IO;
+        goto fail;
+    }
+    *out = u;
+    return STATUS_OK;
+
+fail:
+    dis_udp_close(u);
+    return status;
+}
+
+void dis_udp_close(DisUdp *u)
+{
+    if (!u) return;
+    if (u->running) {
+        const uint64_t one = 1;
+        atomic_store(&u->stopping, true);
+        while (write(u->wake, &one, sizeof one) < 0 && errno == EINTR) {}
+        pthread_join(u->thread, NULL);
+    }
+    if (u->socket >= 0) close(u->socket);
+    if (u->wake >= 0) close(u->wake);
+    pthread_cond_destroy(&u->arrived);
+    pthread_cond_destroy(&u->turn);
+    pthread_mutex_destroy(&u->queue);
+    pthread_mutex_destroy(&u->receive);
+    free(u->buffer);
+    free(u->ring);
+    free(u);
+}
