@@ -48,7 +48,8 @@ static int count_at(const DisLog *log, int exercise, bool causal, double t_s)
     char              heat[512];
     CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
-    assert_int_equal(player_create(&player, log, exercise, causal), STATUS_OK);
+    assert_int_equal(player_create(&player, exercise, causal), STATUS_OK);
+    assert_int_equal(player_add_log(player, log), STATUS_OK);
     player_feed(player, table, t_s);
     const int count = entity_table_count(table);
     player_destroy(player);
