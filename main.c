@@ -3,6 +3,7 @@
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
+#include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
 #include "terrain/probe.h"
@@ -70,6 +71,7 @@ static const struct Command {
 } commands[] = {
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
+    {"record", record_command, "record the exercise on the network"},
     {"model", model_command, "say what a model is made of, built in or from a file"},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},
 };

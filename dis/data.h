@@ -13,6 +13,7 @@ typedef struct DisFixedDatum {
 typedef struct DisVariableDatum {
     uint32_t       id, bits;
     const uint8_t *value;   /* (bits + 7) / 8 octets; when read: inside the PDU */
+    const uint8_t *padding; /* behind it, to the next multiple of 8 octets; NULL: zeros; when read: inside the PDU */
 } DisVariableDatum;
 
 enum { dis_data_fixed_max = 64, dis_data_variable_max = 64 };
@@ -27,8 +28,11 @@ typedef struct DisData {
     DisVariableDatum variable[dis_data_variable_max];
 } DisData;
 
-/* As the other decoders (entity_state.h). STATUS_UNSUPPORTED: more datums than there is room for. */
+/* As the other decoders (entity_state.h): `out` untouched unless STATUS_OK, and then only the datums counted are
+ * written; octets behind the last one are left alone. STATUS_BAD_VALUE: a count, or a number of bits, that the length cannot hold.
+ * STATUS_UNSUPPORTED: more datums than there is room for. Reads Set Data (19) as well: its layout is the same. */
 Status dis_decode_data(DisData *out, const uint8_t *pdu, size_t octets);
+/* 0 where it does not fit: into capacity, or into 65535 octets. */
 size_t dis_encode_data(uint8_t *out, size_t capacity, const DisData *pdu);
 
 #endif

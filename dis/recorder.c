@@ -79,7 +79,7 @@ static void put_section(DisRecorder *r, const char *comment)
     const size_t      said = comment ? strnlen(comment, longest_text) : 0;
     const uint32_t    length = (uint32_t)(28 + (said ? option_octets(said) : 0) + option_octets(strlen(program)) +
                                        end_of_options);
-    const uint32_t    head[] = {section, length, byte_order, 1 /* version 1.0 */, UINT32_MAX, UINT32_MAX /* no length */};
+    const uint32_t    head[] = {section, length, byte_order, 1 /* version 1.0 */, UINT32_MAX, UINT32_MAX };
     put(r, head, sizeof head);
     if (said) put_option(r, opt_comment, comment, (uint16_t)said);
     put_option(r, shb_userappl, program, (uint16_t)strlen(program));
@@ -189,7 +189,8 @@ Status dis_recorder_add(DisRecorder *r, int64_t capture_ns, const uint8_t from[1
         put_pcapng_packet(r, (uint64_t)capture_ns, headers, header_octets, bytes, octets);
     } else {
         const uint32_t whole = (uint32_t)(header_octets + octets);
-        put(r, (const uint32_t[]){(uint32_t)(capture_ns / ns_per_s), (uint32_t)(capture_ns % ns_per_s), whole, whole}, 16);
+        const uint32_t s = (uint32_t)(capture_ns / ns_per_s), ns = (uint32_t)(capture_ns % ns_per_s);
+        put(r, (const uint32_t[]){s, ns, whole, whole}, 16);
         put(r, headers, header_octets);
         put(r, bytes, octets);
     }

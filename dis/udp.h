@@ -46,7 +46,7 @@ typedef struct DisArrival {
     uint16_t       from_port;
 } DisArrival;
 
-/* STATUS_BAD_VALUE or STATUS_IO with one logged line that names address, port or interface, why, and what to do next. */
+/* STATUS_BAD_VALUE or STATUS_IO with one logged line: which address, port or interface, why, and what to do next. */
 Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);   /* listens, and may send */
 Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends only: no port is bound */
 /* NULL is fine. Nobody may be inside another function by then. */

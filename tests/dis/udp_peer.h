@@ -29,10 +29,10 @@ static inline int peer_socket(bool v6, int port)
                                      .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
     const struct sockaddr_in6 to6 = {.sin6_family = AF_INET6, .sin6_port = htons((uint16_t)port),
                                      .sin6_addr = IN6ADDR_LOOPBACK_INIT};
-    const int s = socket(v6 ? AF_INET6 : AF_INET, SOCK_DGRAM, 0);
+    const struct sockaddr *to = v6 ? (const struct sockaddr *)&to6 : (const struct sockaddr *)&to4;
+    const int              s = socket(v6 ? AF_INET6 : AF_INET, SOCK_DGRAM, 0);
     if (s < 0) return -1;
-    if (connect(s, v6 ? (const struct sockaddr *)&to6 : (const struct sockaddr *)&to4, v6 ? sizeof to6 : sizeof to4) == 0)
-        return s;
+    if (connect(s, to, v6 ? sizeof to6 : sizeof to4) == 0) return s;
     close(s);
     return -1;
 }
@@ -43,8 +43,8 @@ static inline int socket_at_port(int port)
     for (int s = 3; s < 256; s++) {
         struct sockaddr_in at;
         socklen_t          octets = sizeof at;
-        if (getsockname(s, (struct sockaddr *)&at, &octets) == 0 && at.sin_family == AF_INET && ntohs(at.sin_port) == port)
-            return s;
+        if (getsockname(s, (struct sockaddr *)&at, &octets) != 0 || at.sin_family != AF_INET) continue;
+        if (ntohs(at.sin_port) == port) return s;
     }
     return -1;
 }
