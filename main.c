@@ -3,6 +3,7 @@
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/node/inspect.h"
+#include "sensor/node/live.h"
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
@@ -69,6 +70,7 @@ static const struct Command {
     int (*run)(int argc, char **argv);
     const char *help;
 } commands[] = {
+    {"run", run_command, "listen to an exercise on the network and show it live"},
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
     {"record", record_command, "record the exercise on the network"},

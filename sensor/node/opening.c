@@ -33,14 +33,17 @@ bool opening_usable(const DisHeader *header, const uint8_t *pdu)
     return dis_entity_is_usable(&why, state.id, state.p_ecef, state.velocity_mps, euler_rad);
 }
 
-bool opening_starts(const DisDatagram *datagram, const Config *config)
+bool opening_starts(DisHeader *out, const DisDatagram *datagram, const Config *config)
 {
     DisCounters    ignored = {0};
     DisHeader      header;
     const uint8_t *at = datagram->bytes, *pdu;
-    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &ignored))
-        if ((config->exercise.exercise < 0 || header.exercise == config->exercise.exercise) && opening_usable(&header, pdu))
-            return true;
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &ignored)) {
+        if (config->exercise.exercise >= 0 && header.exercise != config->exercise.exercise) continue;
+        if (!opening_usable(&header, pdu)) continue;
+        if (out) *out = header;
+        return true;
+    }
     return false;
 }
 
@@ -52,7 +55,7 @@ double opening_until_s(const DisDatagram *starts, const Config *config)
 bool opening_of(DisLog *view, DisLog *heard, double *until_s, const DisLog *log, const Config *config)
 {
     int starts = 0, end;
-    while (starts < log->count && !opening_starts(&log->datagram[starts], config)) starts++;
+    while (starts < log->count && !opening_starts(NULL, &log->datagram[starts], config)) starts++;
     if (starts == log->count) return false;
     *until_s = opening_until_s(&log->datagram[starts], config);
     for (end = starts; end < log->count && log->datagram[end].capture_s <= *until_s;) end++;

@@ -18,8 +18,8 @@ int  opening_drop_own(DisLog *log, const Config *config);
 
 /* Whether a PDU is an Entity State whose entity and place can be used. */
 bool opening_usable(const DisHeader *header, const uint8_t *pdu);
-/* Whether a datagram holds one, of the exercise that is configured, if one is. */
-bool opening_starts(const DisDatagram *datagram, const Config *config);
+/* Whether a datagram holds one, of the exercise that is configured, if one is. header: its; may be NULL. */
+bool opening_starts(DisHeader *header, const DisDatagram *datagram, const Config *config);
 /* Arrival time, Unix s, up to which is listened when this datagram starts. */
 double opening_until_s(const DisDatagram *starts, const Config *config);
 

@@ -301,6 +301,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
 }
 
 const SessionResult *session_result(const Session *s) { return &s->result; }
+int                  session_entities(const Session *s) { return entity_table_count(s->table); }
 const char          *session_host(const Session *s) { return s->host_text; }
 
 Status session_close(Session *s, SessionResult *result)

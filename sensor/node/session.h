@@ -53,6 +53,7 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
 Status session_frame(bool *shown, Session *session, int number, double t_s);
 /* So far. */
 const SessionResult *session_result(const Session *session);
+int         session_entities(const Session *session); /* how many are there */
 const char *session_host(const Session *session); /* id as text, `observer`, or `munition` that is still to come */
 /* The session's result is the caller's to free with session_result_free; NULL: it goes too. */
 Status session_close(Session *session, SessionResult *result);
