@@ -2,6 +2,7 @@
 #include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/probe.h"
+#include "sensor/node/exercise.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/live.h"
 #include "sensor/node/record.h"
@@ -73,6 +74,7 @@ static const struct Command {
     {"run", run_command, "listen to an exercise on the network and show it live"},
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
+    {"exercise", exercise_command, "write or send an exercise from a scenario"},
     {"record", record_command, "record the exercise on the network"},
     {"model", model_command, "say what a model is made of, built in or from a file"},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},

@@ -155,6 +155,7 @@ struct SettingTable {
     int                count;
     const SettingList *list;   /* NULL: none */
     int                list_count;
+    size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
 };
 
 enum { settings_file_octets = 1 << 20, settings_depth = 8 };

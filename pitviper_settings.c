@@ -197,6 +197,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
             free(seen);
             return item ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
         }
+        if (list->item->line_at) *(int *)((char *)item + list->item->line_at) = line_of(node);
         const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node, depth + 1);
         free(seen);
         if (status != STATUS_OK) return status;
