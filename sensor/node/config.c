@@ -224,8 +224,11 @@ void config_text(char *out, size_t out_size, const Config *config)
 {
     const Config plain  = config_default();
     Config       hashed = *config;
-    hashed.network      = plain.network;
-    hashed.publish      = plain.publish;
-    hashed.record       = plain.record;
+    hashed.network         = plain.network;
+    hashed.publish         = plain.publish;
+    hashed.record          = plain.record;
+    hashed.exercise.port   = plain.exercise.port;
+    hashed.exercise.from_s = plain.exercise.from_s;
+    hashed.exercise.to_s   = plain.exercise.to_s;
     settings_text(out, out_size, &table, &hashed);
 }

@@ -102,8 +102,8 @@ bool   config_given(const Config *config, const char *key);
 OpticalChannels config_optical(const Config *config);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
-/* The canonical text: every key and value, in table order; those that change no picture (network, publish, record) as
- * they are by default. What config_sha256 hashes. */
+/* The canonical text: every key and value, in table order; those that change no picture (network, publish, record, the
+ * port, the span of time) as they are by default. What config_sha256 hashes. */
 void   config_text(char *out, size_t out_size, const Config *config);
 
 #endif
