@@ -20,7 +20,8 @@ static const char help[] =
     "usage: pitviper record -o LOG [options]\n"
     "\n"
     "Records the DIS exercise it hears, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap where the\n"
-    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read; one that is there is replaced.\n"
+    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read. One that is there already\n"
+    "is replaced.\n"
     "\n"
     "  -o, --out LOG      where to\n"
     "  --address A        hear what is sent to this address: a multicast group (joined, IPv4 or IPv6) or one of this\n"
@@ -97,18 +98,15 @@ static void ask_to_stop(int number)
     stop_asked = 1;
 }
 
-/* The second signal ends the program the hard way, should the disk hang. */
+/* The second signal ends the program the hard way, should the disk hang. SIGINT counts even where it was ignored: so
+ * shells start what runs in the background of a script. nohup's SIGHUP stays ignored. */
 static void catch_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = SA_RESETHAND};
+    struct sigaction before, action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction before;
-        /* what whoever started us wants ignored (nohup) stays so */
-        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
-    }
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
 }
 
 /* ---- recording --------------------------------------------------------------------------------------- */

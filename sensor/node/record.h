@@ -2,8 +2,8 @@
 #ifndef SENSOR_NODE_RECORD_H
 #define SENSOR_NODE_RECORD_H
 
-/* argv[0] is "record". Until SIGINT, SIGTERM, SIGHUP, --for or --count. 0: recorded, were it nothing; 1: the file cannot
- * be written or the network not heard; 2: usage. */
+/* argv[0] is "record". Until SIGINT, SIGTERM, SIGHUP, --for or --count. 0: recorded, were it nothing; 1: the file
+ * cannot be written or the network not heard; 2: usage. */
 int record_command(int argc, char **argv);
 
 #endif

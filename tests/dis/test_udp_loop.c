@@ -129,8 +129,8 @@ static void a_peer_is_answered_by_whoever_calls(void **state)
     dis_udp_close(udp);
 }
 
-/* Two that listen and one that sends: all three share the port, both hear, and the sender's own socket is not needed
- * for it. other: an address at the same port that nobody here may hear; NULL: there is none. */
+/* Two that listen and one that sends: both hear, each all of it. other: an address at the same port that they must not
+ * hear; NULL: there is none. */
 static void shared(const char *address, const char *other)
 {
     const char        *interface = test_interface();
@@ -154,10 +154,13 @@ static void shared(const char *address, const char *other)
     CHECK(take(&at_a, a) && at_a.octets == 3 && memcmp(at_a.bytes, word, 3) == 0);
     CHECK(take(&at_b, b) && at_b.octets == 3 && memcmp(at_b.bytes, word, 3) == 0);
     if (other) {
+        /* somebody of this machine does hear it, so it does come in */
         const DisUdpConfig elsewhere = config_for(other, interface, config.port);
         DisUdp            *stranger;
-        CHECK(dis_udp_open_sender(&stranger, &elsewhere) == STATUS_OK);
+        DisArrival         at_stranger;
+        CHECK(dis_udp_open(&stranger, &elsewhere) == STATUS_OK);
         CHECK(dis_udp_send(stranger, word, 2) == STATUS_OK);
+        CHECK(take(&at_stranger, stranger) && at_stranger.octets == 2);
         dis_udp_close(stranger);
     }
     /* a listener sends too, and hears itself; what came first would have come first */
@@ -319,6 +322,29 @@ static void what_comes_after_its_tick_stands_right_behind_it(void **state)
     dis_udp_close(udp);
 }
 
+/* What has come to the socket when a tick closes is in that tick, though the thread had no time for it yet: bursts of
+ * several batches, closed at once. The kernel may finish a delivery after the call that sent it, so not all need be. */
+static void a_closing_tick_empties_the_socket(void **state)
+{
+    (void)state;
+    enum { rounds = 100, burst = 200 };
+    const int  port = free_port(), peer = peer_socket(false, port);
+    DisUdp    *udp = open_unicast(port);
+    DisArrival a;
+    uint32_t   sent = 0, taken = 0, in_time = 0;
+    for (int round = 0; round < rounds; round++) {
+        for (int i = 0; i < burst; i++) CHECK(send_number(peer, sent++, 100));
+        const int64_t until_ns = dis_udp_now_ns();
+        dis_udp_close_tick(udp, until_ns);
+        for (; dis_udp_take(&a, udp, until_ns); taken++, in_time++) CHECK(number_of(&a) == taken);
+        settled(udp, sent);
+        for (; dis_udp_take(&a, udp, INT64_MAX); taken++) CHECK(a.capture_ns > until_ns && number_of(&a) == taken);
+    }
+    CHECK(taken == sent && in_time > sent * 9 / 10);
+    close(peer);
+    dis_udp_close(udp);
+}
+
 static void waiting_ends(void **state)
 {
     (void)state;
@@ -359,6 +385,26 @@ static void a_full_queue_keeps_the_oldest_and_counts_the_rest(void **state)
     CHECK(taken == room && taken + counters.lost_queue == counters.datagrams);
     if (!counters.lost_kernel) CHECK(last == room - 1); /* the oldest */
     CHECK(send_number(peer, sent, octets) && take(&a, udp) && number_of(&a) == sent); /* and it goes on */
+    close(peer);
+    dis_udp_close(udp);
+}
+
+static void what_was_taken_stays_until_the_next_take(void **state)
+{
+    (void)state;
+    DisUdpConfig config = config_for("127.0.0.1", "", free_port());
+    config.queue_octets = 131072;
+    DisUdp    *udp;
+    DisArrival a;
+    const int  peer = peer_socket(false, config.port);
+    CHECK(dis_udp_open(&udp, &config) == STATUS_OK);
+    memset(payload, 0, sizeof payload);
+    CHECK(send_number(peer, 7, 1000) && take(&a, udp));
+    memset(payload, 0xEE, sizeof payload);
+    for (uint32_t i = 0; i < 1000; i++) CHECK(send_number(peer, 0xEEEEEEEE, 1000));
+    CHECK(settled(udp, 1001).lost_queue > 0);
+    CHECK(number_of(&a) == 7);
+    for (int k = 4; k < 1000; k++) CHECK(a.bytes[k] == 0);
     close(peer);
     dis_udp_close(udp);
 }
@@ -557,8 +603,10 @@ int main(void)
         cmocka_unit_test(broadcast_to_nowhere_in_particular_is_heard_by_all),
         cmocka_unit_test(a_tick_stays_closed_under_a_flood),
         cmocka_unit_test(what_comes_after_its_tick_stands_right_behind_it),
+        cmocka_unit_test(a_closing_tick_empties_the_socket),
         cmocka_unit_test(waiting_ends),
         cmocka_unit_test(a_full_queue_keeps_the_oldest_and_counts_the_rest),
+        cmocka_unit_test(what_was_taken_stays_until_the_next_take),
         cmocka_unit_test(the_queue_wraps_with_any_sizes),
         cmocka_unit_test(what_the_kernel_dropped_is_counted),
         cmocka_unit_test(a_small_socket_buffer_loses_nothing_uncounted),

@@ -8,8 +8,9 @@ check "--help goes to standard output" grep -q replay "$tmp/stdout"
 commands=$(grep -oE '^ +(pitviper )?[a-z]+' "$tmp/stdout" | awk '{ print $NF }' | sort -u)
 check "--help lists replay" grep -qx replay <<<"$commands"
 check "--help lists inspect" grep -qx inspect <<<"$commands"
+check "--help lists record" grep -qx record <<<"$commands"
 
-for command in replay inspect; do
+for command in replay inspect record; do
     run $command --help
     check "$command --help ends well" [ $code = 0 ]
     check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
