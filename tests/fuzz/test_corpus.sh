@@ -9,7 +9,7 @@ done
 
 mkdir "$tmp/pdu" "$tmp/log"
 exercise bad-pdus "$tmp/log/bad.pcap" --datagrams "$tmp/pdu"
-exercise demo "$tmp/log/bundle.pcap" --bundle --version 6
+exercise demo "$tmp/log/bundle.pcap" dis.bundle=true dis.version=6
 exercise empty "$tmp/log/empty.pcap"
 data=${PITVIPER_DATA:-../shared/data}/dis
 cp "$data"/singles/*.pdu "$tmp/pdu/" 2>/dev/null

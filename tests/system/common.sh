@@ -1,16 +1,13 @@
 # What the system tests share. Source it with the build folder as first argument of the script:
 #     . "$(dirname "$0")/common.sh"
-# Gives $build, $pitviper, $make_exercise, an empty folder $tmp that goes away at the end, and the checks
+# Gives $build, $pitviper, an empty folder $tmp that goes away at the end, and the checks
 # below. A failed check says so and is counted; finish gives the verdict, so that one run shows all failures.
 set -u
 # shellcheck disable=SC2034
 export LC_ALL=C
 build=${1:?usage: bash $0 BUILD_FOLDER}
 pitviper=$build/pitviper
-make_exercise=$build/make_exercise
-for program in "$pitviper" "$make_exercise"; do
-    [ -x "$program" ] || { echo "skipped: no $program"; exit 77; }
-done
+[ -x "$pitviper" ] || { echo "skipped: no $pitviper"; exit 77; }
 tmp=$(mktemp -d) || exit 1
 trap 'chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 
@@ -37,7 +34,12 @@ run() {
 # replay LOG OUT options: a quick small one unless options say otherwise
 replay() { local log=$1 out=$2; shift 2; run replay "$log" --out "$out" --size 96x64 --rate 1 --threads 2 "$@"; }
 
-exercise() { "$make_exercise" "$@" || fail "make_exercise $*"; }
+# exercise NAME LOG options: a recorded one; KEY=VALUE stands for --set KEY=VALUE
+exercise() {
+    local name=$1 log=$2 option options=(); shift 2
+    for option; do case $option in -*|/*) ;; *=*) options+=(--set) ;; esac; options+=("$option"); done
+    "$pitviper" exercise "$name" -o "$log" "${options[@]}" >/dev/null || fail "exercise $name ${options[*]}"
+}
 
 frames() { find "$1/frames/${2:-truth}" -name '*.exr' 2>/dev/null | wc -l; }
 # run_json OUT: on one line, without blanks

@@ -15,7 +15,7 @@ check "no skips, same bits" same_hashes "$tmp/one" "$tmp/noskip"
 replay "$tmp/guns.pcap" "$tmp/late" "${watch[@]}" --from 1373
 list() { hashes "$1" | grep -oE '[0-9a-f]{64}'; }
 check "from the middle: the same last frames" [ "$(list "$tmp/late")" = "$(list "$tmp/one" | tail -n 5)" ]
-exercise guns "$tmp/v5.pcap" --version 5 --bundle
+exercise guns "$tmp/v5.pcap" dis.version=5 dis.bundle=true dis.fillers=true
 replay "$tmp/v5.pcap" "$tmp/v5" "${watch[@]}"
 check "version 5, bundled: same bits" same_hashes "$tmp/one" "$tmp/v5"
 replay "$tmp/guns.pcap" "$tmp/wind" "${watch[@]}" --set weather.wind_from_deg=90

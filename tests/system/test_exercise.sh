@@ -20,7 +20,7 @@ check "it is seen at last" is "$(target "$tmp/v7" "$n" visible_fraction)" '>' 0.
 check "it closes" is "$(target "$tmp/v7" "$((n - 2))" closing_mps)" '>' 200
 
 # In other words: version and bundling change no bit.
-for variant in "--version 6" "--version 5" "--bundle" "--version 5 --bundle"; do
+for variant in dis.version=6 dis.version=5 "dis.bundle=true dis.fillers=true" "dis.version=5 dis.bundle=true"; do
     # shellcheck disable=SC2086
     exercise demo "$tmp/variant.pcap" $variant
     replay "$tmp/variant.pcap" "$tmp/variant" "${quick[@]}"
@@ -32,7 +32,8 @@ done
 near() { # WHAT A B TOLERANCE
     check "$1: $2 and $3 within $4" awk -v a="$2" -v b="$3" -v t="$4" 'BEGIN { d = a - b; exit !(a != "" && b != "" && d <= t && -d <= t) }'
 }
-for place in "--lat -33.5 --lon 151" "--lat 20 --lon 179.9995" "--lat 85 --lon -40" "--stamp 3592" "--absolute"; do
+for place in "place.lat_deg=-33.5 place.lon_deg=151" "place.lat_deg=20 place.lon_deg=179.9995" "place.lat_deg=85 place.lon_deg=-40" \
+    dis.stamp_s=3592 dis.stamps=absolute; do
     # shellcheck disable=SC2086
     exercise demo "$tmp/place.pcap" $place
     replay "$tmp/place.pcap" "$tmp/place" "${quick[@]}"
@@ -46,8 +47,8 @@ for place in "--lat -33.5 --lon 151" "--lat 20 --lon 179.9995" "--lat 85 --lon -
     rm -rf "$tmp/place"
 done
 
-# Another seed is another road and another place to fire from: still found.
-exercise demo "$tmp/seed.pcap" --seed 7
+# Another seed is another ground, a turn another direction of everything: still found.
+exercise demo "$tmp/seed.pcap" seed=7 place.turn_deg=70
 replay "$tmp/seed.pcap" "$tmp/seed" "${quick[@]}"
 m=$(wc -l <"$tmp/seed/truth.jsonl")
 check "seed 7: near at last" is "$(target "$tmp/seed" "$m" range_m)" '<' 300

@@ -19,7 +19,7 @@ columns() { awk -F'\t' '{ print NF }' "$tmp/stdout" | sort -u; }
 check "27 columns everywhere" [ "$(columns)" = 27 ]
 
 cp "$tmp/stdout" "$tmp/plain.tsv"
-exercise demo "$tmp/bundle.pcap" --bundle
+exercise demo "$tmp/bundle.pcap" dis.bundle=true dis.fillers=true
 run inspect "$tmp/bundle.pcap" --pdus tsv
 check "bundles: the same Entity States, but for the packet number" \
     cmp -s <(cut -f2- "$tmp/plain.tsv") <(cut -f2- "$tmp/stdout")

@@ -46,7 +46,8 @@ replay "$tmp/demo.pcap" "$tmp/smooth" --no-png --bands lwir --rate 20 --from 136
 check "gimbal: no frame shows the tick before" is "$(jump "$tmp/smooth" 1:3001:22)" '<' 0.02
 
 # Silence for the last 1.5 s, some 470 m: the seeker flies on to its target.
-exercise demo "$tmp/silent.pcap" --silent 1.5
+sed 's/^    time_s: 12$/&\n    silent_s: 1.5/' etc/scenarios/demo.yaml >"$tmp/silent.yaml"
+exercise "$tmp/silent.yaml" "$tmp/silent.pcap"
 replay "$tmp/silent.pcap" "$tmp/silent" --no-png --bands lwir --rate 5
 last() { aim "$1" 1:3001:22 | tail -n 1 | cut -d' ' -f2; }
 check "silent missile: replays" [ $code = 0 ]

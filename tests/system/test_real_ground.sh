@@ -5,7 +5,7 @@
 data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
 [ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }
 
-exercise demo "$tmp/demo.pcap" --lat 44.0565 --lon -123.0690 --height 106
+exercise demo "$tmp/demo.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=106
 cat >"$tmp/ground.yaml" <<EOF
 terrain:
   elevation: $data/autzen_dtm_1m.tif
@@ -35,7 +35,7 @@ left=$(grep -oE 'they were sent [0-9.]+ m' "$tmp/stdout" | grep -oE '[0-9.]+')
 check "fit: within 0.2 m (median), not ${left:-nothing}" is "$left" '<' 0.2
 
 # sent 60 m too low, the missile flies below this ground: its pictures are of nothing, and that is said
-exercise demo "$tmp/low.pcap" --lat 44.0565 --lon -123.0690 --height 46
+exercise demo "$tmp/low.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=46
 replay "$tmp/low.pcap" "$tmp/low" "${few[@]}"
 check "an eye below the ground is said" complained 'below the ground in [0-9]+ of [0-9]+ frames.*terrain\.ground=fit'
 
