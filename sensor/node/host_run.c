@@ -217,6 +217,10 @@ Status run_host(Run *run, const DisEntityId *host)
     snprintf(host_text, sizeof host_text, "%s", session_host(session));
     const Status closed = session_close(session, &result);
     if (status == STATUS_OK) status = closed;
+    if (run->live) {
+        run->live->files_failed   = (uint64_t)result.files_failed;
+        run->live->files_left_out = (uint64_t)result.files_left_out;
+    }
     if (result.frames > 0 || run->live) {
         const Status written = conclude(run, out, host_text, &choices, &result,
                                         o->config.causal ? player_counters(player) : &run->survey.counters);

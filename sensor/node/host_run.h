@@ -19,7 +19,7 @@ struct Run {
     double    until_s;           /* causal: arrival time of the last that the choices know */
     uint64_t  own;               /* datagrams of this node, left out */
     const DisLogCounters *link;  /* NULL: live */
-    const LiveCounters   *live;  /* NULL: a replay */
+    LiveCounters         *live;  /* NULL: a replay */
     const char *log_name;        /* in run.json */
     char      config_sha256[sha256_text_size], log_sha256[sha256_text_size];
     unsigned  bands;

@@ -47,17 +47,15 @@ static void ask_to_stop(int number)
     stop_asked = 1;
 }
 
-/* The first signal ends the frame and the run, the second ends the program. */
+/* The first signal ends the frame and the run, the second the program. SIGINT counts even where it was ignored: so shells
+ * start what runs in the background of a script. nohup's SIGHUP stays ignored. */
 static void catch_signals(void)
 {
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = SA_RESETHAND};
+    struct sigaction before, action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
     sigemptyset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction before;
-        if (sigaction(numbers[i], NULL, &before) == 0 && before.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
-    }
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
 }
 
 static bool over(const Live *l)
@@ -307,7 +305,6 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         show_progress(l, session, (int)n, false);
     }
     show_progress(l, session, 0, true);
-    l->counters.files_failed = (uint64_t)session_result(session)->files_failed;
     conclude(l);
     return status;
 }
@@ -362,6 +359,10 @@ static Status run_node(Live *l)
     log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames left out %llu",
              (unsigned long long)l->counters.datagrams, (unsigned long long)l->run.own,
              (unsigned long long)lost(&l->counters), (unsigned long long)l->counters.frames_late);
+    if (l->counters.files_failed || l->counters.files_left_out)
+        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or --no-files "
+                 "leaves more time", (unsigned long long)l->counters.files_left_out,
+                 (unsigned long long)l->counters.files_failed);
     return status;
 }
 

@@ -21,7 +21,8 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 /* ---- one frame ------------------------------------------------------------------------------ */
 
 /* Sun at the eye's own place, its direction turned into the world's frame. */
-static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s)
+static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s,
+                       Arena *arena)
 {
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
@@ -50,7 +51,7 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
     const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, config_optical(config)), &eye->view};
-    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, s->frame_arena);
+    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, arena);
 }
 
 /* Products give normals in the host's own ENU. */
@@ -97,34 +98,22 @@ typedef struct FrameDone {
     RenderCounters counters;
 } FrameDone;
 
-/* Files of one frame. Live, a place that takes none is said once, tried again every ten seconds, and loses nothing but
- * the files. */
+/* Hash, picture files and the line of truth. Live, the files are handed over, and a disk that takes nothing ends nothing. */
 static Status write_files(char hash[sha256_text_size], Session *s, const FrameFiles *files, FrameRecord *record)
 {
-    static const double patience_s = 10;
-    const bool     live = s->shared->live, due = wall_clock_s() >= s->files_off_s;
-    const LogLevel nothing = (LogLevel)(LOG_ERROR + 1);
-    if (s->files_said && due) log_set_level(nothing);
-    Status status = due && s->shared->config->publish.files ? frame_files_write(hash, files, s->shared->pool)
-                                                            : frame_files_hash(hash, files);
+    const bool live = s->shared->live;
+    Status     status = s->shared->config->publish.files && !live ? frame_files_write(hash, files, s->shared->pool)
+                                                                  : frame_files_hash(hash, files);
     record->frame_sha256 = hash;
-    if (status == STATUS_OK && due) status = record_write_frame(s->truth, record);
-    if (s->files_said && due) log_set_level(LOG_INFO);
-    if (!live || (status != STATUS_IO && status != STATUS_OK)) return status;
-    if (status == STATUS_OK && due && s->files_said) {
-        log_info("session: files can be written again: %d frames lack some", s->result.files_failed);
-        s->files_said = false;
-    }
-    if (status == STATUS_OK && due) return STATUS_OK;
-    if (status == STATUS_IO) {
-        if (!s->files_said) log_warn("session: going on without files; trying again every %.0f s", patience_s);
-        s->files_said  = true;
-        s->files_off_s = wall_clock_s() + patience_s;
-        if (!*hash) frame_files_hash(hash, files);
-    }
-    s->result.files_failed++;
+    if (status != STATUS_OK) return status;
+    if (s->writer) frame_writer_put(s->writer, files);
+    if (!live) return record_write_frame(s->truth, record);
+
+    const bool due = patience_due(&s->truth_patience);
+    if (due) status = record_write_frame(s->truth, record);
+    patience_over(&s->truth_patience, due, due ? status : STATUS_IO);
     clearerr(s->truth);
-    return STATUS_OK;
+    return status == STATUS_IO ? STATUS_OK : status;
 }
 
 static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
@@ -135,8 +124,9 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     Eye                  eye;
 
     *done = (FrameDone){0};
-    arena_reset(s->frame_arena);
-    Status status = entity_table_snapshot(&snapshot, s->table, t_s, s->frame_arena);
+    Arena *arena = s->writer ? frame_writer_arena(s->writer) : s->frame_arena;
+    arena_reset(arena);
+    Status status = entity_table_snapshot(&snapshot, s->table, t_s, arena);
     if (status != STATUS_OK) return status;
     if (!session_eye(&eye, s, &snapshot, t_s)) return STATUS_OK;
 
@@ -145,15 +135,15 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     double        r_host_from_enu[9] = {0};
     Picture       picture;
     RenderRequest request;
-    status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s);
+    status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s, arena);
     make_request(&request, s, &eye);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK)
-        status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, s->frame_arena);
+        status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, arena);
     if (status != STATUS_OK) return status;
     turn_normals(&picture, r_host_from_enu);
 
-    Target          *target = arena_alloc(s->frame_arena, (size_t)snapshot.count, sizeof *target);
+    Target          *target = arena_alloc(arena, (size_t)snapshot.count, sizeof *target);
     TruthNoise       noise;
     frame_expose(&noise, s->chain, &picture, shared->config);
     if (!target) return STATUS_NO_MEMORY;
@@ -197,6 +187,28 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
 
 /* ---- the loop ------------------------------------------------------------------------------- */
 
+static Status open_detectors(Chain *chain[BAND_COUNT], const SessionShared *shared)
+{
+    const Config *config = shared->config;
+    const int     places = render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0);
+    Status        status = STATUS_OK;
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
+        if (shared->sensors->has[b])
+            status = chain_create(&chain[b], &shared->sensors->preset[b], config->sensor.width_px, config->sensor.height_px,
+                                  places, (uint64_t)config->seed);
+    return status;
+}
+
+/* After the folders are there. */
+static Status open_writer(Session *s)
+{
+    Chain *chain[BAND_COUNT] = {NULL};
+    Status status = open_detectors(chain, s->shared);
+    if (status == STATUS_OK) return frame_writer_create(&s->writer, chain, s->shared->config);
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
+    return status;
+}
+
 static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
 
 static Status open_session(Session *s)
@@ -229,14 +241,9 @@ static Status open_session(Session *s)
     Status        status = entity_table_create(&s->table, &table, shared->catalog, path);
     const Config *config = shared->config;
     unsigned      raw = 0;
-    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
-        if (!shared->sensors->has[b]) continue;
-        status = chain_create(&s->chain[b], &shared->sensors->preset[b], config->sensor.width_px,
-                              config->sensor.height_px,
-                              render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0),
-                              (uint64_t)config->seed);
-        raw |= config->detector.raw && config->publish.files ? 1u << b : 0;
-    }
+    if (status == STATUS_OK) status = open_detectors(s->chain, shared);
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? shared->bands : 0, raw);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
@@ -245,7 +252,8 @@ static Status open_session(Session *s)
         log_error("session: cannot write %s: %s; choose another place with --out", path, strerror(errno));
         return STATUS_IO;
     }
-    return STATUS_OK;
+    s->truth_patience = (Patience){.what = "lines in truth.jsonl"};
+    return shared->live && config->publish.files ? open_writer(s) : STATUS_OK;
 }
 
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player, const char *folder)
@@ -307,6 +315,9 @@ const char          *session_host(const Session *s) { return s->host_text; }
 Status session_close(Session *s, SessionResult *result)
 {
     Status status = STATUS_OK;
+    const FrameWriterCounters written = frame_writer_destroy(s->writer);
+    s->result.files_failed   = written.failed + s->truth_patience.lacking;
+    s->result.files_left_out = written.left_out;
     if (s->table) s->result.entities = *entity_table_counters(s->table);
     if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
     if (s->truth && fclose(s->truth) != 0) {

@@ -36,7 +36,7 @@ typedef struct SessionResult {
     int     frames;
     int     listed;
     int     buried;                   /* frames whose eye was below the ground */
-    int     files_failed;             /* frames of which not every file could be written */
+    int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; known when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */

@@ -4,6 +4,8 @@
 #include "dis/enumerations.h"
 #include "sensor/node/scene_rate.h"
 
+enum { expire_ticks = seeker_ticks_per_s / 10 }; /* nobody sees the silent meanwhile: poses and snapshots leave them out */
+
 /* The middle of the aim at t_s; false when it is not there. */
 static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
 {
@@ -93,7 +95,7 @@ void session_advance(Session *s, double t_s)
     /* a quotient is rounded correctly, so that tick 35 is 0.35 to the bit; 35 * 0.01 is more */
     for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
         player_feed(s->player, s->table, tick_s);
-        entity_table_expire(s->table, tick_s);
+        if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal) find_host(s);
         step_gimbal(s, tick_s);
     }

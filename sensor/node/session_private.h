@@ -3,6 +3,8 @@
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
 #include "sensor/node/frame_files.h"
+#include "sensor/node/frame_writer.h"
+#include "sensor/node/patience.h"
 #include "sensor/node/player.h"
 #include "sensor/node/seeker.h"
 #include "sensor/node/session.h"
@@ -24,8 +26,8 @@ struct Session {
     int                  ticks;         /* how many there were, to 2 */
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv */
     FrameLevel           level[BAND_COUNT];
-    double               files_off_s;   /* wall clock: no files before; live, after one could not be written */
-    bool                 files_said;
+    FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
+    Patience             truth_patience; /* live: with truth.jsonl */
     SessionResult        result;
     int                  capacity;      /* of the result's lists */
 };

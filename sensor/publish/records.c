@@ -185,6 +185,7 @@ static json_t *live_json(const LiveCounters *c)
     set_count(live, "record_failed", c->record_failed);
     set_count(live, "frames_late", c->frames_late);
     set_count(live, "files_failed", c->files_failed);
+    set_count(live, "files_left_out", c->files_left_out);
     return live;
 }
 

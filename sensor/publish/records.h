@@ -33,7 +33,7 @@ Status record_write_frame(FILE *file, const FrameRecord *record);
 /* What only a live node counts. */
 typedef struct LiveCounters {
     uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
-    uint64_t frames_late, files_failed;
+    uint64_t frames_late, files_failed, files_left_out;
 } LiveCounters;
 
 typedef struct RunRecord {

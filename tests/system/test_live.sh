@@ -34,7 +34,7 @@ silent_port=$port
 free_port
 node told --address 127.0.0.1 --port $port
 heard_by told 'listening on' 10
-kill -TERM "${node[told]}" # a shell has its background processes ignore INT
+kill -INT "${node[told]}"
 ended told 10
 check "told to stop: ends well" [ $code = 0 ]
 check "told to stop: says that it had not begun" grep -q 'before the first frame' "$tmp/told.out"
