@@ -1,5 +1,7 @@
 #include "sensor/node/config.h"
 
+#include "dis/pdu.h"
+
 #define AT(member) SETTING_AT(Config, member)
 
 static const Setting keys[] = {
@@ -210,6 +212,22 @@ Status config_check(const Config *config)
     if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
         log_error("config: terrain.%s needs terrain.elevation: on invented ground it would lie on other country's hills",
                   *config->terrain.cover ? "cover" : "orthophoto");
+        return STATUS_BAD_VALUE;
+    }
+    DisEntityId id;
+    double      unix_s;
+    if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
+        !dis_entity_id_parse(&id, config->exercise.host)) {
+        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition",
+                  config->exercise.host);
+        return STATUS_BAD_VALUE;
+    }
+    if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
+        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82", config->exercise.aim);
+        return STATUS_BAD_VALUE;
+    }
+    if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
+        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100", config->exercise.utc);
         return STATUS_BAD_VALUE;
     }
     if (config->exercise.from_s > config->exercise.to_s) {

@@ -55,5 +55,14 @@ part_of() {
     [ "$n" -ge "$3" ] || { echo "only $n frames in $1"; return 1; }
     [ -z "$(comm -23 <(numbered "$1" | sort) <(numbered "$2" | sort))" ]
 }
+# agree LIVE REPLAY LEAST: the frames that both have are the same, and they are at least so many
+agree() {
+    local numbers same
+    numbers=$(comm -12 <(numbered "$1" | cut -d' ' -f1 | sort) <(numbered "$2" | cut -d' ' -f1 | sort) | wc -l)
+    same=$(comm -12 <(numbered "$1" | sort) <(numbered "$2" | sort) | wc -l)
+    [ "$numbers" -ge "$3" ] && [ "$numbers" = "$same" ] || { echo "of $numbers frames in both, $same are the same"; return 1; }
+}
+# time_of OUT LINE: of a line of the truth; $: the last
+time_of() { json_numbers <(sed -n "$2p" "$1/truth.jsonl") time_s | head -n 1; }
 # live_counter OUT NAME
 live_counter() { run_json "$1" | grep -oE '"live":\{[^}]*\}' | grep -oE "\"$2\":[0-9]+" | cut -d: -f2; }

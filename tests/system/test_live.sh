@@ -52,7 +52,7 @@ end_sender
 # the same configuration on the recording; --to: the live node went on after the last PDU
 again() { # NAME options
     local name=$1; shift
-    last=$(json_numbers <(tail -n 1 "$tmp/$name/truth.jsonl") time_s | head -n 1)
+    last=$(time_of "$tmp/$name" '$')
     replay "$tmp/$name.pcapng" "$tmp/$name-again" --causal --port 0 --to "${last:-0}" "$@"
     check "$name: its recording replays" [ $code = 0 ]
     check "$name: every live frame is the replay's of that number" part_of "$tmp/$name" "$tmp/$name-again" 20

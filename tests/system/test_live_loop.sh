@@ -32,10 +32,11 @@ lacking=$(($(live_counter "$tmp/loop" files_failed) + $(live_counter "$tmp/loop"
 check "$whole frames with files and $lacking without are all $made" [ $((whole + lacking)) = "$made" ]
 check "raw counts of the sensor beside them" [ "$(find "$tmp/loop/raw/lwir" -name '*.png' | wc -l)" -ge 5 ]
 check "two Data PDUs a frame, and its own came back" [ "$(run_json "$tmp/loop" | grep -oE '"own":[0-9]+')" = "\"own\":$((2 * made))" ]
-last=$(json_numbers <(tail -n 1 "$tmp/loop/truth.jsonl") time_s | head -n 1)
-replay "$tmp/loop.pcapng" "$tmp/again" --causal --port 0 --size 64x48 --rate 10 --bands optical,lwir --no-files --to "${last:-0}" \
+# five frames of the middle: a sanitizer takes seconds for one
+replay "$tmp/loop.pcapng" "$tmp/again" --causal --port 0 --size 64x48 --rate 10 --bands optical,lwir --no-files \
+    --from "$(time_of "$tmp/loop" 3)" --to "$(awk -v t="$(time_of "$tmp/loop" 3)" 'BEGIN { print t + 0.4 }')" \
     --set exercise.listen_s=0.5 --set sensor.preset=staring_lwir
 check "its recording replays" [ $code = 0 ]
-check "to the same bits" part_of "$tmp/loop" "$tmp/again" 8
+check "to the same bits" agree "$tmp/loop" "$tmp/again" 1
 [ "$failures" = 0 ] || { tail -n 40 "$tmp/loop.out"; cat "$tmp/stderr"; }
 finish
