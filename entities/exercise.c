@@ -179,7 +179,9 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
 
     /* both can bend by their accelerations, and by a little that neither has yet */
-    const double bend_mps2 = v3_length(truth->a_mps2) + v3_length(said->k.a_mps2) + 0.3;
+    const double turned_mps2 = dead_reckoning_in_body_axes(said->k.algorithm)
+                                   ? v3_length(said->k.w_body_rps) * v3_length(said->k.v_mps) : 0;
+    const double bend_mps2 = v3_length(truth->a_mps2) + v3_length(said->k.a_mps2) + turned_mps2 + 0.3;
     if (dead_reckoning_turns(said->k.algorithm)) v3_sub(spin, truth->w_body_rps, said->k.w_body_rps);
     else memcpy(spin, truth->w_body_rps, sizeof spin);
     const double spin_rps = v3_length(spin), bend_rps2 = 0.3 + spin_rps * spin_rps;
@@ -222,6 +224,23 @@ static void leave(Exercise *x, int entity, double t_s)
     send_state(x, entity, &k, said->appearance | 1u << dis_appearance_deactivated_bit, true, t_s);
 }
 
+static bool said_still(const Kinematics *k)
+{
+    return k->algorithm == 1 || v3_length(k->v_mps) + v3_length(k->a_mps2) + v3_length(k->w_body_rps) < 1e-6;
+}
+
+/* Whether acceleration and rates of the last Entity State, which an update keeps, would lead it away at once. */
+static bool outdated(const Said *said, const Cast *cast, int entity, const Kinematics *k)
+{
+    static const double unfelt_mps2 = 1, unfelt_rps = 0.1;
+    Kinematics now = *k;
+    double     a[3], w[3];
+    into_axes(&now, cast->entity[entity].algorithm);
+    v3_sub(a, now.a_mps2, said->k.a_mps2);
+    v3_sub(w, now.w_body_rps, said->k.w_body_rps);
+    return v3_length(a) > unfelt_mps2 || v3_length(w) > unfelt_rps;
+}
+
 static void look_at(Exercise *x, int entity, double t_s)
 {
     static const double longest_look_s = 1; /* a bend that was guessed too small is met within it */
@@ -246,12 +265,12 @@ static void look_at(Exercise *x, int entity, double t_s)
         sends  = wrong(&again_s, x, said, &k, joint, joints, age_s);
     }
     if (sends) {
-        send_state(x, entity, &k, appearance, !said->known || beats || !s->dis.updates, t_s);
+        send_state(x, entity, &k, appearance, !said->known || beats || !s->dis.updates || outdated(said, x->cast, entity, &k), t_s);
         if (wrong(&again_s, x, said, &k, said->joint, said->joints, 0)) again_s = 0;
     }
     const double beat_s = said->t_s + s->dis.heartbeat_s;
     double next_s = t_s + fmin(again_s, longest_look_s);
-    if (joints == 0 && said->joints == 0 && cast_still(x->cast, entity, t_s)) next_s = beat_s;
+    if (said->joints == 0 && said_still(&said->k) && cast_still(x->cast, entity, t_s)) next_s = beat_s;
     const long long next = ticks_until(x, fmin(fmin(next_s, beat_s - 0.5 * x->tick_s), change_s));
     x->look[entity] = next > x->tick ? next : x->tick + 1;
 }

@@ -66,7 +66,7 @@ typedef struct CastPose {
 
 void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s);
 /* The pose in ECEF with its velocity, acceleration (world axes) and body rates: central differences over 10 ms, so that
- * they belong to it: within 1e-4 of a route's own derivatives (tests/entities/test_exercise_cast.c). algorithm: 4. */
+ * they belong to it; velocity within 1 mm/s of wider differences (tests/entities/test_exercise_cast.c). algorithm: 4. */
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s);
 /* Whether others hear of it at that time; a munition from its Fire to its Detonation. */
 bool cast_present(const Cast *cast, int entity, double t_s);

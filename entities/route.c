@@ -53,7 +53,7 @@ static void through_points(Through *t, const double (*point)[3], int count, bool
 
 /* ---- evenly by arc length --------------------------------------------------------------------- */
 
-enum { pieces = 32 }; /* a leg is measured as so many chords */
+enum { pieces = 256, knots_a_leg = 32 }; /* a leg is measured as so many chords */
 
 static void at_u(double p[3], const Through *t, int leg, double share)
 {
@@ -140,7 +140,7 @@ Status route_create(Route *out, const double (*point)[3], int count, bool loop)
         free(t);
         return STATUS_NO_MEMORY;
     }
-    const int legs = t->last - t->first, steps = legs * pieces < route_max_knots ? legs * pieces : route_max_knots;
+    const int legs = t->last - t->first, steps = legs * knots_a_leg;
     Route     route = {.loop = loop, .length_m = length_m[legs * pieces], .knots = loop ? steps : steps + 1};
     route.step_m  = route.length_m / steps;
     route.control = calloc((size_t)route.knots + 3, sizeof *route.control);

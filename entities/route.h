@@ -7,7 +7,7 @@
 
 #include "pitviper.h"
 
-enum { route_max_points = 128, route_max_knots = 8192 };
+enum { route_max_points = 128 };
 
 typedef struct Route {
     bool    loop;

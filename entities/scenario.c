@@ -282,6 +282,11 @@ static bool group_fits(const Scenario *s, const ScenarioGroup *group)
                   group->line, i + 1, i == places - 1 ? ", a loop closes by itself" : "");
         return false;
     }
+    if (places > 1 && 0.25 * group->unsteady_m > 0.9 * group->speed_mps) {
+        log_error("scenario: %s:%d: vehicles: unsteady_m: more than 3.6 x speed_mps would drive backwards", s->path,
+                  group->line);
+        return false;
+    }
     if (group->leaves_s <= group->appears_s) {
         log_error("scenario: %s:%d: vehicles: leaves_s is not after appears_s", s->path, group->line);
         return false;

@@ -11,7 +11,7 @@ enum {
     scenario_name_size = 24, scenario_type_size = 40, scenario_path_size = 1024,
     scenario_max_groups = 1000, scenario_max_shots = 1000,
     scenario_max_entities = 50000, /* clones and munitions */
-    scenario_max_rounds = 100000,
+    scenario_max_rounds = 20000,
 };
 
 /* One line of `vehicles`: one entity, or many of one kind on one route. x east, y north of the place, metres. */
