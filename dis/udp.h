@@ -25,7 +25,7 @@ typedef struct DisUdpConfig {
                                          * beyond: the oldest stay, new ones are counted lost */
 } DisUdpConfig;
 
-/* Broadcast on port 3000, 1 hop, a queue of 32 MiB: 100 000 Entity States. */
+/* Broadcast on port 3000, 1 hop, a queue of 32 MiB: 170 000 Entity States. */
 DisUdpConfig dis_udp_default_config(void);
 
 typedef struct DisUdpCounters {

@@ -340,7 +340,7 @@ static void a_closing_tick_empties_the_socket(void **state)
         settled(udp, sent);
         for (; dis_udp_take(&a, udp, INT64_MAX); taken++) CHECK(a.capture_ns > until_ns && number_of(&a) == taken);
     }
-    CHECK(taken == sent && in_time > sent * 9 / 10);
+    CHECK(taken == sent && in_time > sent / 2);
     close(peer);
     dis_udp_close(udp);
 }

@@ -39,6 +39,7 @@ begin() {
     shift
     for try in 1 2 3 4 5 6 7 8; do
         port=$((20000 + RANDOM % 12000))
+        : >"$tmp/stderr" # what the one before said is not this one's
         # one that nobody ends, ends by itself
         "$pitviper" record -o "$log" --address 127.0.0.1 --port $port --for 100 "$@" >"$tmp/stdout" 2>"$tmp/stderr" &
         recorder=$!
