@@ -8,6 +8,7 @@
 #include "sensor/bench.h"
 #include "sensor/node/exercise.h"
 #include "sensor/node/inspect.h"
+#include "sensor/node/live.h"
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
@@ -95,6 +96,7 @@ static const struct Command {
     int (*run)(int argc, char **argv);
     const char *help;
 } commands[] = {
+    {"run", run_command, "listen to an exercise on the network and show it live"},
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
     {"check", check_command, "say whether a file of settings is good; or print one to begin with"},

@@ -98,6 +98,7 @@ static void keep_datagram(Scan *scan, Span payload)
     }
     memcpy(bytes, payload.at, payload.octets);
     log->datagram[log->count++] = (DisDatagram){.capture_s = scan->capture_s,
+                                                .packet_s = scan->capture_s,
                                                 .packet = (uint32_t)log->counters.packets,
                                                 .octets = (uint32_t)payload.octets,
                                                 .bytes = bytes};

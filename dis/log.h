@@ -9,6 +9,7 @@
 
 typedef struct DisDatagram {
     double         capture_s;  /* Unix time: dis_unix_s */
+    double         packet_s;   /* the same as in the file, where dis_log_retime made another */
     uint32_t       packet;     /* 1-based number of the packet in the file, as tshark's frame.number */
     uint32_t       octets;
     const uint8_t *bytes;      /* owned by the log */

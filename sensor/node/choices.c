@@ -1,12 +1,15 @@
 #include "sensor/node/choices.h"
 
 #include "dis/enumerations.h"
+#include "sensor/node/opening.h"
 
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { who_size = 80 };
+
+static const char host_munition[] = "munition";
 
 void choice_add(Choices *choices, const char *format, ...)
 {
@@ -66,13 +69,13 @@ int choose_exercise(Choices *choices, const DisLog *log, const Config *config)
         const uint8_t *at = log->datagram[i].bytes, *pdu;
         DisHeader      header;
         while (dis_next_pdu(&header, &pdu, &at, log->datagram[i].bytes + log->datagram[i].octets, &ignored))
-            heard[header.exercise] += header.type == dis_pdu_entity_state;
+            heard[header.exercise] += opening_usable(&header, pdu);
     }
     for (int e = 0; e < 256; e++) {
         exercises += heard[e] > 0;
         if (heard[e] > heard[most]) most = e;
     }
-    if (exercises <= 1) return -1;
+    if (exercises <= 1) return config->causal && exercises ? most : -1;
     choice_add(choices, "exercise: %d, heard most of %d (exercise.exercise)", most, exercises);
     return most;
 }
@@ -103,7 +106,7 @@ static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], 
 static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, const Config *config)
 {
     char        name[who_size];
-    const Shot *shot = choice_shot_of(survey, plan->host);
+    const Shot *shot = dis_entity_id_is_none(plan->host) ? NULL : choice_shot_of(survey, plan->host);
     if (*config->exercise.aim) {
         dis_entity_id_parse(&plan->aim, config->exercise.aim);
         return;
@@ -125,7 +128,10 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
             return;
         }
     }
-    choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
+    if (plan->munition && config->causal)
+        choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis (exercise.aim)");
+    else
+        choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
 }
 
 static Status aim_is_heard(const Survey *survey, const Config *config)
@@ -136,7 +142,7 @@ static Status aim_is_heard(const Survey *survey, const Config *config)
         log_error("replay: exercise.aim: '%s' is not site:application:entity", config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
-    if (!survey_track(survey, aim)) {
+    if (!survey_track(survey, aim) && !config->causal) {
         log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists who is", config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
@@ -149,6 +155,14 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
     const Track *track = survey_track(survey, host);
     Status       status = aim_is_heard(survey, config);
     if (status != STATUS_OK) return status;
+    if (!track && config->causal) {
+        HostPlan later = {.host = host, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
+        dis_entity_id_text(text, host);
+        choice_add(choices, "host: %s, not heard so far (exercise.host)", text);
+        choose_aim(&later, choices, survey, config);
+        *out = later;
+        return STATUS_OK;
+    }
     if (!track) {
         dis_entity_id_text(text, host);
         log_error("replay: host %s is not in the log; `pitviper inspect LOG` lists who is", text);
@@ -164,15 +178,25 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
     return STATUS_OK;
 }
 
+/* A munition that burst, was taken away or fell silent by the end of what was heard. */
+static bool has_ended(const Survey *survey, const Track *track, const Config *config)
+{
+    const Shot       *shot = choice_shot_of(survey, track->id);
+    const TrackPoint *last = &track->point[track->count - 1];
+    return (shot && isfinite(shot->detonation_s)) || last->deactivated ||
+           survey->last_s - last->t_s > config->entities.timeout_s;
+}
+
 /* Longest flight among munitions; impact: only those whose Detonation says entity impact. NULL: none. */
-static const Track *longest_flight(const Survey *survey, bool impact)
+static const Track *longest_flight(const Survey *survey, const Config *config, bool impact)
 {
     const Track *longest = NULL;
-    double       most_s  = 0;
+    double       most_s  = config->causal ? -1 : 0; /* one report is a flight that may go on */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot  = choice_shot_of(survey, track->id);
         if (track->type.kind != dis_kind_munition) continue;
+        if (config->causal && has_ended(survey, track, config)) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s
                                                                      : track->point[track->count - 1].t_s;
@@ -208,10 +232,12 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
     if (*config->exercise.aim) {
         dis_entity_id_parse(&plan.aim, config->exercise.aim);
         const Track *aim = survey_track(survey, plan.aim);
-        plan.start_s     = aim->point[0].t_s;
-        memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
+        if (aim) {
+            plan.start_s = aim->point[0].t_s;
+            memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
+        }
     }
-    choice_add(choices, "host: a stand-off observer, no munition flies here (exercise.host)");
+    choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)", config->causal ? " now" : "");
     choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
                config->observer.range_m, config->observer.height_m);
     *out = plan;
@@ -224,14 +250,25 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     DisEntityId host;
     Status      status = aim_is_heard(survey, config);
     if (status != STATUS_OK) return status;
+    if (strcmp(config->exercise.host, host_munition) == 0) {
+        if (!config->causal) {
+            log_error("replay: exercise.host: munition: needs --causal; without it the host is chosen from the whole log");
+            return STATUS_BAD_VALUE;
+        }
+        HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
+        choice_add(choices, "host: the first munition that appears; its seeker is a notional one (exercise.host)");
+        choose_aim(&plan, choices, survey, config);
+        *out = plan;
+        return STATUS_OK;
+    }
     if (*config->exercise.host) {
         if (!dis_entity_id_parse(&host, config->exercise.host)) {
-            log_error("replay: exercise.host: '%s' is not site:application:entity", config->exercise.host);
+            log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition", config->exercise.host);
             return STATUS_BAD_VALUE;
         }
         return plan_host(out, choices, survey, config, host);
     }
-    const Track *impact = longest_flight(survey, true), *any = longest_flight(survey, false);
+    const Track *impact = longest_flight(survey, config, true), *any = longest_flight(survey, config, false);
     if (impact || any) {
         choice_add(choices, "host: %s, %s; its seeker is a notional one (exercise.host)",
                    who(name, survey, impact ? impact->id : any->id),
@@ -283,6 +320,8 @@ Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
 {
     const Track *track = survey_track(survey, plan->aim);
     if (!track) track = survey_track(survey, plan->host);
+    for (int i = 0; !track && i < survey->track_count; i++) /* who comes later comes to these */
+        if (choice_is_land(&survey->track[i])) track = &survey->track[i];
     if (!track && survey->track_count > 0) track = &survey->track[0];
     if (!track) return STATUS_BAD_VALUE;
     TrackPose pose;

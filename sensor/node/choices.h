@@ -1,5 +1,6 @@
-/* sensor/node/choices.h: what replay picks when nobody said: host, aim, time of day, ground. Each choice is
- * one line with the key that changes it. */
+/* sensor/node/choices.h: what replay and run pick when nobody said: host, aim, time of day, ground. Each choice is one
+ * line with the key that changes it. Causal choices (exercise.causal) know what the survey has heard, and that more may
+ * come: a host or an aim given by name may appear later. */
 #ifndef SENSOR_NODE_CHOICES_H
 #define SENSOR_NODE_CHOICES_H
 
@@ -19,7 +20,8 @@ void choice_add(Choices *choices, const char *format, ...) __attribute__((format
 
 /* Who carries the sensor, over which span of exercise time, and what it looks at. */
 typedef struct HostPlan {
-    DisEntityId host;      /* 0:0:0: the stand-off observer */
+    DisEntityId host;      /* 0:0:0: the stand-off observer, or whoever comes */
+    bool        any_munition; /* causal: the first munition that appears is the host */
     DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the place below */
     double      start_s, end_s;
     double      p_aim_ecef[3]; /* where to look when there is no aim entity; valid for an observer */
@@ -28,7 +30,8 @@ typedef struct HostPlan {
 } HostPlan;
 
 /* The munition whose Detonation says entity impact, longest flight first; else the longest flight; else an
- * observer circling the vehicle that went farthest; else an observer of the middle of whatever was heard. */
+ * observer circling the vehicle that went farthest; else an observer of the middle of whatever was heard. Causal: the
+ * longest flight among munitions that are still there, else the observer. */
 Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
 /* For a host that was asked for by name. STATUS_BAD_VALUE and a message when the log does not hold it. */
 Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
@@ -37,7 +40,8 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 void choose_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Unix time of exercise time 0. */
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
-/* The exercise identifier to hear: as configured, or the one with most Entity States; -1: all. */
+/* The exercise identifier to hear: as configured, or the one with most usable Entity States; -1: all. Causal: also where
+ * there is but one, others may come. */
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);

@@ -1,5 +1,7 @@
 #include "sensor/node/config.h"
 
+#include "dis/pdu.h"
+
 #define AT(member) SETTING_AT(Config, member)
 
 static const Setting keys[] = {
@@ -47,11 +49,22 @@ static const Setting keys[] = {
     {"exercise.port", SETTING_INT, AT(exercise.port), -1, 65535, NULL, "", "UDP port of the exercise; 0: any; -1: 3000, or any when nothing went there"},
     {"exercise.exercise", SETTING_INT, AT(exercise.exercise), -2, 255, NULL, "", "exercise identifier; -1: the one heard most; -2: all as one"},
     {"exercise.utc", SETTING_TEXT, AT(exercise.utc), 0, 0, NULL, "", "date and time of the first PDU, 2026-06-21T10:00:00Z"},
-    {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "", "site:application:entity that carries the sensor"},
+    {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "", "site:application:entity that carries the sensor; munition: the first that appears (run, replay --causal)"},
     {"exercise.aim", SETTING_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},
     {"exercise.from_s", SETTING_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
     {"exercise.to_s", SETTING_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},
+    {"exercise.listen_s", SETTING_DOUBLE, AT(exercise.listen_s), 0.05, 600, NULL, "s", "heard before host, ground and time of day are chosen, from the first entity on; run, replay --causal"},
     {"exercise.causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "use only what had been received by each frame"},
+    {"network.address", SETTING_TEXT, AT(network.address), 0, 0, NULL, "", "of the exercise, in numbers: a multicast group, a broadcast, a host; empty: hear all, send to 255.255.255.255"},
+    {"network.interface", SETTING_TEXT, AT(network.interface), 0, 0, NULL, "", "name, eth0; empty: the system's choice"},
+    {"network.ttl", SETTING_INT, AT(network.ttl), 0, 255, NULL, "", "hops of multicast; 0: this machine alone"},
+    {"network.queue_mb", SETTING_INT, AT(network.queue_mb), 1, 1024, NULL, "MiB", "of PDUs that wait while a frame is made; more are lost, and counted"},
+    {"node.site", SETTING_INT, AT(node.site), 1, 65533, NULL, "", "who this node is on the network; what that sender says is its own, and ignored"},
+    {"node.application", SETTING_INT, AT(node.application), 1, 65533, NULL, "", "the same"},
+    {"publish.dis", SETTING_TEXT, AT(publish.dis), 0, 0, "off|sensor|truth", "", "a Data PDU a frame and band: nothing; what a seeker could measure; with ids and ranges"},
+    {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "", "pictures into files; truth.jsonl and run.json are written in any case"},
+    {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "display pictures beside the EXR ones"},
+    {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "run: all that is heard, into this pcapng file; empty: none"},
     {"weather.atmosphere", SETTING_TEXT, AT(weather.atmosphere), 0, 0, NULL, "", "us1976, midlat_summer, or another of etc/atmosphere"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K", "at the ground; unset: the atmosphere's own"},
@@ -121,6 +134,14 @@ Config config_default(void)
     c.exercise.exercise             = -1;
     c.exercise.from_s               = NAN;
     c.exercise.to_s                 = NAN;
+    c.exercise.listen_s             = 2;
+    c.network.ttl                   = 1;
+    c.network.queue_mb              = 64; /* 300,000 Entity States: six seconds of 50,000 a second */
+    c.node.site                     = 4711;
+    c.node.application              = 1;
+    strcpy(c.publish.dis, "off");
+    c.publish.files                 = true;
+    c.publish.png                   = true;
     strcpy(c.weather.atmosphere, "us1976");
     c.weather.visibility_m          = 23000;
     c.weather.air_temp_k            = NAN;
@@ -193,6 +214,22 @@ Status config_check(const Config *config)
                   *config->terrain.cover ? "cover" : "orthophoto");
         return STATUS_BAD_VALUE;
     }
+    DisEntityId id;
+    double      unix_s;
+    if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
+        !dis_entity_id_parse(&id, config->exercise.host)) {
+        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition",
+                  config->exercise.host);
+        return STATUS_BAD_VALUE;
+    }
+    if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
+        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82", config->exercise.aim);
+        return STATUS_BAD_VALUE;
+    }
+    if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
+        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100", config->exercise.utc);
+        return STATUS_BAD_VALUE;
+    }
     if (config->exercise.from_s > config->exercise.to_s) {
         log_error("config: exercise.from_s: %g is after exercise.to_s: %g", config->exercise.from_s,
                   config->exercise.to_s);
@@ -201,7 +238,18 @@ Status config_check(const Config *config)
     return STATUS_OK;
 }
 
-void config_text(char *out, size_t out_size, const Config *config) { settings_text(out, out_size, &table, config); }
+void config_text(char *out, size_t out_size, const Config *config)
+{
+    const Config plain  = config_default();
+    Config       hashed = *config;
+    hashed.network         = plain.network;
+    hashed.publish         = plain.publish;
+    hashed.record          = plain.record;
+    hashed.exercise.port   = plain.exercise.port;
+    hashed.exercise.from_s = plain.exercise.from_s;
+    hashed.exercise.to_s   = plain.exercise.to_s;
+    settings_text(out, out_size, &table, &hashed);
+}
 
 void config_write(FILE *to, const Config *config)
 {
@@ -216,7 +264,7 @@ void config_write_given(FILE *to, const Config *config)
 {
     char  text[16384];
     char *at = text;
-    config_text(text, sizeof text, config);
+    settings_text(text, sizeof text, &table, config);
     for (int i = 0; i < key_count && *at; i++) {
         char *end = strchr(at, '\n'), *equals = strchr(at, '=');
         if (!end || !equals) return;

@@ -45,10 +45,25 @@ typedef struct Config {
     struct {
         int    port, exercise;     /* exercise -1: the one heard most, -2: all */
         char   utc[32];            /* of the first PDU; empty: chosen */
-        char   host[24];           /* empty: chosen */
+        char   host[24];           /* an id; munition: the first that appears, causal only; empty: chosen */
         char   aim[24];            /* empty: chosen */
         double from_s, to_s;       /* exercise time; NaN: whole */
+        double listen_s;           /* causal: before the choices */
     } exercise;
+    struct {
+        char   address[64], interface[32];
+        int    ttl, queue_mb;
+    } network;
+    struct {
+        int    site, application;  /* who this node is; PDUs of that sender are its own */
+    } node;
+    struct {
+        char   dis[8];             /* off, sensor or truth */
+        bool   files, png;
+    } publish;
+    struct {
+        char   path[1024];         /* empty: nothing is recorded */
+    } record;
     struct {
         char   atmosphere[32];     /* a folder of etc/atmosphere */
         double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
@@ -91,7 +106,8 @@ Status config_check(const Config *config);
 void   config_write(FILE *to, const Config *config);
 /* `key = value` of those that were given, a line each, indented. */
 void   config_write_given(FILE *to, const Config *config);
-/* The canonical text: every key and value, in table order. What config_sha256 hashes. */
+/* The canonical text: every key and value, in table order; those that change no picture (network, publish, record, the
+ * port, the span of time) as they are by default. What config_sha256 hashes. */
 void   config_text(char *out, size_t out_size, const Config *config);
 
 #endif

@@ -108,6 +108,7 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
     Status status = make_folders(out);
     if (status == STATUS_OK) frame_files_clear(out);
     for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
+        if (bands == 0) break;
         if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
             b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
         product_folder(path, out, b);
@@ -498,3 +499,5 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
         if (jobs.job[i].status != STATUS_OK) return jobs.job[i].status;
     return jobs.hash_status;
 }
+
+Status frame_files_hash(char hash[sha256_text_size], const FrameFiles *frame) { return hash_planes(hash, frame); }

@@ -36,12 +36,14 @@ typedef struct FrameFiles {
 
 /* clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
  * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
- * raw; a clear message when the place cannot be written. */
+ * raw; a clear message when the place cannot be written. No bands: OUT alone. */
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 /* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
 void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
+/* The same hash, and no file. */
+Status frame_files_hash(char hash[sha256_text_size], const FrameFiles *frame);
 
 #endif

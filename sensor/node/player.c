@@ -1,21 +1,129 @@
 #include "sensor/node/player.h"
 
+#include "dis/enumerations.h"
 #include "dis/exercise_clock.h"
 
 #include <stdlib.h>
 
+enum { shots_kept = 1024, munitions_kept = 256 };
+
 typedef struct Event {
     double         counts_s, t_s; /* from when it counts; its own exercise time */
-    uint32_t       order;         /* in the file */
+    uint32_t       order;
+    bool           kept;
     DisHeader      header;
-    const uint8_t *pdu;           /* in the log */
+    union {
+        const uint8_t *pdu;
+        size_t         at; /* in kept octets */
+    };
 } Event;
 
+typedef struct Aimed {
+    DisEntityId munition, target;
+} Aimed;
+
 struct Player {
-    int         count, next;
-    Event      *event;
-    DisCounters counters; /* drops again, as the survey counted them already: not reported */
+    bool           causal, sorted;
+    int            exercise, count, next, capacity;
+    uint32_t       order;
+    Event         *event;
+    uint8_t       *octets; /* of what is kept until it is fed */
+    size_t         octets_used, octets_capacity;
+    ExerciseClock *clock;
+    double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
+    DisCounters    counters;
+    Aimed          aimed[shots_kept];            /* rings: the latest */
+    DisEntityId    munition[munitions_kept];
+    uint64_t       shots, munitions;
 };
+
+Status player_create(Player **out, int exercise, bool causal)
+{
+    Player *player = calloc(1, sizeof *player);
+    if (!player) return STATUS_NO_MEMORY;
+    player->exercise = exercise;
+    player->causal   = causal;
+    player->tie_s    = NAN;
+    player->latest_s = -INFINITY;
+    const Status status = exercise_clock_create(&player->clock);
+    if (status == STATUS_OK) *out = player;
+    else player_destroy(player);
+    return status;
+}
+
+void player_destroy(Player *player)
+{
+    if (!player) return;
+    exercise_clock_destroy(player->clock);
+    free(player->octets);
+    free(player->event);
+    free(player);
+}
+
+/* ---- in -------------------------------------------------------------------------------------- */
+
+static Status add_event(Player *player, const Event *event)
+{
+    if (player->count == player->capacity) {
+        const int larger = player->capacity ? 2 * player->capacity : 4096;
+        Event    *grown  = realloc(player->event, (size_t)larger * sizeof *grown);
+        if (!grown) return STATUS_NO_MEMORY;
+        player->event    = grown;
+        player->capacity = larger;
+    }
+    player->event[player->count++] = *event;
+    player->sorted                 = false;
+    return STATUS_OK;
+}
+
+static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t count)
+{
+    if (player->octets_used + count > player->octets_capacity) {
+        const size_t larger = 2 * (player->octets_capacity + count) + 65536;
+        uint8_t     *grown  = realloc(player->octets, larger);
+        if (!grown) return STATUS_NO_MEMORY;
+        player->octets          = grown;
+        player->octets_capacity = larger;
+    }
+    *at = player->octets_used;
+    memcpy(player->octets + *at, pdu, count);
+    player->octets_used += count;
+    return STATUS_OK;
+}
+
+Status player_add(Player *player, const DisDatagram *datagram, bool keep)
+{
+    const uint8_t *at = datagram->bytes, *pdu;
+    Event          event = {.kept = keep};
+    player->counters.datagrams++;
+    while (dis_next_pdu(&event.header, &pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
+        if (player->exercise >= 0 && event.header.exercise != player->exercise) {
+            player->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
+            continue;
+        }
+        event.t_s = exercise_clock_pdu_time(player->clock, &event.header, pdu, datagram->capture_s);
+        if (isnan(event.t_s)) continue;
+        if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
+        player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
+        event.counts_s   = player->causal ? player->latest_s : event.t_s;
+        event.order      = player->order++;
+        Status status    = STATUS_OK;
+        if (keep) status = keep_octets(&event.at, player, pdu, event.header.length);
+        else event.pdu = pdu;
+        if (status == STATUS_OK) status = add_event(player, &event);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+Status player_add_log(Player *player, const DisLog *log)
+{
+    Status status = STATUS_OK;
+    for (int i = 0; i < log->count && status == STATUS_OK; i++) status = player_add(player, &log->datagram[i], false);
+    return status;
+}
+
+/* ---- out ------------------------------------------------------------------------------------- */
 
 static int compare_events(const void *a, const void *b)
 {
@@ -24,70 +132,80 @@ static int compare_events(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-static Status add_event(Player *player, int *capacity, const Event *event)
+static void note_fire(Player *player, const uint8_t *pdu, size_t octets)
 {
-    if (player->count == *capacity) {
-        const int larger = *capacity ? 2 * *capacity : 4096;
-        Event    *grown  = realloc(player->event, (size_t)larger * sizeof *grown);
-        if (!grown) return STATUS_NO_MEMORY;
-        player->event = grown;
-        *capacity     = larger;
-    }
-    player->event[player->count++] = *event;
-    return STATUS_OK;
+    DisFire fire;
+    if (dis_decode_fire(&fire, pdu, octets) != STATUS_OK || dis_entity_id_is_none(fire.munition) ||
+        dis_entity_id_is_none(fire.target))
+        return;
+    player->aimed[player->shots++ % shots_kept] = (Aimed){fire.munition, fire.target};
 }
 
-Status player_create(Player **out, const DisLog *log, int exercise, bool causal)
+static void note_munition(Player *player, const uint8_t *pdu, size_t octets)
 {
-    Player        *player = calloc(1, sizeof *player);
-    ExerciseClock *clock  = NULL;
-    Status         status = STATUS_NO_MEMORY;
-    int            capacity = 0;
-    double         tie_s = NAN, latest_s = -INFINITY; /* exercise time - capture time of the first PDU */
-
-    if (!player) return STATUS_NO_MEMORY;
-    status = exercise_clock_create(&clock);
-    if (status != STATUS_OK) goto fail;
-
-    for (int i = 0; i < log->count; i++) {
-        const DisDatagram *datagram = &log->datagram[i];
-        const uint8_t     *at       = datagram->bytes;
-        Event              event;
-        while (dis_next_pdu(&event.header, &event.pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
-            if (exercise >= 0 && event.header.exercise != exercise) continue;
-            event.t_s = exercise_clock_pdu_time(clock, &event.header, event.pdu, datagram->capture_s);
-            if (isnan(event.t_s)) continue;
-            if (isnan(tie_s)) tie_s = event.t_s - datagram->capture_s;
-            latest_s       = fmax(latest_s, datagram->capture_s + tie_s);
-            event.counts_s = causal ? latest_s : event.t_s;
-            event.order    = (uint32_t)player->count;
-            status         = add_event(player, &capacity, &event);
-            if (status != STATUS_OK) goto fail;
-        }
-    }
-    if (player->count > 1) qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
-    exercise_clock_destroy(clock);
-    *out = player;
-    return STATUS_OK;
-
-fail:
-    exercise_clock_destroy(clock);
-    player_destroy(player);
-    return status;
-}
-
-void player_destroy(Player *player)
-{
-    if (!player) return;
-    free(player->event);
-    free(player);
+    enum { id_octet = 12, kind_octet = 20 };
+    if (octets <= kind_octet || pdu[kind_octet] != dis_kind_munition) return;
+    const uint8_t    *at = pdu + id_octet;
+    const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]), (uint16_t)(at[4] << 8 | at[5])};
+    for (uint64_t i = 0; i < player->munitions && i < munitions_kept; i++)
+        if (dis_entity_id_compare(player->munition[i], id) == 0) return;
+    player->munition[player->munitions++ % munitions_kept] = id;
 }
 
 void player_feed(Player *player, EntityTable *table, double t_s)
 {
+    if (!player->sorted && !player->causal && player->count > 1)
+        qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
+    player->sorted = true; /* arrivals are by themselves */
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
-        const Event *event = &player->event[player->next];
-        entity_table_pdu(table, &event->header, event->pdu, event->t_s, &player->counters);
+        const Event   *event = &player->event[player->next];
+        const uint8_t *pdu   = event->kept ? player->octets + event->at : event->pdu;
+        entity_table_pdu(table, &event->header, pdu, event->t_s, &player->counters);
+        if (event->header.type == dis_pdu_fire) note_fire(player, pdu, event->header.length);
+        if (event->header.type == dis_pdu_entity_state) note_munition(player, pdu, event->header.length);
     }
-    entity_table_expire(table, t_s);
+    if (player->causal && player->next == player->count) { /* a live node's memory is what it has not fed */
+        player->next = player->count = 0;
+        player->octets_used          = 0;
+    }
 }
+
+/* ---- asked ----------------------------------------------------------------------------------- */
+
+double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
+double player_last_s(const Player *player) { return player->latest_s; }
+
+double player_arrival_s(const Player *player, double t_s)
+{
+    double capture_s = t_s - player->tie_s;
+    /* the difference is rounded; what counts is the sum */
+    while (capture_s + player->tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
+    for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->tie_s <= t_s;) capture_s = next_s;
+    return capture_s;
+}
+
+bool player_target(DisEntityId *target, const Player *player, DisEntityId munition)
+{
+    const uint64_t kept = player->shots < shots_kept ? player->shots : shots_kept;
+    for (uint64_t i = 1; i <= kept; i++) {
+        const Aimed *aimed = &player->aimed[(player->shots - i) % shots_kept];
+        if (dis_entity_id_compare(aimed->munition, munition) != 0) continue;
+        *target = aimed->target;
+        return true;
+    }
+    return false;
+}
+
+bool player_munition(DisEntityId *munition, const Player *player, const EntityTable *table)
+{
+    const uint64_t kept = player->munitions < munitions_kept ? player->munitions : munitions_kept;
+    for (uint64_t i = player->munitions - kept; i < player->munitions; i++) {
+        const DisEntityId id = player->munition[i % munitions_kept];
+        if (!entity_table_alive(table, entity_table_find(table, id))) continue;
+        *munition = id;
+        return true;
+    }
+    return false;
+}
+
+const DisCounters *player_counters(const Player *player) { return &player->counters; }

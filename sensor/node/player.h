@@ -1,7 +1,8 @@
-/* sensor/node/player.h: a log fed to an entity table in order of time.
+/* sensor/node/player.h: what was heard, fed to an entity table in order of time: a log's datagrams, or a live node's.
  *
- * Normally a PDU counts from its own time stamp on, whenever it was received. Causal: it counts from when it
- * was received, as it would live. */
+ * By stamp: a PDU counts from its own time stamp on, whenever it was received; all must be added before the first is
+ * fed. Causal: it counts from when it was received, and may be added as it comes. Exercise time is arrival time plus a
+ * tie, which the first PDU fixes. */
 #ifndef SENSOR_NODE_PLAYER_H
 #define SENSOR_NODE_PLAYER_H
 
@@ -10,10 +11,30 @@
 
 typedef struct Player Player;
 
-/* exercise: only this id; -1: all. The log must outlive the player. */
-Status player_create(Player **out, const DisLog *log, int exercise, bool causal);
+/* exercise: only this id; -1: all. */
+Status player_create(Player **out, int exercise, bool causal);
 void   player_destroy(Player *player);
-/* Everything that counts at or before t_s and was not fed before. */
+
+/* Next datagram in order of arrival. keep: its octets are copied, else they must outlive the player. */
+Status player_add(Player *player, const DisDatagram *datagram, bool keep);
+/* All of a log, which must outlive the player. */
+Status player_add_log(Player *player, const DisLog *log);
+
+/* Everything that counts at or before t_s and was not fed before. Who has been silent too long is the caller's to
+ * remove, on a grid of his own: so the table does not depend on which frames are made. */
 void   player_feed(Player *player, EntityTable *table, double t_s);
+
+/* Exercise time of an arrival; NaN before the first PDU. */
+double player_time_s(const Player *player, double capture_s);
+/* Everything that counts at t_s arrived at or before this Unix time, to the last bit. */
+double player_arrival_s(const Player *player, double t_s);
+double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
+
+/* Target of the latest Fire fed that names this munition. */
+bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
+/* Of the munitions that were fed, who is in the table now: the one heard first. */
+bool   player_munition(DisEntityId *munition, const Player *player, const EntityTable *table);
+
+const DisCounters *player_counters(const Player *player); /* everything added, and what the table refused of it */
 
 #endif

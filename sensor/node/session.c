@@ -1,10 +1,6 @@
-#include "sensor/node/session.h"
+#include "sensor/node/session_private.h"
 
-#include "sensor/node/frame_files.h"
-#include "sensor/node/player.h"
 #include "sensor/node/scene_rate.h"
-#include "sensor/node/seeker.h"
-#include "sensor/publish/records.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -12,112 +8,6 @@
 #include <unistd.h>
 
 const char *const session_stage_name[session_stages] = {"frame", "snapshot", "visibility", "shade", "radar", "publish"};
-
-typedef struct Session {
-    const SessionShared *shared;
-    const HostPlan      *plan;
-    const char          *out;
-    char                 host_text[dis_id_text_size];
-    EntityTable         *table;
-    Player              *player;
-    FILE                *truth;
-    Seeker               seeker;
-    Arena               *frame_arena;
-    int64_t              tick;          /* next gimbal tick */
-    double               p_aim_ecef[3]; /* last known */
-    bool                 aim_known;
-    double               r_ecef_from_cam[2][9]; /* of a host's gimbal at the last two ticks */
-    int                  ticks;         /* how many there were, to 2 */
-    Chain               *chain[BAND_COUNT];  /* of the bands with a sensor of etc/sensors.csv */
-    FrameLevel           level[BAND_COUNT];
-    int                  buried;        /* frames whose eye was below the ground */
-} Session;
-
-/* ---- where the eye is, and where it looks ----------------------------------------------------- */
-
-static void aim_point(Session *s, const EntityTable *table, double t_s)
-{
-    SnapshotEntity aim;
-    if (dis_entity_id_is_none(s->plan->aim) ||
-        !entity_table_pose(&aim, table, entity_table_find(table, s->plan->aim), t_s))
-        return; /* gone: the last place is kept */
-    const double height_m = catalog_model(s->shared->catalog, aim.model)->height_m;
-    for (int k = 0; k < 3; k++)
-        s->p_aim_ecef[k] = aim.p_ecef[k] - 0.5 * height_m * aim.r_ecef_from_body[3 * k + 2];
-    s->aim_known = true;
-}
-
-/* Pose of the host at t_s. A replay knows a munition's next report, where there is one, and may interpolate; a
- * causal one may not. */
-static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
-{
-    const SessionShared *shared = s->shared;
-    if (!entity_table_pose(host, s->table, entity_table_find(s->table, s->plan->host), t_s)) return false;
-    const Track *track = survey_track(shared->survey, s->plan->host);
-    if (s->plan->munition && !shared->config->causal && t_s <= track->point[track->count - 1].t_s) {
-        TrackPose pose;
-        Origin    origin;
-        track_at(&pose, track, t_s);
-        const int    model  = catalog_find(shared->catalog, host->type, &origin, NULL);
-        const double down_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(shared->catalog, model)->height_m : 0;
-        for (int k = 0; k < 3; k++) host->p_ecef[k] = pose.p_ecef[k] + down_m * pose.r_ecef_from_body[3 * k + 2];
-        memcpy(host->v_ecef_mps, pose.v_ecef_mps, sizeof host->v_ecef_mps);
-        memcpy(host->r_ecef_from_body, pose.r_ecef_from_body, sizeof host->r_ecef_from_body);
-        host->age_s = 0;
-    }
-    return true;
-}
-
-/* A munition's eye is in its nose, a platform's on its roof. */
-static void eye_of(double p_ecef[3], const Session *s, const SnapshotEntity *host)
-{
-    const Model *model       = catalog_model(s->shared->catalog, host->model);
-    double       eye_body[3] = {0, 0, -(model->height_m + 0.3)}, lever_ecef[3];
-    if (s->plan->munition) {
-        eye_body[0] = model->box_high[0];
-        eye_body[2] = -0.5 * model->height_m;
-    }
-    m3_mul_v3(lever_ecef, host->r_ecef_from_body, eye_body);
-    v3_add(p_ecef, host->p_ecef, lever_ecef);
-}
-
-static void step_gimbal(Session *s, double t_s)
-{
-    SnapshotEntity host;
-    if (!host_pose(&host, s, t_s)) return;
-    aim_point(s, s->table, t_s);
-    double d_body[3] = {1, 0, 0};
-    if (s->aim_known) {
-        double p_ecef[3], d_ecef[3];
-        eye_of(p_ecef, s, &host);
-        v3_sub(d_ecef, s->p_aim_ecef, p_ecef);
-        m3_tmul_v3(d_body, host.r_ecef_from_body, d_ecef);
-    }
-    seeker_step(&s->seeker, d_body);
-    memcpy(s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], sizeof s->r_ecef_from_cam[0]);
-    seeker_camera(s->r_ecef_from_cam[1], &s->seeker, host.r_ecef_from_body);
-    if (s->ticks < 2) s->ticks++;
-}
-
-/* Feeds the log and turns the gimbal up to t_s, on the fixed grid of ticks. */
-static void advance(Session *s, double t_s)
-{
-    /* a quotient is rounded correctly, so that tick 35 is 0.35 to the bit; 35 * 0.01 is more */
-    for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
-        player_feed(s->player, s->table, tick_s);
-        step_gimbal(s, tick_s);
-    }
-    player_feed(s->player, s->table, t_s);
-}
-
-typedef struct Eye {
-    EyeState state;
-    View     view;
-    double   r_ecef_from_body[9];
-    int      hidden; /* snapshot index of the host; -1 */
-    bool     at_limit;
-    double   w_cam_rps[3]; /* how the camera turns, in its own axes */
-} Eye;
 
 /* A thing at rest where the middle of the picture looks. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
@@ -128,100 +18,11 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
     scene_rate(rate_px_s, eye->w_cam_rps, v_cam_mps, eye->view.focal_px, picture->range_m[middle]);
 }
 
-static void finish_eye(Eye *eye, const Session *s)
-{
-    const Config     *config = s->shared->config;
-    const LocalFrame *frame  = &s->shared->world->frame;
-    eye->view.width          = config->sensor.width_px;
-    eye->view.height         = config->sensor.height_px;
-    eye->view.focal_px       = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
-    enu_from_ecef(eye->view.p_enu, frame, eye->state.p_ecef);
-    m3_mul(eye->state.r_ecef_from_cam, frame->r_ecef_from_enu, eye->view.r_enu_from_cam);
-}
-
-static bool host_eye(Eye *eye, const Session *s, Snapshot *snapshot, double t_s)
-{
-    SnapshotEntity host;
-    const int      index = snapshot_find(snapshot, s->plan->host);
-    if (index < 0 || !host_pose(&host, s, t_s)) return false;
-
-    /* the interpolated pose is the host's in every product: it casts its shadow from there */
-    SnapshotEntity *shown = &snapshot->entity[index];
-    memcpy(shown->p_ecef, host.p_ecef, sizeof shown->p_ecef);
-    memcpy(shown->v_ecef_mps, host.v_ecef_mps, sizeof shown->v_ecef_mps);
-    memcpy(shown->r_ecef_from_body, host.r_ecef_from_body, sizeof shown->r_ecef_from_body);
-    shown->age_s = host.age_s;
-
-    double r_enu_from_body[9];
-    m3_tmul(r_enu_from_body, s->shared->world->frame.r_ecef_from_enu, host.r_ecef_from_body);
-    eye_of(eye->state.p_ecef, s, &host);
-    memcpy(eye->state.v_ecef_mps, host.v_ecef_mps, sizeof eye->state.v_ecef_mps);
-    memcpy(eye->r_ecef_from_body, host.r_ecef_from_body, sizeof eye->r_ecef_from_body);
-    seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_body);
-    eye->hidden = eye->state.host_index = index;
-    eye->at_limit                       = s->seeker.at_limit;
-    if (s->ticks == 2)
-        turn_rate(eye->w_cam_rps, s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], 1.0 / seeker_ticks_per_s);
-    finish_eye(eye, s);
-    return true;
-}
-
-/* On a circle about the aim, clockwise from above, starting in the south; never in the ground. */
-static void observer_place(double p_ecef[3], double aim_enu[3], Session *s, double t_s)
-{
-    const Config     *config = s->shared->config;
-    const LocalFrame *frame  = &s->shared->world->frame;
-    const double      azimuth_rad = pi_rad + config->observer.rate_dps * rad_per_deg * (t_s - s->plan->start_s);
-    double            p_enu[3];
-    aim_point(s, s->table, t_s);
-    enu_from_ecef(aim_enu, frame, s->p_aim_ecef);
-    p_enu[0] = aim_enu[0] + config->observer.range_m * sin(azimuth_rad);
-    p_enu[1] = aim_enu[1] + config->observer.range_m * cos(azimuth_rad);
-    p_enu[2] = aim_enu[2] + config->observer.height_m;
-    const double ground_m = elevation_height(&s->shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
-    if (p_enu[2] < ground_m + 20) p_enu[2] = ground_m + 20;
-    ecef_from_enu(p_ecef, frame, p_enu);
-}
-
-static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], const double aim_enu[3],
-                            const LocalFrame *frame)
-{
-    double p_enu[3], d_enu[3];
-    enu_from_ecef(p_enu, frame, p_ecef);
-    v3_sub(d_enu, aim_enu, p_enu);
-    camera_upright(r_enu_from_cam, d_enu);
-}
-
-static bool observer_eye(Eye *eye, Session *s, double t_s)
-{
-    static const double half_s = 0.005; /* velocity by difference: it rides with the aim, and over the hills */
-    const LocalFrame   *frame  = &s->shared->world->frame;
-    double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
-    if (!s->aim_known) {
-        memcpy(s->p_aim_ecef, s->plan->p_aim_ecef, sizeof s->p_aim_ecef);
-        s->aim_known = true;
-    }
-    observer_place(before_ecef, aim_enu, s, t_s - half_s);
-    observer_camera(r_before, before_ecef, aim_enu, frame);
-    observer_place(after_ecef, aim_enu, s, t_s + half_s);
-    observer_camera(r_after, after_ecef, aim_enu, frame);
-    turn_rate(eye->w_cam_rps, r_before, r_after, 2 * half_s);
-    observer_place(eye->state.p_ecef, aim_enu, s, t_s);
-    for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
-    enu_from_ecef(p_enu, frame, eye->state.p_ecef);
-    v3_sub(d_enu, aim_enu, p_enu);
-    if (!v3_normalize(d_enu, d_enu)) return false;
-    camera_upright(eye->view.r_enu_from_cam, d_enu);
-    eye->hidden = eye->state.host_index = -1;
-    finish_eye(eye, s);
-    memcpy(eye->r_ecef_from_body, eye->state.r_ecef_from_cam, sizeof eye->r_ecef_from_body);
-    return true;
-}
-
 /* ---- one frame ------------------------------------------------------------------------------ */
 
 /* Sun at the eye's own place, its direction turned into the world's frame. */
-static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s)
+static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s,
+                       Arena *arena)
 {
     const SessionShared *shared = s->shared;
     const Config        *config = shared->config;
@@ -250,7 +51,7 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
     const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
     const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, config_optical(config)), &eye->view};
-    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, s->frame_arena);
+    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, arena);
 }
 
 /* Products give normals in the host's own ENU. */
@@ -280,8 +81,8 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     }
     if (s->shared->bands >> BAND_RADAR & 1) {
         double to_aim[3], range_m = 1000;
-        if (s->aim_known) {
-            v3_sub(to_aim, s->p_aim_ecef, eye->state.p_ecef);
+        if (eye->aim_known) {
+            v3_sub(to_aim, eye->p_aim_ecef, eye->state.p_ecef);
             range_m = v3_length(to_aim);
         }
         request->profile_bins   = config->radar.bins;
@@ -290,36 +91,59 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     }
 }
 
-/* shown: false when the host is not there at t_s. */
-static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_ms[session_stages],
-                         RenderCounters *counters, Session *s, int frame, double t_s)
+typedef struct FrameDone {
+    bool           shown;
+    char           hash[sha256_text_size];
+    double         stage_ms[session_stages];
+    RenderCounters counters;
+} FrameDone;
+
+/* Hash, picture files and the line of truth. Live, the files are handed over, and a disk that takes nothing ends nothing. */
+static Status write_files(char hash[sha256_text_size], Session *s, const FrameFiles *files, FrameRecord *record)
+{
+    const bool live = s->shared->live;
+    Status     status = s->shared->config->publish.files && !live ? frame_files_write(hash, files, s->shared->pool)
+                                                                  : frame_files_hash(hash, files);
+    record->frame_sha256 = hash;
+    if (status != STATUS_OK) return status;
+    if (s->writer) frame_writer_put(s->writer, files);
+    if (!live) return record_write_frame(s->truth, record);
+
+    const bool due = patience_due(&s->truth_patience);
+    if (due) status = record_write_frame(s->truth, record);
+    patience_over(&s->truth_patience, due, due ? status : STATUS_IO);
+    clearerr(s->truth);
+    return status == STATUS_IO ? STATUS_OK : status;
+}
+
+static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
 {
     const SessionShared *shared = s->shared;
     const double         start_s = wall_clock_s();
     Snapshot             snapshot;
-    Eye                  eye = {.hidden = -1};
+    Eye                  eye;
 
-    *shown = false;
-    arena_reset(s->frame_arena);
-    Status status = entity_table_snapshot(&snapshot, s->table, t_s, s->frame_arena);
+    *done = (FrameDone){0};
+    Arena *arena = s->writer ? frame_writer_arena(s->writer) : s->frame_arena;
+    arena_reset(arena);
+    Status status = entity_table_snapshot(&snapshot, s->table, t_s, arena);
     if (status != STATUS_OK) return status;
-    const bool observer = dis_entity_id_is_none(s->plan->host);
-    if (!(observer ? observer_eye(&eye, s, t_s) : host_eye(&eye, s, &snapshot, t_s))) return STATUS_OK;
+    if (!session_eye(&eye, s, &snapshot, t_s)) return STATUS_OK;
 
     Air           air;
     Sun           sun;
     double        r_host_from_enu[9] = {0};
     Picture       picture;
     RenderRequest request;
-    status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s);
+    status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s, arena);
     make_request(&request, s, &eye);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK)
-        status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, s->frame_arena);
+        status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, arena);
     if (status != STATUS_OK) return status;
     turn_normals(&picture, r_host_from_enu);
 
-    Target          *target = arena_alloc(s->frame_arena, (size_t)snapshot.count, sizeof *target);
+    Target          *target = arena_alloc(arena, (size_t)snapshot.count, sizeof *target);
     TruthNoise       noise;
     frame_expose(&noise, s->chain, &picture, shared->config);
     if (!target) return STATUS_NO_MEMORY;
@@ -331,7 +155,7 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     const FrameFiles  files  = {.out = s->out, .config = shared->config, .world = shared->world, .picture = &picture,
                                 .snapshot = &snapshot, .request = &request, .host = s->host_text,
                                 .config_sha256 = shared->config_sha256, .frame = frame, .time_s = t_s,
-                                .unix_s = shared->unix_s + t_s, .png = shared->png, .chain = s->chain,
+                                .unix_s = shared->unix_s + t_s, .png = shared->config->publish.png, .chain = s->chain,
                                 .level = s->level, .rate_px_s = {rate_px_s[0], rate_px_s[1]}};
     FrameRecord       record = {.frame = frame, .time_s = t_s, .snapshot = &snapshot, .catalog = shared->catalog,
                                 .host = eye.hidden >= 0 ? &snapshot.entity[eye.hidden] : NULL, .request = &request,
@@ -341,50 +165,57 @@ static Status make_frame(bool *shown, char hash[sha256_text_size], double stage_
     memcpy(record.v_eye_mps, eye.state.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, eye.r_ecef_from_body, sizeof record.r_ecef_from_body);
     memcpy(record.r_ecef_from_cam, eye.state.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
-    status = frame_files_write(hash, &files, shared->pool);
-    if (status == STATUS_OK) status = record_write_frame(s->truth, &record);
+    if (shared->publish) shared->publish(shared->user, &record); /* before the disk has its turn */
+    status = write_files(done->hash, s, &files, &record);
     if (status != STATUS_OK) return status;
 
-    const double done_s = wall_clock_s();
+    const double end_s = wall_clock_s();
     const double share = 1.0 / pool_threads(shared->pool); /* of a sum over threads: as if evenly spread */
     const double ms[session_stages] = {
-        1e3 * (done_s - start_s), 1e3 * (posed_s - start_s),
+        1e3 * (end_s - start_s), 1e3 * (posed_s - start_s),
         picture.times.prepare_ms + share * (picture.times.visibility_ms + picture.times.shadow_ms),
-        share * picture.times.shade_ms, share * picture.times.radar_ms, 1e3 * (done_s - rendered_s)};
-    memcpy(stage_ms, ms, sizeof ms);
-    *counters = picture.counters;
-    *shown    = true;
+        share * picture.times.shade_ms, share * picture.times.radar_ms, 1e3 * (end_s - rendered_s)};
+    memcpy(done->stage_ms, ms, sizeof ms);
+    done->counters = picture.counters;
+    done->shown    = true;
     if (shared->world->landscape) {
         const double *p_enu = eye.view.p_enu;
-        s->buried += p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
+        s->result.buried += p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
     }
     return STATUS_OK;
 }
 
 /* ---- the loop ------------------------------------------------------------------------------- */
 
-static void show_progress(int frame, int first, int last, double begun_s, bool end)
+static Status open_detectors(Chain *chain[BAND_COUNT], const SessionShared *shared)
 {
-    if (!isatty(STDERR_FILENO)) return;
-    const double done = (double)(frame - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
-    fprintf(stderr, "\r  frame %d of %d  %3.0f %%  %.0f s left   %s", frame - first + 1, last - first + 1, 100 * done,
-            spent_s * (1 - done) / done, end ? "\r\x1b[K" : "");
+    const Config *config = shared->config;
+    const int     places = render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0);
+    Status        status = STATUS_OK;
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
+        if (shared->sensors->has[b])
+            status = chain_create(&chain[b], &shared->sensors->preset[b], config->sensor.width_px, config->sensor.height_px,
+                                  places, (uint64_t)config->seed);
+    return status;
 }
 
-/* Waits until the log's own clock, times speed, has come to t_s. */
-static void pace(double begun_s, double first_s, double t_s, double speed)
+/* After the folders are there. */
+static Status open_writer(Session *s)
 {
-    if (!isfinite(speed)) return;
-    const double    until_s = begun_s + (t_s - first_s) / speed;
-    struct timespec until   = {(time_t)until_s, (long)((until_s - floor(until_s)) * 1e9)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {}
+    Chain *chain[BAND_COUNT] = {NULL};
+    Status status = open_detectors(chain, s->shared);
+    if (status == STATUS_OK) return frame_writer_create(&s->writer, chain, s->shared->config);
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
+    return status;
 }
+
+static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
 
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
     EntityTableConfig    table  = entity_table_default_config();
-    char                 path[4096];
+    char                 path[sizeof s->out + 16];
 
     table.capacity              = shared->config->entities.capacity;
     table.timeout_s             = shared->config->entities.timeout_s;
@@ -395,110 +226,116 @@ static Status open_session(Session *s)
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s};
-    s->tick    = (int64_t)ceil(s->plan->start_s * seeker_ticks_per_s);
-    if (dis_entity_id_is_none(s->plan->host))
+    s->tick    = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
+    memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
+    if (observes(&s->plan))
         strcpy(s->host_text, "observer");
+    else if (s->plan.any_munition)
+        strcpy(s->host_text, "munition");
     else
-        dis_entity_id_text(s->host_text, s->plan->host);
+        dis_entity_id_text(s->host_text, s->plan.host);
 
     s->frame_arena = arena_create();
     if (!s->frame_arena) return STATUS_NO_MEMORY;
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
-    Status status = entity_table_create(&s->table, &table, shared->catalog, path);
-    if (status == STATUS_OK)
-        status = player_create(&s->player, shared->log, shared->exercise, shared->config->causal);
+    Status        status = entity_table_create(&s->table, &table, shared->catalog, path);
     const Config *config = shared->config;
     unsigned      raw = 0;
-    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
-        if (!shared->sensors->has[b]) continue;
-        status = chain_create(&s->chain[b], &shared->sensors->preset[b], config->sensor.width_px,
-                              config->sensor.height_px,
-                              render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0),
-                              (uint64_t)config->seed);
-        raw |= config->detector.raw ? 1u << b : 0;
-    }
-    if (status == STATUS_OK) status = frame_files_prepare(s->out, shared->bands, raw);
+    if (status == STATUS_OK) status = open_detectors(s->chain, shared);
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
+    if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? shared->bands : 0, raw);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
     s->truth = fopen(path, "w");
     if (!s->truth) {
-        log_error("replay: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+        log_error("session: cannot write %s: %s; choose another place with --out", path, strerror(errno));
         return STATUS_IO;
     }
+    s->truth_patience = (Patience){.what = "lines in truth.jsonl"};
+    return shared->live && config->publish.files ? open_writer(s) : STATUS_OK;
+}
+
+Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player, const char *folder)
+{
+    Session *s = calloc(1, sizeof *s);
+    if (!s) return STATUS_NO_MEMORY;
+    s->shared = shared;
+    s->plan   = *plan;
+    s->player = player;
+    Status status = STATUS_OK;
+    if (snprintf(s->out, sizeof s->out, "%s", folder) >= (int)sizeof s->out) status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = open_session(s);
+    if (status == STATUS_OK) *out = s;
+    else session_close(s, NULL);
+    return status;
+}
+
+/* ---- frame after frame ------------------------------------------------------------------------ */
+
+static Status list_frame(SessionResult *r, int *capacity, int number, const FrameDone *done)
+{
+    r->frames++;
+    render_counters_add(&r->counters, &done->counters);
+    if (r->listed == session_frames_kept) return STATUS_OK;
+    if (r->listed == *capacity) {
+        const int larger = *capacity ? 2 * *capacity : 1024;
+        int (*numbers)   = realloc(r->number, (size_t)larger * sizeof *numbers);
+        if (numbers) r->number = numbers;
+        char(*hash)[sha256_text_size] = realloc(r->hash, (size_t)larger * sizeof *hash);
+        if (hash) r->hash = hash;
+        double(*stage_ms)[session_stages] = realloc(r->stage_ms, (size_t)larger * sizeof *stage_ms);
+        if (stage_ms) r->stage_ms = stage_ms;
+        if (!numbers || !hash || !stage_ms) return STATUS_NO_MEMORY;
+        *capacity = larger;
+    }
+    r->number[r->listed] = number;
+    memcpy(r->hash[r->listed], done->hash, sizeof done->hash);
+    memcpy(r->stage_ms[r->listed], done->stage_ms, sizeof done->stage_ms);
+    r->listed++;
     return STATUS_OK;
 }
 
-static Status run_frames(SessionResult *result, Session *s)
+Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
-    const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    double               from_s = s->plan->start_s, to_s = s->plan->end_s;
-    if (config->exercise.from_s > from_s) from_s = config->exercise.from_s;
-    if (config->exercise.to_s < to_s) to_s = config->exercise.to_s;
-
-    /* frames stand on multiples of the interval, wherever the span begins: a part of a run equals that part
-     * of the whole */
-    const double  first_d = ceil(from_s * s->plan->rate_hz - 1e-9), last_d = floor(to_s * s->plan->rate_hz + 1e-9);
-    const double  origin_d = ceil(s->plan->start_s * s->plan->rate_hz - 1e-9);
-    const bool single = to_s >= from_s && !(last_d >= first_d); /* too short for the grid: one frame, at its start */
-    if (!(last_d >= first_d || single) || last_d - origin_d > 999999) {
-        log_error("replay: %s between %.3f and %.3f s at %g Hz; widen --from and --to or change --rate",
-                  last_d >= first_d ? "more than a million frames" : "no frame", from_s, to_s, s->plan->rate_hz);
-        return STATUS_BAD_VALUE;
-    }
-    const int first = (int)(first_d - origin_d), last = single ? first : (int)(last_d - origin_d), capacity = last - first + 1;
-    result->hash     = calloc((size_t)capacity, sizeof *result->hash);
-    result->stage_ms = calloc((size_t)capacity, sizeof *result->stage_ms);
-    if (!result->hash || !result->stage_ms) return STATUS_NO_MEMORY;
-
-    const double begun_s = wall_clock_s();
-    for (int frame = first; frame <= last; frame++) {
-        const double   t_s = single ? from_s : (origin_d + frame) / s->plan->rate_hz;
-        RenderCounters counters;
-        bool           shown;
-        pace(begun_s, single ? from_s : first_d / s->plan->rate_hz, t_s, shared->speed);
-        advance(s, t_s);
-        const Status status = make_frame(&shown, result->hash[result->frames], result->stage_ms[result->frames],
-                                         &counters, s, frame, t_s);
-        if (status == STATUS_NO_MEMORY)
-            log_error("replay: out of memory at frame %d; choose a smaller --size or fewer --samples", frame);
-        if (status != STATUS_OK) return status;
-        if (shown) {
-            result->frames++;
-            render_counters_add(&result->counters, &counters);
-        }
-        show_progress(frame, first, last, begun_s, frame == last);
-    }
-    if (result->frames == 0) {
-        log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
-                  s->host_text);
-        return STATUS_BAD_VALUE;
-    }
-    return STATUS_OK;
+    FrameDone done;
+    session_advance(s, t_s);
+    Status status = make_frame(&done, s, number, t_s);
+    *shown        = done.shown;
+    if (status == STATUS_OK && done.shown) status = list_frame(&s->result, &s->capacity, number, &done);
+    if (status == STATUS_NO_MEMORY)
+        log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);
+    return status;
 }
 
-Status session_run(SessionResult *result, const SessionShared *shared, const HostPlan *plan, const char *out)
+const SessionResult *session_result(const Session *s) { return &s->result; }
+int                  session_entities(const Session *s) { return entity_table_count(s->table); }
+const char          *session_host(const Session *s) { return s->host_text; }
+
+Status session_close(Session *s, SessionResult *result)
 {
-    Session s = {.shared = shared, .plan = plan, .out = out};
-    memset(result, 0, sizeof *result);
-    Status status = open_session(&s);
-    if (status == STATUS_OK) status = run_frames(result, &s);
-    result->buried = s.buried;
-    if (s.table) result->entities = *entity_table_counters(s.table);
-    if (s.table) result->effects = *entity_table_effect_counters(s.table);
-    if (s.truth && fclose(s.truth) != 0 && status == STATUS_OK) {
-        log_error("replay: cannot write truth.jsonl: %s", strerror(errno));
+    Status status = STATUS_OK;
+    const FrameWriterCounters written = frame_writer_destroy(s->writer);
+    s->result.files_failed   = written.failed + s->truth_patience.lacking;
+    s->result.files_left_out = written.left_out;
+    if (s->table) s->result.entities = *entity_table_counters(s->table);
+    if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
+    if (s->truth && fclose(s->truth) != 0) {
+        log_error("session: cannot write truth.jsonl: %s", strerror(errno));
         status = STATUS_IO;
     }
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s.chain[b]);
-    player_destroy(s.player);
-    entity_table_destroy(s.table);
-    arena_destroy(s.frame_arena);
+    if (result) *result = s->result;
+    else session_result_free(&s->result);
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
+    entity_table_destroy(s->table);
+    arena_destroy(s->frame_arena);
+    free(s);
     return status;
 }
 
 void session_result_free(SessionResult *result)
 {
+    free(result->number);
     free(result->hash);
     free(result->stage_ms);
     memset(result, 0, sizeof *result);

@@ -141,6 +141,7 @@ Status record_write_frame(FILE *file, const FrameRecord *r)
     json_t *line = json_object(), *sun = json_object(), *sensors = json_array(), *targets = json_array();
     json_object_set_new(line, "frame", json_integer(r->frame));
     set_number(line, "time_s", r->time_s);
+    if (r->frame_sha256) json_object_set_new(line, "frame_sha256", json_string(r->frame_sha256));
     json_object_set_new(line, "host", host_json(r));
     set_number(sun, "azimuth_deg", r->sun->azimuth_rad / rad_per_deg);
     set_number(sun, "elevation_deg", r->sun->elevation_rad / rad_per_deg);
@@ -173,6 +174,21 @@ static void set_count(json_t *object, const char *key, uint64_t count)
     json_object_set_new(object, key, json_integer((json_int_t)count));
 }
 
+static json_t *live_json(const LiveCounters *c)
+{
+    json_t *live = json_object();
+    set_count(live, "datagrams", c->datagrams);
+    set_count(live, "lost_kernel", c->lost_kernel);
+    set_count(live, "lost_queue", c->lost_queue);
+    set_count(live, "sent", c->sent);
+    set_count(live, "send_failed", c->send_failed);
+    set_count(live, "record_failed", c->record_failed);
+    set_count(live, "frames_late", c->frames_late);
+    set_count(live, "files_failed", c->files_failed);
+    set_count(live, "files_left_out", c->files_left_out);
+    return live;
+}
+
 static json_t *counters_json(const RunRecord *r)
 {
     json_t *counters = json_object(), *pdus = json_object(), *dropped = json_object(), *skipped = json_object();
@@ -190,6 +206,8 @@ static json_t *counters_json(const RunRecord *r)
     for (int i = 0; i < DIS_DROP_COUNT; i++) set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
     json_object_set_new(counters, "dropped", dropped);
     set_count(counters, "packets_without_datagram", r->link_dropped);
+    set_count(counters, "own", r->own);
+    if (r->live) json_object_set_new(counters, "live", live_json(r->live));
     set_count(entities, "created", r->entities_created);
     set_count(entities, "timed_out", r->entities_timed_out);
     set_count(entities, "deactivated", r->entities_deactivated);
@@ -225,14 +243,17 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
     json_object_set_new(run, "config_sha256", json_string(r->config_sha256));
     set_text(run, "log", r->log_name, strlen(r->log_name));
-    json_object_set_new(run, "log_sha256", json_string(r->log_sha256));
+    if (*r->log_sha256) json_object_set_new(run, "log_sha256", json_string(r->log_sha256));
     json_object_set_new(run, "seed", json_integer(r->seed));
     json_object_set_new(run, "threads", json_integer(r->threads));
     json_object_set_new(run, "isa", json_string(r->isa));
     json_object_set_new(run, "hosts", texts(r->host, r->host_count));
     json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
     json_object_set_new(run, "frames", json_integer(r->frames));
-    json_object_set_new(run, "frame_sha256", texts(r->frame_sha256, r->frames));
+    json_object_set_new(run, "frame_sha256", texts(r->frame_sha256, r->listed));
+    json_t *number = json_array();
+    for (int i = 0; i < r->listed; i++) json_array_append_new(number, json_integer(r->frame_number[i]));
+    json_object_set_new(run, "frame_number", number);
     json_object_set_new(run, "counters", counters_json(r));
     for (int i = 0; i < r->stage_count; i++) {
         json_t *stage = json_object();

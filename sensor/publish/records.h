@@ -24,20 +24,31 @@ typedef struct FrameRecord {
     const Sun            *sun;
     const Target         *target;
     int                   target_count;
+    const char           *frame_sha256; /* NULL: not said */
 } FrameRecord;
 
 /* One line, flushed. STATUS_IO when the file does not take it. */
 Status record_write_frame(FILE *file, const FrameRecord *record);
 
+/* What only a live node counts. */
+typedef struct LiveCounters {
+    uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
+    uint64_t frames_late, files_failed, files_left_out;
+} LiveCounters;
+
 typedef struct RunRecord {
     const char *config_sha256, *log_name, *log_sha256, *isa;
     long long   seed;
     int         threads, host_count, choice_count, frames;
+    int         listed;               /* how many of them the two lists hold */
+    const int  *frame_number;
     const char *const *host;          /* ids as text */
     const char *const *choice;
     const char *const *frame_sha256;
     const DisCounters *dis;
     uint64_t    link_dropped;         /* packets of the capture that gave no datagram */
+    uint64_t    own;                  /* datagrams of this node itself, ignored */
+    const LiveCounters *live;         /* NULL: a replay */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
     EffectCounters effects;
     RenderCounters render;

@@ -20,7 +20,8 @@ static void the_exercise_heard_most_is_taken(void **state)
     Config             config = config_default();
     Choices            choices = {0};
     for (int k = 0; k < 5; k++) {
-        DisEntityState pdu = {.header = {.version = 6, .exercise = exercise[k], .type = dis_pdu_entity_state}};
+        DisEntityState pdu = {.header = {.version = 6, .exercise = exercise[k], .type = dis_pdu_entity_state},
+                              .id = {1, 1, 1}, .p_ecef = {6378137, 0, 0}};
         datagram[k] = (DisDatagram){.octets = (uint32_t)dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu), .bytes = bytes[k]};
     }
     DisLog log = {.count = 5, .datagram = datagram};

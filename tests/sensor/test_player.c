@@ -48,7 +48,8 @@ static int count_at(const DisLog *log, int exercise, bool causal, double t_s)
     char              heat[512];
     CHECK(etc_path(heat, sizeof heat, "heat.csv"));
     assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
-    assert_int_equal(player_create(&player, log, exercise, causal), STATUS_OK);
+    assert_int_equal(player_create(&player, exercise, causal), STATUS_OK);
+    assert_int_equal(player_add_log(player, log), STATUS_OK);
     player_feed(player, table, t_s);
     const int count = entity_table_count(table);
     player_destroy(player);
@@ -82,11 +83,112 @@ static void other_exercises_are_left_out(void **state)
     CHECK(count_at(&log, 3, false, 101) == 0);
 }
 
+static EntityTable *make_table(void)
+{
+    EntityTableConfig config = entity_table_default_config();
+    EntityTable      *table  = NULL;
+    char              heat[512];
+    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
+    assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
+    return table;
+}
+
+/* Added one by one between feeds, from memory that is used again, as a live node does. */
+static void what_comes_bit_by_bit_counts_as_the_whole_log(void **state)
+{
+    (void)state;
+    static const double stamp_s[] = {100, 101, 100.5}, capture_s[] = {1000, 1003, 1003.1}, at_s[] = {101.1, 103.05, 103.2};
+    const DisLog        log = make_log(stamp_s, capture_s);
+    EntityTable        *table = make_table();
+    Player             *player = NULL;
+    uint8_t             once[256];
+    assert_int_equal(player_create(&player, -1, true), STATUS_OK);
+    CHECK(isnan(player_time_s(player, 1000)) && player_last_s(player) == -INFINITY);
+    for (int k = 0; k < report_count; k++) {
+        DisDatagram one = log.datagram[k];
+        memcpy(once, one.bytes, one.octets);
+        one.bytes = once;
+        assert_int_equal(player_add(player, &one, true), STATUS_OK);
+        memset(once, 0xFF, sizeof once);
+        player_feed(player, table, at_s[k]);
+        CHECK(entity_table_count(table) == k + 1);
+    }
+    CHECK(player_counters(player)->datagrams == 3 && player_counters(player)->pdus[dis_pdu_entity_state] == 3);
+    CHECK_NEAR(player_last_s(player), 103.1, 1e-6); /* a stamp's 1.7 us */
+    player_destroy(player);
+    entity_table_destroy(table);
+}
+
+/* Whatever counts at t arrived by then, and what arrived by then counts at t: to the last bit, at today's Unix times. */
+static void arrival_and_exercise_time_agree_to_the_last_bit(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2000; k++) {
+        const double capture[] = {1.7e9 + 1e8 * random_uniform(1, 0, 0, (uint64_t)k), 0, 0};
+        const double stamp[]   = {3599 * random_uniform(1, 1, 0, (uint64_t)k), 0, 0};
+        DisLog       log = make_log(stamp, capture);
+        Player      *player = NULL;
+        log.count = 1;
+        assert_int_equal(player_create(&player, -1, true), STATUS_OK);
+        assert_int_equal(player_add_log(player, &log), STATUS_OK);
+        const double t_s = stamp[0] + k / 30.0, until_s = player_arrival_s(player, t_s);
+        CHECK(player_time_s(player, until_s) <= t_s);
+        CHECK(player_time_s(player, nextafter(until_s, INFINITY)) > t_s);
+        /* and in the whole nanoseconds of arrivals */
+        const int64_t until_ns = dis_unix_ns_until(until_s);
+        CHECK(player_time_s(player, dis_unix_s(until_ns)) <= t_s && player_time_s(player, dis_unix_s(until_ns + 1)) > t_s);
+        player_destroy(player);
+    }
+}
+
+/* A missile that is there already, one that comes later, and a Fire that names the target of each. */
+static void munitions_and_their_targets_are_known_when_they_were_heard(void **state)
+{
+    (void)state;
+    uint8_t      octets[4][256];
+    DisDatagram  heard[4];
+    EntityTable *table = make_table();
+    Player      *player = NULL;
+    for (int k = 0; k < 4; k++) {
+        const uint32_t stamp = (uint32_t)((100.0 + k) / 3600 * 2147483648.0) << 1;
+        DisEntityState missile = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1, .timestamp = stamp},
+                                  .id = {1, 1, (uint16_t)(40 + k)}, .type = {2, 1, 222, 1, 1, 1, 0}, .p_ecef = {6378137, 10.0 * k, 0},
+                                  .dead_reckoning = 1};
+        DisFire        fire = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_fire, .family = 2, .timestamp = stamp},
+                               .firing = {1, 1, 7}, .target = {1, 1, (uint16_t)(20 + k)}, .munition = {1, 1, (uint16_t)(40 + k - 1)},
+                               .p_ecef = {6378137, 0, 0}};
+        const size_t   n = k % 2 ? dis_encode_fire(octets[k], sizeof octets[k], &fire)
+                                 : dis_encode_entity_state(octets[k], sizeof octets[k], &missile);
+        CHECK(n > 0);
+        heard[k] = (DisDatagram){.capture_s = 1000 + k, .octets = (uint32_t)n, .bytes = octets[k]};
+    }
+    const DisLog log = {.count = 4, .datagram = heard};
+    DisEntityId  id = {0};
+    assert_int_equal(player_create(&player, -1, true), STATUS_OK);
+    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    player_feed(player, table, 99.5);
+    CHECK(!player_munition(&id, player, table)); /* added, but not heard yet */
+    player_feed(player, table, 100.5);
+    CHECK(player_munition(&id, player, table) && id.entity == 40);
+    CHECK(!player_target(&id, player, (DisEntityId){1, 1, 40}));
+    player_feed(player, table, 103.5);
+    CHECK(player_munition(&id, player, table) && id.entity == 40); /* still the first */
+    CHECK(player_target(&id, player, (DisEntityId){1, 1, 40}) && id.entity == 21);
+    CHECK(player_target(&id, player, (DisEntityId){1, 1, 42}) && id.entity == 23);
+    entity_table_expire(table, 113.5); /* 40 was heard 13.5 s ago, 42 11.5 s ago; 12 s are allowed */
+    CHECK(player_munition(&id, player, table) && id.entity == 42);
+    player_destroy(player);
+    entity_table_destroy(table);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_late_report_counts_from_its_stamp_or_from_its_arrival),
         cmocka_unit_test(other_exercises_are_left_out),
+        cmocka_unit_test(what_comes_bit_by_bit_counts_as_the_whole_log),
+        cmocka_unit_test(arrival_and_exercise_time_agree_to_the_last_bit),
+        cmocka_unit_test(munitions_and_their_targets_are_known_when_they_were_heard),
     };
     return cmocka_run_group_tests(tests, open_catalog, close_catalog);
 }

@@ -20,6 +20,29 @@ for option in --bands --size --rate --from --to --host --threads --seed --speed 
               --no-skip --samples; do
     check "replay --help names $option" grep -q -- "$option" "$tmp/stdout"
 done
+run run --help
+for option in --address --interface --port --out --bands --size --rate --host --config --set --threads --seed --for --frames \
+              --record --isa --no-png --no-files --no-skip; do
+    check "run --help names $option" grep -q -- "$option" "$tmp/stdout"
+done
+while read -r named arguments; do
+    # shellcheck disable=SC2086
+    run run --out "$tmp/out" --for 1 $arguments
+    check "run $arguments: exit code" [ $code != 0 ]
+    check "run $arguments: names $named" complained "$named"
+done <<'BAD'
+port --port 0
+port --port 70000
+nowhere --address nowhere
+nonet9 --interface nonet9
+for --for never
+host --host 1:2
+host --host 1:2:3 --host 1:2:4
+dis --set publish.dis=all
+listen_s --set exercise.listen_s=0
+log.pcap log.pcap
+record --record /nowhere/at/all.pcapng
+BAD
 
 run
 check "no command: exit code" [ $code != 0 ]

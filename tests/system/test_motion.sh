@@ -52,7 +52,7 @@ replay "$tmp/silent.pcap" "$tmp/silent" --no-png --bands lwir --rate 5
 last() { aim "$1" 1:3001:22 | tail -n 1 | cut -d' ' -f2; }
 check "silent missile: replays" [ $code = 0 ]
 check "silent missile: still comes near" is "$(last "$tmp/silent")" '<' 100
-replay "$tmp/silent.pcap" "$tmp/causal" --no-png --bands lwir --rate 5 --causal
+replay "$tmp/silent.pcap" "$tmp/causal" --no-png --bands lwir --rate 5 --causal --host munition
 check "causal: replays" [ $code = 0 ]
 check "causal: comes near, too" is "$(last "$tmp/causal")" '<' 100
 

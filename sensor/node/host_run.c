@@ -1,0 +1,236 @@
+#include "sensor/node/host_run.h"
+
+#include "sensor/node/frame_files.h"
+
+#include <stdlib.h>
+
+enum { path_size = 4096, config_text_size = 16384 };
+
+double frame_grid_s(const FrameGrid *grid, double n) { return (grid->origin + n) / grid->rate_hz; }
+
+/* ---- before ---------------------------------------------------------------------------------- */
+
+static bool parse_bands(unsigned *bands, const char *text)
+{
+    *bands = 0;
+    for (const char *at = text; *at;) {
+        const size_t length = strcspn(at, ",");
+        int          found  = -1;
+        for (int b = 0; b < BAND_COUNT; b++)
+            if (strlen(band_name((Band)b)) == length && strncmp(band_name((Band)b), at, length) == 0) found = b;
+        if (found < 0) {
+            log_error("config: sensor.bands: '%s' is not a list of optical, mwir, lwir, radar", text);
+            return false;
+        }
+        *bands |= 1u << found;
+        at += length + (at[length] == ',');
+    }
+    if (*bands == 0) log_error("config: sensor.bands: no band is named; any of optical, mwir, lwir, radar");
+    return *bands != 0;
+}
+
+/* What threads, speed and paths cannot change: every setting that the pictures depend on. */
+static Status hash_config(char out[sha256_text_size], const Options *o)
+{
+    char   text[config_text_size];
+    size_t n;
+    config_text(text, sizeof text, &o->config);
+    n = strlen(text);
+    for (int i = 0; i < o->host_count; i++) n += (size_t)snprintf(text + n, sizeof text - n, "host=%.32s\n", o->host[i]);
+    return sha256_bytes(out, text, n);
+}
+
+Status run_prepare(Run *run)
+{
+    if (!parse_bands(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    const Status status = sensors_choose(&run->sensors, &run->choices, &run->options.config, run->bands);
+    return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
+}
+
+Status run_survey(Run *run, const DisLog *heard)
+{
+    const Options *o = &run->options;
+    char           path[path_size];
+    run->exercise = choose_exercise(&run->choices, heard, &o->config);
+    Status status = survey_log(&run->survey, heard, run->exercise);
+    if (status != STATUS_OK) return status;
+    const DisCounters *counters = &run->survey.counters;
+    for (int i = 0; i < DIS_DROP_COUNT; i++)
+        if (counters->dropped[i])
+            log_warn("%s: dropped: %s=%llu", options_command(o), dis_drop_name((DisDrop)i),
+                     (unsigned long long)counters->dropped[i]);
+    if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
+    status = catalog_open(&run->catalog, path, o->config.models.sag_m);
+    if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
+    return status;
+}
+
+void run_close(Run *run)
+{
+    pool_destroy(run->pool);
+    catalog_close(run->catalog);
+    survey_destroy(&run->survey);
+}
+
+/* ---- run.json -------------------------------------------------------------------------------- */
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static void summarise_stages(double out[session_stages][3], const SessionResult *r)
+{
+    double *sorted = calloc((size_t)r->listed + 1, sizeof *sorted);
+    for (int stage = 0; sorted && stage < session_stages; stage++) {
+        for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
+        qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
+        out[stage][0] = sorted[r->listed / 2];
+        out[stage][1] = r->listed ? sorted[(int)(0.95 * (r->listed - 1))] : 0;
+        out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
+    }
+    free(sorted);
+}
+
+static Status write_run(const Run *run, const char *out, const char *host, const Choices *choices,
+                        const SessionResult *result, const DisCounters *heard)
+{
+    char        path[path_size + 16];
+    const char *choice[choices_capacity];
+    double      stage_ms[session_stages][3] = {{0}};
+    const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
+    if (!hash) return STATUS_NO_MEMORY;
+
+    for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
+    for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
+    summarise_stages(stage_ms, result);
+    snprintf(path, sizeof path, "%s/run.json", out);
+    const DisLogCounters *link = run->link;
+    const RunRecord       record = {
+              .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
+              .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
+              .host_count = 1, .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
+              .frame_number = result->number, .host = &host, .choice = choice, .frame_sha256 = hash, .dis = heard,
+              .link_dropped = link ? link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
+              .own = run->own, .live = run->live,
+              .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
+              .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
+              .effects = result->effects, .render = result->counters, .stage_count = session_stages, .stage = session_stage_name,
+              .stage_ms = stage_ms};
+    const Status status = record_write_run(path, &record);
+    free(hash);
+    return status;
+}
+
+/* ---- one host -------------------------------------------------------------------------------- */
+
+static void say_visibility(Choices *choices, const Config *config, const Atmosphere *atmosphere)
+{
+    double low_m, high_m;
+    atmosphere_visibilities(atmosphere, &low_m, &high_m);
+    if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
+        choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
+                   "(weather.visibility_m)", low_m, high_m);
+}
+
+/* World and all that is said of it. */
+static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool *clamp, Choices *choices, Run *run,
+                     const DisEntityId *host)
+{
+    const Options *o     = &run->options;
+    World         *world = &run->world;
+    LocalFrame     frame;
+    Status         status = host ? plan_host(plan, choices, &run->survey, &o->config, *host)
+                                 : choose_host(plan, choices, &run->survey, &o->config);
+    if (status == STATUS_OK) status = choose_frame(&frame, &run->survey, plan);
+    if (status == STATUS_OK) status = choose_time(unix_s, choices, &run->survey, &o->config, &frame);
+    if (status == STATUS_OK)
+        status = choose_ground(landscape, clamp, choices, &run->survey, &o->config, &frame, run->catalog, plan);
+    if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
+    if (status == STATUS_OK) status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
+    if (status != STATUS_OK) return status;
+    say_visibility(choices, &o->config, world->atmosphere);
+    world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
+    choose_rate(plan, choices, &o->config);
+    for (int i = 0; i < choices->count; i++) printf("%s\n", choices->line[i]);
+    fflush(stdout);
+    return STATUS_OK;
+}
+
+/* The recorded truth of what was made, also when it stopped early. */
+static Status conclude(const Run *run, const char *out, const char *host, const Choices *choices,
+                       const SessionResult *result, const DisCounters *heard)
+{
+    const Config *config = &run->options.config;
+    const char   *name   = options_command(&run->options);
+    const Status  status = write_run(run, out, host, choices, result, heard);
+    if (config->publish.files) printf("%d frames in %s/frames\n", result->frames, out);
+    else printf("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
+    fflush(stdout);
+    if (result->buried > 0)
+        log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
+                 result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
+                     ? "; over other ground than the exercise's, terrain.ground=fit leads it through" : "");
+    return status;
+}
+
+Status run_host(Run *run, const DisEntityId *host)
+{
+    const Options *o         = &run->options;
+    Choices        choices   = run->choices;
+    Landscape      landscape = {0};
+    SessionResult  result    = {0};
+    HostPlan       plan      = {0};
+    Player        *player    = NULL;
+    Session       *session   = NULL;
+    double         unix_s    = 0;
+    bool           clamp     = false;
+    char           out[path_size], host_text[dis_id_text_size];
+
+    if (host) {
+        dis_entity_id_text(host_text, *host);
+        printf("host: %s (--host)\n", host_text);
+    }
+    Status status = choose(&plan, &unix_s, &landscape, &clamp, &choices, run, host);
+    if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
+    if (status == STATUS_OK) status = player_add_log(player, &run->view);
+    if (status != STATUS_OK) goto done;
+    if (o->config.causal) { /* nothing is shown of what the choices were made from; the end is open */
+        plan.start_s = player_time_s(player, run->until_s);
+        plan.end_s   = INFINITY;
+    }
+
+    if (o->host_count > 1)
+        snprintf(out, sizeof out, "%s/%u-%u-%u", o->out, plan.host.site, plan.host.application, plan.host.entity);
+    else
+        snprintf(out, sizeof out, "%s", o->out);
+    const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
+                                  .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
+                                  .no_skip = o->no_skip, .live = o->command == COMMAND_RUN, .sensors = &run->sensors,
+                                  .clamp = clamp, .config_sha256 = run->config_sha256, .publish = run->publish,
+                                  .user = run->user};
+    const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
+    status = session_open(&session, &shared, &plan, player, out);
+    if (status != STATUS_OK) goto done;
+    status = run->frames(run, session, player, &plan, &grid);
+    snprintf(host_text, sizeof host_text, "%s", session_host(session));
+    const Status closed = session_close(session, &result);
+    if (status == STATUS_OK) status = closed;
+    if (run->live) {
+        run->live->files_failed   = (uint64_t)result.files_failed;
+        run->live->files_left_out = (uint64_t)result.files_left_out;
+    }
+    if (result.frames > 0 || run->live) {
+        const Status written = conclude(run, out, host_text, &choices, &result,
+                                        o->config.causal ? player_counters(player) : &run->survey.counters);
+        if (status == STATUS_OK) status = written;
+    }
+
+done:
+    session_result_free(&result);
+    player_destroy(player);
+    world_close(&run->world);
+    landscape_destroy(&landscape);
+    return status;
+}

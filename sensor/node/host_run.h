@@ -1,0 +1,47 @@
+/* sensor/node/host_run.h: what replay and run share: from what was heard to choices, a world, a session, run.json. */
+#ifndef SENSOR_NODE_HOST_RUN_H
+#define SENSOR_NODE_HOST_RUN_H
+
+#include "sensor/node/options.h"
+#include "sensor/node/session.h"
+
+/* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so that
+ * a part of a run equals that part of the whole. */
+typedef struct FrameGrid {
+    double origin, rate_hz;
+} FrameGrid;
+double frame_grid_s(const FrameGrid *grid, double n);
+
+typedef struct Run Run;
+struct Run {
+    Options   options;
+    DisLog    view;              /* what is played; borrowed */
+    double    until_s;           /* causal: arrival time of the last that the choices know */
+    uint64_t  own;               /* datagrams of this node, left out */
+    const DisLogCounters *link;  /* NULL: live */
+    LiveCounters         *live;  /* NULL: a replay */
+    const char *log_name;        /* in run.json */
+    char      config_sha256[sha256_text_size], log_sha256[sha256_text_size];
+    unsigned  bands;
+    int       exercise;          /* -1: all */
+    Survey    survey;
+    Catalog  *catalog;
+    World     world;
+    Pool     *pool;
+    Choices   choices;           /* those that all hosts share */
+    Sensors   sensors;
+    /* Makes the frames. */
+    Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
+    void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
+    void     *user;              /* of both */
+};
+
+/* Bands, sensors, hash of the configuration: before anything is heard. */
+Status run_prepare(Run *run);
+/* Exercise and survey out of what was heard; catalog and pool. */
+Status run_survey(Run *run, const DisLog *heard);
+/* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
+Status run_host(Run *run, const DisEntityId *host);
+void   run_close(Run *run);
+
+#endif

@@ -1,0 +1,244 @@
+#include "sensor/node/options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, HELP, KEY };
+
+static const char *const names[] = {"replay", "run"};
+
+/* In the order of the help. key: the setting that the option is short for. */
+static const struct Row {
+    const char *name;
+    int         what, where;
+    const char *key, *argument, *help;
+} rows[] = {
+    {"address", KEY, IN_RUN, "network.address", "ADDRESS",
+     "of the exercise, in numbers: a multicast group, a broadcast or a host\n(default: hear all, send to 255.255.255.255)"},
+    {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
+    {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
+    {"out", OUT, IN_BOTH, NULL, "DIR", "where the products go (default: out)"},
+    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "any of optical,mwir,lwir,radar (default: all)"},
+    {"size", SIZE, IN_BOTH, NULL, "WxH", "picture size in pixels (default: 720x486)"},
+    {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
+     "frames a second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
+    {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
+    {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
+     "only this span of exercise time, in seconds as `pitviper inspect` shows\nthem; frames keep the numbers they have in the whole"},
+    {"host", HOST, IN_REPLAY, NULL, "ID",
+     "site:application:entity that carries the sensor; may be given several\ntimes"},
+    {"host", HOST, IN_RUN, NULL, "ID",
+     "site:application:entity that carries the sensor, now or later; munition:\nthe first that appears (default: chosen)"},
+    {"samples", KEY, IN_BOTH, "sensor.samples", "N", "N x N rays a pixel (default: 1)"},
+    {"config", CONFIG, IN_BOTH, NULL, "FILE", "or -c: a YAML file of settings; options here override it"},
+    {"set", SET, IN_BOTH, NULL, "KEY=VALUE", "one setting, as the printed choices name them; may be given several\ntimes"},
+    {"threads", THREADS, IN_BOTH, NULL, "N", "default: one for each processor"},
+    {"seed", KEY, IN_BOTH, "seed", "N", "of everything random (default: 1)"},
+    {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds a second, or max (default: max)"},
+    {"causal", CAUSAL, IN_REPLAY, NULL, NULL,
+     "use only what had been received by each frame and by each choice: the\nframes that `pitviper run` makes of it, to the bit"},
+    {"for", FOR, IN_RUN, NULL, "S", "stop after so many seconds (default: never)"},
+    {"frames", FRAMES, IN_RUN, NULL, "N", "stop after so many frames (default: never)"},
+    {"record", KEY, IN_RUN, "record.path", "LOG", "all that is heard, into a pcapng file that `replay --causal` shows again"},
+    {"no-skip", NO_SKIP, IN_BOTH, NULL, NULL, "compute what is known to change nothing; the pictures stay the same to\nthe bit"},
+    {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
+    {"no-png", NO_PNG, IN_BOTH, NULL, NULL, "no display pictures, only EXR"},
+    {"no-files", NO_FILES, IN_BOTH, NULL, NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"help", HELP, IN_BOTH, NULL, NULL, "this"},
+};
+enum { row_count = sizeof rows / sizeof rows[0] };
+
+const char *options_command(const Options *o) { return names[o->command]; }
+
+/* ---- help ------------------------------------------------------------------------------------ */
+
+static void print_help(CommandName command)
+{
+    enum { column = 21 };
+    static const char *const about[] = {
+        "usage: pitviper replay LOG [options]\n"
+        "\n"
+        "Shows what the seeker of the missile in a recorded DIS exercise (pcap, pcapng) saw: pictures per band,\n"
+        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key.\n\n",
+        "usage: pitviper run [-c FILE] [options]\n"
+        "\n"
+        "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
+        "(exercise.listen_s), and shows frame after frame until it is told to stop (Ctrl-C). It sends nothing unless asked\n"
+        "(--set publish.dis=sensor, or truth). What --record kept shows the same pictures again, to the bit.\n\n"};
+    fputs(about[command], stdout);
+    for (int i = 0; i < row_count; i++) {
+        const struct Row *row = &rows[i];
+        char              left[40];
+        if (!(row->where >> command & 1)) continue;
+        snprintf(left, sizeof left, "  --%s%s%s%s", row->name, row->argument ? " " : "", row->argument ? row->argument : "",
+                 row->help ? "" : ",");
+        if (!row->help) { /* a pair on one line */
+            printf("%s", left);
+            continue;
+        }
+        const bool paired = i > 0 && !rows[i - 1].help && rows[i - 1].where == row->where;
+        if (paired) printf("%-*s", column - (int)strlen("  --from S,"), left + 1);
+        else printf("%-*s", column, left);
+        for (const char *at = row->help; *at;) {
+            const int n = (int)strcspn(at, "\n");
+            printf("%*s%.*s\n", at == row->help ? 0 : column, "", n, at);
+            at += n + (at[n] == '\n');
+        }
+    }
+}
+
+/* ---- one option ------------------------------------------------------------------------------ */
+
+static bool set_size(Config *config, const char *text)
+{
+    char        width[16];
+    const char *x = strchr(text, 'x');
+    if (!x || x == text || x - text >= (long)sizeof width) {
+        log_error("options: --size: '%s' is not WIDTHxHEIGHT, for example 720x486", text);
+        return false;
+    }
+    memcpy(width, text, (size_t)(x - text));
+    width[x - text] = 0;
+    return config_set(config, "sensor.width_px", width, "--size") == STATUS_OK &&
+           config_set(config, "sensor.height_px", x + 1, "--size") == STATUS_OK;
+}
+
+static bool set_pair(Config *config, const char *text)
+{
+    char        key[64];
+    const char *equals = strchr(text, '=');
+    if (!equals || equals - text >= (long)sizeof key) {
+        log_error("options: --set: '%s' is not KEY=VALUE, for example sensor.hfov_deg=3", text);
+        return false;
+    }
+    memcpy(key, text, (size_t)(equals - text));
+    key[equals - text] = 0;
+    return config_set(config, key, equals + 1, "--set") == STATUS_OK;
+}
+
+static bool whole(int *out, const char *name, const char *text, long long low, long long high)
+{
+    long long  number;
+    const bool ok = text_to_long(&number, text) && number >= low && number <= high;
+    if (ok) *out = (int)number;
+    else log_error("options: --%s: '%s' is not a whole number in %lld .. %lld", name, text, low, high);
+    return ok;
+}
+
+static bool add_host(Options *o, const char *text)
+{
+    if (o->host_count == (o->command == COMMAND_RUN ? 1 : options_hosts_max)) {
+        log_error(o->command == COMMAND_RUN ? "options: --host: a live node has %d; start another node for another"
+                                            : "options: --host: more than %d hosts", o->host_count);
+        return false;
+    }
+    o->host[o->host_count++] = text;
+    return true;
+}
+
+static bool take(Options *o, const struct Row *row, const char *text)
+{
+    char source[24];
+    bool ok = true;
+    snprintf(source, sizeof source, "--%s", row->name);
+    switch (row->what) {
+    case KEY: return config_set(&o->config, row->key, text, source) == STATUS_OK;
+    case OUT: o->out = text; return true;
+    case SIZE: return set_size(&o->config, text);
+    case SET: return set_pair(&o->config, text);
+    case HOST: return add_host(o, text);
+    case THREADS: return whole(&o->threads, row->name, text, 1, 256);
+    case FRAMES: return whole(&o->frames, row->name, text, 1, 1000000000);
+    case SPEED:
+        if (strcmp(text, "max") == 0) o->speed = INFINITY;
+        else ok = text_to_double(&o->speed, text) && o->speed >= 1e-3 && o->speed <= 1e6;
+        if (!ok) log_error("options: --speed: '%s' is neither `max` nor a number in 0.001 .. 1000000", text);
+        return ok;
+    case FOR:
+        ok = text_to_double(&o->for_s, text) && o->for_s > 0 && o->for_s <= 1e8;
+        if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0", text);
+        return ok;
+    case CAUSAL: o->config.causal = true; return true;
+    case NO_SKIP: o->no_skip = true; return true;
+    case ISA:
+        ok = strcmp(text, "avx2") == 0 || strcmp(text, "sse4.2") == 0 || strcmp(text, "avx512") == 0;
+        if (!ok) log_error("options: --isa: '%s' is not avx2, sse4.2 or avx512", text);
+        o->isa = text;
+        return ok;
+    case NO_PNG: o->config.publish.png = false; return true;
+    case NO_FILES: o->config.publish.files = false; return true;
+    default: return true; /* CONFIG was read before */
+    }
+}
+
+/* ---- the line -------------------------------------------------------------------------------- */
+
+static void list_options(struct option list[row_count + 1], CommandName command)
+{
+    int n = 0;
+    for (int i = 0; i < row_count; i++)
+        if (rows[i].where >> command & 1)
+            list[n++] = (struct option){rows[i].name, rows[i].argument != NULL, NULL, KEY + 1 + i};
+    list[n] = (struct option){NULL, 0, NULL, 0};
+}
+
+static const struct Row *row_of(int option)
+{
+    for (int i = 0; option == 'c' && i < row_count; i++)
+        if (rows[i].what == CONFIG) return &rows[i];
+    return option > KEY ? &rows[option - KEY - 1] : NULL;
+}
+
+/* The configuration file first, whatever its place on the line: options override it. */
+static Status read_config(Config *config, const struct option *list, int argc, char **argv)
+{
+    Status status = STATUS_OK;
+    char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
+    if (!copy) return STATUS_NO_MEMORY;
+    memcpy(copy, argv, (size_t)argc * sizeof *copy);
+    optind = 0; /* start anew */
+    opterr = 0; /* the pass over all options speaks */
+    for (int option; status == STATUS_OK && (option = getopt_long(argc, copy, "c:", list, NULL)) != -1;) {
+        const struct Row *row = row_of(option);
+        if (row && row->what == CONFIG) status = config_read(config, optarg);
+    }
+    opterr = 1;
+    free(copy);
+    return status;
+}
+
+int options_parse(Options *o, CommandName command, int argc, char **argv)
+{
+    struct option list[row_count + 1];
+    const char   *name = names[command];
+    list_options(list, command);
+    *o = (Options){.command = command, .out = "out", .isa = "avx2", .threads = thread_processors(), .speed = INFINITY,
+                   .for_s = INFINITY, .config = config_default()};
+    const Status status = read_config(&o->config, list, argc, argv);
+    if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
+    if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
+    optind = 0;
+    for (int option; (option = getopt_long(argc, argv, "c:", list, NULL)) != -1;) {
+        const struct Row *row = row_of(option); /* NULL: getopt has said which */
+        if (row && row->what == HELP) {
+            print_help(command);
+            return 1 + 0;
+        }
+        if (!row || !take(o, row, optarg)) {
+            fprintf(stderr, "see `pitviper %s --help`\n", name);
+            return 1 + 2;
+        }
+    }
+    if (optind + (command == COMMAND_REPLAY) != argc) {
+        if (command == COMMAND_RUN) log_error("options: '%s' is none; a node listens, it is `replay` that takes a log", argv[optind]);
+        fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
+                command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
+        return 1 + 2;
+    }
+    if (command == COMMAND_REPLAY) o->log = argv[optind];
+    if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
+    if (o->host_count == 1) o->host_count = 0; /* one host is a setting like any other */
+    return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
+}

@@ -1,0 +1,51 @@
+/* sensor/node/session_private.h: one host's seeker between frames. */
+#ifndef SENSOR_NODE_SESSION_PRIVATE_H
+#define SENSOR_NODE_SESSION_PRIVATE_H
+
+#include "sensor/node/frame_files.h"
+#include "sensor/node/frame_writer.h"
+#include "sensor/node/patience.h"
+#include "sensor/node/player.h"
+#include "sensor/node/seeker.h"
+#include "sensor/node/session.h"
+
+struct Session {
+    const SessionShared *shared;
+    HostPlan             plan;          /* host and aim are filled in when they are heard of */
+    char                 out[4096];
+    char                 host_text[dis_id_text_size];
+    EntityTable         *table;
+    Player              *player;        /* the caller's */
+    FILE                *truth;
+    Seeker               seeker;
+    Arena               *frame_arena;
+    int64_t              tick;          /* next gimbal tick */
+    double               p_aim_ecef[3]; /* last known */
+    bool                 aim_known;
+    double               r_ecef_from_cam[2][9]; /* of a host's gimbal at the last two ticks */
+    int                  ticks;         /* how many there were, to 2 */
+    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv */
+    FrameLevel           level[BAND_COUNT];
+    FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
+    Patience             truth_patience; /* live: with truth.jsonl */
+    SessionResult        result;
+    int                  capacity;      /* of the result's lists */
+};
+
+typedef struct Eye {
+    EyeState state;
+    View     view;
+    double   r_ecef_from_body[9];
+    int      hidden; /* snapshot index of the host; -1 */
+    bool     at_limit, aim_known;
+    double   p_aim_ecef[3];
+    double   w_cam_rps[3]; /* how the camera turns, in its own axes */
+} Eye;
+
+/* Feeds what counts by t_s, finds host and aim, and turns the gimbal, on a fixed grid of exercise time. */
+void session_advance(Session *s, double t_s);
+/* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
+ * host is not there. */
+bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
+
+#endif

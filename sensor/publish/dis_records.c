@@ -1,0 +1,167 @@
+#include "sensor/publish/dis_records.h"
+
+#include "dis/reader.h"
+
+#include <stdlib.h>
+
+enum { seen_octets = 36, truth_octets = 56, datum_head_octets = 8, target_room = 2048 };
+
+/* Values for variable datums are written here first; big-endian. */
+typedef struct Octets {
+    uint8_t at[target_room];
+    size_t  used;
+} Octets;
+
+static void put(Octets *o, uint64_t value, int count)
+{
+    for (int i = count - 1; i >= 0; i--) o->at[o->used++] = (uint8_t)(value >> (8 * i));
+}
+
+static void put_f64(Octets *o, double value)
+{
+    uint64_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    put(o, bits, 8);
+}
+
+static uint32_t f32_bits(double value)
+{
+    const float narrow = isnan(value) ? NAN : (float)value; /* one NaN, whatever its payload */
+    uint32_t    bits;
+    memcpy(&bits, &narrow, sizeof bits);
+    return bits;
+}
+
+static void put_f32(Octets *o, double value) { put(o, f32_bits(value), 4); }
+
+static void put_id(Octets *o, DisEntityId id)
+{
+    put(o, id.site, 2);
+    put(o, id.application, 2);
+    put(o, id.entity, 2);
+    put(o, 0, 2);
+}
+
+static void put_box(Octets *o, const int box[4])
+{
+    for (int k = 0; k < 4; k++) put(o, (uint64_t)clamp(box[k], 0, UINT16_MAX), 2);
+}
+
+static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
+{
+    pdu->fixed[pdu->fixed_count++] = (DisFixedDatum){id, value};
+}
+
+/* From there to where the octets now end. */
+static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from)
+{
+    pdu->variable[pdu->variable_count++] = (DisVariableDatum){.id = id, .bits = (uint32_t)(8 * (o->used - from)),
+                                                              .value = o->at + from};
+}
+
+static void put_seen(Octets *o, const Target *t, Band band)
+{
+    const bool thermal = band == BAND_MWIR || band == BAND_LWIR;
+    put_box(o, t->box);
+    put_f32(o, t->pixels);
+    put_f32(o, t->boresight_error_rad[0]);
+    put_f32(o, t->boresight_error_rad[1]);
+    put_f32(o, thermal ? t->band[band].contrast_k : t->band[band].contrast);
+    put_f32(o, t->band[band].snr);
+    put_f32(o, band == BAND_RADAR ? t->range_m : NAN);
+    put_f32(o, band == BAND_RADAR ? t->closing_mps : NAN);
+}
+
+static void put_truth(Octets *o, const Target *t, const Snapshot *snapshot, Band band)
+{
+    put_id(o, snapshot->entity[t->index].id);
+    put_box(o, t->box);
+    put_f32(o, t->pixels);
+    put_f32(o, t->visible_fraction);
+    put_f32(o, t->range_m);
+    put_f32(o, t->closing_mps);
+    put_f32(o, t->aspect_rad);
+    put_f32(o, t->los_az_rad);
+    put_f32(o, t->los_el_rad);
+    put_f32(o, t->boresight_error_rad[0]);
+    put_f32(o, t->boresight_error_rad[1]);
+    put_f32(o, t->band[band].snr);
+}
+
+/* Largest first, then as listed; its place in list. */
+static int next_largest(const FrameRecord *r, const int *chosen, int count, bool truth)
+{
+    int best = -1;
+    for (int i = 0; i < r->target_count; i++) {
+        bool taken = !truth && !(r->target[i].pixels > 0); /* nobody measures what is hidden */
+        for (int k = 0; k < count; k++) taken |= chosen[k] == i;
+        if (!taken && (best < 0 || r->target[i].pixels > r->target[best].pixels)) best = i;
+    }
+    return best;
+}
+
+static void add_targets(DisData *pdu, Octets *o, const FrameRecord *r, Band band, bool truth)
+{
+    enum { most = 32 };
+    const size_t one  = (size_t)(datum_head_octets + ((truth ? truth_octets : seen_octets) + 7) / 8 * 8);
+    size_t       room = dis_smallest_mtu - 40 - 8 * 8 - (8 + 8) - 2 * (8 + 24) - (8 + 8);
+    int          chosen[most], count = 0, all = 0;
+    for (int i = 0; i < r->target_count; i++) all += truth || r->target[i].pixels > 0;
+    for (int i; count < most && room >= one && (i = next_largest(r, chosen, count, truth)) >= 0; room -= one) {
+        const size_t from = o->used;
+        chosen[count++]   = i;
+        if (truth) put_truth(o, &r->target[i], r->snapshot, band);
+        else put_seen(o, &r->target[i], band);
+        add_variable(pdu, truth ? datum_truth : datum_seen, o, from);
+    }
+    add_fixed(pdu, datum_targets, (uint32_t)count);
+    add_fixed(pdu, datum_left_out, (uint32_t)(all - count));
+}
+
+/* Columns of the camera's axes in the order of a body's: forward, right, down. */
+static void put_camera(Octets *o, const double r_ecef_from_cam[9])
+{
+    double r_ecef_from_body[9], psi_rad, theta_rad, phi_rad;
+    for (int k = 0; k < 3; k++) {
+        r_ecef_from_body[3 * k]     = r_ecef_from_cam[3 * k + 2];
+        r_ecef_from_body[3 * k + 1] = r_ecef_from_cam[3 * k];
+        r_ecef_from_body[3 * k + 2] = r_ecef_from_cam[3 * k + 1];
+    }
+    euler_from_r_ecef_from_body(&psi_rad, &theta_rad, &phi_rad, r_ecef_from_body);
+    put_f64(o, psi_rad);
+    put_f64(o, theta_rad);
+    put_f64(o, phi_rad);
+}
+
+size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, Band band,
+                        bool truth)
+{
+    enum { simulation_management = 5 };
+    const View *view = &r->request->view;
+    Octets      o    = {.used = 0};
+    size_t      from;
+    DisData     pdu  = {.header = {.version = sender->version, .exercise = sender->exercise, .type = dis_pdu_data,
+                                   .family = simulation_management, .timestamp = sender->timestamp},
+                        .originating = {sender->site, sender->application, 0}, .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    add_fixed(&pdu, datum_frame, (uint32_t)r->frame);
+    add_fixed(&pdu, datum_band, (uint32_t)band);
+    add_fixed(&pdu, datum_kind, truth ? datum_kind_truth : datum_kind_sensor);
+    add_fixed(&pdu, datum_raster, (uint32_t)view->width << 16 | (uint32_t)view->height);
+    add_fixed(&pdu, datum_hfov, f32_bits(r->hfov_rad));
+    add_fixed(&pdu, datum_vfov, f32_bits(2 * atan(0.5 * view->height / view->focal_px)));
+
+    from = o.used;
+    put_f64(&o, r->time_s);
+    add_variable(&pdu, datum_time, &o, from);
+    from = o.used;
+    for (int k = 0; k < 3; k++) put_f64(&o, r->p_eye_ecef[k]);
+    add_variable(&pdu, datum_eye, &o, from);
+    from = o.used;
+    put_camera(&o, r->r_ecef_from_cam);
+    add_variable(&pdu, datum_camera, &o, from);
+    from = o.used;
+    put_id(&o, r->host ? r->host->id : (DisEntityId){0});
+    add_variable(&pdu, datum_host, &o, from);
+    add_targets(&pdu, &o, r, band, truth);
+    return dis_encode_data(out, dis_smallest_mtu, &pdu);
+}

@@ -1,0 +1,187 @@
+/* The Data PDUs of a frame, read octet by octet as dis_records.h describes them. tests/system/test_live.sh has tshark read them. */
+#include "tests/check.h"
+
+#include "sensor/publish/dis_records.h"
+
+static uint64_t big(const uint8_t *at, int octets)
+{
+    uint64_t value = 0;
+    for (int i = 0; i < octets; i++) value = value << 8 | at[i];
+    return value;
+}
+
+static double f32(const uint8_t *at)
+{
+    const uint32_t bits = (uint32_t)big(at, 4);
+    float          value;
+    memcpy(&value, &bits, 4);
+    return value;
+}
+
+static double f64(const uint8_t *at)
+{
+    const uint64_t bits = big(at, 8);
+    double         value;
+    memcpy(&value, &bits, 8);
+    return value;
+}
+
+/* Value of the fixed datum of that id; fails when there is none. */
+static uint32_t fixed(const uint8_t *pdu, uint32_t id)
+{
+    for (uint32_t i = 0; i < big(pdu + 32, 4); i++)
+        if (big(pdu + 40 + 8 * i, 4) == id) return (uint32_t)big(pdu + 44 + 8 * i, 4);
+    fail_msg("no fixed datum %u", id);
+    return 0;
+}
+
+/* The value of the n-th variable datum of that id, NULL: none; its bits. */
+static const uint8_t *variable(uint32_t *bits, const uint8_t *pdu, size_t octets, uint32_t id, int n)
+{
+    const uint8_t *at = pdu + 40 + 8 * big(pdu + 32, 4);
+    for (uint32_t i = 0; i < big(pdu + 36, 4); i++) {
+        const uint32_t here = (uint32_t)big(at, 4);
+        *bits               = (uint32_t)big(at + 4, 4);
+        if (here == id && n-- == 0) return at + 8;
+        at += 8 + (*bits + 63) / 64 * 8;
+        CHECK(at <= pdu + octets);
+    }
+    return NULL;
+}
+
+enum { most_targets = 60 };
+static Target         target[most_targets];
+static SnapshotEntity entity[most_targets + 1];
+static Snapshot       snapshot = {.entity = entity};
+static RenderRequest  request = {.bands = 15, .view = {.width = 720, .height = 486, .focal_px = 6868.6}};
+static Sun            sun;
+
+/* Target i is entity 1:2:(100 + i), has 10 * (i + 1) pixels; those below `hidden` have none. */
+static FrameRecord frame_of(int targets, int hidden)
+{
+    for (int i = 0; i < targets; i++) {
+        entity[i].id = (DisEntityId){1, 2, (uint16_t)(100 + i)};
+        target[i]    = (Target){.index = i, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5, .los_az_rad = 1.25,
+                                .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
+                                .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75, .box = {i, 2, i + 3, 4}};
+        for (int b = 0; b < BAND_COUNT; b++)
+            target[i].band[b] = (TargetBand){.contrast_k = b == BAND_LWIR ? 3.5 : NAN, .contrast = b == BAND_OPTICAL ? 0.25 : NAN,
+                                             .snr = 25};
+    }
+    entity[targets].id = (DisEntityId){7, 8, 9};
+    snapshot.count     = targets + 1;
+    /* the camera looks north along the equator's meridian 0: forward +z, right +y (east), down -x */
+    FrameRecord r = {.frame = 123456, .time_s = 1392.4, .snapshot = &snapshot, .host = &entity[targets],
+                     .p_eye_ecef = {6378137.25, -2, 3}, .request = &request, .hfov_rad = 0.104719755,
+                     .r_ecef_from_cam = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .sun = &sun, .target = target, .target_count = targets};
+    return r;
+}
+
+static const DisRecordSender sender = {.version = 7, .exercise = 33, .site = 4711, .application = 1, .timestamp = 0x12345678};
+
+static void the_frame_is_where_the_description_says(void **state)
+{
+    (void)state;
+    const FrameRecord r = frame_of(3, 0);
+    uint8_t           pdu[dis_smallest_mtu];
+    uint32_t          bits;
+    const size_t      n = dis_record_frame(pdu, &sender, &r, BAND_LWIR, false);
+    CHECK(n > 0 && n <= 1400 && big(pdu + 8, 2) == n);
+    CHECK(pdu[0] == 7 && pdu[1] == 33 && pdu[2] == 20 && pdu[3] == 5 && big(pdu + 4, 4) == 0x12345678);
+    CHECK(big(pdu + 12, 2) == 4711 && big(pdu + 14, 2) == 1 && big(pdu + 16, 2) == 0);
+    CHECK(big(pdu + 18, 6) == 0xFFFFFFFFFFFF);
+    CHECK(fixed(pdu, 600001) == 123456 && fixed(pdu, 600002) == 2 && fixed(pdu, 600003) == 1);
+    CHECK(fixed(pdu, 600004) == (720u << 16 | 486));
+    CHECK(fixed(pdu, 600007) == 3 && fixed(pdu, 600008) == 0);
+    const uint32_t hfov = fixed(pdu, 600005), vfov = fixed(pdu, 600006);
+    const uint8_t  hfov_at[4] = {(uint8_t)(hfov >> 24), (uint8_t)(hfov >> 16), (uint8_t)(hfov >> 8), (uint8_t)hfov};
+    const uint8_t  vfov_at[4] = {(uint8_t)(vfov >> 24), (uint8_t)(vfov >> 16), (uint8_t)(vfov >> 8), (uint8_t)vfov};
+    CHECK_NEAR(f32(hfov_at), 0.104719755, 1e-8);             /* a float's rounding */
+    CHECK_NEAR(f32(vfov_at), 2 * atan(243 / 6868.6), 1e-8);
+    CHECK_NEAR(f64(variable(&bits, pdu, n, 600101, 0)), 1392.4, 0);
+    CHECK(bits == 64);
+    const uint8_t *eye = variable(&bits, pdu, n, 600102, 0), *camera;
+    CHECK(bits == 192 && f64(eye) == 6378137.25 && f64(eye + 8) == -2 && f64(eye + 16) == 3);
+    /* a body at 0 N 0 E heading north and level: theta = -90 degrees turns x to the pole; psi and phi are one angle
+     * there, and their sum is 180 degrees (the belly, z, looks to -x) */
+    camera = variable(&bits, pdu, n, 600103, 0);
+    CHECK(bits == 192);
+    double forward[3] = {cos(f64(camera + 8)) * cos(f64(camera)), cos(f64(camera + 8)) * sin(f64(camera)), -sin(f64(camera + 8))};
+    CHECK_NEAR(forward[0], 0, 1e-7); /* at the pole of Euler angles half the digits are lost */
+    CHECK_NEAR(forward[1], 0, 1e-7);
+    CHECK_NEAR(forward[2], 1, 1e-14);
+    const uint8_t *host = variable(&bits, pdu, n, 600104, 0);
+    CHECK(bits == 64 && big(host, 8) == 0x0007000800090000);
+}
+
+static void a_seeker_tells_no_names(void **state)
+{
+    (void)state;
+    const FrameRecord r = frame_of(3, 1);
+    uint8_t           pdu[dis_smallest_mtu];
+    uint32_t          bits;
+    size_t            n = dis_record_frame(pdu, &sender, &r, BAND_LWIR, false);
+    CHECK(fixed(pdu, 600007) == 2 && fixed(pdu, 600008) == 0); /* the hidden one is not there */
+    CHECK(!variable(&bits, pdu, n, 600202, 0) && !variable(&bits, pdu, n, 600201, 2));
+    const uint8_t *t = variable(&bits, pdu, n, 600201, 0); /* the largest: target 2 */
+    CHECK(bits == 288 && big(t, 2) == 2 && big(t + 2, 2) == 2 && big(t + 4, 2) == 5 && big(t + 6, 2) == 4);
+    CHECK(f32(t + 8) == 30 && f32(t + 12) == 0.015625 && f32(t + 16) == -0.03125);
+    CHECK(f32(t + 20) == 3.5 && f32(t + 24) == 25 && isnan(f32(t + 28)) && isnan(f32(t + 32)));
+    n = dis_record_frame(pdu, &sender, &r, BAND_RADAR, false);
+    t = variable(&bits, pdu, n, 600201, 0);
+    CHECK(isnan(f32(t + 20)) && f32(t + 28) == 1002 && f32(t + 32) == 200);
+    n = dis_record_frame(pdu, &sender, &r, BAND_OPTICAL, false);
+    t = variable(&bits, pdu, n, 600201, 0);
+    CHECK(f32(t + 20) == 0.25 && isnan(f32(t + 28)));
+    /* nowhere in any of them: the id of a target */
+    static const uint8_t id[6] = {0, 1, 0, 2, 0, 102};
+    for (size_t i = 0; i + 6 <= n; i++) CHECK(memcmp(pdu + i, id, 6) != 0);
+}
+
+static void truth_tells_all(void **state)
+{
+    (void)state;
+    const FrameRecord r = frame_of(3, 1);
+    uint8_t           pdu[dis_smallest_mtu];
+    uint32_t          bits;
+    const size_t      n = dis_record_frame(pdu, &sender, &r, BAND_OPTICAL, true);
+    CHECK(fixed(pdu, 600003) == 2 && fixed(pdu, 600007) == 3);
+    const uint8_t *t = variable(&bits, pdu, n, 600202, 0);
+    CHECK(bits == 448 && big(t, 8) == 0x0001000200660000 && big(t + 8, 2) == 2 && big(t + 14, 2) == 4);
+    CHECK(f32(t + 16) == 30 && f32(t + 20) == 0.75 && f32(t + 24) == 1002 && f32(t + 28) == 200 && f32(t + 32) == 0.5);
+    CHECK(f32(t + 36) == 1.25 && f32(t + 40) == -0.125 && f32(t + 44) == 0.015625 && f32(t + 48) == -0.03125 && f32(t + 52) == 25);
+    t = variable(&bits, pdu, n, 600202, 2); /* hidden, and said so */
+    CHECK(big(t, 8) == 0x0001000200640000 && f32(t + 16) == 0);
+}
+
+static void what_has_no_room_is_counted_the_smallest_first(void **state)
+{
+    (void)state;
+    uint8_t  pdu[dis_smallest_mtu];
+    uint32_t bits;
+    for (int truth = 0; truth <= 1; truth++)
+        for (int targets = 0; targets <= most_targets; targets++) {
+            const FrameRecord r = frame_of(targets, 0);
+            const size_t      n = dis_record_frame(pdu, &sender, &r, BAND_MWIR, truth);
+            const uint32_t    in = fixed(pdu, 600007);
+            CHECK(n > 0 && n <= 1400 && in + fixed(pdu, 600008) == (uint32_t)targets);
+            CHECK(in == (uint32_t)targets || in >= 16);
+            for (uint32_t i = 0; i < in; i++) {
+                const uint8_t *t = variable(&bits, pdu, n, truth ? 600202 : 600201, (int)i);
+                CHECK(t && f32(t + (truth ? 16 : 8)) == 10 * (targets - (int)i));
+            }
+            DisData back;
+            CHECK(dis_decode_data(&back, pdu, n) == STATUS_OK);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_frame_is_where_the_description_says),
+        cmocka_unit_test(a_seeker_tells_no_names),
+        cmocka_unit_test(truth_tells_all),
+        cmocka_unit_test(what_has_no_room_is_counted_the_smallest_first),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

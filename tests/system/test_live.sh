@@ -1,0 +1,93 @@
+#!/usr/bin/env bash
+# A live node and a replay of its recording make the same frames, to the bit; whoever carries the sensor, whatever else
+# is on the network.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
+
+# ---- three nodes on one exercise: by multicast on the loopback interface, else one by unicast ------------------
+group=239.71.7.$((1 + $$ % 250))
+few=(--no-png --bands lwir --set publish.files=false)
+free_port
+nodes=(missile watch chosen)
+node missile --address $group --interface lo --port $port --host munition --rate 10 --record "$tmp/missile.pcapng" \
+    --frames 25 --for 60 "${few[@]}"
+if heard_by missile 'listening on' 10; then
+    node watch --address $group --interface lo --port $port --rate 5 --record "$tmp/watch.pcapng" --frames 30 --for 60 \
+        --set publish.dis=truth --set node.application=2 --set sensor.bands=lwir,radar --set publish.files=false --no-png
+    node chosen --address $group --interface lo --port $port --host 1:3001:41 --rate 4 --record "$tmp/chosen.pcapng" \
+        --frames 20 --for 60 --no-png --bands optical,lwir --set node.application=3
+    heard_by watch 'listening on' 10; heard_by chosen 'listening on' 10
+    sender demo --send $group:$port --interface lo
+else
+    echo "skipped: no multicast on the loopback interface here; one node by unicast"
+    cat "$tmp/missile.out"
+    nodes=(missile)
+    node missile --address 127.0.0.1 --port $port --host munition --rate 10 --record "$tmp/missile.pcapng" --frames 25 \
+        --for 60 "${few[@]}"
+    heard_by missile 'listening on' 10
+    sender demo --send 127.0.0.1:$port
+fi
+# meanwhile, a node that hears nothing, and one that is told to stop
+free_port
+node silent --address 127.0.0.1 --port $port --for 12
+silent_port=$port
+free_port
+node told --address 127.0.0.1 --port $port
+heard_by told 'listening on' 10
+kill -INT "${node[told]}"
+ended told 10
+check "told to stop: ends well" [ $code = 0 ]
+check "told to stop: says that it had not begun" grep -q 'before the first frame' "$tmp/told.out"
+ended silent 30
+check "silence: ends well" [ $code = 0 ]
+check "silence: said once, with port and next step" [ "$(grep -c "nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
+
+for name in "${nodes[@]}"; do
+    ended $name 60
+    check "$name: ends well" [ $code = 0 ]
+    check "$name: run.json counts what was lost: nothing" [ "$(live_counter "$tmp/$name" lost_kernel)$(live_counter "$tmp/$name" lost_queue)" = 00 ]
+done
+end_sender
+
+# the same configuration on the recording; --to: the live node went on after the last PDU
+again() { # NAME options
+    local name=$1; shift
+    last=$(time_of "$tmp/$name" '$')
+    replay "$tmp/$name.pcapng" "$tmp/$name-again" --causal --port 0 --to "${last:-0}" "$@"
+    check "$name: its recording replays" [ $code = 0 ]
+    check "$name: every live frame is the replay's of that number" part_of "$tmp/$name" "$tmp/$name-again" 20
+    check "$name: the same configuration" [ "$(run_json "$tmp/$name" | grep -o '"config_sha256":"[0-9a-f]*"')" = \
+        "$(run_json "$tmp/$name-again" | grep -o '"config_sha256":"[0-9a-f]*"')" ]
+    check "$name: the same host" [ "$(run_json "$tmp/$name" | grep -o '"hosts":[^,]*')" = "$(run_json "$tmp/$name-again" | grep -o '"hosts":[^,]*')" ]
+    check "$name: the hashes stand in its truth, too" [ "$(grep -oE '"frame_sha256":"[0-9a-f]{64}"' "$tmp/$name/truth.jsonl" | wc -l)" = \
+        "$(numbered "$tmp/$name" | wc -l)" ]
+}
+again missile --host munition --rate 10 "${few[@]}" --threads 1
+check "munition: the missile" grep -q '"1:3001:41"' "$tmp/missile/run.json"
+check "munition: it looks at the target of its Fire" grep -q 'aim: 1:3001:22' "$tmp/missile.out"
+# the twin: another seed is another picture
+replay "$tmp/missile.pcapng" "$tmp/other" --causal --port 0 --host munition --rate 10 "${few[@]}" --seed 2
+check "another seed: other bits" [ -z "$(comm -12 <(numbered "$tmp/missile" | sort) <(numbered "$tmp/other" | sort))" ]
+
+if [ ${#nodes[@]} = 3 ]; then
+    again chosen --host 1:3001:41 --rate 4 --no-png --bands optical,lwir --set node.application=3
+    check "chosen: a picture a frame and band" [ "$(frames "$tmp/chosen" lwir)$(frames "$tmp/chosen" optical)" = 2020 ]
+    again watch --rate 5 --set node.application=2 --set sensor.bands=lwir,radar --set publish.files=false --no-png
+    check "watch: nobody flies at first, so an observer" grep -q '"observer"' "$tmp/watch/run.json"
+    # two PDUs a frame, and each came back
+    sent=$(live_counter "$tmp/watch" sent)
+    own() { run_json "$1" | grep -oE '"own":[0-9]+' | cut -d: -f2; }
+    check "watch: two Data PDUs a frame" [ "$sent" = $((2 * $(numbered "$tmp/watch" | wc -l))) ]
+    check "watch: hears its own, and ignores them" [ "$(own "$tmp/watch")" = "$sent" ]
+    check "watch: so does its replay" [ "$(own "$tmp/watch-again")" = "$sent" ]
+    check "others: a Data PDU is nobody's entity" [ "$(own "$tmp/missile")" = 0 ]
+    if command -v tshark >/dev/null; then
+        tshark -r "$tmp/watch.pcapng" -d udp.port==1-65535,dis -Y 'dis.pdu_type == 20' -T fields -e dis.exer_id \
+            -e dis.num_fixed_data -e dis.num_variable_data -e udp.length -e _ws.malformed >"$tmp/tshark" 2>/dev/null
+        check "tshark: reads every Data PDU" [ "$(wc -l <"$tmp/tshark")" = "$sent" ]
+        check "tshark: none malformed, eight fixed datums, at least four variable ones, 1400 octets at most" \
+            awk -F'\t' '$2 != 8 || $3 < 4 || $4 > 1408 || $5 != "" { bad = 1 } END { exit bad || NR == 0 }' "$tmp/tshark"
+    fi
+fi
+for name in "${nodes[@]}"; do [ "$failures" = 0 ] || { echo "-- $name"; tail -n 8 "$tmp/$name.out"; }; done
+finish
