@@ -11,6 +11,7 @@ void ground_prepare(Ground *out, const Elevation *elevation)
                            .cells_per_m = 1 / e->spacing_m, .posts_per_m = 1 / e->step_m};
         for (int p = 0; p < e->pyramid_count; p++) {
             g->pyramid[p]    = e->pyramid[p];
+            g->rise[p]       = e->rise[p];
             g->pyramid_nx[p] = e->pyramid_nx[p];
         }
         g->highest = e->pyramid[g->top][0];

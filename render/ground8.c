@@ -160,8 +160,8 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
         return;
     }
     Walk     w;
-    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m, .from_m = from_m, .list = list,
-                       .range_m = range_m, .hit = hit};
+    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m,
+                       .from_m = from_m, .list = list, .range_m = range_m, .hit = hit};
     unsigned busy = 0;
     for (int l = 0; l < lanes; l++) {
         /* an idle lane stands in the first cell of level 0 and is not listened to */

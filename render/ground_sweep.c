@@ -67,7 +67,8 @@ static int highest_between(const GroundLevel *g, const Axis *axis, int k, int ro
     const double    last = axis->c_cells - 1;
     const int       from = (int)clamp(c_low, 0, last) >> k, to = (int)clamp(c_high, 0, last) >> k;
     const size_t    nx = (size_t)g->pyramid_nx[k], step = axis->along_v ? 1 : nx;
-    const uint16_t *z = g->pyramid[k] + (axis->along_v ? (size_t)row * nx + (size_t)from : (size_t)from * nx + (size_t)row);
+    const size_t    at = axis->along_v ? (size_t)row * nx + (size_t)from : (size_t)from * nx + (size_t)row;
+    const uint16_t *z = g->pyramid[k] + at;
     int             highest = 0;
     for (int n = from; n <= to; n++, z += step) highest = *z > highest ? *z : highest;
     return highest;

@@ -28,7 +28,12 @@
 
 #include "pitviper.h"
 
-enum { elevation_max_levels = 4, elevation_pyramid_levels = 16 };
+enum { elevation_max_levels = 4, elevation_pyramid_levels = 16, elevation_rise_level = 3 };
+
+/* The steepest rise of any edge of a square's cells, each way: posts a cell, 0 where the ground only falls. */
+typedef struct ElevationRise {
+    uint16_t east, west, north, south;
+} ElevationRise;
 
 typedef struct ElevationLevel {
     int       nx, ny;          /* posts, >= 2; post (i, j) at (x0 + i spacing, y0 + j spacing) */
@@ -40,6 +45,7 @@ typedef struct ElevationLevel {
     int       pyramid_count;
     uint16_t *pyramid[elevation_pyramid_levels];
     int       pyramid_nx[elevation_pyramid_levels], pyramid_ny[elevation_pyramid_levels];
+    ElevationRise *rise[elevation_pyramid_levels]; /* as the pyramid, from elevation_rise_level on; else NULL */
 } ElevationLevel;
 
 typedef struct Elevation {

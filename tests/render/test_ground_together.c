@@ -70,6 +70,17 @@ static double steps(double x_m, double y_m) /* cliffs along posts and diagonals 
     return 60 * floor(fabs(fmod(x_m, 64)) / 32) + 30 * floor(fabs(fmod(x_m - y_m, 48)) / 24) + 0.01 * y_m;
 }
 
+static double downs(double x_m, double y_m) /* so gentle that a sun of 30 degrees outruns most; with a few walls */
+{
+    return 60 + 15 * sin(x_m / 91) + 8 * cos(y_m / 53) + (fabs(x_m - 30) < 2 && y_m > 0 ? 12 : 0) +
+           (fabs(y_m + 0.5 * x_m) < 3 ? 5 : 0);
+}
+
+static double plain(double x_m, double y_m)
+{
+    return -10 + 0.002 * x_m + 0.003 * y_m;
+}
+
 static double noise(double x_m, double y_m)
 {
     return random_uniform(5, 0, (uint32_t)(int)(10 * x_m), (uint64_t)(int64_t)(10 * y_m)) * 200;
@@ -77,7 +88,8 @@ static double noise(double x_m, double y_m)
 
 typedef double Country(double x_m, double y_m);
 
-static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m, Country *country)
+static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, double y0_m, double spacing_m,
+                      Country *country)
 {
     assert_int_equal(elevation_level_create(e, index, nx, ny, x0_m, y0_m, spacing_m, -20, 1.0 / 128), STATUS_OK);
     ElevationLevel *level = &e->level[index];
@@ -87,7 +99,8 @@ static void add_level(Elevation *e, int index, int nx, int ny, double x0_m, doub
                 (uint16_t)clamp(128 * (country(x0_m + i * spacing_m, y0_m + j * spacing_m) + 20), 0, 65535);
 }
 
-/* One level, or three that meet only nearly; or two of which the inner lies on the outer's edge. */
+/* One level; three that meet only nearly; two of which the inner lies on the outer's edge; a country on a plain below
+ * it. */
 static void make_country(Elevation *e, Country *country, int kind)
 {
     memset(e, 0, sizeof *e);
@@ -100,6 +113,10 @@ static void make_country(Elevation *e, Country *country, int kind)
     if (kind == 2) {
         add_level(e, 0, 201, 161, -200, -80, 1, country);
         add_level(e, 1, 101, 91, -200, -180, 4, country);
+    }
+    if (kind == 3) {
+        add_level(e, 0, 161, 241, -80, -120, 1, country);
+        add_level(e, 1, 101, 121, -200, -240, 4, plain);
     }
     elevation_build_pyramids(e);
 }
@@ -150,7 +167,8 @@ static void fill_from_eye(const View *view)
     batch.count = tiled ? 32 * 32 : pick_of(tile + 1);
     for (int n = 0; n < batch.count; n++) {
         double       d[3];
-        const double x = tiled ? x0 + n % side + 0.5 : x0 + uniform(0, side), y = tiled ? y0 + n / side + 0.5 : y0 + uniform(0, side);
+        const double x = x0 + (tiled ? n % side + 0.5 : uniform(0, side));
+        const double y = y0 + (tiled ? n / side + 0.5 : uniform(0, side));
         view_ray(d, view, x, y);
         for (int c = 0; c < 3; c++) batch.o[c][n] = view->p_enu[c], batch.d[c][n] = d[c];
         batch.far_m[n] = pick_of(6) ? INFINITY : exp(uniform(0, 7));
@@ -175,7 +193,7 @@ static void fill_from_hits(const Ground *ground, const double sun_enu[3])
 static void every_view(Country *country, const char *name, int views)
 {
     int rays = 0, hits = 0, dark = 0, sun_rays = 0;
-    for (int kind = 0; kind < 3; kind++) {
+    for (int kind = 0; kind < 4; kind++) {
         Elevation e;
         Ground    ground;
         make_country(&e, country, kind);
@@ -188,7 +206,8 @@ static void every_view(Country *country, const char *name, int views)
                 rays += batch.count;
                 hits += compare(&ground, name);
                 double       sun_enu[3];
-                const double elevation_rad = pick_of(6) ? uniform(0, pi_rad / 2) : uniform(-0.3, 0), azimuth_rad = uniform(0, 6.3);
+                const double elevation_rad = pick_of(6) ? uniform(0, pi_rad / 2) : uniform(-0.3, 0);
+                const double azimuth_rad = uniform(0, 2 * pi_rad);
                 sun_enu[0] = cos(elevation_rad) * sin(azimuth_rad), sun_enu[1] = cos(elevation_rad) * cos(azimuth_rad);
                 sun_enu[2] = sin(elevation_rad);
                 if (pick_of(9) == 0) sun_enu[0] = sun_enu[1] = 0, sun_enu[2] = 1;
@@ -208,13 +227,15 @@ static void hills_are_the_same(void **state) { (void)state; every_view(hills, "h
 static void canyons_are_the_same(void **state) { (void)state; every_view(canyon, "canyon", 120); }
 static void spikes_are_the_same(void **state) { (void)state; every_view(spikes, "spikes", 120); }
 static void cliffs_are_the_same(void **state) { (void)state; every_view(steps, "cliffs", 120); }
+static void downs_are_the_same(void **state) { (void)state; every_view(downs, "downs", 120); }
 static void noise_is_the_same(void **state) { (void)state; every_view(noise, "noise", 120); }
 
 /* Rays no camera makes: of one eye or one direction, with numbers among them that no ray should have. */
 static void odd_rays_are_the_same(void **state)
 {
     (void)state;
-    static const double odd[] = {0, -0.0, 1, -1, 1e-300, 1e-31, -1e-31, 1e-9, -1e-12, NAN, INFINITY, -INFINITY, 1e308, 3, 5e-324};
+    static const double odd[] = {0, -0.0, 1, -1, 1e-300, 1e-31, -1e-31, 1e-9, -1e-12, NAN, INFINITY, -INFINITY,
+                                 1e308, 3, 5e-324};
     static const double place[] = {0, -0.0, -80, 80, 161, 1e9, -1e9, 1e12, 1e-300, 1e6, NAN, INFINITY, 0.5, 16};
     for (int n = 0; n < 2000; n++) {
         static Elevation e;
@@ -224,7 +245,8 @@ static void odd_rays_are_the_same(void **state)
             make_country(&e, hills, n / 500 % 3);
             ground_prepare(&ground, &e);
         }
-        double eye[3] = {uniform(-300, 300), uniform(-300, 300), uniform(0, 300)}, way[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.3)};
+        double eye[3] = {uniform(-300, 300), uniform(-300, 300), uniform(0, 300)};
+        double way[3] = {uniform(-1, 1), uniform(-1, 1), uniform(-0.5, 0.3)};
         if (n % 3 == 0) eye[pick_of(3)] = place[pick_of(14)];
         if (n % 5 == 0) way[pick_of(3)] = odd[pick_of(15)];
         if (n % 7 == 0) way[pick_of(2)] = odd[pick_of(9)];
@@ -286,9 +308,13 @@ static void any_count_is_the_same(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(hills_are_the_same),  cmocka_unit_test(canyons_are_the_same),
-        cmocka_unit_test(spikes_are_the_same), cmocka_unit_test(cliffs_are_the_same),
-        cmocka_unit_test(noise_is_the_same),   cmocka_unit_test(odd_rays_are_the_same),
+        cmocka_unit_test(hills_are_the_same),
+        cmocka_unit_test(canyons_are_the_same),
+        cmocka_unit_test(spikes_are_the_same),
+        cmocka_unit_test(cliffs_are_the_same),
+        cmocka_unit_test(downs_are_the_same),
+        cmocka_unit_test(noise_is_the_same),
+        cmocka_unit_test(odd_rays_are_the_same),
         cmocka_unit_test(any_count_is_the_same),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -50,10 +50,37 @@ static void the_inner_level_wins(void **state)
     CHECK(e.level_count == 0);
 }
 
+/* The steepest of every edge of a square's cells, each way, edge by edge. */
+static void check_rise(const ElevationLevel *level, int k, int i, int j)
+{
+    const int cells = 1 << k, nx = level->nx;
+    int       east = 0, west = 0, north = 0, south = 0;
+    if (k < elevation_rise_level) {
+        CHECK(!level->rise[k]);
+        return;
+    }
+    for (int b = j * cells; b <= (j + 1) * cells && b < level->ny; b++)
+        for (int a = i * cells; a <= (i + 1) * cells && a < nx; a++) {
+            const int z = level->post[b * nx + a];
+            if (a < (i + 1) * cells && a + 1 < nx) {
+                const int rise = level->post[b * nx + a + 1] - z;
+                east = rise > east ? rise : east;
+                west = -rise > west ? -rise : west;
+            }
+            if (b < (j + 1) * cells && b + 1 < level->ny) {
+                const int rise = level->post[(b + 1) * nx + a] - z;
+                north = rise > north ? rise : north;
+                south = -rise > south ? -rise : south;
+            }
+        }
+    const ElevationRise *got = &level->rise[k][j * level->pyramid_nx[k] + i];
+    CHECK(got->east == east && got->west == west && got->north == north && got->south == south);
+}
+
 static void pyramids_are_maxima(void **state)
 {
     (void)state;
-    static const int size[][2] = {{2, 2}, {3, 2}, {2, 9}, {17, 17}, {18, 13}, {65, 34}, {100, 3}};
+    static const int size[][2] = {{2, 2}, {3, 2}, {2, 9}, {17, 17}, {18, 13}, {65, 34}, {100, 3}, {1100, 21}};
     for (size_t n = 0; n < sizeof size / sizeof size[0]; n++) {
         Elevation e = {0};
         CHECK(elevation_level_create(&e, 0, size[n][0], size[n][1], 0, 0, 1, 0, 1) == STATUS_OK);
@@ -71,6 +98,7 @@ static void pyramids_are_maxima(void **state)
                         for (int a = i * cells; a <= (i + 1) * cells && a < level->nx; a++)
                             if (level->post[b * level->nx + a] > most) most = level->post[b * level->nx + a];
                     CHECK(level->pyramid[k][j * level->pyramid_nx[k] + i] == most);
+                    check_rise(level, k, i, j);
                 }
         }
         CHECK(level->pyramid_nx[level->pyramid_count - 1] == 1 && level->pyramid_ny[level->pyramid_count - 1] == 1);
