@@ -2,7 +2,7 @@
  *
  * One committed Embree scene for each node of each model, in the node's own axes, shared by every entity of
  * that model. A ray is taken to the node in double, advanced to the node's bounding sphere, narrowed once, and
- * asked only *which* triangle it meets; distance and normals are then found in double on that triangle. So a
+ * told whose boxes it passes; which triangle it meets, distance and normals are found in double. So a
  * joint that turns costs a transform and no commit, nothing here changes between frames, and any number of
  * frames and threads may trace at once. */
 #ifndef RENDER_PARTS_H

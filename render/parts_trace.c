@@ -329,9 +329,10 @@ static inline void packet_add(Packet *p, const NodeRays *r, int i, double best_m
 static void packet_narrow(struct RTCRay16 *ray, int valid[lanes], Packet *p)
 {
     const double *centre = p->mesh->centre;
-    for (int l = p->count; l < lanes; l++) { /* lanes without a ray are judged with the others */
+    for (int l = p->count; l < lanes; l++) { /* lanes without a ray are judged with the others, and meet nothing */
         for (int c = 0; c < 3; c++) p->o[c][l] = p->o[c][0], p->d[c][l] = p->d[c][0];
-        p->length_m[l] = p->far_m[l] = 0;
+        p->length_m[l] = p->far_m[l] = p->nearest_m[l] = -INFINITY;
+        p->ties[l] = 0;
     }
     for (int l = 0; l < lanes; l++) {
         ray->org_x[l] = (float)(p->o[0][l] - centre[0]);

@@ -3,8 +3,8 @@
  *
  * The ground is our own height field, in double, scalar and eight wide with the same bits. Each moving part is
  * traced in its own node's frame: the ray is taken there in double, advanced to the node's bounding sphere,
- * narrowed once, and given to Embree, which answers only *which* triangle; range and normal are refined in
- * double on that triangle. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
+ * narrowed once, and given to Embree, which only nominates triangles; who is met, range and normal are found in
+ * double. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
  * entity's triangles, within 0.1 mm, to the lowest. */
 #ifndef RENDER_VISIBILITY_H
 #define RENDER_VISIBILITY_H
