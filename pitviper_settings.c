@@ -191,7 +191,9 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
                       line_of(node), list->name);
             return STATUS_BAD_VALUE;
         }
+        errno = 0;
         void *item = list->add(out);
+        if (!item && errno == ENOMEM) return STATUS_NO_MEMORY;
         bool *seen = calloc((size_t)(list->item->count + list->item->list_count), sizeof *seen);
         if (!item || !seen) {
             if (!item) log_error("%s: %s:%d: %s: no room for more", table->module, r->path, line_of(node), list->name);

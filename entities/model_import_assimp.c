@@ -80,6 +80,7 @@ typedef struct Files {
     const char *path; /* as it is on disk */
     char shown[1024]; /* without .gz */
     size_t folder;    /* length of the folder's name with its slash */
+    bool no_memory;     /* for a file of it */
 } Files;
 
 typedef struct OpenFile {
@@ -121,17 +122,20 @@ static enum aiReturn file_seek(struct aiFile *file, size_t offset, enum aiOrigin
 
 static struct aiFile *files_open(struct aiFileIO *io, const char *name, const char *mode)
 {
-    const Files *files = (const Files *)io->UserData;
+    Files *files = (Files *)io->UserData;
     char packed[1100];
     (void)mode;
     const bool is_model = strcmp(name, files->shown) == 0;
     if (!is_model && (strncmp(name, files->shown, files->folder) != 0 || strstr(name + files->folder, "..")))
         return NULL;
     OpenFile *f = calloc(1, sizeof *f);
-    if (!f) return NULL;
+    Status status = f ? STATUS_OK : STATUS_NO_MEMORY;
     snprintf(packed, sizeof packed, "%s.gz", name);
-    if (import_read_whole(&f->bytes, &f->octets, is_model ? files->path : name, true) != STATUS_OK &&
-        (is_model || import_read_whole(&f->bytes, &f->octets, packed, true) != STATUS_OK)) {
+    if (status == STATUS_OK) status = import_read_whole(&f->bytes, &f->octets, is_model ? files->path : name, true);
+    if (status != STATUS_OK && status != STATUS_NO_MEMORY && !is_model)
+        status = import_read_whole(&f->bytes, &f->octets, packed, true);
+    if (status != STATUS_OK) {
+        files->no_memory = files->no_memory || status == STATUS_NO_MEMORY;
         free(f);
         return NULL;
     }
@@ -315,7 +319,7 @@ static void child_reads(int fd, const char *path)
         ImportScene *s = &flat.scene;
         s->material_count = (int)flat.source->mNumMaterials;
         if (!scene_room(s)) {
-            flat.said = "no memory";
+            files.no_memory = true;
         } else {
             s->node_count = s->mesh_count = s->vertex_count = s->triangle_count = 0;
             fill_node(&flat, flat.source->mRootNode, -1);
@@ -323,6 +327,10 @@ static void child_reads(int fd, const char *path)
             count_lost(s, flat.source);
             header.status = STATUS_OK;
         }
+    }
+    if (files.no_memory) { /* without its materials, say, it would be another model */
+        header.status = STATUS_NO_MEMORY;
+        flat.said = "out of memory";
     }
     if (flat.said) snprintf(header.said, sizeof header.said, "%s", flat.said);
     const ImportScene *s = &flat.scene;
@@ -418,7 +426,7 @@ static Status take_scene(ImportScene *out, const char *bytes, size_t octets, con
         header.said[sizeof header.said - 1] = 0;
         text_escape(said, sizeof said, header.said, strlen(header.said));
         log_error("model: cannot be read: file=%s: %s", path, said);
-        return STATUS_BAD_VALUE;
+        return header.status == STATUS_NO_MEMORY ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
     }
     if (!in_range(header.node_count, 1, import_max_nodes) ||
         !in_range(header.material_count, 0, import_max_materials) ||

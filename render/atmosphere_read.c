@@ -461,7 +461,8 @@ Status atmosphere_open(Atmosphere **out, const char *model)
     }
     if (status == STATUS_OK) status = open_model(atmosphere, folder);
     if (status != STATUS_OK) {
-        log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);
+        if (status == STATUS_NO_MEMORY) log_error("atmosphere: out of memory for model %s", model);
+        else log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);
         atmosphere_close(atmosphere);
         return status;
     }
