@@ -9,7 +9,7 @@ commands=$(grep -oE '^ +(pitviper )?[a-z]+' "$tmp/stdout" | awk '{ print $NF }' 
 check "--help lists replay" grep -qx replay <<<"$commands"
 check "--help lists inspect" grep -qx inspect <<<"$commands"
 
-for command in replay inspect; do
+for command in replay inspect record exercise; do
     run $command --help
     check "$command --help ends well" [ $code = 0 ]
     check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
