@@ -177,7 +177,7 @@ static double worst_place_m(Crowd *c)
         const int index = snapshot_find(&c->snapshot, c->state->id);
         if (index < 0) return INFINITY;
         v3_sub(off, c->snapshot.entity[index].p_ecef, p_ecef);
-        worst = fmax(worst, v3_length(off));
+        if (!(v3_length(off) <= worst)) worst = v3_length(off); /* NaN shows */
     }
     return worst;
 }

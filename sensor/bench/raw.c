@@ -249,7 +249,7 @@ double raw_worst_m(const RawRays *raw, int every)
         const double o[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]}, d[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
         const double plain = walk(raw->elevation, o, d);
         if (isinf(plain) != isinf(raw->range_m[i])) return INFINITY;
-        if (!isinf(plain)) worst = fmax(worst, fabs(plain - raw->range_m[i]));
+        if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* NaN shows */
     }
     return worst;
 }
