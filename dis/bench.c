@@ -212,7 +212,6 @@ static bool write_packet(FILE *file, uint32_t index, const uint8_t *octet, size_
 
 typedef struct Capture {
     char    path[64];
-    double  datagrams, bad;
     const Octets *octets;
     Status  status;
 } Capture;
