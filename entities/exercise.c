@@ -55,8 +55,8 @@ static DisEntityId id_of(const Exercise *x, int entity)
 
 /* ---- an entity's state -------------------------------------------------------------------------- */
 
-/* World axes into those of the algorithm: 6 .. 9 have body axes, and their acceleration is the derivative of the velocity
- * there, a - w x v. 1 stands. */
+/* World axes into those of the algorithm: 6 .. 9 have body axes, and their acceleration is the derivative of the
+ * velocity there, a - w x v. 1 stands. */
 static void into_axes(Kinematics *k, int algorithm)
 {
     k->algorithm = algorithm;
@@ -105,8 +105,8 @@ static int joint_records(DisVariableParameter *record, const JointReport *joint,
     for (int i = 0; i < count; i++)
         for (int rate = 0; rate < 2; rate++)
             record[2 * i + rate] = (DisVariableParameter){
-                .record_type = dis_variable_articulated, .attached_to = (uint16_t)(i > 0), .parameter = joint[i].parameter + rate,
-                .value = rate ? joint[i].rate : joint[i].value};
+                .record_type = dis_variable_articulated, .attached_to = (uint16_t)(i > 0),
+                .parameter = joint[i].parameter + rate, .value = rate ? joint[i].rate : joint[i].value};
     return 2 * count;
 }
 
@@ -265,7 +265,8 @@ static void look_at(Exercise *x, int entity, double t_s)
         sends  = wrong(&again_s, x, said, &k, joint, joints, age_s);
     }
     if (sends) {
-        send_state(x, entity, &k, appearance, !said->known || beats || !s->dis.updates || outdated(said, x->cast, entity, &k), t_s);
+        const bool whole = !said->known || beats || !s->dis.updates || outdated(said, x->cast, entity, &k);
+        send_state(x, entity, &k, appearance, whole, t_s);
         if (wrong(&again_s, x, said, &k, said->joint, said->joints, 0)) again_s = 0;
     }
     const double beat_s = said->t_s + s->dis.heartbeat_s;
@@ -364,10 +365,12 @@ static void send_start(Exercise *x)
     const Scenario *s = x->cast->scenario;
     double          clock_s;
     if (!*s->dis.clock || !text_to_unix_s(&clock_s, s->dis.clock)) return;
-    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), (uint32_t)(fmod(clock_s, 3600) / 3600 * 2147483648.0) << 1 | 1};
+    const uint32_t       past_hour = (uint32_t)(fmod(clock_s, 3600) / 3600 * 2147483648.0) << 1 | 1;
+    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), past_hour};
     const DisStartResume start = {.header = link_header(&x->link, dis_pdu_start_resume, 5, 0),
                                   .originating = {(uint16_t)s->dis.site, (uint16_t)s->dis.application, 0},
-                                  .receiving = {65535, 65535, 65535}, .real_world = clock, .simulation = clock, .request = 1};
+                                  .receiving = {65535, 65535, 65535}, .real_world = clock, .simulation = clock,
+                                  .request = 1};
     link_pdu(&x->link, 0, x->bytes, dis_encode_start_resume(x->bytes, sizeof x->bytes, &start));
 }
 

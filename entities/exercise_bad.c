@@ -1,5 +1,5 @@
-/* entities/exercise_bad.c: one malformed datagram of each kind, in turn. Every one must be dropped and counted, or taken
- * for what it is worth; none may disturb the others. */
+/* entities/exercise_bad.c: one malformed datagram of each kind, in turn. Every one must be dropped and counted, or
+ * taken for what it is worth; none may disturb the others. */
 #include "entities/exercise.h"
 
 static uint8_t random_octet(const Cast *cast, double t_s, size_t at)
@@ -32,8 +32,9 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
         static const float value[4] = {NAN, INFINITY, -1e30f, 0};
         es->variable_count = 4;
         for (int i = 0; i < 4; i++)
-            es->variable[i] = (DisVariableParameter){.record_type = dis_variable_articulated, .attached_to = (uint16_t)(i / 2),
-                                                     .parameter = i < 2 ? 4107u + (unsigned)i : 4427u + (unsigned)i, .value = value[i]};
+            es->variable[i] = (DisVariableParameter){
+                .record_type = dis_variable_articulated, .attached_to = (uint16_t)(i / 2), .value = value[i],
+                .parameter = i < 2 ? 4107u + (unsigned)i : 4427u + (unsigned)i};
         break;
     }
     }

@@ -1,7 +1,7 @@
 /* entities/exercise_cast.h: who is in an exercise, and where everybody is at any time: a scenario made definite.
  *
- * Everything is a pure function of scenario, seed, entity and time; nothing is stepped, so any time may be asked in any
- * order. A pose costs some 0.3 us over invented ground, 2 us over ground of files. Lengths in ENU at the place. */
+ * Everything is a pure function of scenario, seed, entity and time; nothing is stepped, so any time may be asked in
+ * any order. A pose costs some 0.3 us over invented ground, 2 us over ground of files. Lengths in ENU at the place. */
 #ifndef ENTITIES_EXERCISE_CAST_H
 #define ENTITIES_EXERCISE_CAST_H
 
@@ -56,7 +56,8 @@ typedef struct Cast {
     double         *stop_s;     /* of each group: begins to stop; INFINITY: does not */
 } Cast;
 
-/* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not reach. */
+/* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
+ * reach. */
 Status cast_create(Cast **out, const Scenario *scenario);
 void   cast_destroy(Cast *cast);
 
@@ -65,8 +66,9 @@ typedef struct CastPose {
 } CastPose;
 
 void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s);
-/* The pose in ECEF with its velocity, acceleration (world axes) and body rates: central differences over 10 ms, so that
- * they belong to it; velocity within 1 mm/s of wider differences (tests/entities/test_exercise_cast.c). algorithm: 4. */
+/* The pose in ECEF with its velocity, acceleration (world axes) and body rates: central differences over 10 ms, so
+ * that they belong to it; velocity within 1 mm/s of wider differences (tests/entities/test_exercise_cast.c).
+ * algorithm: 4. */
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s);
 /* Whether others hear of it at that time; a munition from its Fire to its Detonation. */
 bool cast_present(const Cast *cast, int entity, double t_s);

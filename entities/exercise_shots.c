@@ -1,7 +1,7 @@
 /* entities/exercise_shots.c: when and where a shot ends, and how its munition flies.
  *
- * The way is the straight line from launch to impact, lofted and weaving, both dying out towards either end. Its length
- * along the line: thrown out, pushed by a motor whose thrust dies away, slowed by a constant drag. */
+ * The way is the straight line from launch to impact, lofted and weaving, both dying out towards either end. Its
+ * length along the line: thrown out, pushed by a motor whose thrust dies away, slowed by a constant drag. */
 #include "entities/exercise_cast.h"
 
 #include "dis/warfare.h"
@@ -112,8 +112,8 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
     }
 }
 
-/* When it gets there depends on where the target is by then: a missile of 300 m/s at a target of 8 gets 40 times nearer
- * a round; one that is hardly faster than its target takes many. */
+/* When it gets there depends on where the target is by then: a missile of 300 m/s at a target of 8 gets 40 times
+ * nearer a round; one that is hardly faster than its target takes many. */
 static bool solve(CastRound *round, const Cast *cast)
 {
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
@@ -178,14 +178,17 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
         if (!scenario_find(&group, &member, s, ids, shot->from)) return STATUS_BAD_VALUE;
         round->shooter = first[group] + member;
         if (*shot->at && scenario_find(&group, &member, s, ids, shot->at)) round->target = first[group] + member;
-        if (!solve(round, cast) || (!shot->entity && cast->entity[round->shooter].carriage == CARRIAGE_LAND && !beyond_barrel(round, shot))) {
+        const bool gun = !shot->entity && cast->entity[round->shooter].carriage == CARRIAGE_LAND;
+        if (!solve(round, cast) || (gun && !beyond_barrel(round, shot))) {
             double line[3];
             v3_sub(line, round->impact_enu, round->launch_enu);
             log_error("scenario: %s:%d: shots: what is fired at %g s does not get there: %.0f m; see launch_mps, boost_mps, "
                       "drag_mps2", s->path, shot->line, round->fire_s, v3_length(line));
             return STATUS_BAD_VALUE;
         }
-        round->result = *shot->hit == 'e' ? dis_result_entity_impact : *shot->hit == 'g' ? dis_result_ground_impact : dis_result_none;
+        round->result = *shot->hit == 'e'   ? dis_result_entity_impact
+                        : *shot->hit == 'g' ? dis_result_ground_impact
+                                            : dis_result_none;
         if (*shot->hit == 'e') damage(cast, round);
         else round->target = -1;
     }

@@ -1,7 +1,8 @@
 /* entities/route.h: a smooth way through points: position and its derivatives by the distance along it.
  *
- * A cubic spline through the points (chord length its parameter, natural at the ends or closed), then sampled evenly by
- * arc length and held as a uniform cubic B-spline: twice differentiable, and as quick far along as at the beginning. */
+ * A cubic spline through the points (chord length its parameter, natural at the ends or closed), then sampled evenly
+ * by arc length and held as a uniform cubic B-spline: twice differentiable, and as quick far along as at the
+ * beginning. */
 #ifndef ENTITIES_ROUTE_H
 #define ENTITIES_ROUTE_H
 
@@ -20,8 +21,8 @@ typedef struct RoutePoint {
     double p[3], d[3], dd[3];   /* p by distance; |d_xy| = 1 within 1e-3 */
 } RoutePoint;
 
-/* point: x, y, z; at least 2 (loop: 3), neighbours at least 0.1 m apart in the plane. Distances are those of the plane.
- * The result passes the points within 1e-3 of the distance between them (tests/entities/test_route.c).
+/* point: x, y, z; at least 2 (loop: 3), neighbours at least 0.1 m apart in the plane. Distances are those of the
+ * plane. The result passes the points within 1e-3 of the distance between them (tests/entities/test_route.c).
  * STATUS_BAD_VALUE for fewer or nearer points, STATUS_NO_MEMORY. */
 Status route_create(Route *out, const double (*point)[3], int count, bool loop);
 void   route_destroy(Route *route);

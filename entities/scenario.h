@@ -1,5 +1,6 @@
-/* entities/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who shoots, and how it
- * is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key, etc/scenarios/README.md all.
+/* entities/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who shoots, and how
+ * it is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key,
+ * etc/scenarios/README.md all.
  *
  * A plain struct: what is absent has its default. exercise_cast.h makes entities of it, exercise.h sends them. */
 #ifndef ENTITIES_SCENARIO_H
@@ -66,8 +67,8 @@ typedef struct Scenario {
     ScenarioShot  *shot;  /* [shot_count] */
 } Scenario;
 
-/* Reads and checks a file: ranges, types, routes, names in shots. No side effects beyond the log. On failure one line is
- * logged with file, line, key, value, range; *out is then empty. The file itself is all that is opened. */
+/* Reads and checks a file: ranges, types, routes, names in shots. No side effects beyond the log. On failure one line
+ * is logged with file, line, key, value, range; *out is then empty. The file itself is all that is opened. */
 Status scenario_read(Scenario *out, const char *path);
 /* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is as it was. */
 Status scenario_set(Scenario *scenario, const char *key, const char *value, const char *source);

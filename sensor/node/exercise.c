@@ -1,4 +1,5 @@
-/* sensor/node/exercise.c: the simulator's datagrams to a file, to the network by the clock, or one by one to a folder. */
+/* sensor/node/exercise.c: the simulator's datagrams to a file, to the network by the clock, or one by one to a
+ * folder. */
 #include "sensor/node/exercise.h"
 
 #include "dis/recorder.h"
@@ -238,8 +239,8 @@ static void ask_to_stop(int number)
     stop_asked = 1;
 }
 
-/* The second signal ends the program the hard way. SIGINT counts even where it was ignored: so shells start what runs in
- * the background of a script. nohup's SIGHUP stays ignored. */
+/* The second signal ends the program the hard way. SIGINT counts even where it was ignored: so shells start what runs
+ * in the background of a script. nohup's SIGHUP stays ignored. */
 static void catch_signals(void)
 {
     struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND}, before;

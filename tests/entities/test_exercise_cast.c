@@ -1,5 +1,5 @@
-/* Where everybody is: routes driven at their speed, velocity and attitude against differences and the ground's own slope,
- * banked turns, formations, shots that arrive; the ground of the plane against GeographicLib. */
+/* Where everybody is: routes driven at their speed, velocity and attitude against differences and the ground's own
+ * slope, banked turns, formations, shots that arrive; the ground of the plane against GeographicLib. */
 #include "tests/check.h"
 
 #include "entities/exercise_cast.h"
@@ -50,7 +50,8 @@ static void level_ground(void **state)
     }
 }
 
-/* Straight at 8 m/s on level ground at the equator: x = 8 t in the plane, within what a line on the Earth bends off it. */
+/* Straight at 8 m/s on level ground at the equator: x = 8 t in the plane, within what a line on the Earth bends off
+ * it. */
 static void straight_at_its_speed(void **state)
 {
     (void)state;
@@ -114,8 +115,8 @@ static void circle(void **state)
     release(cast);
 }
 
-/* Over swells: velocity is the derivative, by a five-point difference of another width; the hull stands on the ground's
- * own normal, its nose along the way. */
+/* Over swells: velocity is the derivative, by a five-point difference of another width; the hull stands on the
+ * ground's own normal, its nose along the way. */
 static void derivatives_and_attitudes(void **state)
 {
     (void)state;
@@ -135,8 +136,8 @@ static void derivatives_and_attitudes(void **state)
                 v_enu[c] = (p[0].p_enu[c] - 8 * p[1].p_enu[c] + 8 * p[2].p_enu[c] - p[3].p_enu[c]) / (12 * h);
             m3_mul_v3(v_ecef, cast->ground.frame.r_ecef_from_enu, v_enu);
             cast_kinematics(&k, cast, i, t);
-            /* the spline's third derivative jumps where pieces meet, by some 5 m/s3: both differences feel it, the wide
-             * one by h^2 / 12 of it */
+            /* the spline's third derivative jumps where pieces meet, by some 5 m/s3: both differences feel it, the
+             * wide one by h^2 / 12 of it */
             for (int c = 0; c < 3; c++) CHECK_NEAR(k.v_mps[c], v_ecef[c], 7e-4);
             m3_tmul_v3(v_body, at.r_enu_from_body, v_enu);
             CHECK_NEAR(atan2(hypot(v_body[1], v_body[2]), v_body[0]), 0, i < 6 ? 1e-3 : 0.2); /* a man stays upright */

@@ -1,5 +1,5 @@
-/* Routes: the spline passes its points, lies on a line and a circle whose answers are known, goes by arc length; and its
- * derivatives are those that differences give. */
+/* Routes: the spline passes its points, lies on a line and a circle whose answers are known, goes by arc length; and
+ * its derivatives are those that differences give. */
 #include "tests/check.h"
 
 #include "entities/route.h"
