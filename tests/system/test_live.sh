@@ -6,7 +6,7 @@
 
 # ---- three nodes on one exercise: by multicast on the loopback interface, else one by unicast ------------------
 group=239.71.7.$((1 + $$ % 250))
-few=(--no-png --bands lwir --set publish.files=false)
+few=(--no-png --bands lwir --set publish.files=false --size 64x48)
 free_port
 nodes=(missile watch chosen)
 node missile --address $group --interface lo --port $port --host munition --rate 10 --record "$tmp/missile.pcapng" \
@@ -14,7 +14,7 @@ node missile --address $group --interface lo --port $port --host munition --rate
 if heard_by missile 'listening on' 10; then
     node watch --address $group --interface lo --port $port --rate 5 --record "$tmp/watch.pcapng" --frames 30 --for 60 \
         --set publish.dis=truth --set node.application=2 --set sensor.bands=lwir,radar --set publish.files=false --no-png
-    node chosen --address $group --interface lo --port $port --host 1:3001:41 --rate 4 --record "$tmp/chosen.pcapng" \
+    node chosen --address $group --interface lo --port $port --host 1:3001:41 --size 64x48 --rate 5 --record "$tmp/chosen.pcapng" \
         --frames 20 --for 60 --no-png --bands optical,lwir --set node.application=3
     heard_by watch 'listening on' 10; heard_by chosen 'listening on' 10
     sender demo --send $group:$port --interface lo
@@ -70,7 +70,7 @@ replay "$tmp/missile.pcapng" "$tmp/other" --causal --port 0 --host munition --ra
 check "another seed: other bits" [ -z "$(comm -12 <(numbered "$tmp/missile" | sort) <(numbered "$tmp/other" | sort))" ]
 
 if [ ${#nodes[@]} = 3 ]; then
-    again chosen --host 1:3001:41 --rate 4 --no-png --bands optical,lwir --set node.application=3
+    again chosen --host 1:3001:41 --size 64x48 --rate 5 --no-png --bands optical,lwir --set node.application=3
     check "chosen: a picture a frame and band" [ "$(frames "$tmp/chosen" lwir)$(frames "$tmp/chosen" optical)" = 2020 ]
     again watch --rate 5 --set node.application=2 --set sensor.bands=lwir,radar --set publish.files=false --no-png
     check "watch: nobody flies at first, so an observer" grep -q '"observer"' "$tmp/watch/run.json"
