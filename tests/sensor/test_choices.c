@@ -35,6 +35,8 @@ static void the_exercise_heard_most_is_taken(void **state)
     config.exercise.exercise = -1;
     log.count                = 1;
     assert_int_equal(choose_exercise(&choices, &log, &config), -1); /* there is but one: nothing to choose */
+    config.causal = true;
+    assert_int_equal(choose_exercise(&choices, &log, &config), 7); /* and others may come */
     CHECK(choices.count == 0);
 }
 
@@ -126,12 +128,53 @@ static void the_longest_flight_that_hit_is_the_host(void **state)
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
 }
 
+/* What has been heard so far: 20 has burst, 21 flies since 5 s, 22 was taken away, 23 fell silent 13 s ago, 24 has just
+ * been seen for the first time. */
+static void a_causal_host_is_one_that_is_still_there(void **state)
+{
+    (void)state;
+    static TrackPoint points[6][4];
+    Track  tracks[6] = {track(10, 1, 1, points[0], 4, 0, 30), track(20, 2, 2, points[1], 4, 1, 20), track(21, 2, 2, points[2], 4, 5, 29),
+                        track(22, 2, 2, points[3], 4, 2, 29), track(23, 2, 2, points[4], 4, 0, 17), track(24, 2, 2, points[5], 1, 30, 30)};
+    points[3][3].deactivated = true;
+    Shot     shots[2] = {{.munition = {1, 1, 20}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 1, .detonation_s = 20},
+                         {.munition = {1, 1, 21}, .target = {1, 1, 10}, .fire_s = 5, .detonation_s = NAN}};
+    Survey   survey = {.track_count = 6, .track = tracks, .shot_count = 2, .shot = shots, .first_s = 0, .last_s = 30};
+    Config   config = config_default();
+    Choices  choices = {0};
+    HostPlan plan;
+    log_set_sink(check_listen, NULL);
+    config.causal = true;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 21 && plan.aim.entity == 10 && plan.munition && !plan.any_munition);
+    tracks[2] = tracks[1]; /* 21 as ended as 20 is: the one seen once */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 24 && dis_entity_id_is_none(plan.aim));
+    CHECK(says(&choices, "once that is heard"));
+    survey.track_count = 5;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.any_munition && says(&choices, "flies here now"));
+
+    strcpy(config.exercise.host, "1:1:99"); /* may come */
+    strcpy(config.exercise.aim, "9:9:9");
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 99 && plan.aim.entity == 9 && says(&choices, "1:1:99, not heard so far"));
+    strcpy(config.exercise.host, "munition");
+    config.exercise.aim[0] = 0;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && dis_entity_id_is_none(plan.aim));
+    config.causal = false; /* a whole log is chosen from, not waited for */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+    CHECK(strstr(check_said, "--causal"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_exercise_heard_most_is_taken),
         cmocka_unit_test(the_time_of_day_comes_from_the_best_that_is_known),
         cmocka_unit_test(the_longest_flight_that_hit_is_the_host),
+        cmocka_unit_test(a_causal_host_is_one_that_is_still_there),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -104,6 +104,29 @@ static void ranges_of_several_keys_are_checked(void **state)
     assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
 }
 
+static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
+{
+    (void)state;
+    static const char *const same[][2] = {{"network.address", "239.1.2.3"}, {"network.ttl", "3"}, {"publish.dis", "truth"},
+                                          {"publish.files", "false"}, {"record.path", "a.pcapng"}, {"exercise.port", "4000"},
+                                          {"exercise.to_s", "12"}},
+                             *const other[][2] = {{"seed", "2"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
+    static char plain[16384], text[16384];
+    Config      config = config_default();
+    config_text(plain, sizeof plain, &config);
+    for (size_t i = 0; i < sizeof same / sizeof same[0]; i++) {
+        assert_int_equal(config_set(&config, same[i][0], same[i][1], "test"), STATUS_OK);
+        config_text(text, sizeof text, &config);
+        if (strcmp(text, plain) != 0) fail_msg("%s changes the text", same[i][0]);
+    }
+    for (size_t i = 0; i < sizeof other / sizeof other[0]; i++) {
+        config = config_default();
+        assert_int_equal(config_set(&config, other[i][0], other[i][1], "test"), STATUS_OK);
+        config_text(text, sizeof text, &config);
+        if (strcmp(text, plain) == 0) fail_msg("%s does not", other[i][0]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -112,6 +135,7 @@ int main(void)
         cmocka_unit_test(the_canonical_text_names_every_change),
         cmocka_unit_test(what_was_given_is_known),
         cmocka_unit_test(ranges_of_several_keys_are_checked),
+        cmocka_unit_test(where_it_comes_from_and_goes_to_is_not_hashed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
