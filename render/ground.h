@@ -50,8 +50,10 @@ double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu
 void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
                        const double *const d_enu[3], const double *far_m);
 
-/* The same, to the bit, in a sixth to two thirds of the time for rays that keep together: those of a tile from one eye,
- * or from its hits to the sun (tests/render/test_ground_together.c). No slower for others. */
+/* The same, to the bit (tests/render/test_ground_together.c), for rays that keep together: those of a tile from one eye,
+ * or from its hits to the sun; others are given to ground_first_hits. Over 12000 x 16000 posts of 1 m in tiles of
+ * 1024: eye rays 1.5 to 3.8 times faster, sun rays 1.7 to 2.3 (15 degrees) and 3.4 to 4.0 (35, 60 degrees) times; blocks
+ * of 16 eye rays 1.2 times. Rays that see only sky are a tenth slower. */
 void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *ground, int count,
                                 const double *const o_enu[3], const double *const d_enu[3], const double *far_m);
 
