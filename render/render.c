@@ -463,6 +463,7 @@ static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
     make_rays(&s->rays, block, &job->request->view);
     s->hits.count = block->pixels;
     s->veil.any   = false;
+    s->out        = s->radiance[0];
     for (int p = 0; p < block->pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
         s->cosine3[p]      = pixel_cosine3(&job->request->view, block->x[p], block->y[p]);
