@@ -452,7 +452,10 @@ Status atmosphere_open(Atmosphere **out, const char *model)
         return STATUS_BAD_VALUE;
     }
     Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);
-    if (!atmosphere) return STATUS_NO_MEMORY;
+    if (!atmosphere) {
+        log_error("atmosphere: out of memory for model %s", model);
+        return STATUS_NO_MEMORY;
+    }
     Status status = read_sun_top(atmosphere->sun_top_w_m2);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         double low_m, high_m;
