@@ -64,7 +64,7 @@ static const Setting keys[] = {
     {"publish.dis", SETTING_TEXT, AT(publish.dis), 0, 0, "off|sensor|truth", "", "a Data PDU a frame and band: nothing; what a seeker could measure; with ids and ranges"},
     {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "", "pictures into files; truth.jsonl and run.json are written in any case"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "display pictures beside the EXR ones"},
-    {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "run: all that is heard, into this pcapng file; empty: none"},
+    {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "pcapng file for all that `run` hears; empty: none"},
     {"weather.atmosphere", SETTING_TEXT, AT(weather.atmosphere), 0, 0, NULL, "", "us1976, midlat_summer, or another of etc/atmosphere"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K", "at the ground; unset: the atmosphere's own"},
