@@ -199,6 +199,29 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
 }
 
+/* Entities by chunks, each by whoever is free: they know nothing of each other. */
+typedef struct Chunks {
+    Snapshot          *snapshot;
+    const EntityTable *table;
+    const Ordered     *order;
+    double            *joint_value; /* [workers][most_nodes] */
+    int                most_nodes;
+} Chunks;
+
+static void finish_chunk(void *user, int worker, int chunk)
+{
+    const Chunks *all = user;
+    Snapshot     *snapshot = all->snapshot;
+    const int     first = chunk * block_count;
+    const int     end = snapshot->count - first < block_count ? snapshot->count : first + block_count;
+    reckon_chunk(snapshot->entity, all->table, all->order, first, end, snapshot->t_s);
+    for (int e = first; e < end; e++) {
+        SnapshotEntity *entity = snapshot->entity + e;
+        finish_entity(entity, snapshot->node + entity->first_node, all->joint_value + (size_t)worker * (size_t)all->most_nodes,
+                      all->table, all->table->slot + all->order[e].slot, snapshot->t_s);
+    }
+}
+
 /* What entities carry first, then what they and the shots have let go. */
 static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
 {
@@ -246,18 +269,15 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
         if (nodes > most_nodes) most_nodes = nodes;
     }
     snapshot.node = arena_alloc(arena, (size_t)snapshot.node_count + 1, sizeof *snapshot.node);
-    double *joint_value = arena_alloc(arena, (size_t)most_nodes, sizeof *joint_value);
+    Pool     *pool    = table->config.pool;
+    const int workers = pool ? pool_threads(pool) : 1, chunks = (snapshot.count + block_count - 1) / block_count;
+    double   *joint_value = arena_alloc(arena, (size_t)workers, (size_t)most_nodes * sizeof *joint_value);
     if (!snapshot.node || !joint_value) return STATUS_NO_MEMORY;
 
-    for (int first = 0; first < snapshot.count; first += block_count) {
-        const int end = snapshot.count - first < block_count ? snapshot.count : first + block_count;
-        reckon_chunk(snapshot.entity, table, order, first, end, t_s);
-        for (int e = first; e < end; e++) {
-            SnapshotEntity *entity = snapshot.entity + e;
-            NodePose *pose = snapshot.node + entity->first_node;
-            finish_entity(entity, pose, joint_value, table, table->slot + order[e].slot, t_s);
-        }
-    }
+    Chunks all = {&snapshot, table, order, joint_value, most_nodes};
+    if (pool) pool_run(pool, chunks, finish_chunk, &all);
+    else
+        for (int chunk = 0; chunk < chunks; chunk++) finish_chunk(&all, 0, chunk);
     const Status status = add_puffs(&snapshot, table, order, arena);
     if (status == STATUS_OK) *out = snapshot;
     return status;

@@ -217,6 +217,7 @@ static Status open_session(Session *s)
     EntityTableConfig    table  = entity_table_default_config();
     char                 path[sizeof s->out + 16];
 
+    table.pool                  = shared->pool;
     table.capacity              = shared->config->entities.capacity;
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;

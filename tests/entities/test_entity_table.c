@@ -340,13 +340,14 @@ static void origin_is_the_base(void **state)
 /* ---- snapshots ---------------------------------------------------------------------------- */
 
 /* 700 entities of every algorithm, in an order that is none: sorted, each where dead_reckon alone puts it, to the
- * bit, and the same twice. */
-static void snapshot_is_sorted_and_exact(void **state)
+ * bit, and the same twice. pool: who helps; *poses: the caller's to free. */
+static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
 {
-    (void)state;
     enum { many = 700 };
     static Kinematics want[many];
-    Fixture f = fixture_open(NULL);
+    EntityTableConfig config = entity_table_default_config();
+    config.pool = pool;
+    Fixture f = fixture_open(&config);
     for (int n = 0; n < many; n++) {
         const int i = (n * 271) % many; /* 271 and 700 share no factor */
         DisEntityState pdu = report(0, (DisEntityType){9, 0, 0, 0, 0, 0, 0});
@@ -390,8 +391,26 @@ static void snapshot_is_sorted_and_exact(void **state)
     CHECK(memcmp(again.entity, f.snapshot.entity, sizeof *again.entity * many) == 0);
     CHECK(memcmp(again.node, f.snapshot.node, sizeof *again.node * (size_t)nodes) == 0);
     CHECK(entity_table_snapshot(&again, f.table, NAN, other_arena) == STATUS_BAD_VALUE && again.count == many);
+    *poses = malloc((size_t)nodes * sizeof **poses);
+    CHECK(*poses);
+    memcpy(*poses, f.snapshot.node, (size_t)nodes * sizeof **poses);
     arena_destroy(other_arena);
     fixture_close(&f);
+    return (size_t)nodes;
+}
+
+static void snapshot_is_sorted_and_exact(void **state)
+{
+    (void)state;
+    NodePose *alone, *helped;
+    Pool     *pool;
+    CHECK(pool_create(&pool, 3) == STATUS_OK);
+    const size_t nodes = check_sorted_and_exact(&alone, NULL);
+    CHECK(check_sorted_and_exact(&helped, pool) == nodes);
+    CHECK(memcmp(alone, helped, nodes * sizeof *alone) == 0);
+    free(alone);
+    free(helped);
+    pool_destroy(pool);
 }
 
 static void an_empty_table_gives_an_empty_snapshot(void **state)
