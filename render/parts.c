@@ -285,8 +285,9 @@ static void include_box(PosedEntity *entity, const NodeMesh *mesh, const NodePos
     for (int a = 0; a < 3; a++) {
         double half = 0;
         for (int c = 0; c < 3; c++) half += fabs(pose->r_body_from_node[3 * a + c]) * mesh->half[c];
-        entity->box_low[a]  = fmin(entity->box_low[a], pose->p_body[a] + centre[a] - half);
-        entity->box_high[a] = fmax(entity->box_high[a], pose->p_body[a] + centre[a] + half);
+        const double low = pose->p_body[a] + centre[a] - half, high = pose->p_body[a] + centre[a] + half;
+        entity->box_low[a]  = low < entity->box_low[a] ? low : entity->box_low[a];
+        entity->box_high[a] = high > entity->box_high[a] ? high : entity->box_high[a];
     }
 }
 
@@ -322,8 +323,9 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         m3_mul(node->r_enu_from_node, r_enu_from_body, p->r_body_from_node);
         mesh_centre(centre, node);
         for (int c = 0; c < 3; c++) {
-            low[c]  = fmin(low[c], centre[c] - node->mesh->radius_m);
-            high[c] = fmax(high[c], centre[c] + node->mesh->radius_m);
+            const double from = centre[c] - node->mesh->radius_m, to = centre[c] + node->mesh->radius_m;
+            low[c]  = from < low[c] ? from : low[c];
+            high[c] = to > high[c] ? to : high[c];
         }
         include_box(out, node->mesh, p);
         out->node_count++;
@@ -337,7 +339,8 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         double centre[3];
         mesh_centre(centre, &out->node[k]);
         v3_sub(centre, centre, out->centre_enu);
-        out->radius_m = fmax(out->radius_m, v3_length(centre) + out->node[k].mesh->radius_m);
+        const double reach_m = v3_length(centre) + out->node[k].mesh->radius_m;
+        out->radius_m = reach_m > out->radius_m ? reach_m : out->radius_m;
     }
     out->radius_m = out->radius_m * (1 + 1e-9) + 1e-6; /* the roundings above, at any distance from the origin */
 }

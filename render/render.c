@@ -671,6 +671,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,
                                    request->no_skip, arena);
+    if (status == STATUS_OK) status = visibility_look(visibility, &request->view, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;
     status = surface_light_prepare(&job.surface_light, air, &world->materials, arena);

@@ -10,6 +10,9 @@ struct Visibility {
     bool             no_skip;
     int              count;
     PosedEntity     *entity; /* [count], as in the snapshot */
+    int             *in_view; /* those that blocks within the image of visibility_look may see; NULL: not asked */
+    int              in_view_count;
+    double           in_view_columns, in_view_rows;
 };
 
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
@@ -45,18 +48,20 @@ int visibility_damage(const Visibility *v, int index) { return v->entity[index].
 
 /* ---- which entities a block may see ------------------------------------------------------- */
 
-int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden)
+/* Of among[count] (NULL: the first count), those whose bounding sphere meets the block's pyramid; all with no_skip. */
+static int spheres_in_block(int *list, const Visibility *v, const View *view, const int *among, int among_count,
+                            const double box_px[4], int hidden)
 {
     /* tangents of the block's four sides, and what turns an offset from a side into a distance */
-    const double left = (column0_px - 0.5 * view->width) / view->focal_px;
-    const double right = (column1_px - 0.5 * view->width) / view->focal_px;
-    const double top = (row0_px - 0.5 * view->height) / view->focal_px;
-    const double bottom = (row1_px - 0.5 * view->height) / view->focal_px;
+    const double left = (box_px[0] - 0.5 * view->width) / view->focal_px;
+    const double right = (box_px[2] - 0.5 * view->width) / view->focal_px;
+    const double top = (box_px[1] - 0.5 * view->height) / view->focal_px;
+    const double bottom = (box_px[3] - 0.5 * view->height) / view->focal_px;
     const double per_left = 1 / sqrt(1 + left * left), per_right = 1 / sqrt(1 + right * right);
     const double per_top = 1 / sqrt(1 + top * top), per_bottom = 1 / sqrt(1 + bottom * bottom);
     int          count = 0;
-    for (int k = 0; k < v->count; k++) {
+    for (int i = 0; i < among_count; i++) {
+        const int k = among ? among[i] : i;
         if (k == hidden || v->entity[k].model < 0) continue;
         if (!v->no_skip) {
             double from_eye[3], c_cam[3];
@@ -72,6 +77,27 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
         list[count++] = k;
     }
     return count;
+}
+
+Status visibility_look(Visibility *v, const View *view, Arena *arena)
+{
+    const double image_px[4] = {0, 0, view->width, view->height};
+    v->in_view = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->in_view);
+    if (!v->in_view) return STATUS_NO_MEMORY;
+    v->in_view_count   = spheres_in_block(v->in_view, v, view, NULL, v->count, image_px, -1);
+    v->in_view_columns = view->width;
+    v->in_view_rows    = view->height;
+    return STATUS_OK;
+}
+
+int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
+                              double column1_px, double row1_px, int hidden)
+{
+    /* what lies beyond a side of the image is met by no ray of a block within the image */
+    const bool within = v->in_view && column0_px >= 0 && row0_px >= 0 && column1_px <= v->in_view_columns &&
+                        row1_px <= v->in_view_rows;
+    const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
+    return spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px, hidden);
 }
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag

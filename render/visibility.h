@@ -40,6 +40,11 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
 /* How damaged an entity is shown: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
 
+/* Once a frame, before visibility_block_entities is asked about blocks of this view by threads: who is in the image at
+ * all. Without, or for blocks beyond the image, everybody is asked: longer lists, by some that no ray of the image
+ * meets. */
+Status visibility_look(Visibility *v, const View *view, Arena *arena);
+
 /* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
  * with no_skip). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
