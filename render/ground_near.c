@@ -95,6 +95,16 @@ static inline void leave(Rays4 *r)
     r->j    = both(r->on, r->j);
 }
 
+/* Two posts each, from four places. One at a time is faster than the instruction that gathers. */
+static inline __m128i pairs(const uint16_t *post, __m128i at)
+{
+    int32_t  index[4];
+    uint32_t pair[4];
+    _mm_storeu_si128((__m128i *)index, at);
+    for (int l = 0; l < 4; l++) memcpy(&pair[l], post + index[l], sizeof pair[l]);
+    return _mm_set_epi32((int)pair[3], (int)pair[2], (int)pair[1], (int)pair[0]);
+}
+
 /* ground_cell_hit for four, up to which of the three places is under the surface; and on to the next cell. */
 static inline void cell(Rays4 *r, const GroundLevel *g)
 {
@@ -103,8 +113,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
     const Four    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
     const Four    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
     const __m128i at = element(i, j, g->nx);
-    const __m128i south = _mm_i32gather_epi32((const int *)(const void *)g->post, at, 2);
-    const __m128i north = _mm_i32gather_epi32((const int *)(const void *)(g->post + g->nx), at, 2);
+    const __m128i south = pairs(g->post, at), north = pairs(g->post + g->nx, at);
     const Four    sw = _mm256_cvtepi32_pd(_mm_and_si128(south, _mm_set1_epi32(0xffff)));
     const Four    se = _mm256_cvtepi32_pd(_mm_srli_epi32(south, 16));
     const Four    nw = _mm256_cvtepi32_pd(_mm_and_si128(north, _mm_set1_epi32(0xffff)));
@@ -307,12 +316,14 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
     }
     for (int step = 0; step < patience && any(r); step++) {
         if (k == 0) {
-            for (int h = 0; h < quarters; h++) cell(&r[h], g);
+            for (int h = 0; h < quarters; h++)
+                if (bits(r[h].on)) cell(&r[h], g);
             if (++tried < (steep ? 1 : cells_tried)) continue;
             k = steep && g->top >= elevation_rise_level ? elevation_rise_level : 1;
         } else {
             unsigned blocked = 0;
-            for (int h = 0; h < quarters; h++) blocked |= bits(node(&r[h], g, k, steep)) << 4 * h;
+            for (int h = 0; h < quarters; h++)
+                if (bits(r[h].on)) blocked |= bits(node(&r[h], g, k, steep)) << 4 * h;
             unsigned on = 0;
             for (int h = 0; h < quarters; h++) on |= bits(r[h].on) << 4 * h;
             if (blocked == 0) {
@@ -325,7 +336,8 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
             }
         }
         tried = waited = run = 0;
-        for (int h = 0; h < quarters; h++) enter(&r[h], g, k);
+        for (int h = 0; h < quarters; h++)
+            if (bits(r[h].on)) enter(&r[h], g, k);
     }
 }
 
