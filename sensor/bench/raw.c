@@ -21,7 +21,7 @@ struct RawRays {
     int              blocks, count, block_of_tile;
     int             *first;      /* [blocks + 1] */
     double          *o[3], *d[3], *far_m, *range_m; /* [count] */
-    uint8_t         *dark;       /* [count] sun rays that a vehicle stops: the ground is not asked, range_m NAN */
+    uint8_t         *dark;       /* [count] rays that a vehicle stops: range_m is not the ground's */
     PosedEntity     *entity;     /* in the frame's arena */
     int              entities;
     Near            *near;       /* by block */
@@ -234,20 +234,22 @@ static Part part_of(const RawRays *raw, int b)
                   .count = raw->first[b + 1] - first};
 }
 
-/* The ground, then who stands before it. */
+/* The vehicles, then the ground before them. */
 static void trace_eyes(RawRays *raw, int b)
 {
     const Part p = part_of(raw, b);
+    uint8_t   *dark = raw->dark + p.first;
     double     limit_m[hits_capacity];
     GroundHit  ground_hit[hits_capacity];
     PartHit    hit[hits_capacity];
-    ground_first_hits_together(p.range_m, ground_hit, &raw->ground, p.count, p.o, p.d, p.far_m);
-    memcpy(limit_m, p.range_m, (size_t)p.count * sizeof *limit_m);
+    memcpy(limit_m, p.far_m, (size_t)p.count * sizeof *limit_m);
     for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
         const Near *near = &raw->near[k];
         parts_first_hits(limit_m, hit, &raw->entity[near->entity], p.o, p.d, limit_m, raw->near_ray + near->first, near->count,
                          false);
     }
+    ground_first_hits_together(p.range_m, ground_hit, &raw->ground, p.count, p.o, p.d, limit_m);
+    for (int i = 0; i < p.count; i++) dark[i] = limit_m[i] < INFINITY;
     bench_keep(limit_m);
 }
 

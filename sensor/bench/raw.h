@@ -12,7 +12,7 @@ Status raw_rays_create(RawRays **out, const BenchFrame *frame);
 void   raw_rays_destroy(RawRays *raw);
 int    raw_rays_count(const RawRays *raw);
 /* A frame's own tracers, the ground's of tiles and the parts' of packets, with its tiles, order and limits: of eye rays the
- * ground and then the parts before it, of sun rays the parts and then the ground for what they leave lit. Nothing else.
+ * parts and then the ground before them, of sun rays the parts and then the ground for what they leave lit. Nothing else.
  * user: a RawRays with a pool. */
 void   raw_trace(void *user);
 void   raw_use_pool(RawRays *raw, Pool *pool);
