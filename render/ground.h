@@ -57,6 +57,12 @@ void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, in
 void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *ground, int count,
                                 const double *const o_enu[3], const double *const d_enu[3], const double *far_m);
 
+/* Whether rays are known to meet no ground: all that begin in one box and end in another, or go on for good in a unit
+ * direction; boxes by low and high corner. False says nothing. Of rays from 0.5 m over gentle ground and up it knows most
+ * (tests/render/test_ground_clear.c). */
+bool ground_is_clear(const Ground *ground, const double from[2][3], const double to[2][3]);
+bool ground_is_clear_towards(const Ground *ground, const double from[2][3], const double d_enu[3]);
+
 /* Upward unit normal of the triangle that was hit, and the one interpolated between central differences at
  * its posts, for shading. */
 void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,

@@ -21,7 +21,7 @@ static const double sure_posts = 1e-3, sure_cells = 1e5, sure_height_posts = 1e7
 typedef struct Rays4 {
     Four u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
     Four t_m, i, j, on;             /* on: mask of those still going; i, j: cell or node */
-    Four gone;                      /* mask: above everything, for good */
+    Four gone;                      /* mask: above everything for good, or as far as was asked */
     __m256i u_way, v_way;           /* bits before the rise that is theirs, in an ElevationRise */
     Four above, sure;               /* mask: known to be `sure` posts over the ground where they are */
     Four met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three places */
@@ -287,12 +287,12 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     r->sure = pick(tame, set(sure_posts), set(INFINITY));
     r->u_way = bits_16(less(r->du, set(0)));
     r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(less(r->dv, set(0))));
-    /* rising, it leaves everything behind at `above`, if it is near enough to tell */
+    /* rising, it leaves everything behind at `above`, if it is near enough to tell; and nobody asks beyond far_m */
     const Four rises = both(less(set(1e-12), r->dw), at_most(unless(set(-0.0), r->w0), set(1e7)));
-    r->stop_m = pick(rises, (set(above) - r->w0) / r->dw, set(INFINITY));
+    r->stop_m = smaller(pick(rises, (set(above) - r->w0) / r->dw, set(INFINITY)), _mm256_loadu_pd(far_m + n));
     const Four from = _mm256_loadu_pd(from_m + n);
     r->t_m = pick(good, larger(r->first_m, from), from);
-    r->on  = both(good, both(less(r->t_m, r->last_m), less(r->t_m, _mm256_loadu_pd(far_m + n))));
+    r->on  = both(good, less(r->t_m, r->last_m));
     r->met = r->met_i = r->met_j = set(0);
     for (int p = 0; p < 3; p++) r->at[p] = r->clear[p] = set(0);
 }
@@ -363,6 +363,18 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
     }
 }
 
+/* Whether all of a group are known to be over the ground as far as they are asked about it: then they meet nothing. */
+static inline bool none_asked(double *range_m, const double *far_m, const double *from_m)
+{
+    Four none = set(0);
+    none = at_most(none, none);
+    for (int l = 0; l < 4 * quarters; l += 4)
+        none = both(none, at_most(_mm256_loadu_pd(far_m + l), _mm256_loadu_pd(from_m + l)));
+    if (bits(none) != 0xf) return false;
+    for (int l = 0; l < 4 * quarters; l++) range_m[l] = INFINITY;
+    return true;
+}
+
 int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *ground, int count,
                      const double *const o[3], const double *const d[3], const double *far_m, double *from_m,
                      int start_level)
@@ -380,6 +392,7 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
     for (int done = 0; done < count; done += group) {
         const int n = done + group <= count ? done : count - group; /* the last group has some once more */
         Rays4     r[quarters];
+        if (none_asked(range_m + n, far_m + n, from_m + n)) continue;
         for (int h = 0; h < quarters; h++) begin(&r[h], ground, level, o, d, far_m, from_m, above, n + 4 * h);
         walk(r, g, start_level, d[2][n] > steep_sine);
         for (int h = 0; h < quarters; h++) {

@@ -158,16 +158,51 @@ double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
 
 /* Cells are uniform in 1/T, in which L is nearly an exponential of constant slope (so the relative error is
  * the same all over); each holds the cubic that has the exact value and derivative at both its ends. */
-enum { table_cells = 4096 };
+enum { table_cells = 4096, table_bins = 8192 };
 static const double table_low_k = 180, table_high_k = 1500;
 
 struct PlanckTable {
     double low_m, high_m;
     double u0, cells_per_u;
-    double knot[table_cells + 1];       /* radiance, falling: cell 0 is the hottest */
+    double knot[table_cells + 2];       /* radiance, falling: cell 0 is the hottest; and nothing below */
     double c[table_cells][4];           /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
     float  narrow[table_cells][4];      /* the same */
+    /* where to look for a radiance, by the leading bits of its double: all but even in its logarithm, as cells are */
+    int      bin_shift;
+    uint64_t first_bin;
+    uint16_t first_cell[table_bins];    /* none of the bin's radiances lies in a hotter one */
 };
+
+static uint64_t bits_of(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return bits;
+}
+
+static void index_knots(PlanckTable *table)
+{
+    const uint64_t lowest = bits_of(table->knot[table_cells]), highest = bits_of(table->knot[0]);
+    for (table->bin_shift = 40; (highest >> table->bin_shift) - (lowest >> table->bin_shift) >= table_bins;)
+        table->bin_shift++;
+    table->first_bin = lowest >> table->bin_shift;
+    const uint64_t bins = (highest >> table->bin_shift) - table->first_bin + 1;
+    int            cell = table_cells - 1;
+    for (uint64_t bin = 0; bin < bins; bin++) { /* from the coldest */
+        while (cell > 0 && bits_of(table->knot[cell]) < (table->first_bin + bin + 1) << table->bin_shift) cell--;
+        table->first_cell[bin] = (uint16_t)cell;
+    }
+}
+
+/* The cell of a radiance within the table: knot[cell] >= radiance >= knot[cell + 1]. */
+static inline int cell_of_radiance(const PlanckTable *table, double radiance_w_m2_sr)
+{
+    int cell = table->first_cell[(bits_of(radiance_w_m2_sr) >> table->bin_shift) - table->first_bin];
+    cell += table->knot[cell + 1] >= radiance_w_m2_sr; /* as a rule one of the next, and nobody can tell which */
+    cell += table->knot[cell + 1] >= radiance_w_m2_sr;
+    while (table->knot[cell + 1] >= radiance_w_m2_sr) cell++;
+    return cell < table_cells ? cell : table_cells - 1;
+}
 
 Status planck_table_create(PlanckTable **out, double low_m, double high_m)
 {
@@ -200,6 +235,8 @@ Status planck_table_create(PlanckTable **out, double low_m, double high_m)
         last_value = value;
         last_slope = slope;
     }
+    table->knot[table_cells + 1] = -INFINITY;
+    index_knots(table);
     *out = table;
     return STATUS_OK;
 }
@@ -244,19 +281,18 @@ void planck_table_radiance8(float radiance[8], const PlanckTable *table, const f
     }
 }
 
+static bool within_table(const PlanckTable *table, double radiance_w_m2_sr)
+{
+    return radiance_w_m2_sr <= table->knot[0] && radiance_w_m2_sr >= table->knot[table_cells];
+}
+
 double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr)
 {
-    if (!(radiance_w_m2_sr <= table->knot[0] && radiance_w_m2_sr >= table->knot[table_cells]))
-        return planck_band_inverse(table->low_m, table->high_m, radiance_w_m2_sr);
-    int low = 0, high = table_cells; /* knot[low] >= radiance >= knot[high] */
-    while (high - low > 1) {
-        const int middle = (low + high) / 2;
-        if (table->knot[middle] >= radiance_w_m2_sr) low = middle;
-        else high = middle;
-    }
+    if (!within_table(table, radiance_w_m2_sr)) return planck_band_inverse(table->low_m, table->high_m, radiance_w_m2_sr);
+    const int low = cell_of_radiance(table, radiance_w_m2_sr);
     /* the cubic bends so little within a cell that three Newton steps from the chord reach rounding */
     const double *c = table->c[low];
-    const double fall = table->knot[low] - table->knot[high];
+    const double fall = table->knot[low] - table->knot[low + 1];
     double t = fall > 0 ? (table->knot[low] - radiance_w_m2_sr) / fall : 0;
     for (int i = 0; i < 3; i++) {
         const double slope = c[1] + t * (2 * c[2] + 3 * t * c[3]);
@@ -264,4 +300,49 @@ double planck_table_temp(const PlanckTable *table, double radiance_w_m2_sr)
         t -= (c[0] + t * (c[1] + t * (c[2] + t * c[3])) - radiance_w_m2_sr) / slope;
     }
     return 1 / (table->u0 + (low + t) / table->cells_per_u);
+}
+
+/* planck_table_temp of four within the table, step by step. */
+static inline __m256d four_temps(const PlanckTable *table, __m256d radiance)
+{
+    double  of[4];
+    int     low[4];
+    __m256d top, next, row[4];
+    _mm256_storeu_pd(of, radiance);
+    for (int k = 0; k < 4; k++) {
+        low[k] = cell_of_radiance(table, of[k]);
+        row[k] = _mm256_loadu_pd(table->c[low[k]]);
+    }
+    const double *knot = table->knot;
+    top  = _mm256_setr_pd(knot[low[0]], knot[low[1]], knot[low[2]], knot[low[3]]);
+    next = _mm256_setr_pd(knot[low[0] + 1], knot[low[1] + 1], knot[low[2] + 1], knot[low[3] + 1]);
+    const __m256d a = _mm256_unpacklo_pd(row[0], row[1]), b = _mm256_unpackhi_pd(row[0], row[1]);
+    const __m256d c = _mm256_unpacklo_pd(row[2], row[3]), d = _mm256_unpackhi_pd(row[2], row[3]);
+    const __m256d c0 = _mm256_permute2f128_pd(a, c, 0x20), c1 = _mm256_permute2f128_pd(b, d, 0x20);
+    const __m256d c2 = _mm256_permute2f128_pd(a, c, 0x31), c3 = _mm256_permute2f128_pd(b, d, 0x31);
+    const __m256d zero = _mm256_setzero_pd(), two = _mm256_set1_pd(2), three = _mm256_set1_pd(3), fall = top - next;
+    __m256d       t = _mm256_and_pd((top - radiance) / fall, _mm256_cmp_pd(fall, zero, _CMP_GT_OQ));
+    for (int i = 0; i < 3; i++) {
+        const __m256d slope = c1 + t * (two * c2 + three * t * c3);
+        const __m256d step = (c0 + t * (c1 + t * (c2 + t * c3)) - radiance) / slope;
+        t -= _mm256_and_pd(step, _mm256_cmp_pd(slope, zero, _CMP_LT_OQ));
+    }
+    const __m256d cell = _mm256_cvtepi32_pd(_mm_loadu_si128((const __m128i *)low)) + t;
+    return _mm256_set1_pd(1) / (_mm256_set1_pd(table->u0) + cell / _mm256_set1_pd(table->cells_per_u));
+}
+
+void planck_table_temps(double *temp_k, const PlanckTable *table, const float *radiance_w_m2_sr, int count)
+{
+    const __m256d most = _mm256_set1_pd(table->knot[0]), least = _mm256_set1_pd(table->knot[table_cells]);
+    int           i = 0;
+    for (; i + 4 <= count; i += 4) {
+        const __m256d radiance = _mm256_cvtps_pd(_mm_loadu_ps(radiance_w_m2_sr + i));
+        const __m256d within = _mm256_and_pd(_mm256_cmp_pd(radiance, most, _CMP_LE_OQ),
+                                             _mm256_cmp_pd(radiance, least, _CMP_GE_OQ));
+        if (_mm256_movemask_pd(within) == 0xf)
+            _mm256_storeu_pd(temp_k + i, four_temps(table, radiance));
+        else
+            for (int k = i; k < i + 4; k++) temp_k[k] = planck_table_temp(table, (double)radiance_w_m2_sr[k]);
+    }
+    for (; i < count; i++) temp_k[i] = planck_table_temp(table, (double)radiance_w_m2_sr[i]);
 }

@@ -212,6 +212,38 @@ static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, in
     else ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
 }
 
+enum { clear_rays = 128 }; /* that are looked at together */
+
+static void grow_box(double box[2][3], const double p[3])
+{
+    for (int c = 0; c < 3; c++) {
+        box[0][c] = p[c] < box[0][c] ? p[c] : box[0][c];
+        box[1][c] = p[c] > box[1][c] ? p[c] : box[1][c];
+    }
+}
+
+/* Whether every ray meets an entity, and all of the ground lies below all of them until there. */
+static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int count, const double *const o[3],
+                              const double *const d[3], const double *until_m)
+{
+    for (int i = 0; i < count; i++)
+        if (!entity[i]) return false;
+    for (int first = 0; first < count; first += clear_rays) {
+        const int end = first + clear_rays < count ? first + clear_rays : count;
+        double    start[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, met[2][3];
+        memcpy(met, start, sizeof met);
+        for (int i = first; i < end; i++) {
+            const double p[3] = {o[0][i], o[1][i], o[2][i]}, way[3] = {d[0][i], d[1][i], d[2][i]};
+            double       at[3];
+            v3_add_scaled(at, p, until_m[i], way);
+            grow_box(start, p);
+            grow_box(met, at);
+        }
+        if (!ground_is_clear(&v->ground, met, start)) return false;
+    }
+    return true;
+}
+
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters)
 {
@@ -221,14 +253,13 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     GroundHit           ground_hit[hits_capacity];
     PartHit             part_hit[hits_capacity];
     double              limit_m[hits_capacity]; /* of what may still be nearer */
-    double              nearer_m[hits_capacity];
+    double              nearer_m[hits_capacity], *until_m = nearer_m;
     int                 order[hits_capacity], asked_ray[hits_capacity];
     uint8_t             ask[hits_capacity];
 
     hits->count   = count;
     hits->columns = rays->columns;
-    ground_hits(hits->range_m, ground_hit, v, count, o, d, rays->far_m);
-    for (int i = 0; i < count; i++) limit_m[i] = hits->range_m[i] < rays->far_m[i] ? hits->range_m[i] : rays->far_m[i];
+    memcpy(limit_m, rays->far_m, (size_t)count * sizeof *limit_m);
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
     const int asked_count = list_count < 0 ? v->count : list_count;
     uint64_t  asked = 0, drawable = 0;
@@ -250,9 +281,20 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         for (int n = 0; n < listed; n++) {
             const int i = asked_ray[n];
             if (!(nearer_m[i] < INFINITY)) continue;
-            hits->range_m[i] = limit_m[i] = nearer_m[i];
-            hits->entity[i]  = (uint32_t)index + 1;
+            limit_m[i]      = nearer_m[i];
+            hits->entity[i] = (uint32_t)index + 1;
         }
+    }
+    /* the ground comes first where it is as near: it is asked just past whom the ray met */
+    for (int i = 0; i < count; i++)
+        until_m[i] = v->no_skip ? rays->far_m[i] : hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
+    if (!v->no_skip && ground_lies_below(v, hits->entity, count, o, d, until_m))
+        for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
+    else ground_hits(hits->range_m, ground_hit, v, count, o, d, until_m);
+    for (int i = 0; i < count; i++) {
+        if (!hits->entity[i]) continue;
+        if (hits->range_m[i] <= limit_m[i]) hits->entity[i] = 0;
+        else hits->range_m[i] = limit_m[i];
     }
     counters->rays_ground += (uint64_t)count;
     counters->rays_parts += asked;
@@ -298,6 +340,24 @@ static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3],
     const double along = v3_dot(m, d);
     v3_add_scaled(across, m, -along, d);
     return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+/* ask: of sun rays from places close together, those that the ground might stop. */
+static void leave_out_clear(uint8_t *ask, const Visibility *v, int count, const double *const o[3], const uint8_t *dark,
+                            const double d_enu[3])
+{
+    for (int first = 0; first < count; first += clear_rays) {
+        const int end = first + clear_rays < count ? first + clear_rays : count;
+        double    box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        bool      any = false;
+        for (int i = first; i < end; i++) {
+            const double p[3] = {o[0][i], o[1][i], o[2][i]};
+            if (dark[i]) continue;
+            grow_box(box, p);
+            any = true;
+        }
+        memset(ask + first, any && !ground_is_clear_towards(&v->ground, box, d_enu), (size_t)(end - first));
+    }
 }
 
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
@@ -350,16 +410,18 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
 
     /* the ground is asked only for what the parts left lit */
-    int left = 0;
+    int left = 0, lit = 0;
+    if (!v->no_skip) leave_out_clear(ask, v, count, o, dark, d_enu);
     for (int i = 0; i < count; i++) {
         shadow[hit_of[i]] = dark[i];
-        if (dark[i] && !v->no_skip) continue;
+        lit += !dark[i] || v->no_skip;
+        if (!v->no_skip && (dark[i] || !ask[i])) continue;
         for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
         hit_of[left++] = hit_of[i];
     }
     ground_hits(range_m, NULL, v, left, o, d, far_m);
     for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
-    counters->rays_sun_ground += (uint64_t)left;
+    counters->rays_sun_ground += (uint64_t)lit;
 }
 
 /* ---- one entity alone --------------------------------------------------------------------- */

@@ -4,7 +4,7 @@
 
 const BenchSuite sensor_benches[] = {
     {.name = "speed", .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: the target that fills "
-     "the picture; $PITVIPER_DATA/models/brlcad/ktank.obj or the built-in tank",
+     "the picture; models/brlcad/ktank.obj of the reference data, else the built-in tank",
      .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone", .run = bench_speed},
 };
 const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;

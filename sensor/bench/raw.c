@@ -5,21 +5,29 @@
 
 #include <stdlib.h>
 
-enum { side_px = 32 }; /* of a frame's tiles at one sample a pixel */
+enum { side_px = 32, square_px = 4 }; /* of a frame's tiles at one sample a pixel; of rays that its tracers take together */
 
-/* Of each tile a block of eye rays and, behind it, one of sun rays; block k has the rays first[k] .. first[k + 1] - 1. */
+/* Rays of a block that come near one vehicle, in the order in which a frame hands them to its tracer. */
+typedef struct Near {
+    int entity, first, count; /* of near_ray */
+} Near;
+
+/* Of each tile a block of eye rays and, behind it, one of sun rays in squares of 4 x 4; block k has the rays first[k] ..
+ * first[k + 1] - 1. */
 struct RawRays {
     const Elevation *elevation;
     Pool            *pool;
     Ground           ground;
-    int              blocks, count;
+    int              blocks, count, block_of_tile;
     int             *first;      /* [blocks + 1] */
     double          *o[3], *d[3], *far_m, *range_m; /* [count] */
+    uint8_t         *dark;       /* [count] rays that a vehicle stops: range_m is not the ground's */
     PosedEntity     *entity;     /* in the frame's arena */
     int              entities;
-    int             *pair_ray, *pair_entity; /* rays that come near a vehicle, by block */
-    int             *first_pair; /* [blocks + 1] */
-    int              pairs;
+    Near            *near;       /* by block */
+    int              nears;
+    int             *first_near; /* [blocks + 1] */
+    int             *near_ray;   /* of the block */
 };
 
 static Status pose_all(RawRays *raw, const BenchFrame *f)
@@ -52,6 +60,16 @@ static void add_ray(RawRays *raw, const double o[3], const double d[3])
     raw->far_m[i] = INFINITY;
 }
 
+/* A tile's places in squares of 4 x 4, as visibility.c takes them. */
+static void in_squares(int order[side_px * side_px], int columns, int rows)
+{
+    int at = 0;
+    for (int y0 = 0; y0 < rows; y0 += square_px)
+        for (int x0 = 0; x0 < columns; x0 += square_px)
+            for (int y = y0; y < y0 + square_px && y < rows; y++)
+                for (int x = x0; x < x0 + square_px && x < columns; x++) order[at++] = y * columns + x;
+}
+
 static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const BenchFrame *f, const Visibility *v, int x0, int y0,
                      int *list)
 {
@@ -59,8 +77,10 @@ static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const BenchFrame *f, 
     const View *view = &f->request.view;
     const int   x1 = x0 + side_px < view->width ? x0 + side_px : view->width;
     const int   y1 = y0 + side_px < view->height ? y0 + side_px : view->height;
+    int         order[side_px * side_px];
     VisibilityCounters counters = {0};
-    rays->count = 0;
+    rays->count   = 0;
+    rays->columns = x1 - x0;
     for (int y = y0; y < y1; y++)
         for (int x = x0; x < x1; x++) {
             double d_enu[3];
@@ -73,14 +93,16 @@ static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const BenchFrame *f, 
             add_ray(raw, view->p_enu, d_enu);
         }
     raw->first[++raw->blocks] = raw->count;
-    if (!(f->request.bands & (1u << BAND_OPTICAL | 1u << BAND_MWIR))) return;
+    if (raw->block_of_tile < 2) return;
     const int listed = visibility_block_entities(list, v, view, x0, y0, x1, y1, -1);
     visibility_first_hit(hits, v, rays, list, listed, -1, &counters);
-    for (int i = 0; i < hits->count; i++) {
+    in_squares(order, x1 - x0, y1 - y0);
+    for (int k = 0; k < hits->count; k++) {
+        const int    i = order[k];
         const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
         double       start[3];
         if (!(hits->range_m[i] < INFINITY) || !(v3_dot(n, f->air.sun_d_enu) > 0)) continue;
-        for (int k = 0; k < 3; k++) start[k] = hits->p_enu[k][i] + offset_m * n[k];
+        for (int c = 0; c < 3; c++) start[c] = hits->p_enu[c][i] + offset_m * n[c];
         add_ray(raw, start, f->air.sun_d_enu);
     }
     raw->first[++raw->blocks] = raw->count;
@@ -95,7 +117,8 @@ static Status make_room(RawRays *raw, int rays, int blocks)
     }
     ok = (raw->far_m = malloc((size_t)rays * sizeof(double))) && ok;
     ok = (raw->range_m = malloc((size_t)rays * sizeof(double))) && ok;
-    ok = (raw->first_pair = calloc((size_t)blocks + 1, sizeof *raw->first_pair)) && ok;
+    ok = (raw->dark = calloc((size_t)rays, sizeof *raw->dark)) && ok;
+    ok = (raw->first_near = calloc((size_t)blocks + 1, sizeof *raw->first_near)) && ok;
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
@@ -109,26 +132,36 @@ static bool comes_near(const RawRays *raw, int i, const PosedEntity *e)
     return e->model >= 0 && along > -e->radius_m && v3_dot(across, across) < e->radius_m * e->radius_m;
 }
 
-static Status pair_up(RawRays *raw)
+/* Counts in a first pass, notes in a second. */
+static Status pair_up(RawRays *raw, const View *view)
 {
+    int order[side_px * side_px], listed = 0;
     for (int pass = 0; pass < 2; pass++) {
-        raw->pairs = 0;
+        raw->nears = listed = 0;
         for (int b = 0; b < raw->blocks; b++) {
-            for (int i = raw->first[b]; i < raw->first[b + 1]; i++)
-                for (int k = 0; k < raw->entities; k++) {
-                    if (!comes_near(raw, i, &raw->entity[k])) continue;
-                    if (pass) {
-                        raw->pair_ray[raw->pairs]    = i;
-                        raw->pair_entity[raw->pairs] = k;
-                    }
-                    raw->pairs++;
+            const int  count = raw->first[b + 1] - raw->first[b], tile = b / raw->block_of_tile;
+            const int  across = (view->width + side_px - 1) / side_px, left_px = view->width - tile % across * side_px;
+            const int  columns = left_px < side_px ? left_px : side_px;
+            const bool eye = b % raw->block_of_tile == 0;
+            if (eye) in_squares(order, columns, count / columns);
+            for (int e = 0; e < raw->entities; e++) {
+                const int before = listed;
+                for (int k = 0; k < count; k++) {
+                    const int i = eye ? order[k] : k;
+                    if (!comes_near(raw, raw->first[b] + i, &raw->entity[e])) continue;
+                    if (pass) raw->near_ray[listed] = i;
+                    listed++;
                 }
-            raw->first_pair[b + 1] = raw->pairs;
+                if (listed == before) continue;
+                if (pass) raw->near[raw->nears] = (Near){e, before, listed - before};
+                raw->nears++;
+            }
+            raw->first_near[b + 1] = raw->nears;
         }
         if (pass) break;
-        raw->pair_ray    = malloc(((size_t)raw->pairs + 1) * sizeof *raw->pair_ray);
-        raw->pair_entity = malloc(((size_t)raw->pairs + 1) * sizeof *raw->pair_entity);
-        if (!raw->pair_ray || !raw->pair_entity) return STATUS_NO_MEMORY;
+        raw->near     = malloc(((size_t)raw->nears + 1) * sizeof *raw->near);
+        raw->near_ray = malloc(((size_t)listed + 1) * sizeof *raw->near_ray);
+        if (!raw->near || !raw->near_ray) return STATUS_NO_MEMORY;
     }
     return STATUS_OK;
 }
@@ -151,12 +184,13 @@ Status raw_rays_create(RawRays **out, const BenchFrame *f)
     if (status == STATUS_OK) status = pose_all(raw, f);
     if (status != STATUS_OK) goto done;
 
+    raw->block_of_tile = f->request.bands & (1u << BAND_OPTICAL | 1u << BAND_MWIR) ? 2 : 1;
     raw->elevation = &f->scene->landscape->elevation;
     raw->pool      = f->pool;
     ground_prepare(&raw->ground, raw->elevation);
     for (int y = 0; y < view->height; y += side_px)
         for (int x = 0; x < view->width; x += side_px) add_tile(raw, rays, hits, f, v, x, y, list);
-    status = pair_up(raw);
+    status = pair_up(raw, view);
 
 done:
     free(rays);
@@ -174,37 +208,87 @@ void raw_rays_destroy(RawRays *raw)
     free(raw->first);
     free(raw->far_m);
     free(raw->range_m);
-    free(raw->first_pair);
-    free(raw->pair_ray);
-    free(raw->pair_entity);
+    free(raw->dark);
+    free(raw->first_near);
+    free(raw->near);
+    free(raw->near_ray);
     free(raw);
 }
 
 int  raw_rays_count(const RawRays *raw) { return raw->count; }
 void raw_use_pool(RawRays *raw, Pool *pool) { raw->pool = pool; }
 
-static void trace_block(void *user, int worker, int b)
+/* Where block b lies in the arrays. */
+typedef struct Part {
+    const double *o[3], *d[3], *far_m;
+    double       *range_m;
+    int           first, count;
+} Part;
+
+static Part part_of(const RawRays *raw, int b)
 {
-    RawRays            *raw = user;
-    const int           first = raw->first[b], count = raw->first[b + 1] - first;
-    const double *const o[3] = {raw->o[0] + first, raw->o[1] + first, raw->o[2] + first};
-    const double *const d[3] = {raw->d[0] + first, raw->d[1] + first, raw->d[2] + first};
-    (void)worker;
-    ground_first_hits(raw->range_m + first, NULL, &raw->ground, count, o, d, raw->far_m + first);
-    for (int p = raw->first_pair[b]; p < raw->first_pair[b + 1]; p++) {
-        const int    i = raw->pair_ray[p];
-        const double o_enu[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]};
-        const double d_enu[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
-        PartHit      hit;
-        const double range_m = parts_first_hit(&hit, &raw->entity[raw->pair_entity[p]], o_enu, d_enu, raw->range_m[i], false);
-        bench_keep(&range_m);
+    const int first = raw->first[b];
+    return (Part){.o = {raw->o[0] + first, raw->o[1] + first, raw->o[2] + first},
+                  .d = {raw->d[0] + first, raw->d[1] + first, raw->d[2] + first},
+                  .far_m = raw->far_m + first, .range_m = raw->range_m + first, .first = first,
+                  .count = raw->first[b + 1] - first};
+}
+
+/* The vehicles, then the ground before them. */
+static void trace_eyes(RawRays *raw, int b)
+{
+    const Part p = part_of(raw, b);
+    uint8_t   *dark = raw->dark + p.first;
+    double     limit_m[hits_capacity];
+    GroundHit  ground_hit[hits_capacity];
+    PartHit    hit[hits_capacity];
+    memcpy(limit_m, p.far_m, (size_t)p.count * sizeof *limit_m);
+    for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
+        const Near *near = &raw->near[k];
+        parts_first_hits(limit_m, hit, &raw->entity[near->entity], p.o, p.d, limit_m, raw->near_ray + near->first, near->count,
+                         false);
     }
+    ground_first_hits_together(p.range_m, ground_hit, &raw->ground, p.count, p.o, p.d, limit_m);
+    for (int i = 0; i < p.count; i++) dark[i] = limit_m[i] < INFINITY;
+    bench_keep(limit_m);
+}
+
+/* The vehicles, then the ground for what they leave lit. */
+static void trace_sun(RawRays *raw, int b)
+{
+    const Part p = part_of(raw, b);
+    uint8_t   *dark = raw->dark + p.first;
+    double     start[3][hits_capacity], range_m[hits_capacity];
+    int        ray[hits_capacity], left = 0;
+    const double *const o[3] = {start[0], start[1], start[2]};
+    memset(dark, 0, (size_t)p.count);
+    for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
+        const Near *near = &raw->near[k];
+        parts_any_hits(dark, &raw->entity[near->entity], p.o, p.d, p.far_m, raw->near_ray + near->first, near->count, false);
+    }
+    for (int i = 0; i < p.count; i++) {
+        p.range_m[i] = NAN;
+        if (dark[i]) continue;
+        for (int c = 0; c < 3; c++) start[c][left] = p.o[c][i];
+        ray[left++] = i;
+    }
+    ground_first_hits_together(range_m, NULL, &raw->ground, left, o, p.d, p.far_m);
+    for (int i = 0; i < left; i++) p.range_m[ray[i]] = range_m[i];
+}
+
+static void trace_tile(void *user, int worker, int tile)
+{
+    RawRays  *raw = user;
+    const int b = tile * raw->block_of_tile;
+    (void)worker;
+    trace_eyes(raw, b);
+    if (raw->block_of_tile == 2) trace_sun(raw, b + 1);
 }
 
 void raw_trace(void *user)
 {
     RawRays *raw = user;
-    pool_run(raw->pool, raw->blocks, trace_block, raw);
+    pool_run(raw->pool, raw->blocks / raw->block_of_tile, trace_tile, raw);
     bench_keep(raw->range_m);
 }
 
@@ -247,6 +331,7 @@ double raw_worst_m(const RawRays *raw, int every)
     double worst = 0;
     for (int i = 0; i < raw->count; i += every) {
         const double o[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]}, d[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
+        if (raw->dark[i]) continue;
         const double plain = walk(raw->elevation, o, d);
         if (isinf(plain) != isinf(raw->range_m[i])) return INFINITY;
         if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* NaN shows */

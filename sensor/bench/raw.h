@@ -11,11 +11,13 @@ typedef struct RawRays RawRays;
 Status raw_rays_create(RawRays **out, const BenchFrame *frame);
 void   raw_rays_destroy(RawRays *raw);
 int    raw_rays_count(const RawRays *raw);
-/* Ranges of the ground for all of them, then of the parts; nothing else. user: a RawRays with a pool. */
+/* A frame's own tracers, the ground's of tiles and the parts' of packets, with its tiles, order and limits: of eye rays the
+ * parts and then the ground before them, of sun rays the parts and then the ground for what they leave lit. Nothing else.
+ * user: a RawRays with a pool. */
 void   raw_trace(void *user);
 void   raw_use_pool(RawRays *raw, Pool *pool);
 /* Worst difference in range, m, between the ground's answers and a plain walk from one post line to the next in
- * double, over every so-manieth ray; INFINITY where one meets the ground and the other does not. */
+ * double, over every so-manieth ray that asked it; INFINITY where one meets the ground and the other does not. */
 double raw_worst_m(const RawRays *raw, int every);
 
 #endif

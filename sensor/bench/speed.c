@@ -46,6 +46,14 @@ static RenderRequest request_of(const View *view, unsigned bands, bool truth)
                            .hidden_entity = -1};
 }
 
+/* Without antialiasing: no edges, and small targets like any. */
+static RenderRequest one_ray(const RenderRequest *request)
+{
+    RenderRequest plain = *request;
+    plain.edge_samples = plain.target_samples = 0;
+    return plain;
+}
+
 static BenchFrame frame_of(const Speed *s, const BenchScene *scene, const RenderRequest *request, bool many)
 {
     return (BenchFrame){.scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
@@ -150,7 +158,7 @@ static double antialias_error(const Speed *s, const RenderRequest *request, doub
     BenchFrame adaptive = fine, single = fine;
     fine.request.samples = 16;
     fine.request.edge_samples = fine.request.target_samples = 0;
-    single.request.edge_samples = single.request.target_samples = 0;
+    single.request = one_ray(&single.request);
     adaptive.arena = s->arena[0];
     single.arena   = s->arena[1];
     bench_frame(&fine);
@@ -165,12 +173,11 @@ static Status time_view(Speed *s, int v)
 {
     enum { MANY, ONE, SIMPLE, SIMPLE_ONE, RAW, RAW_ONE, WORKS };
     const View    view = bench_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
-    RenderRequest request = request_of(&view, three_bands, true), simple_request = request;
+    const RenderRequest request = request_of(&view, three_bands, true), simple_request = one_ray(&request);
     char          what[what_size], against[what_size];
     BenchTime     time[WORKS];
     RawRays      *raw = NULL, *raw_one = NULL;
     BenchRow      row;
-    simple_request.edge_samples = simple_request.target_samples = 0;
     BenchFrame    many = frame_of(s, &s->scene, &request, true), one = frame_of(s, &s->scene, &request, false);
     BenchFrame    simple = frame_of(s, &s->scene, &simple_request, true);
     BenchFrame    simple_one = frame_of(s, &s->scene, &simple_request, false), shown = simple;
@@ -308,6 +315,16 @@ static Status time_picture(Speed *s, const char *name, const BenchScene *scene, 
     return many.status;
 }
 
+/* With one ray a pixel, and with the antialiasing of the default. */
+static Status time_pair(Speed *s, const char *name, const BenchScene *scene, const RenderRequest *request)
+{
+    const RenderRequest plain = one_ray(request);
+    char                what[what_size];
+    snprintf(what, sizeof what, "%.100s: one ray a pixel", name);
+    const Status status = time_picture(s, what, scene, &plain);
+    return status == STATUS_OK ? time_picture(s, name, scene, request) : status;
+}
+
 /* Into a file of this folder. */
 static bool write_text(const char *folder, const char *name, const char *format, const char *path)
 {
@@ -318,16 +335,16 @@ static bool write_text(const char *folder, const char *name, const char *format,
     return file && fclose(file) == 0 && ok;
 }
 
-/* A catalog of one row: --model, else BRL-CAD's K-Tank where there is one (+x is forward in it and +z up), else the
- * built-in tank. */
+/* A catalog of one row: --model, else BRL-CAD's K-Tank of the reference data where there is one (+x is forward in it and
+ * +z up), else the built-in tank. */
 static Status open_close_scene(Speed *s)
 {
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
     static const char *const   files[] = {"catalog.csv", "ktank.yaml"};
     const char *root = getenv("PITVIPER_DATA"), *file = bench_option(s->bench, "model");
     char        path[1024], folder[64] = "/tmp/pitviper-bench-XXXXXX", name[128];
-    const bool  ktank = !file && root && (size_t)snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root) < sizeof path &&
-                       access(path, R_OK) == 0;
+    const int   octets = snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root ? root : "../shared/data");
+    const bool  ktank = !file && (size_t)octets < sizeof path && access(path, R_OK) == 0;
     char *absolute = file || ktank ? realpath(ktank ? path : file, NULL) : NULL;
     if (file && !absolute) {
         log_error("bench: cannot read %s: %s", file, strerror(errno));
@@ -344,11 +361,12 @@ static Status open_close_scene(Speed *s)
     }
     remove(folder);
     const char *slash = absolute ? strrchr(absolute, '/') : NULL;
-    snprintf(s->target, sizeof s->target, "%.60s%s", slash ? slash + 1 : "built-in tank", slash ? " (file)" : "");
+    snprintf(s->target, sizeof s->target, "%.60s", ktank ? "BRL-CAD's K-Tank" : slash ? slash + 1 : "built-in tank");
     free(absolute);
     return status;
 }
 
+/* With one ray a pixel, with the edges of the default, and optical alone. */
 static Status time_close(Speed *s)
 {
     Status status = open_close_scene(s);
@@ -366,10 +384,17 @@ static Status time_close(Speed *s)
     first.request = request;
     bench_frame(&first);
     if (first.status != STATUS_OK) return first.status;
-    snprintf(name, sizeof name, "%.60s on %.0f %% of the pixels, 3 bands, shadows", s->target,
-             100 * first.picture.target[0].visible / ((double)s->width * s->height));
-    status = time_picture(s, name, &s->close, &request);
-    BenchFrame one = frame_of(s, &s->close, &request, false);
+    const double share = 100 * first.picture.target[0].visible / ((double)s->width * s->height);
+    const RenderRequest plain = one_ray(&request);
+    RenderRequest optical = plain;
+    optical.bands = 1u << BAND_OPTICAL;
+    optical.truth = false;
+    snprintf(name, sizeof name, "%.40s on %.0f %% of the pixels", s->target, share);
+    status = time_pair(s, name, &s->close, &request);
+    snprintf(name, sizeof name, "%.40s: optical alone, one ray a pixel", s->target);
+    if (status == STATUS_OK) status = time_picture(s, name, &s->close, &optical);
+    BenchFrame simple = frame_of(s, &s->close, &plain, false), one = frame_of(s, &s->close, &request, false);
+    if (status == STATUS_OK) status = time_stages(s, "tank, one ray a pixel, 1 thread", &simple, 1);
     return status == STATUS_OK ? time_stages(s, "tank, 1 thread", &one, 1) : status;
 }
 
@@ -549,11 +574,11 @@ static Status time_all(Speed *s)
 
     const View    small = bench_view(&s->scene, places[1].back_m, places[1].above_m, 20 * rad_per_deg, 256, 256);
     RenderRequest lwir = request_of(&small, 1u << BAND_LWIR, false);
-    if (status == STATUS_OK) status = time_picture(s, "256 x 256, LWIR alone", &s->scene, &lwir);
+    if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR alone", &s->scene, &lwir);
     BenchFrame lwir_frame = frame_of(s, &s->scene, &lwir, false);
     if (status == STATUS_OK) status = time_stages(s, "LWIR alone, 1 thread", &lwir_frame, 1);
     lwir.truth = true;
-    if (status == STATUS_OK) status = time_picture(s, "256 x 256, LWIR and truth", &s->scene, &lwir);
+    if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR and truth", &s->scene, &lwir);
     if (status == STATUS_OK) status = time_close(s);
     const View          wide = bench_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
     const RenderRequest radar = request_of(&wide, 1u << BAND_RADAR, true);

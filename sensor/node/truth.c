@@ -89,25 +89,34 @@ static void ring_box(int ring[4], const Target *t, const Picture *picture)
     }
 }
 
-/* value(user, px): what is compared. Ring: pixels in the box that show neither this target nor another, nor part of a
- * small one. */
-typedef double PixelValue(const void *user, size_t px);
+enum { run_px = 256 };
 
-static void two_moments(Moments *target, Moments *ring, const Target *t, const Picture *picture, PixelValue *value,
+/* What is compared, of pixels side by side from px on, at most run_px. */
+typedef void PixelValues(double *value, const void *user, size_t px, int count);
+
+/* Ring: pixels in the box that show neither this target nor another, nor part of a small one. */
+
+static void two_moments(Moments *target, Moments *ring, const Target *t, const Picture *picture, PixelValues *values,
                         const void *user)
 {
-    int box[4];
+    int     box[4];
+    double  value[run_px];
+    Moments on = {0, 0, 0}, about = {0, 0, 0};
     ring_box(box, t, picture);
-    memset(target, 0, sizeof *target);
-    memset(ring, 0, sizeof *ring);
     for (int y = box[1]; y < box[3]; y++)
-        for (int x = box[0]; x < box[2]; x++) {
-            const size_t px = (size_t)y * (size_t)picture->width + (size_t)x;
-            if (picture->entity[px] == (uint32_t)t->index + 1)
-                moments_add(target, value(user, px));
-            else if (picture->entity[px] == 0 && !(picture->covered && picture->covered[px] > 0))
-                moments_add(ring, value(user, px));
+        for (int x = box[0]; x < box[2]; x += run_px) {
+            const size_t    first = (size_t)y * (size_t)picture->width + (size_t)x;
+            const int       count = box[2] - x < run_px ? box[2] - x : run_px;
+            const uint32_t *entity = picture->entity + first;
+            const float    *covered = picture->covered ? picture->covered + first : NULL;
+            values(value, user, first, count);
+            for (int i = 0; i < count; i++) {
+                if (entity[i] == (uint32_t)t->index + 1) moments_add(&on, value[i]);
+                else if (entity[i] == 0 && !(covered && covered[i] > 0)) moments_add(&about, value[i]);
+            }
         }
+    *target = on;
+    *ring   = about;
 }
 
 typedef struct ThermalPlane {
@@ -115,18 +124,27 @@ typedef struct ThermalPlane {
     const PlanckTable *planck;
 } ThermalPlane;
 
-static double apparent_temp(const void *user, size_t px)
+static void apparent_temp(double *temp_k, const void *user, size_t px, int count)
 {
     const ThermalPlane *p = user;
-    return planck_table_temp(p->planck, p->plane[px]);
+    planck_table_temps(temp_k, p->planck, p->plane + px, count);
 }
 
-static double plain_value(const void *user, size_t px) { return ((const float *)user)[px]; }
+static void plain_value(double *value, const void *user, size_t px, int count)
+{
+    const float *plane = (const float *)user + px;
+    for (int i = 0; i < count; i++) value[i] = plane[i];
+}
 
-static double luminance(const void *user, size_t px)
+static void luminance(double *value, const void *user, size_t px, int count)
 {
     const Picture *p = user;
-    return p->optical[1] ? (p->optical[0][px] + p->optical[1][px] + p->optical[2][px]) / 3.0 : p->optical[0][px];
+    if (!p->optical[1]) {
+        plain_value(value, p->optical[0], px, count);
+        return;
+    }
+    const float *r = p->optical[0] + px, *g = p->optical[1] + px, *b = p->optical[2] + px;
+    for (int i = 0; i < count; i++) value[i] = (r[i] + g[i] + b[i]) / 3.0;
 }
 
 /* Of the target's own radiance over the area it fills, whole pixels or parts of them. */
@@ -142,11 +160,11 @@ typedef struct Look {
     double ring_mean, ring_variance;
 } Look;
 
-static bool look_at(Look *look, const Target *t, const TargetPixels *px, const Picture *picture, PixelValue *value,
+static bool look_at(Look *look, const Target *t, const TargetPixels *px, const Picture *picture, PixelValues *values,
                     const void *user)
 {
     Moments target, ring;
-    two_moments(&target, &ring, t, picture, value, user);
+    two_moments(&target, &ring, t, picture, values, user);
     if (!(ring.n > 0) || !(px->small || target.n > 0)) return false;
     *look = (Look){.ring_mean = moments_mean(&ring), .ring_variance = moments_variance(&ring)};
     if (px->small) return true;
@@ -182,10 +200,10 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
 
 /* planes: of which a pixel's value is the mean, from `plane` on. */
 static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture,
-                       PixelValue *value, const void *user, int plane, int planes, double noise_sigma)
+                       PixelValues *values, const void *user, int plane, int planes, double noise_sigma)
 {
     Look look = {0};
-    if (!look_at(&look, t, px, picture, value, user)) return;
+    if (!look_at(&look, t, px, picture, values, user)) return;
     if (px->small) {
         look.mean = 0;
         for (int k = 0; k < planes; k++) look.mean += px->mean[plane + k] / planes;

@@ -164,6 +164,33 @@ static void inverse_inverts(void **state)
     CHECK_NEAR(planck_band(8e-6, 12e-6, planck_band_inverse(8e-6, 12e-6, 1e9), NULL) / 1e9, 1, 1e-12);
 }
 
+/* Four at a time as one by one, within the table and beyond, in the very knots and next to them. */
+static void many_temperatures_are_each_ones(void **state)
+{
+    enum { count = 4003 };
+    static const double band[][2] = {{4e-7, 7e-7}, {3e-6, 5e-6}, {8e-6, 12e-6}};
+    static float        radiance[count];
+    static double       temp_k[count];
+    (void)state;
+    for (int b = 0; b < 3; b++) {
+        PlanckTable *table = NULL;
+        CHECK(planck_table_create(&table, band[b][0], band[b][1]) == STATUS_OK);
+        const double u0 = 1 / 1500.0, step = (1 / 180.0 - u0) / 4096;
+        for (int i = 0; i < count; i++) {
+            const double at = i % 3 == 0 ? i : 4096 * random_uniform(5, 5, (uint64_t)b, (uint64_t)i);
+            radiance[i] = (float)planck_band(band[b][0], band[b][1], 1 / (u0 + step * at), NULL);
+            if (i % 97 == 5) radiance[i] *= 1e4f;
+        }
+        radiance[7] = NAN, radiance[12] = 0, radiance[17] = -1, radiance[count - 1] = 1e-30f;
+        planck_table_temps(temp_k, table, radiance, count);
+        for (int i = 0; i < count; i++) {
+            const double one_k = planck_table_temp(table, (double)radiance[i]);
+            CHECK(temp_k[i] == one_k || (isnan(temp_k[i]) && isnan(one_k)));
+        }
+        planck_table_destroy(table);
+    }
+}
+
 static void table_follows_the_function(void **state)
 {
     (void)state;
@@ -210,7 +237,7 @@ int main(void)
         cmocka_unit_test(narrow_band_is_spectral),
         cmocka_unit_test(derivative_is_the_derivative),
         cmocka_unit_test(inverse_inverts),
-        cmocka_unit_test(table_follows_the_function),
+        cmocka_unit_test(many_temperatures_are_each_ones), cmocka_unit_test(table_follows_the_function),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -27,7 +27,7 @@ table speed
 for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300 m up: frame" "1000 m up: frame" \
             "rays alone" "one ray a pixel" "1 thread: snapshot" "1 thread: air" "1 thread: visibility" "1 thread: sun rays" \
             "1 thread: shading" "small targets" "pass over edges" "truth of targets" "hash of the planes" "256 x 256" \
-            "built-in tank" "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
+            "of the pixels: one ray a pixel" "optical alone, one ray" "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
 
