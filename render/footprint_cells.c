@@ -1,6 +1,6 @@
 /* render/footprint_cells.c: where a small target is sampled, and how finely.
  *
- * Coarse cells are sampled first, one ray each. One that sees the target where a neighbour across an edge does not, or
+ * Coarse cells are sampled first, one ray each. One that sees the target where a neighbour beside it does not, or
  * the other way round, gives way to four: inside the outline one ray speaks for all four. Bands that the sun lights go
  * finer also where it is shadow here and sun there; the others keep the coarse cell there, so that no band's bits
  * depend on which others are asked for. The radar, whose glints no neighbour foretells, has all of the fine cells.
@@ -367,9 +367,10 @@ static void sample_slab(Batch *b, int row0, int row1, int beside)
     for (int i = (row0 - from) * columns; i < (row1 - from) * columns; i++) {
         const int column = i % columns, row = from + i / columns;
         unsigned  unlike = 0;
-        for (int y = row > from ? -1 : 0; y <= (row + 1 < to); y++)
-            for (int x = column > 0 ? -1 : 0; x <= (column + 1 < columns); x++)
-                unlike |= differ(&b->seen[i], &b->seen[i + y * columns + x]);
+        if (column > 0) unlike |= differ(&b->seen[i], &b->seen[i - 1]);
+        if (column + 1 < columns) unlike |= differ(&b->seen[i], &b->seen[i + 1]);
+        if (row > from) unlike |= differ(&b->seen[i], &b->seen[i - columns]);
+        if (row + 1 < to) unlike |= differ(&b->seen[i], &b->seen[i + columns]);
         const bool outline = unlike & differ_outline;
         whole[i]  = !unlike;
         others[i] = unlike && !outline;
