@@ -38,9 +38,11 @@ typedef enum LogLevel { LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
 typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
- * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. */
+ * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. log_hush: what the calling thread
+ * says, and it alone, until told otherwise. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
+void log_hush(bool hushed);
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -117,6 +119,9 @@ bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 
+/* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the module's. */
+Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
+
 /* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
 
@@ -161,10 +166,10 @@ struct SettingTable {
     size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
 };
 
-enum { settings_file_octets = 1 << 20, settings_depth = 8 };
+enum { settings_file_octets = 1 << 20 };
 
-/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document. What is not YAML at all
- * passes: its reader says where. Time in proportion to octets; logs what is too much. */
+/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from end
+ * to end. Time in proportion to octets; logs what is wrong, with its line. */
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
