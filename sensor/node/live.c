@@ -5,11 +5,11 @@
 #include "dis/udp.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
 #include <errno.h>
 #include <libgen.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -21,8 +21,8 @@ static const int64_t look_ns = 100000000; /* a signal may come to another thread
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
-    DisRecorder *recorder;          /* NULL: none, or given up */
-    char         where[160];        /* `239.1.2.3 port 3000 on eth0` */
+    DisRecorder *recorder;          /* NULL: none */
+    char         where[dis_udp_where_size];
     LiveCounters counters;
     /* what was heard before the choices, each datagram its own memory */
     DisDatagram *heard;
@@ -39,28 +39,9 @@ typedef struct Live {
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
 
-static volatile sig_atomic_t stop_asked;
-
-static void ask_to_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-}
-
-/* The first signal ends the frame and the run, the second the program. SIGINT counts even where it was ignored: so shells
- * start what runs in the background of a script. nohup's SIGHUP stays ignored. */
-static void catch_signals(void)
-{
-    struct sigaction before, action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
-}
-
 static bool over(const Live *l)
 {
-    return stop_asked || wall_clock_s() - l->begun_s >= l->run.options.for_s;
+    return stop_asked() || wall_clock_s() - l->begun_s >= l->run.options.for_s;
 }
 
 /* ---- what arrives ------------------------------------------------------------------------------ */
@@ -315,7 +296,7 @@ static Status open_network(Live *l)
 {
     Config      *config = &l->run.options.config;
     DisUdpConfig udp    = dis_udp_default_config();
-    char         comment[224];
+    char         comment[dis_udp_where_size + 40];
     uint8_t      to[16];
     if (config->exercise.port == dis_port_any) {
         log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
@@ -327,8 +308,7 @@ static Status open_network(Live *l)
     memcpy(udp.interface, config->network.interface, sizeof udp.interface);
     udp.ttl          = config->network.ttl;
     udp.queue_octets = config->network.queue_mb << 20;
-    snprintf(l->where, sizeof l->where, "%s port %d%s%s", udp.address[0] ? udp.address : "all addresses", udp.port,
-             udp.interface[0] ? " on " : "", udp.interface);
+    dis_udp_where(l->where, &udp);
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
@@ -381,7 +361,7 @@ int run_command(int argc, char **argv)
     if (*name) l->run.log_name = basename(name);
     l->late_said_s = l->lost_said_s = -INFINITY;
 
-    catch_signals();
+    stop_by_signals();
     thread_flush_denormals();
     const Status status = run_node(l);
     dis_recorder_close(l->recorder);
