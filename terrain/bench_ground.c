@@ -145,6 +145,7 @@ void bench_ground_bytes(size_t *posts, size_t *pyramids, const Elevation *elevat
         const ElevationLevel *level = &elevation->level[n];
         *posts += (size_t)level->nx * (size_t)level->ny * sizeof *level->post;
         for (int k = 0; k < level->pyramid_count; k++)
-            *pyramids += (size_t)level->pyramid_nx[k] * (size_t)level->pyramid_ny[k] * sizeof **level->pyramid;
+            *pyramids += (size_t)level->pyramid_nx[k] * (size_t)level->pyramid_ny[k] *
+                         (sizeof **level->pyramid + (level->rise[k] ? sizeof **level->rise : 0));
     }
 }

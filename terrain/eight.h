@@ -48,10 +48,6 @@ static inline EightInt eight_of_bytes(const uint8_t *p)
 {
     return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)p));
 }
-static inline EightInt eight_of_u16(const uint16_t *p)
-{
-    return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)p));
-}
 static inline Eight eight_gather(const float *p, EightInt at) { return _mm256_i32gather_ps(p, at, 4); }
 
 /* Rows of eight to columns of eight, in place. */
