@@ -1,6 +1,7 @@
 #include "entities/exercise.h"
 
 #include "dis/enumerations.h"
+#include "dis/exercise_clock.h"
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
 
@@ -365,8 +366,7 @@ static void send_start(Exercise *x)
     const Scenario *s = x->cast->scenario;
     double          clock_s;
     if (!*s->dis.clock || !text_to_unix_s(&clock_s, s->dis.clock)) return;
-    const uint32_t       past_hour = (uint32_t)(fmod(clock_s, 3600) / 3600 * 2147483648.0) << 1 | 1;
-    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), past_hour};
+    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), dis_timestamp(clock_s, true)};
     const DisStartResume start = {.header = link_header(&x->link, dis_pdu_start_resume, 5, 0),
                                   .originating = {(uint16_t)s->dis.site, (uint16_t)s->dis.application, 0},
                                   .receiving = {65535, 65535, 65535}, .real_world = clock, .simulation = clock,
