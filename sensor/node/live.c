@@ -1,6 +1,7 @@
 /* sensor/node/live.c: listen, choose, then one frame after the other by the clock. */
 #include "sensor/node/live.h"
 
+#include "dis/exercise_clock.h"
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "sensor/node/host_run.h"
@@ -8,7 +9,6 @@
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
-#include <errno.h>
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -176,12 +176,6 @@ static Status listen_first(bool *heard, Live *l)
 
 /* ---- publishing -------------------------------------------------------------------------------- */
 
-/* Seconds past the hour as a relative stamp. */
-static uint32_t stamp_of(double unix_s)
-{
-    return (uint32_t)(int64_t)(fmod(unix_s, 3600) / 3600 * 2147483648.0) << 1;
-}
-
 static void publish_frame(void *user, const FrameRecord *frame)
 {
     Live         *l      = user;
@@ -191,7 +185,7 @@ static void publish_frame(void *user, const FrameRecord *frame)
     const DisRecordSender sender = {.version = l->first.version,
                                     .exercise = (uint8_t)(l->run.exercise >= 0 ? l->run.exercise : l->first.exercise),
                                     .site = (uint16_t)config->node.site, .application = (uint16_t)config->node.application,
-                                    .timestamp = stamp_of(player_arrival_s(l->player, frame->time_s))};
+                                    .timestamp = dis_timestamp(player_arrival_s(l->player, frame->time_s), false)};
     for (int b = 0; b < BAND_COUNT; b++)
         if (l->run.bands >> b & 1) dis_udp_send(l->udp, pdu, dis_record_frame(pdu, &sender, frame, (Band)b, truth));
 }
@@ -263,13 +257,14 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o      = &run->options;
     Status         status = STATUS_OK;
     double         last   = -1; /* number of the last frame */
-    (void)plan;
+    const double   from_s = fmax(plan->start_s, o->config.exercise.from_s); /* NaN: none */
+    const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player      = player;
     l->rate_from_s = wall_clock_s();
     while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
         const double now_s  = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
-        const double n      = fmax(newest, last + 1);
+        const double n      = fmax(fmax(newest, last + 1), first);
         const double t_s    = frame_grid_s(grid, n);
         if (t_s > o->config.exercise.to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
