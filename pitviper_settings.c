@@ -185,7 +185,8 @@ static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r,
 static Status fill_list(void *out, const Reading *r, const SettingTable *table, const SettingList *list,
                         const yaml_node_t *sequence)
 {
-    for (const yaml_node_item_t *at = sequence->data.sequence.items.start; at < sequence->data.sequence.items.top; at++) {
+    const yaml_node_item_t *at = sequence->data.sequence.items.start, *end = sequence->data.sequence.items.top;
+    for (; at < end; at++) {
         const yaml_node_t *node = yaml_document_get_node(r->document, *at);
         if (node->type != YAML_MAPPING_NODE) {
             log_error("%s: %s:%d: %s: expected `- key: value` and more keys below", table->module, r->path,
@@ -277,7 +278,8 @@ static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r,
     return STATUS_OK;
 }
 
-static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path, yaml_document_t *document)
+static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path,
+                            yaml_document_t *document)
 {
     const yaml_node_t *root = yaml_document_get_root_node(document);
     const Reading      reading = {path, document};
@@ -293,7 +295,8 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
     return status;
 }
 
-static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text, size_t octets)
+static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
+                    size_t octets)
 {
     yaml_parser_t   parser;
     yaml_document_t document;
@@ -416,7 +419,8 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         if (row->choices) fprintf(to, "%s%s", *row->help ? "; " : "", row->choices);
         else if (row->type == SETTING_BOOL) fprintf(to, "%strue or false", *row->help ? "; " : "");
         else if (row->type != SETTING_TEXT && !isnan(row->low))
-            fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "", row->unit);
+            fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "",
+                    row->unit);
         else if (*row->unit) fprintf(to, "%s%s", *row->help ? "; " : "", row->unit);
         fputc('\n', to);
 

@@ -70,8 +70,8 @@ DisUdpConfig dis_udp_default_config(void)
 
 void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config)
 {
-    snprintf(out, dis_udp_where_size, "%s port %d%s%s", config->address[0] ? config->address : "all addresses", config->port,
-             config->interface[0] ? " on " : "", config->interface);
+    snprintf(out, dis_udp_where_size, "%s port %d%s%s", config->address[0] ? config->address : "all addresses",
+             config->port, config->interface[0] ? " on " : "", config->interface);
 }
 
 int64_t dis_udp_now_ns(void)

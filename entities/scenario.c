@@ -181,7 +181,8 @@ static const SettingTable group_table = {.module = "scenario", .row = group_keys
 static const SettingTable shot_table = {.module = "scenario", .row = shot_keys, .count = shot_key_count,
                                         .line_at = offsetof(ScenarioShot, line)};
 static const SettingList lists[] = {{"vehicles", &group_table, add_group}, {"shots", &shot_table, add_shot}};
-static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists, .list_count = 2};
+static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists,
+                                   .list_count = 2};
 
 static Scenario default_scenario(void)
 {
@@ -259,7 +260,9 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
     if (!blank || !text_to_long(&id, blank + 1)) return false;
     for (int g = 0; g < scenario->group_count; g++) {
         const ScenarioGroup *each = &scenario->group[g];
-        if (strlen(each->name) != (size_t)(blank - name) || strncmp(each->name, name, (size_t)(blank - name)) != 0) continue;
+        if (strlen(each->name) != (size_t)(blank - name) ||
+            strncmp(each->name, name, (size_t)(blank - name)) != 0)
+            continue;
         if (id < ids[g] || id >= ids[g] + scenario_group_size(scenario, each)) continue;
         *group  = g;
         *member = (int)(id - ids[g]);
@@ -297,8 +300,8 @@ static bool group_fits(const Scenario *s, const ScenarioGroup *group)
     for (int i = 0; places > 1 && i < places - (group->loop ? 0 : 1); i++) {
         const double *a = &group->route_m.number[2 * i], *b = &group->route_m.number[2 * ((i + 1) % places)];
         if (hypot(a[0] - b[0], a[1] - b[1]) >= 0.1) continue;
-        log_error("scenario: %s:%d: vehicles: route_m: place %d is less than 0.1 m from the next; leave one out%s", s->path,
-                  group->line, i + 1, i == places - 1 ? ", a loop closes by itself" : "");
+        log_error("scenario: %s:%d: vehicles: route_m: place %d is less than 0.1 m from the next; leave one out%s",
+                  s->path, group->line, i + 1, i == places - 1 ? ", a loop closes by itself" : "");
         return false;
     }
     if (places > 1 && 0.25 * group->unsteady_m > 0.9 * group->speed_mps) {
@@ -320,8 +323,8 @@ static bool name_fits(const Scenario *s, const int *ids, int line, const char *k
     char shown[128];
     text_escape(shown, sizeof shown, name, strlen(name));
     const ScenarioGroup *first = s->group_count ? s->group : NULL;
-    log_error("scenario: %s:%d: shots: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line, key,
-              shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
+    log_error("scenario: %s:%d: shots: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line,
+              key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
               first ? " N'" : "");
     return false;
 }

@@ -273,11 +273,13 @@ Status config_check(const Config *config)
         return STATUS_BAD_VALUE;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {
-        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82", config->exercise.aim);
+        log_error("config: exercise.aim: '%s' is not site:application:entity, for example 1:3001:82",
+                  config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
     if (*config->exercise.utc && !text_to_unix_s(&unix_s, config->exercise.utc)) {
-        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100", config->exercise.utc);
+        log_error("config: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
+                  config->exercise.utc);
         return STATUS_BAD_VALUE;
     }
     if (config->exercise.from_s > config->exercise.to_s) {

@@ -62,8 +62,10 @@ static bool to_number(char out[dis_udp_address_size], const char *host)
     const struct addrinfo hints = {.ai_socktype = SOCK_DGRAM};
     struct addrinfo      *found = NULL;
     const int             failure = getaddrinfo(host, NULL, &hints, &found);
-    if (failure || getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0, NI_NUMERICHOST) != 0) {
-        log_error("exercise: --send: no address is known for '%s': %s; give one in numbers", host, gai_strerror(failure));
+    if (failure || getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0,
+                               NI_NUMERICHOST) != 0) {
+        log_error("exercise: --send: no address is known for '%s': %s; give one in numbers", host,
+                  gai_strerror(failure));
         if (!failure) freeaddrinfo(found);
         return false;
     }
@@ -246,7 +248,8 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
 
 /* ---- the run ---------------------------------------------------------------------------------- */
 
-/* Until the wall clock says `until_s`; a signal ends it. At once when that is past: what is due is sent, late or not. */
+/* Until the wall clock says `until_s`; a signal ends it. At once when that is past: what is due is sent, late or
+ * not. */
 static void wait_until(double until_s)
 {
     while (!stop_asked()) {
@@ -356,7 +359,8 @@ int exercise_command(int argc, char **argv)
     if (run.udp) {
         const DisUdpCounters counters = dis_udp_counters(run.udp);
         if (counters.send_failed)
-            log_warn("exercise: %llu of %llu datagrams were not taken by the network", (unsigned long long)counters.send_failed,
+            log_warn("exercise: %llu of %llu datagrams were not taken by the network",
+                     (unsigned long long)counters.send_failed,
                      (unsigned long long)(counters.sent + counters.send_failed));
         dis_udp_close(run.udp);
     }

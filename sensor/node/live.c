@@ -93,8 +93,8 @@ static void say_troubles(Live *l)
     const double now_s = wall_clock_s();
     read_counters(l);
     if (!l->silence_said && now_s - l->heard_s >= silent_s) {
-        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o /tmp/heard.pcapng` shows what "
-                 "comes at all; --port, --address and --interface say where", l->where, silent_s);
+        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o /tmp/heard.pcapng` shows "
+                 "what comes at all; --port, --address and --interface say where", l->where, silent_s);
         l->silence_said = true;
     }
     if (lost(&l->counters) > l->lost_said && now_s - l->lost_said_s >= remind_s) {
@@ -105,7 +105,8 @@ static void say_troubles(Live *l)
         l->lost_said_s = now_s;
     }
     if (l->counters.frames_late > l->late_said && now_s - l->late_said_s >= remind_s) {
-        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate helps",
+        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate "
+                 "helps",
                  (unsigned long long)l->counters.frames_late);
         l->late_said   = l->counters.frames_late;
         l->late_said_s = now_s;
@@ -156,7 +157,8 @@ static Status listen_first(bool *heard, Live *l)
                 l->run.until_s = opening_until_s(&datagram, config);
                 until_ns       = dis_unix_ns_until(l->run.until_s);
                 if (l->heard_count > opening_before + 1) forget_heard(l, l->heard_count - opening_before - 1);
-                log_info("run: heard the first entity; listening for %g s (exercise.listen_s)", config->exercise.listen_s);
+                log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
+                         config->exercise.listen_s);
             } else if (l->heard_count >= 4 * opening_before) {
                 forget_heard(l, l->heard_count - opening_before);
             }
@@ -184,7 +186,8 @@ static void publish_frame(void *user, const FrameRecord *frame)
     const bool    truth = strcmp(config->publish.dis, "truth") == 0;
     const DisRecordSender sender = {.version = l->first.version,
                                     .exercise = (uint8_t)(l->run.exercise >= 0 ? l->run.exercise : l->first.exercise),
-                                    .site = (uint16_t)config->node.site, .application = (uint16_t)config->node.application,
+                                    .site = (uint16_t)config->node.site,
+                                    .application = (uint16_t)config->node.application,
                                     .timestamp = dis_timestamp(player_arrival_s(l->player, frame->time_s), false)};
     for (int b = 0; b < BAND_COUNT; b++)
         if (l->run.bands >> b & 1) dis_udp_send(l->udp, pdu, dis_record_frame(pdu, &sender, frame, (Band)b, truth));
@@ -326,7 +329,8 @@ static Status run_node(Live *l)
     if (status != STATUS_OK || !heard) {
         conclude(l);
         if (status == STATUS_OK)
-            log_info("run: ended before the first frame: %llu datagrams heard", (unsigned long long)l->counters.datagrams);
+            log_info("run: ended before the first frame: %llu datagrams heard",
+                     (unsigned long long)l->counters.datagrams);
         return status;
     }
     status = run_survey(&l->run, &l->run.view);
@@ -335,8 +339,8 @@ static Status run_node(Live *l)
              (unsigned long long)l->counters.datagrams, (unsigned long long)l->run.own,
              (unsigned long long)lost(&l->counters), (unsigned long long)l->counters.frames_late);
     if (l->counters.files_failed || l->counters.files_left_out)
-        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or --no-files "
-                 "leaves more time", (unsigned long long)l->counters.files_left_out,
+        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
+                 "--no-files leaves more time", (unsigned long long)l->counters.files_left_out,
                  (unsigned long long)l->counters.files_failed);
     return status;
 }
