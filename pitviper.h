@@ -38,9 +38,11 @@ typedef enum LogLevel { LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
 typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
- * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. */
+ * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. log_hush: what the calling
+ * thread says, and it alone, until told otherwise. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
+void log_hush(bool hushed);
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -117,6 +119,10 @@ bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 
+/* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
+ * module's. */
+Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
+
 /* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
 
@@ -161,15 +167,15 @@ struct SettingTable {
     size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
 };
 
-enum { settings_file_octets = 1 << 20, settings_depth = 8 };
+enum { settings_file_octets = 1 << 20 };
 
-/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document. What is not YAML at all
- * passes: its reader says where. Time in proportion to octets; logs what is too much. */
+/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from end
+ * to end. Time in proportion to octets; logs what is wrong, with its line. */
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
- * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL, is
- * set for each key met at the top. On failure *out is half filled: read into a copy. */
+ * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
+ * is set for each key met at the top. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
 /* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
@@ -226,7 +232,8 @@ typedef struct BenchRow {
 
 typedef struct Bench Bench;
 
-/* What `pitviper bench NAME` runs. Each room lists its own in <room>/bench.h; those of one name run one after another. */
+/* What `pitviper bench NAME` runs. Each room lists its own in <room>/bench.h; those of one name run one after
+ * another. */
 typedef struct BenchSuite {
     const char *name, *help;
     const char *options;           /* beyond those of every bench, as usage shows them: "size=WxH,model=FILE"; NULL */
@@ -235,12 +242,13 @@ typedef struct BenchSuite {
 
 BenchRow bench_row(const char *what);
 void     bench_add(Bench *bench, const BenchRow *row);
-bool     bench_quick(const Bench *bench);                         /* seconds, not minutes: fewer rounds, smaller scenes */
+bool     bench_quick(const Bench *bench);                         /* seconds, not minutes: fewer rounds */
 int      bench_threads(const Bench *bench);
 const char *bench_option(const Bench *bench, const char *name);   /* NULL: not given */
 void     bench_progress(Bench *bench, const char *what);          /* on a terminal */
 
-/* Something to be timed: `run` does `items` of it. Takes inputs the compiler cannot see, hands results to bench_keep. */
+/* Something to be timed: `run` does `items` of it. Takes inputs the compiler cannot see, hands results to
+ * bench_keep. */
 typedef struct BenchWork {
     void (*run)(void *user);
     void  *user;

@@ -127,7 +127,8 @@ static void show(char out[32], double value, const char *unit)
 
 static void show_head(const Bench *bench)
 {
-    printf("\n%-*s %10s %10s  %-18s %-22s %s\n", what_width, bench->suite, "median", "best", "rate", "ratio to", "error");
+    printf("\n%-*s %10s %10s  %-18s %-22s %s\n", what_width, bench->suite, "median", "best", "rate",
+           "ratio to", "error");
 }
 
 static void csv_text(FILE *file, const char *text)
@@ -204,7 +205,8 @@ static void machine_line(char out[512])
     double load = NAN;
     processor_name(name);
     if (getloadavg(&load, 1) != 1) load = NAN;
-    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s %s; pitviper %s; load %.1f", name, thread_processors(),
+    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s %s; pitviper %s; load %.1f", name,
+             thread_processors(),
              __builtin_cpu_supports("avx512f") ? "AVX-512" : __builtin_cpu_supports("avx2") ? "AVX2" : "no AVX2",
 #ifdef __clang__
              "clang", __clang_version__,
@@ -316,8 +318,8 @@ int bench_command(int argc, char **argv, BenchNext *next)
     machine_line(machine);
     puts(machine);
     if (bench.csv)
-        fprintf(bench.csv, "# %s\nbench,what,median,best,unit,rate,rate_unit,ratio,ratio_to,error,error_limit,error_unit,"
-                "against,holds\n", machine);
+        fprintf(bench.csv, "# %s\nbench,what,median,best,unit,rate,rate_unit,ratio,ratio_to,error,error_limit,"
+                "error_unit,against,holds\n", machine);
     memset(state, 0, sizeof state);
     for (const BenchSuite *suite; (suite = next(state));) {
         if (strcmp(suite->name, bench.suite) != 0) continue;

@@ -9,6 +9,7 @@ static pthread_mutex_t log_lock = PTHREAD_MUTEX_INITIALIZER;
 static LogSink        *log_sink;
 static void           *log_user;
 static LogLevel        log_lowest = LOG_INFO;
+static _Thread_local bool hushed_here;
 
 const char *status_name(Status status)
 {
@@ -38,9 +39,12 @@ void log_set_level(LogLevel lowest)
     pthread_mutex_unlock(&log_lock);
 }
 
+void log_hush(bool hushed) { hushed_here = hushed; }
+
 static void log_line(LogLevel level, const char *format, va_list arguments)
 {
     char line[1024];
+    if (hushed_here) return;
     vsnprintf(line, sizeof line, format, arguments);
     for (char *c = line; *c; c++) /* names in files and what libraries say may hold anything */
         if ((unsigned char)*c < ' ' || *c == 0x7f) *c = ' ';

@@ -178,15 +178,17 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
     return store(out, table, row, text_of(value), source);
 }
 
+/* Ends: an item's table holds only lists that are written in the program, whatever aliases a file has. */
 static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
-                           const char *section, const yaml_node_t *mapping, int depth);
+                           const char *section, const yaml_node_t *mapping);
 
 static Status fill_list(void *out, const Reading *r, const SettingTable *table, const SettingList *list,
-                        const yaml_node_t *sequence, int depth)
+                        const yaml_node_t *sequence)
 {
-    for (const yaml_node_item_t *at = sequence->data.sequence.items.start; at < sequence->data.sequence.items.top; at++) {
+    const yaml_node_item_t *at = sequence->data.sequence.items.start, *end = sequence->data.sequence.items.top;
+    for (; at < end; at++) {
         const yaml_node_t *node = yaml_document_get_node(r->document, *at);
-        if (node->type != YAML_MAPPING_NODE || depth >= settings_depth) {
+        if (node->type != YAML_MAPPING_NODE) {
             log_error("%s: %s:%d: %s: expected `- key: value` and more keys below", table->module, r->path,
                       line_of(node), list->name);
             return STATUS_BAD_VALUE;
@@ -201,7 +203,7 @@ static Status fill_list(void *out, const Reading *r, const SettingTable *table, 
             return item ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
         }
         if (list->item->line_at) *(int *)((char *)item + list->item->line_at) = line_of(node);
-        const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node, depth + 1);
+        const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node);
         free(seen);
         if (status != STATUS_OK) return status;
     }
@@ -225,7 +227,7 @@ static bool is_section(const SettingTable *table, const char *name)
 }
 
 static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
-                       const char *section, const yaml_node_t *name, const yaml_node_t *value, int depth)
+                       const char *section, const yaml_node_t *name, const yaml_node_t *value)
 {
     char full[key_size], source[source_size];
     snprintf(source, sizeof source, "%s:%d", r->path, line_of(name));
@@ -235,7 +237,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
     }
     const char *word = text_of(name);
     if (value->type == YAML_MAPPING_NODE && !*section && is_section(table, word))
-        return fill_mapping(out, given, seen, r, table, word, value, depth + 1);
+        return fill_mapping(out, given, seen, r, table, word, value);
     /* `section:` with nothing below it */
     if (value->type == YAML_SCALAR_NODE && !*section && !*text_of(value) && is_section(table, word)) return STATUS_OK;
 
@@ -254,7 +256,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
     }
     *met = true;
     if (list >= 0) {
-        if (value->type == YAML_SEQUENCE_NODE) return fill_list(out, r, table, &table->list[list], value, depth);
+        if (value->type == YAML_SEQUENCE_NODE) return fill_list(out, r, table, &table->list[list], value);
         log_error("%s: %s: %s: expected a list, `- key: value` and more keys below", table->module, source, full);
         return STATUS_BAD_VALUE;
     }
@@ -264,18 +266,20 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
 }
 
 static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
-                           const char *section, const yaml_node_t *mapping, int depth)
+                           const char *section, const yaml_node_t *mapping)
 {
     const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
     for (; pair < end; pair++) {
-        const Status status = fill_key(out, given, seen, r, table, section, yaml_document_get_node(r->document, pair->key),
-                                       yaml_document_get_node(r->document, pair->value), depth);
+        const Status status = fill_key(out, given, seen, r, table, section,
+                                       yaml_document_get_node(r->document, pair->key),
+                                       yaml_document_get_node(r->document, pair->value));
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
 }
 
-static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path, yaml_document_t *document)
+static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path,
+                            yaml_document_t *document)
 {
     const yaml_node_t *root = yaml_document_get_root_node(document);
     const Reading      reading = {path, document};
@@ -286,12 +290,13 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
     }
     bool *seen = calloc((size_t)(table->count + table->list_count), sizeof *seen);
     if (!seen) return STATUS_NO_MEMORY;
-    const Status status = fill_mapping(out, given, seen, &reading, table, "", root, 0);
+    const Status status = fill_mapping(out, given, seen, &reading, table, "", root);
     free(seen);
     return status;
 }
 
-static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text, size_t octets)
+static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
+                    size_t octets)
 {
     yaml_parser_t   parser;
     yaml_document_t document;
@@ -307,47 +312,17 @@ static Status parse(void *out, bool *given, const SettingTable *table, const cha
     }
     status = fill_document(out, given, table, path, &document);
     yaml_document_delete(&document);
-    if (status == STATUS_OK) { /* what stands behind `---` would be read by nobody */
-        yaml_document_t next;
-        if (!yaml_parser_load(&parser, &next)) {
-            log_error("%s: %s:%d: %s", table->module, path, (int)parser.problem_mark.line + 1,
-                      parser.problem ? parser.problem : "not YAML");
-            status = STATUS_BAD_VALUE;
-        } else {
-            const yaml_node_t *root = yaml_document_get_root_node(&next);
-            if (root) {
-                log_error("%s: %s:%d: a second document; only one is read", table->module, path, line_of(root));
-                status = STATUS_BAD_VALUE;
-            }
-            yaml_document_delete(&next);
-        }
-    }
     yaml_parser_delete(&parser);
     return status;
 }
 
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path)
 {
-    char  *text = malloc(settings_file_octets + 1);
-    FILE  *file = text ? fopen(path, "rb") : NULL;
-    Status status;
-    if (!text) return STATUS_NO_MEMORY;
-    if (!file) {
-        log_error("%s: cannot open %s: %s", table->module, path, strerror(errno));
-        free(text);
-        return STATUS_IO;
-    }
-    const size_t octets = fread(text, 1, settings_file_octets + 1, file);
-    if (ferror(file)) {
-        log_error("%s: cannot read %s: %s", table->module, path, strerror(errno));
-        status = STATUS_IO;
-    } else if (octets > settings_file_octets) {
-        log_error("%s: %s is longer than %d octets: not settings", table->module, path, settings_file_octets);
-        status = STATUS_BAD_VALUE;
-    } else {
-        status = parse(out, given, table, path, text, octets);
-    }
-    fclose(file);
+    char  *text;
+    size_t octets;
+    Status status = text_read_file(&text, &octets, table->module, path, settings_file_octets);
+    if (status != STATUS_OK) return status;
+    status = parse(out, given, table, path, text, octets);
     free(text);
     return status;
 }
@@ -444,7 +419,8 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         if (row->choices) fprintf(to, "%s%s", *row->help ? "; " : "", row->choices);
         else if (row->type == SETTING_BOOL) fprintf(to, "%strue or false", *row->help ? "; " : "");
         else if (row->type != SETTING_TEXT && !isnan(row->low))
-            fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "", row->unit);
+            fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "",
+                    row->unit);
         else if (*row->unit) fprintf(to, "%s%s", *row->help ? "; " : "", row->unit);
         fputc('\n', to);
 

@@ -64,57 +64,45 @@ bool etc_path(char *out, size_t out_size, const char *name)
     return length >= 0 && (size_t)length < out_size;
 }
 
-/* ---- tables ------------------------------------------------------------------------------- */
+/* ---- files -------------------------------------------------------------------------------- */
 
-static Status read_whole(char **out, const char *path)
+Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most)
 {
-    Status status = STATUS_IO;
-    char  *text   = NULL;
-    FILE  *file   = fopen(path, "rb");
+    size_t size = 0, capacity = 1 << 16;
+    FILE  *file = fopen(path, "rb");
     if (!file) {
-        log_error("text: cannot open %s: %s", path, strerror(errno));
+        log_error("%s: cannot open %s: %s", module, path, strerror(errno));
         return STATUS_IO;
     }
-    size_t size = 0, capacity = 1 << 16;
-    text = malloc(capacity);
-    while (text) {
+    Status status = STATUS_OK;
+    char  *text = malloc(capacity);
+    if (!text) status = STATUS_NO_MEMORY;
+    while (status == STATUS_OK) {
         size += fread(text + size, 1, capacity - size - 1, file);
-        if (size < capacity - 1) break;
-        if (capacity >= table_max_octets) {
-            log_error("text: %s: larger than %d octets", path, table_max_octets);
-            status = STATUS_BAD_VALUE;
-            goto fail;
-        }
+        if (size < capacity - 1 || size > most) break;
         char *larger = realloc(text, capacity *= 2);
-        if (!larger) {
-            status = STATUS_NO_MEMORY;
-            goto fail;
-        }
-        text = larger;
+        if (larger) text = larger;
+        else status = STATUS_NO_MEMORY;
     }
-    if (!text) {
-        status = STATUS_NO_MEMORY;
-        goto fail;
+    if (status == STATUS_OK && ferror(file)) {
+        log_error("%s: cannot read %s: %s", module, path, strerror(errno));
+        status = STATUS_IO;
+    } else if (status == STATUS_OK && size > most) {
+        log_error("%s: %s: larger than %zu octets", module, path, most);
+        status = STATUS_BAD_VALUE;
     }
-    if (ferror(file)) {
-        log_error("text: cannot read %s: %s", path, strerror(errno));
-        goto fail;
+    fclose(file);
+    if (status != STATUS_OK) {
+        free(text);
+        return status;
     }
     text[size] = 0;
-    if (strlen(text) != size) {
-        log_error("text: %s: holds a NUL octet; is it a text file?", path);
-        status = STATUS_BAD_VALUE;
-        goto fail;
-    }
-    fclose(file);
-    *out = text;
+    *out    = text;
+    *octets = size;
     return STATUS_OK;
-
-fail:
-    fclose(file);
-    free(text);
-    return status;
 }
+
+/* ---- tables ------------------------------------------------------------------------------- */
 
 static char *trim(char *text)
 {
@@ -157,16 +145,20 @@ int text_split(char **cell, int capacity, char *line)
 Status table_open(Table *out, const char *path)
 {
     Table  table  = {0};
-    Status status = read_whole(&table.text, path);
+    size_t octets = 0;
+    Status status = text_read_file(&table.text, &octets, "text", path, table_max_octets);
     if (status != STATUS_OK) return status;
-
+    if (strlen(table.text) != octets) {
+        log_error("text: %s: holds a NUL octet; is it a text file?", path);
+        status = STATUS_BAD_VALUE;
+        goto fail;
+    }
     status     = STATUS_NO_MEMORY;
     table.path = strdup(path);
     if (!table.path) goto fail;
 
-    int    lines = 1;
-    size_t octets = 0;
-    for (const char *c = table.text; *c; c++, octets++) lines += *c == '\n';
+    int lines = 1;
+    for (const char *c = table.text; *c; c++) lines += *c == '\n';
     table.line = calloc((size_t)lines, sizeof *table.line);
     if (!table.line) goto fail;
 

@@ -1,5 +1,6 @@
-/* pitviper_yaml.c: what of YAML a file of ours may use. libyaml takes time in proportion to the square of how deep
- * brackets nest, of how many anchors there are, and of how many directives: seconds, or hours, for a megabyte. */
+/* pitviper_yaml.c: what of YAML a file of ours may use; its reader need not look again. libyaml takes time in
+ * proportion to the square of how deep brackets nest, of how many anchors there are, and of how many directives:
+ * seconds, or hours, for a megabyte. */
 #include "pitviper.h"
 
 #include <yaml.h>
@@ -37,6 +38,7 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
     const char   *reason = NULL;
     int           line = 1, directives = 0;
     bool          more = true;
+    Status        status = STATUS_OK;
 
     for (size_t i = 0; i < octets && !reason; i++) {
         directives += text[i] == '%' && (i == 0 || strchr("\r\n", text[i - 1]));
@@ -47,15 +49,17 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
     if (!reason) {
         if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
         yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
-        while (more && !reason && yaml_parser_parse(&parser, &event)) { /* what is not YAML, the reader will say */
+        while (more && !reason && (more = yaml_parser_parse(&parser, &event))) {
             more = event.type != YAML_STREAM_END_EVENT;
             reason = too_much(&tally, &event);
             line = (int)event.start_mark.line + 1;
             yaml_event_delete(&event);
         }
+        if (parser.error == YAML_MEMORY_ERROR) status = STATUS_NO_MEMORY;
+        else if (parser.error) reason = parser.problem, line = (int)parser.problem_mark.line + 1;
         yaml_parser_delete(&parser);
     }
-    if (!reason) return STATUS_OK;
+    if (!reason) return status;
     log_error("%s: %s:%d: %s", module, path, line, reason);
     return STATUS_BAD_VALUE;
 }

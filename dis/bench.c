@@ -69,7 +69,8 @@ static Status make_octets(Octets *out, int kind, int pdus)
     if (!out->first || !out->octet || !out->decoded) return STATUS_NO_MEMORY;
     for (int i = 0; i < pdus; i++) {
         const int one_of_ten = (int)(roll(200, (uint32_t)i) % 10);
-        out->size += make_pdu(out->octet + out->size, kind >= 0 ? kind : one_of_ten < 8 ? 0 : one_of_ten - 7, (uint32_t)i);
+        out->size += make_pdu(out->octet + out->size, kind >= 0 ? kind : one_of_ten < 8 ? 0 : one_of_ten - 7,
+                              (uint32_t)i);
         out->first[i + 1] = out->size;
     }
     return STATUS_OK;
@@ -195,7 +196,8 @@ static Status time_kind(Bench *bench, int kind)
 /* Ethernet, IPv4 and UDP around a datagram for port 3000, as a classic pcap has it; little-endian. */
 static bool write_packet(FILE *file, uint32_t index, const uint8_t *octet, size_t octets)
 {
-    const uint32_t all = (uint32_t)(14 + 20 + 8 + octets), head[4] = {1000000000 + index / 100, index % 100 * 10000, all, all};
+    const uint32_t all = (uint32_t)(14 + 20 + 8 + octets);
+    const uint32_t head[4] = {1000000000 + index / 100, index % 100 * 10000, all, all};
     uint8_t        layer[42] = {0};
     layer[12] = 0x08; /* IPv4 */
     layer[14] = 0x45;

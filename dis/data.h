@@ -30,7 +30,8 @@ typedef struct DisData {
 
 /* As the other decoders (entity_state.h): `out` untouched unless STATUS_OK, and then only the datums counted are
  * written; octets behind the last one are left alone. STATUS_BAD_VALUE: a count, or a number of bits, that the length
- * cannot hold. STATUS_UNSUPPORTED: more datums than there is room for. Reads Set Data (19) too: it is laid out alike. */
+ * cannot hold. STATUS_UNSUPPORTED: more datums than there is room for. Reads Set Data (19) too: it is laid
+ * out alike. */
 Status dis_decode_data(DisData *out, const uint8_t *pdu, size_t octets);
 /* 0 where it does not fit: into capacity, or into 65535 octets. */
 size_t dis_encode_data(uint8_t *out, size_t capacity, const DisData *pdu);

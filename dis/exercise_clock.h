@@ -28,6 +28,11 @@ static inline double exercise_clock_pdu_time(ExerciseClock *clock, const DisHead
     return exercise_clock_time(clock, sender[0], sender[1], header->timestamp, capture_s);
 }
 
+/* Of an instant in seconds, >= 0, from any full hour; towards the past. */
+static inline uint32_t dis_timestamp(double t_s, bool absolute)
+{
+    return (uint32_t)(fmod(t_s, 3600) / 3600 * 2147483648.0) << 1 | absolute;
+}
 static inline double dis_timestamp_seconds(uint32_t timestamp) { return (timestamp >> 1) * (3600.0 / 2147483648.0); }
 /* Seconds from one stamp to the next, the short way round the hour: -1800 .. 1800. */
 static inline double dis_timestamp_step_s(uint32_t from, uint32_t to)

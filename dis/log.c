@@ -503,7 +503,7 @@ static Status open_port(DisLog *out, const char *path, uint16_t port)
     return STATUS_OK;
 }
 
-Status dis_log_open_as_heard(DisLog *out, const char *path, int port)
+Status dis_log_open(DisLog *out, const char *path, int port)
 {
     DisLog log;
     if (port < dis_port_default || port > UINT16_MAX) return STATUS_BAD_VALUE;
@@ -516,15 +516,9 @@ Status dis_log_open_as_heard(DisLog *out, const char *path, int port)
         log.any_port = true;
     }
     log.any_port |= port == dis_port_any;
+    log.retimed = dis_log_retime(&log);
     *out = log;
     return STATUS_OK;
-}
-
-Status dis_log_open(DisLog *out, const char *path, int port)
-{
-    const Status status = dis_log_open_as_heard(out, path, port);
-    if (status == STATUS_OK) out->retimed = dis_log_retime(out);
-    return status;
 }
 
 void dis_log_close(DisLog *log)

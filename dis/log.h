@@ -37,9 +37,6 @@ enum { dis_port_any = 0, dis_port_default = -1 };
  * a capture, or cannot be read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a
  * warning. */
 Status dis_log_open(DisLog *out, const char *path, int port);
-/* The same, but packet times are believed whatever the stamps say: of a recording that a node made of what it heard,
- * so that a replay has the node's own clock. */
-Status dis_log_open_as_heard(DisLog *out, const char *path, int port);
 void   dis_log_close(DisLog *log);
 
 /* dis_log_open does this. Packet times that run at another pace than the stamps of the sender heard most are

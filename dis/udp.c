@@ -35,7 +35,7 @@ static const uint32_t skip = UINT32_MAX;
 struct DisUdp {
     int              socket, wake; /* wake: an eventfd that ends the thread; -1 in a sender */
     DisSocketAddress to;
-    char             name[dis_udp_address_size];
+    char             name[dis_udp_where_size];
 
     /* under receive */
     pthread_mutex_t  receive;
@@ -66,6 +66,12 @@ struct DisUdp {
 DisUdpConfig dis_udp_default_config(void)
 {
     return (DisUdpConfig){.port = dis_port, .ttl = 1, .queue_octets = 32 << 20};
+}
+
+void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config)
+{
+    snprintf(out, dis_udp_where_size, "%s port %d%s%s", config->address[0] ? config->address : "all addresses",
+             config->port, config->interface[0] ? " on " : "", config->interface);
 }
 
 int64_t dis_udp_now_ns(void)
@@ -307,8 +313,7 @@ static DisUdp *make(const DisUdpConfig *config)
     DisUdp *u = calloc(1, sizeof *u);
     if (!u) return NULL;
     u->socket = u->wake = -1;
-    snprintf(u->name, sizeof u->name, "%.40s port %d", config->address[0] ? config->address : "all addresses",
-             config->port);
+    dis_udp_where(u->name, config);
     pthread_mutex_init(&u->receive, NULL);
     pthread_mutex_init(&u->queue, NULL);
     pthread_cond_init(&u->turn, NULL);

@@ -25,6 +25,10 @@ typedef struct DisUdpConfig {
                                          * beyond: the oldest stay, new ones are counted lost */
 } DisUdpConfig;
 
+/* `239.1.2.3 port 3000 on eth0`, for people. */
+enum { dis_udp_where_size = 128 };
+void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config);
+
 /* Broadcast on port 3000, 1 hop, a queue of 32 MiB: 170 000 Entity States. */
 DisUdpConfig dis_udp_default_config(void);
 

@@ -30,8 +30,8 @@ static double dice(uint32_t stream, int index, double low, double high)
     return low + (high - low) * random_uniform(1, stream, 0, (uint64_t)index);
 }
 
-/* Tanks, trucks, helicopters and ships: their senders report the base, as models have it. On a ball of the Earth's size;
- * everything below the limits of what is believed. */
+/* Tanks, trucks, helicopters and ships: their senders report the base, as models have it. On a ball of the Earth's
+ * size; everything below the limits of what is believed. */
 static void make_report(DisEntityState *out, int k)
 {
     static const DisEntityType types[4] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0},
@@ -58,9 +58,12 @@ static Status crowd_open(Crowd *c, int count)
     EntityTableConfig config = entity_table_default_config();
     char              catalog[512], heat[512];
     *c = (Crowd){.count = count, .t_s = report_s, .pdu = calloc((size_t)count, sizeof *c->pdu),
-                 .octets = calloc((size_t)count, sizeof *c->octets), .state = calloc(1, sizeof *c->state), .arena = arena_create()};
+                 .octets = calloc((size_t)count, sizeof *c->octets), .state = calloc(1, sizeof *c->state),
+                 .arena = arena_create()};
     if (!c->pdu || !c->octets || !c->state || !c->arena) return STATUS_NO_MEMORY;
-    if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(heat, sizeof heat, "heat.csv")) return STATUS_BAD_VALUE;
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv") ||
+        !etc_path(heat, sizeof heat, "heat.csv"))
+        return STATUS_BAD_VALUE;
     config.capacity = count;
     Status status = catalog_open(&c->catalog, catalog, 0.01);
     if (status == STATUS_OK) status = entity_table_create(&c->table, &config, c->catalog, heat);
@@ -155,7 +158,8 @@ static void integrate(double p_ecef[3], const DisEntityState *s, double t_s)
             double v[3], v_ecef[3];
             if (node > 0) step_attitude(r, w, 0.5 * h_s);
             for (int j = 0; j < 3; j++)
-                v[j] = (double)s->velocity_mps[j] + (accelerates ? (double)s->acceleration_mps2[j] * (k + 0.5 * node) * h_s : 0);
+                v[j] = (double)s->velocity_mps[j] +
+                       (accelerates ? (double)s->acceleration_mps2[j] * (k + 0.5 * node) * h_s : 0);
             m3_mul_v3(v_ecef, r, v);
             v3_add_scaled(way, way, share[node] * h_s / 6, body ? v_ecef : v);
         }

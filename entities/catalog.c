@@ -64,8 +64,9 @@ static Status find_or_build(int *out, Catalog *catalog, const char *name, const 
     }
     char *kept = strdup(source);
     if (!kept) return STATUS_NO_MEMORY;
-    const Status status = parametric_known(source)
-                              ? STATUS_OK : model_open(catalog->model + catalog->model_count, NULL, &imported, source, sag_m);
+    const Status status =
+        parametric_known(source) ? STATUS_OK
+                                 : model_open(catalog->model + catalog->model_count, NULL, &imported, source, sag_m);
     if (status != STATUS_OK) {
         free(kept);
         return status;

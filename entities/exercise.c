@@ -1,6 +1,7 @@
 #include "entities/exercise.h"
 
 #include "dis/enumerations.h"
+#include "dis/exercise_clock.h"
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
 
@@ -69,8 +70,8 @@ static void into_axes(Kinematics *k, int algorithm)
     memcpy(k->v_mps, v, sizeof v);
 }
 
-void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cast *cast, int entity, const Kinematics *k,
-                         uint32_t appearance, double t_s)
+void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cast *cast, int entity,
+                         const Kinematics *k, uint32_t appearance, double t_s)
 {
     const CastEntity *e = &cast->entity[entity];
     Kinematics        said = *k;
@@ -161,8 +162,8 @@ static double safe_s(double limit, double error, double rate, double bend)
 }
 
 /* Whether what was said has become wrong, and when to look again if not. */
-static bool wrong(double *again_s, const Exercise *x, const Said *said, const Kinematics *truth, const JointReport *joint,
-                  int joints, double age_s)
+static bool wrong(double *again_s, const Exercise *x, const Said *said, const Kinematics *truth,
+                  const JointReport *joint, int joints, double age_s)
 {
     const Scenario *s = x->cast->scenario;
     const double    threshold_rad = s->dis.threshold_deg * rad_per_deg;
@@ -202,7 +203,8 @@ static long long ticks_until(const Exercise *x, double t_s) /* the first at or a
 
 static void send_removal(Exercise *x, int entity, double t_s)
 {
-    DisRemoveEntity pdu = {.header = link_header(&x->link, dis_pdu_remove_entity, 5, t_s), .originating = id_of(x, entity),
+    DisRemoveEntity pdu = {.header = link_header(&x->link, dis_pdu_remove_entity, 5, t_s),
+                           .originating = id_of(x, entity),
                            .receiving = id_of(x, entity), .request = (uint32_t)entity + 2};
     pdu.originating.entity = 0;
     link_pdu(&x->link, t_s, x->bytes, dis_encode_remove_entity(x->bytes, sizeof x->bytes, &pdu));
@@ -311,7 +313,8 @@ static void send_fire(Exercise *x, const CastRound *round)
     shot_kinematics(&k, x->cast, round, t_s);
     v3_sub(line, round->impact_enu, round->launch_enu);
     DisFire pdu = {.header = link_header(&x->link, dis_pdu_fire, 2, t_s), .firing = id_of(x, round->shooter),
-                   .target = id_of(x, round->target), .munition = id_of(x, round->munition), .event = event_of(x, round),
+                   .target = id_of(x, round->target), .munition = id_of(x, round->munition),
+                   .event = event_of(x, round),
                    .descriptor = descriptor_of(round), .range_m = (float)v3_length(line)};
     for (int i = 0; i < 3; i++) pdu.p_ecef[i] = k.p_ecef[i], pdu.velocity_mps[i] = (float)k.v_mps[i];
     link_pdu(&x->link, t_s, x->bytes, dis_encode_fire(x->bytes, sizeof x->bytes, &pdu));
@@ -365,8 +368,7 @@ static void send_start(Exercise *x)
     const Scenario *s = x->cast->scenario;
     double          clock_s;
     if (!*s->dis.clock || !text_to_unix_s(&clock_s, s->dis.clock)) return;
-    const uint32_t       past_hour = (uint32_t)(fmod(clock_s, 3600) / 3600 * 2147483648.0) << 1 | 1;
-    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), past_hour};
+    const DisClockTime   clock = {(uint32_t)(clock_s / 3600), dis_timestamp(clock_s, true)};
     const DisStartResume start = {.header = link_header(&x->link, dis_pdu_start_resume, 5, 0),
                                   .originating = {(uint16_t)s->dis.site, (uint16_t)s->dis.application, 0},
                                   .receiving = {65535, 65535, 65535}, .real_world = clock, .simulation = clock,

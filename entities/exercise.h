@@ -32,7 +32,7 @@ int    exercise_heard(const Exercise *exercise); /* entities that were sent */
 enum { exercise_bad_kinds = 14 };
 void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es, int kind, double t_s);
 /* Entity State of an entity with these kinematics (world axes), as its algorithm wants them; without joints. */
-void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cast *cast, int entity, const Kinematics *k,
-                         uint32_t appearance, double t_s);
+void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cast *cast, int entity,
+                         const Kinematics *k, uint32_t appearance, double t_s);
 
 #endif

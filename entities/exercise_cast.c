@@ -96,7 +96,8 @@ static void fall(CastPose *out, const CastEntity *e, double t_s)
 /* Leaning into a turn as far as it takes to feel none: tan = v^2 / (r g). */
 static void lean(double up[3], const double left[3], double speed_mps, double curvature)
 {
-    const double tan_bank = clamp(speed_mps * speed_mps * curvature / g_mps2, -2, 2), c = 1 / sqrt(1 + tan_bank * tan_bank);
+    const double tan_bank = clamp(speed_mps * speed_mps * curvature / g_mps2, -2, 2);
+    const double c = 1 / sqrt(1 + tan_bank * tan_bank);
     for (int i = 0; i < 3; i++) up[i] = c * (up[i] + tan_bank * left[i]);
 }
 
@@ -132,7 +133,8 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
         out->p_enu[2] = exercise_ground_at(slope, &cast->ground, x, y) + g->height_m;
     }
     if (e->carriage == CARRIAGE_LIFE) exercise_level_at(slope, &cast->ground, x, y); /* upright */
-    double nose[3] = {forward[0], forward[1], slope[0] * forward[0] + slope[1] * forward[1]}, up[3] = {-slope[0], -slope[1], 1};
+    double nose[3] = {forward[0], forward[1], slope[0] * forward[0] + slope[1] * forward[1]};
+    double up[3] = {-slope[0], -slope[1], 1};
     if (flies) {
         if (e->carriage == CARRIAGE_FIXED_WING) nose[2] = at.d[2] / along;
         else nose[2] -= 0.1 * fmin(speed_mps / 50, 1); /* a rotor pulls forward by leaning */
@@ -194,7 +196,8 @@ uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
     uint32_t             bits = (uint32_t)g->appearance;
     if (t_s >= e->hit_s && e->damage) {
         bits |= (uint32_t)e->damage << dis_appearance_damage_shift;
-        if (e->damage == dis_damage_destroyed) return bits | 1u << dis_appearance_flaming_bit | 1u << dis_appearance_smoke_shift;
+        if (e->damage == dis_damage_destroyed)
+            return bits | 1u << dis_appearance_flaming_bit | 1u << dis_appearance_smoke_shift;
         if (e->damage == 2) bits |= 1u << dis_appearance_smoke_shift;
     }
     if (e->carriage == CARRIAGE_LIFE) return bits;
@@ -224,7 +227,8 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
         double value = 0, slew = 0;
         if (swings && j->metric == 11) {
             value = 1.1 * sin(rate * t_s + phase), slew = 1.1 * rate * cos(rate * t_s + phase);
-            if (j->low <= j->high && (value < j->low || value > j->high)) value = clamp(value, j->low, j->high), slew = 0;
+            if (j->low <= j->high && (value < j->low || value > j->high))
+                value = clamp(value, j->low, j->high), slew = 0;
         } else if (swings) {
             value = 0.06 + 0.05 * sin(0.6 * t_s + phase), slew = 0.03 * cos(0.6 * t_s + phase);
         }
@@ -269,7 +273,8 @@ double cast_next_change(const Cast *cast, int entity, double t_s)
 void cast_marking(char marking[11], const Cast *cast, int entity)
 {
     const CastEntity *e = &cast->entity[entity];
-    const char *name = e->group < 0 ? cast->scenario->shot[cast->round[e->round].shot].name : cast->scenario->group[e->group].name;
+    const char *name = e->group < 0 ? cast->scenario->shot[cast->round[e->round].shot].name
+                                    : cast->scenario->group[e->group].name;
     char        text[scenario_name_size + 8];
     memset(marking, 0, 11);
     snprintf(text, sizeof text, "%s %u", name, e->number);

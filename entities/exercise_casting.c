@@ -39,7 +39,8 @@ static bool find_type(DisEntityType *out, const Cast *cast, const Table *catalog
         const char *model = table_text(catalog, row, name);
         bool        met   = false;
         for (int k = 0; k < row && !met; k++) met = strcmp(table_text(catalog, k, name), model) == 0;
-        if (!met && n < (int)sizeof known - 80) n += snprintf(known + n, sizeof known - (size_t)n, "%s%.64s", n ? ", " : "", model);
+        if (!met && n < (int)sizeof known - 80)
+            n += snprintf(known + n, sizeof known - (size_t)n, "%s%.64s", n ? ", " : "", model);
     }
     log_error("scenario: %s:%d: %s: type: '%s' is neither seven numbers with dots nor one of %s (etc/catalog.csv)",
               cast->scenario->path, line, list, shown, known);
@@ -128,11 +129,13 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
     const Scenario      *s = cast->scenario;
     const ScenarioGroup *g = &s->group[group];
     CastEntity e = {.force = (uint8_t)g->force, .group = group, .round = -1, .joints = -1, .hit_s = INFINITY,
-                    .rest_s = INFINITY, .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
+                    .rest_s = INFINITY,
+                    .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
     if (!find_type(&e.type, cast, types, g->line, "vehicles", g->type)) return STATUS_BAD_VALUE;
     e.carriage = carriage_of(e.type);
     if (e.carriage == CARRIAGE_MUNITION) {
-        log_error("scenario: %s:%d: vehicles: type: '%s' is a munition; those fly by a shot", s->path, g->line, g->type);
+        log_error("scenario: %s:%d: vehicles: type: '%s' is a munition; those fly by a shot", s->path, g->line,
+                  g->type);
         return STATUS_BAD_VALUE;
     }
     const bool flies = e.carriage == CARRIAGE_ROTARY || e.carriage == CARRIAGE_FIXED_WING;
@@ -165,7 +168,8 @@ static Status cast_shot(Cast *cast, int shot, int *entity, int *round, int first
                                           .fire_s = each->time_s + k * each->every_s, .impact_s = INFINITY};
         if (!each->entity) continue;
         cast->entity[*entity] = (CastEntity){
-            .type = type, .number = (uint16_t)(first_id + k), .force = (uint8_t)each->force, .carriage = CARRIAGE_MUNITION,
+            .type = type, .number = (uint16_t)(first_id + k), .force = (uint8_t)each->force,
+            .carriage = CARRIAGE_MUNITION,
             .algorithm = (uint8_t)(each->dead_reckoning ? each->dead_reckoning : s->dis.dead_reckoning), .group = -1,
             .round = *round, .joints = -1, .hit_s = INFINITY, .rest_s = INFINITY};
         cast->round[*round].munition = (*entity)++;
@@ -222,7 +226,8 @@ Status cast_create(Cast **out, const Scenario *scenario)
     cast->stop_s = calloc(groups + 1, sizeof *cast->stop_s);
     int *ids = calloc(items + 1, sizeof *ids), *first = calloc(groups + 1, sizeof *first);
 
-    Status status = cast->entity && cast->round && cast->route && cast->stop_s && ids && first ? STATUS_OK : STATUS_NO_MEMORY;
+    const bool whole = cast->entity && cast->round && cast->route && cast->stop_s && ids && first;
+    Status     status = whole ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && !scenario_ids(ids, scenario)) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = exercise_ground_create(&cast->ground, scenario);
     if (status == STATUS_OK) status = fill(cast, ids, first);

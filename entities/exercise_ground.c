@@ -58,7 +58,8 @@ double exercise_level_at(double slope[2], const ExerciseGround *ground, double x
 static void weights(double w[4], double d[4], double t)
 {
     const double s = 1 - t;
-    w[0] = s * s * s / 6, w[1] = (4 - 3 * t * t * (2 - t)) / 6, w[2] = (4 - 3 * s * s * (2 - s)) / 6, w[3] = t * t * t / 6;
+    w[0] = s * s * s / 6, w[1] = (4 - 3 * t * t * (2 - t)) / 6;
+    w[2] = (4 - 3 * s * s * (2 - s)) / 6, w[3] = t * t * t / 6;
     d[0] = -0.5 * s * s, d[1] = t * (1.5 * t - 2), d[2] = s * (2 - 1.5 * s), d[3] = 0.5 * t * t;
 }
 

@@ -1,5 +1,7 @@
 #include "entities/exercise_link.h"
 
+#include "dis/exercise_clock.h"
+
 static void put_u16(uint8_t *at, unsigned v)
 {
     at[0] = (uint8_t)(v >> 8);
@@ -9,8 +11,7 @@ static void put_u16(uint8_t *at, unsigned v)
 static uint32_t stamp(const ExerciseLink *link, double t_s)
 {
     const bool   absolute = link->scenario->dis.stamps[0] == 'a';
-    const double past_s = fmod((absolute ? fmod(link->epoch_unix_s, 3600) : link->scenario->dis.stamp_s) + t_s, 3600);
-    return (uint32_t)(past_s / 3600 * 2147483648.0) << 1 | absolute;
+    return dis_timestamp((absolute ? fmod(link->epoch_unix_s, 3600) : link->scenario->dis.stamp_s) + t_s, absolute);
 }
 
 DisHeader link_header(const ExerciseLink *link, uint8_t type, uint8_t family, double t_s)

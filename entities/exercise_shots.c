@@ -159,7 +159,8 @@ static void damage(Cast *cast, const CastRound *round)
         for (double fall_s = 0; fall_s < 120; fall_s += 0.05) {
             CastPose pose;
             cast_pose(&pose, cast, round->target, round->impact_s + fall_s);
-            const double above_m = pose.p_enu[2] - exercise_ground_at(NULL, &cast->ground, pose.p_enu[0], pose.p_enu[1]);
+            const double above_m =
+                pose.p_enu[2] - exercise_ground_at(NULL, &cast->ground, pose.p_enu[0], pose.p_enu[1]);
             if (above_m - 0.5 * g_mps2 * fall_s * fall_s > 0) continue;
             e->rest_s = round->impact_s + fall_s;
             break;
@@ -182,8 +183,8 @@ Status cast_solve_shots(Cast *cast, const int *ids, const int *first)
         if (!solve(round, cast) || (gun && !beyond_barrel(round, shot))) {
             double line[3];
             v3_sub(line, round->impact_enu, round->launch_enu);
-            log_error("scenario: %s:%d: shots: what is fired at %g s does not get there: %.0f m; see launch_mps, boost_mps, "
-                      "drag_mps2", s->path, shot->line, round->fire_s, v3_length(line));
+            log_error("scenario: %s:%d: shots: what is fired at %g s does not get there: %.0f m; see launch_mps, "
+                      "boost_mps, drag_mps2", s->path, shot->line, round->fire_s, v3_length(line));
             return STATUS_BAD_VALUE;
         }
         round->result = *shot->hit == 'e'   ? dis_result_entity_impact

@@ -97,8 +97,8 @@ typedef struct NodePose {
  * applied). */
 void model_pose(NodePose *pose, const Model *model, const double *value);
 /* Fills box, length, width, height and radius_m from nodes, parts and vertices; what a builder or importer
- * calls last. radius_m is exact for what is fixed, and an upper bound within a few per cent for what moves. STATUS_NO_MEMORY:
- * nothing is filled in. */
+ * calls last. radius_m is exact for what is fixed, and an upper bound within a few per cent for what moves.
+ * STATUS_NO_MEMORY: nothing is filled in. */
 Status model_measure(Model *model);
 void model_destroy(Model *model); /* frees and zeroes; accepts zeroes */
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,

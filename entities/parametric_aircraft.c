@@ -184,7 +184,7 @@ typedef struct Gear {
 
 static void build_gear(MeshBuilder *b, const Gear *g, int side)
 {
-    double from[3], to[3], axis[3];
+    double from[3] = {0}, to[3] = {0}, axis[3] = {0};
     v3_normalize(from, g->wheel);
     v3_normalize(to, g->stowed);
     v3_cross(axis, to, from);

@@ -11,23 +11,28 @@
 
 static const Setting group_keys[] = {
     {"name", SETTING_TEXT, GROUP(name), 0, 0, NULL, "", "marking, with the id behind it"},
-    {"type", SETTING_TEXT, GROUP(type), 0, 0, NULL, "", "kind.domain.country.category.subcategory.specific.extra, or a model of etc/catalog.csv"},
+    {"type", SETTING_TEXT, GROUP(type), 0, 0, NULL, "",
+     "kind.domain.country.category.subcategory.specific.extra, or a model of etc/catalog.csv"},
     {"id", SETTING_INT, GROUP(id), 0, 65533, NULL, "", "entity number of the first; 0: the next free one"},
     {"force", SETTING_INT, GROUP(force), 0, 255, NULL, "", "1 friendly, 2 opposing, 3 neutral"},
     {"count", SETTING_INT, GROUP(count), 1, 50000, NULL, "", "so many of them"},
     {"columns", SETTING_INT, GROUP(columns), 1, 1000, NULL, "", "side by side"},
     {"spacing_m", SETTING_DOUBLE, GROUP(spacing_m), 0, 1e4, NULL, "m", "from one to the one behind"},
     {"column_m", SETTING_DOUBLE, GROUP(column_m), 0, 1e4, NULL, "m", "from column to column"},
-    {"spread_m", SETTING_DOUBLE, GROUP(spread_m), 0, 1e4, NULL, "m", "off their places at random by so much, both ways"},
-    {"behind_m", SETTING_DOUBLE, GROUP(behind_m), -1e5, 1e5, NULL, "m", "the first is so far behind the route's beginning"},
+    {"spread_m", SETTING_DOUBLE, GROUP(spread_m), 0, 1e4, NULL, "m",
+     "off their places at random by so much, both ways"},
+    {"behind_m", SETTING_DOUBLE, GROUP(behind_m), -1e5, 1e5, NULL, "m",
+     "the first is so far behind the route's beginning"},
     {"route_m", SETTING_NUMBERS, GROUP(route_m), -50000, 50000, NULL, "m", "[[x, y], ...] east and north of the place"},
     {"loop", SETTING_BOOL, GROUP(loop), 0, 1, NULL, "", "round and round"},
     {"speed_mps", SETTING_DOUBLE, GROUP(speed_mps), 0, 2000, NULL, "m/s", ""},
     {"unsteady_m", SETTING_DOUBLE, GROUP(unsteady_m), 0, 100, NULL, "m", "ahead and behind its place, every 25 s"},
     {"heading_deg", SETTING_DOUBLE, GROUP(heading_deg), -360, 360, NULL, "deg", "of who stands, clockwise from north"},
     {"height_m", SETTING_DOUBLE, GROUP(height_m), -1000, 100000, NULL, "m", "above the ground at each point"},
-    {"start_s", SETTING_DOUBLE, GROUP(start_s), 0, 1e6, NULL, "s", "stands until then; absent: moves from the beginning"},
-    {"stop_s", SETTING_DOUBLE, GROUP(stop_s), 0, 1e6, NULL, "s", "begins to stop then; absent: at the end of the route"},
+    {"start_s", SETTING_DOUBLE, GROUP(start_s), 0, 1e6, NULL, "s",
+     "stands until then; absent: moves from the beginning"},
+    {"stop_s", SETTING_DOUBLE, GROUP(stop_s), 0, 1e6, NULL, "s",
+     "begins to stop then; absent: at the end of the route"},
     {"appears_s", SETTING_DOUBLE, GROUP(appears_s), 0, 1e6, NULL, "s", "not heard of before"},
     {"leaves_s", SETTING_DOUBLE, GROUP(leaves_s), 0, 1e6, NULL, "s", "not heard of afterwards"},
     {"leaves", SETTING_TEXT, GROUP(leaves), 0, 0, "silent|deactivated|removed", "", "how it leaves"},
@@ -35,7 +40,8 @@ static const Setting group_keys[] = {
     {"dust", SETTING_TEXT, GROUP(dust), 0, 0, "auto|none|small|medium|large", "", "trail, while it moves"},
     {"engine", SETTING_BOOL, GROUP(engine), 0, 1, NULL, "", "runs"},
     {"appearance", SETTING_INT, GROUP(appearance), 0, 2147483647, NULL, "", "more bits, as one number"},
-    {"dead_reckoning", SETTING_INT, GROUP(dead_reckoning), 0, 9, NULL, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
+    {"dead_reckoning", SETTING_INT, GROUP(dead_reckoning), 0, 9, NULL, "",
+     "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
 };
 
 static const Setting shot_keys[] = {
@@ -50,14 +56,16 @@ static const Setting shot_keys[] = {
     {"id", SETTING_INT, SHOT(id), 0, 65533, NULL, "", "its entity number; 0: the next free one"},
     {"type", SETTING_TEXT, SHOT(type), 0, 0, NULL, "", "of the munition"},
     {"force", SETTING_INT, SHOT(force), 0, 255, NULL, "", "of what flies"},
-    {"launch_m", SETTING_NUMBERS, SHOT(launch_m), -100, 100, NULL, "m", "[forward, right, down] of the shooter's origin"},
+    {"launch_m", SETTING_NUMBERS, SHOT(launch_m), -100, 100, NULL, "m",
+     "[forward, right, down] of the shooter's origin"},
     {"launch_mps", SETTING_DOUBLE, SHOT(launch_mps), 1, 5000, NULL, "m/s", "thrown out with"},
     {"boost_mps", SETTING_DOUBLE, SHOT(boost_mps), 0, 5000, NULL, "m/s", "what its motor adds"},
     {"boost_s", SETTING_DOUBLE, SHOT(boost_s), 0.01, 100, NULL, "s", "time constant of that"},
     {"drag_mps2", SETTING_DOUBLE, SHOT(drag_mps2), 0, 100, NULL, "m/s2", "what it loses"},
     {"loft_m", SETTING_DOUBLE, SHOT(loft_m), 0, 5000, NULL, "m", "above the straight line at half way"},
     {"weave_m", SETTING_DOUBLE, SHOT(weave_m), 0, 100, NULL, "m", "about it"},
-    {"hit", SETTING_TEXT, SHOT(hit), 0, 0, "entity|ground|miss", "", "the entity, the ground beside it, or past it into the air"},
+    {"hit", SETTING_TEXT, SHOT(hit), 0, 0, "entity|ground|miss", "",
+     "the entity, the ground beside it, or past it into the air"},
     {"damage", SETTING_TEXT, SHOT(damage), 0, 0, "none|slight|moderate|destroyed", "", "to who is hit"},
     {"silent_s", SETTING_DOUBLE, SHOT(silent_s), 0, 1000, NULL, "s", "its last Entity State is so long before the end"},
     {"dead_reckoning", SETTING_INT, SHOT(dead_reckoning), 0, 9, NULL, "", "algorithm 1 .. 9; 0: as dis.dead_reckoning"},
@@ -69,32 +77,44 @@ static const Setting keys[] = {
     {"scale", SETTING_DOUBLE, AT(scale), 0.0001, 1000, NULL, "", "factor of every count above 1"},
     {"place.lat_deg", SETTING_DOUBLE, AT(place.lat_deg), -89, 89, NULL, "deg", "where x and y are 0"},
     {"place.lon_deg", SETTING_DOUBLE, AT(place.lon_deg), -180, 180, NULL, "deg", ""},
-    {"place.height_m", SETTING_DOUBLE, AT(place.height_m), -400, 8000, NULL, "m", "of invented ground, above the ellipsoid"},
+    {"place.height_m", SETTING_DOUBLE, AT(place.height_m), -400, 8000, NULL, "m",
+     "of invented ground, above the ellipsoid"},
     {"place.turn_deg", SETTING_DOUBLE, AT(place.turn_deg), -360, 360, NULL, "deg", "all routes and places, clockwise"},
-    {"ground.swell_m", SETTING_DOUBLE, AT(ground.swell_m), 0, 20, NULL, "m", "of invented ground: swells 0.4 to 0.6 km long"},
-    {"ground.elevation", SETTING_TEXT, AT(ground.elevation), 0, 0, NULL, "", "files and folders of real ground, separated by commas; empty: invented"},
-    {"ground.vertical", SETTING_TEXT, AT(ground.vertical), 0, 0, "file|geoid|ellipsoid", "", "what their heights are above"},
+    {"ground.swell_m", SETTING_DOUBLE, AT(ground.swell_m), 0, 20, NULL, "m",
+     "of invented ground: swells 0.4 to 0.6 km long"},
+    {"ground.elevation", SETTING_TEXT, AT(ground.elevation), 0, 0, NULL, "",
+     "files and folders of real ground, separated by commas; empty: invented"},
+    {"ground.vertical", SETTING_TEXT, AT(ground.vertical), 0, 0, "file|geoid|ellipsoid", "",
+     "what their heights are above"},
     {"ground.geoid", SETTING_TEXT, AT(ground.geoid), 0, 0, NULL, "", "geoid grid; empty: EGM96 of proj-data"},
-    {"ground.smooth_m", SETTING_DOUBLE, AT(ground.smooth_m), 0.5, 30, NULL, "m", "bumps of real ground shorter than this are not driven"},
+    {"ground.smooth_m", SETTING_DOUBLE, AT(ground.smooth_m), 0.5, 30, NULL, "m",
+     "bumps of real ground shorter than this are not driven"},
     {"dis.version", SETTING_INT, AT(dis.version), 5, 7, NULL, "", ""},
     {"dis.exercise", SETTING_INT, AT(dis.exercise), 0, 255, NULL, "", ""},
     {"dis.site", SETTING_INT, AT(dis.site), 1, 65533, NULL, "", ""},
     {"dis.application", SETTING_INT, AT(dis.application), 1, 65533, NULL, "", ""},
     {"dis.bundle", SETTING_BOOL, AT(dis.bundle), 0, 1, NULL, "", "several PDUs a datagram"},
     {"dis.mtu", SETTING_INT, AT(dis.mtu), 576, 65000, NULL, "octets", "most of a bundle"},
-    {"dis.fillers", SETTING_BOOL, AT(dis.fillers), 0, 1, NULL, "", "an Attribute or Data PDU behind each, as some simulators send"},
-    {"dis.updates", SETTING_BOOL, AT(dis.updates), 0, 1, NULL, "", "Entity State Update between heartbeats; versions 6 and 7"},
+    {"dis.fillers", SETTING_BOOL, AT(dis.fillers), 0, 1, NULL, "",
+     "an Attribute or Data PDU behind each, as some simulators send"},
+    {"dis.updates", SETTING_BOOL, AT(dis.updates), 0, 1, NULL, "",
+     "Entity State Update between heartbeats; versions 6 and 7"},
     {"dis.stamps", SETTING_TEXT, AT(dis.stamps), 0, 0, "relative|absolute", "", ""},
     {"dis.stamp_s", SETTING_DOUBLE, AT(dis.stamp_s), 0, 3600, NULL, "s", "relative stamps begin so long past the hour"},
-    {"dis.date", SETTING_TEXT, AT(dis.date), 0, 0, NULL, "", "UTC of the beginning in a recording, 2024-06-21T18:00:00Z"},
-    {"dis.clock", SETTING_TEXT, AT(dis.clock), 0, 0, NULL, "", "a Start/Resume PDU first, with this UTC as simulation time"},
+    {"dis.date", SETTING_TEXT, AT(dis.date), 0, 0, NULL, "",
+     "UTC of the beginning in a recording, 2024-06-21T18:00:00Z"},
+    {"dis.clock", SETTING_TEXT, AT(dis.clock), 0, 0, NULL, "",
+     "a Start/Resume PDU first, with this UTC as simulation time"},
     {"dis.heartbeat_s", SETTING_DOUBLE, AT(dis.heartbeat_s), 0.1, 3600, NULL, "s", ""},
-    {"dis.threshold_m", SETTING_DOUBLE, AT(dis.threshold_m), 0.01, 1000, NULL, "m", "a report goes out when dead reckoning is off by this"},
+    {"dis.threshold_m", SETTING_DOUBLE, AT(dis.threshold_m), 0.01, 1000, NULL, "m",
+     "a report goes out when dead reckoning is off by this"},
     {"dis.threshold_deg", SETTING_DOUBLE, AT(dis.threshold_deg), 0.01, 180, NULL, "deg", ""},
     {"dis.dead_reckoning", SETTING_INT, AT(dis.dead_reckoning), 1, 9, NULL, "", "algorithm of who names none"},
     {"dis.rate_hz", SETTING_DOUBLE, AT(dis.rate_hz), 1, 1000, NULL, "Hz", "ticks of the simulator"},
-    {"dis.announce_per_s", SETTING_DOUBLE, AT(dis.announce_per_s), 1, 1e6, NULL, "1/s", "entities are first heard of at this rate, so that a crowd is no burst"},
-    {"faults.bad_every_s", SETTING_DOUBLE, AT(faults.bad_every_s), 0, 1e6, NULL, "s", "a malformed PDU, of 14 kinds in turn; 0: none"},
+    {"dis.announce_per_s", SETTING_DOUBLE, AT(dis.announce_per_s), 1, 1e6, NULL, "1/s",
+     "entities are first heard of at this rate, so that a crowd is no burst"},
+    {"faults.bad_every_s", SETTING_DOUBLE, AT(faults.bad_every_s), 0, 1e6, NULL, "s",
+     "a malformed PDU, of 14 kinds in turn; 0: none"},
     {"faults.loss", SETTING_DOUBLE, AT(faults.loss), 0, 1, NULL, "", "share of datagrams lost"},
     {"faults.duplicate", SETTING_DOUBLE, AT(faults.duplicate), 0, 1, NULL, "", "share sent twice"},
     {"faults.reorder", SETTING_DOUBLE, AT(faults.reorder), 0, 1, NULL, "", "share overtaken by the next one"},
@@ -161,7 +181,8 @@ static const SettingTable group_table = {.module = "scenario", .row = group_keys
 static const SettingTable shot_table = {.module = "scenario", .row = shot_keys, .count = shot_key_count,
                                         .line_at = offsetof(ScenarioShot, line)};
 static const SettingList lists[] = {{"vehicles", &group_table, add_group}, {"shots", &shot_table, add_shot}};
-static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists, .list_count = 2};
+static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists,
+                                   .list_count = 2};
 
 static Scenario default_scenario(void)
 {
@@ -239,7 +260,9 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
     if (!blank || !text_to_long(&id, blank + 1)) return false;
     for (int g = 0; g < scenario->group_count; g++) {
         const ScenarioGroup *each = &scenario->group[g];
-        if (strlen(each->name) != (size_t)(blank - name) || strncmp(each->name, name, (size_t)(blank - name)) != 0) continue;
+        if (strlen(each->name) != (size_t)(blank - name) ||
+            strncmp(each->name, name, (size_t)(blank - name)) != 0)
+            continue;
         if (id < ids[g] || id >= ids[g] + scenario_group_size(scenario, each)) continue;
         *group  = g;
         *member = (int)(id - ids[g]);
@@ -277,8 +300,8 @@ static bool group_fits(const Scenario *s, const ScenarioGroup *group)
     for (int i = 0; places > 1 && i < places - (group->loop ? 0 : 1); i++) {
         const double *a = &group->route_m.number[2 * i], *b = &group->route_m.number[2 * ((i + 1) % places)];
         if (hypot(a[0] - b[0], a[1] - b[1]) >= 0.1) continue;
-        log_error("scenario: %s:%d: vehicles: route_m: place %d is less than 0.1 m from the next; leave one out%s", s->path,
-                  group->line, i + 1, i == places - 1 ? ", a loop closes by itself" : "");
+        log_error("scenario: %s:%d: vehicles: route_m: place %d is less than 0.1 m from the next; leave one out%s",
+                  s->path, group->line, i + 1, i == places - 1 ? ", a loop closes by itself" : "");
         return false;
     }
     if (places > 1 && 0.25 * group->unsteady_m > 0.9 * group->speed_mps) {
@@ -300,8 +323,8 @@ static bool name_fits(const Scenario *s, const int *ids, int line, const char *k
     char shown[128];
     text_escape(shown, sizeof shown, name, strlen(name));
     const ScenarioGroup *first = s->group_count ? s->group : NULL;
-    log_error("scenario: %s:%d: shots: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line, key,
-              shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
+    log_error("scenario: %s:%d: shots: %s: there is no '%s'; an entity is called by name and id%s%.*s%s", s->path, line,
+              key, shown, first ? ", for example '" : "", first ? scenario_name_size : 0, first ? first->name : "",
               first ? " N'" : "");
     return false;
 }

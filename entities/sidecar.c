@@ -1,7 +1,6 @@
 /* entities/sidecar.c: the sidecar's YAML into plain values, every key by a table. */
 #include "entities/sidecar.h"
 
-#include <errno.h>
 #include <stdlib.h>
 #include <yaml.h>
 
@@ -681,26 +680,11 @@ Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t oc
 
 Status sidecar_read(Sidecar *out, const char *path)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        log_error("sidecar: cannot open %s: %s", path, strerror(errno));
-        return STATUS_IO;
-    }
-    Status status = STATUS_OK;
-    char *text = malloc(sidecar_max_octets + 1);
-    const size_t octets = text ? fread(text, 1, sidecar_max_octets + 1, file) : 0;
-    if (!text) {
-        status = STATUS_NO_MEMORY;
-    } else if (ferror(file)) {
-        log_error("sidecar: cannot read %s: %s", path, strerror(errno));
-        status = STATUS_IO;
-    } else if (octets > sidecar_max_octets) {
-        log_error("sidecar: %s: larger than %d octets", path, sidecar_max_octets);
-        status = STATUS_BAD_VALUE;
-    } else {
-        status = sidecar_parse(out, path, text, octets);
-    }
+    char  *text;
+    size_t octets;
+    Status status = text_read_file(&text, &octets, "sidecar", path, sidecar_max_octets);
+    if (status != STATUS_OK) return status;
+    status = sidecar_parse(out, path, text, octets);
     free(text);
-    fclose(file);
     return status;
 }

@@ -108,8 +108,8 @@ Status bench_ground_create(Landscape *out, double times_s[2], const LocalFrame *
 
     const int nx = (int)east_m + 1, ny = (int)north_m + 1;
     cover->seed = landscape_hash(seed, 2, 0);
-    status      = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m), 1,
-                                         -512, bench_ground_step_m);
+    status      = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m),
+                                         1, -512, bench_ground_step_m);
     for (int o = 0; o < octaves && status == STATUS_OK; o++)
         status = make_octave(&maker.octave[o], o, nx, ny, landscape_hash(seed, 3, 0));
     if (status != STATUS_OK) goto done;
@@ -145,6 +145,7 @@ void bench_ground_bytes(size_t *posts, size_t *pyramids, const Elevation *elevat
         const ElevationLevel *level = &elevation->level[n];
         *posts += (size_t)level->nx * (size_t)level->ny * sizeof *level->post;
         for (int k = 0; k < level->pyramid_count; k++)
-            *pyramids += (size_t)level->pyramid_nx[k] * (size_t)level->pyramid_ny[k] * sizeof **level->pyramid;
+            *pyramids += (size_t)level->pyramid_nx[k] * (size_t)level->pyramid_ny[k] *
+                         (sizeof **level->pyramid + (level->rise[k] ? sizeof **level->rise : 0));
     }
 }

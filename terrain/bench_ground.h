@@ -11,7 +11,7 @@ static const double bench_ground_step_m = 1.0 / 64;
  * any invented landscape. The same posts for any number of threads. times_s: for the posts, and for their pyramid. */
 Status bench_ground_create(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
                            Pool *pool);
-/* Bytes of posts, and of the pyramids above them. */
+/* Bytes of posts, and of the pyramids above them: of heights, and of rises. */
 void   bench_ground_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation);
 
 #endif

@@ -48,17 +48,16 @@ static inline EightInt eight_of_bytes(const uint8_t *p)
 {
     return _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)p));
 }
-static inline EightInt eight_of_u16(const uint16_t *p)
-{
-    return _mm256_cvtepu16_epi32(_mm_loadu_si128((const __m128i *)p));
-}
 static inline Eight eight_gather(const float *p, EightInt at) { return _mm256_i32gather_ps(p, at, 4); }
 
 /* Rows of eight to columns of eight, in place. */
 static inline void eight_turn(Eight r[8])
 {
     Eight a[8], b[8];
-    for (int k = 0; k < 8; k += 2) a[k] = _mm256_unpacklo_ps(r[k], r[k + 1]), a[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+    for (int k = 0; k < 8; k += 2) {
+        a[k] = _mm256_unpacklo_ps(r[k], r[k + 1]);
+        a[k + 1] = _mm256_unpackhi_ps(r[k], r[k + 1]);
+    }
     for (int k = 0; k < 8; k += 4)
         for (int half = 0; half < 2; half++) {
             b[k + 2 * half] = _mm256_shuffle_ps(a[k + half], a[k + 2 + half], 0x44);

@@ -63,8 +63,8 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
 /* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
  * footprint_m and larger so that it neither aliases nor shimmers. */
 double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
-void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
-                        const double *y_m, const float *footprint_m);
+void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
+                        const double *x_m, const double *y_m, const float *footprint_m);
 /* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
  * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. Texture
  * then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */

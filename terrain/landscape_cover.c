@@ -12,8 +12,10 @@ static const double arm_m = 10;
 /* Slope over some 20 m, so that what grows does not follow the edges of single triangles. 0 at the very rim. */
 static double slope_about(const Elevation *elevation, double x_m, double y_m)
 {
-    const double dx = elevation_height(elevation, x_m + arm_m, y_m, NULL) - elevation_height(elevation, x_m - arm_m, y_m, NULL);
-    const double dy = elevation_height(elevation, x_m, y_m + arm_m, NULL) - elevation_height(elevation, x_m, y_m - arm_m, NULL);
+    const double dx =
+        elevation_height(elevation, x_m + arm_m, y_m, NULL) - elevation_height(elevation, x_m - arm_m, y_m, NULL);
+    const double dy =
+        elevation_height(elevation, x_m, y_m + arm_m, NULL) - elevation_height(elevation, x_m, y_m - arm_m, NULL);
     const double slope = sqrt(dx * dx + dy * dy) / (2 * arm_m);
     return isfinite(slope) ? slope : 0;
 }
@@ -43,7 +45,8 @@ static Eight level_heights(const ElevationLevel *level, Lattice x, Lattice y, Ei
     const EightInt post = _mm256_set1_epi32(0xffff), none = eight_int(0), mask = _mm256_castps_si256(lanes);
     const EightInt at = _mm256_add_epi32(_mm256_mullo_epi32(y.cell, eight_int(level->nx)), x.cell);
     const EightInt south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->post, at, mask, 2);
-    const EightInt north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at, mask, 2);
+    const EightInt north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at,
+                                                       mask, 2);
     const Eight    sw = eight_of_ints(_mm256_and_si256(south, post)), se = eight_of_ints(_mm256_srli_epi32(south, 16));
     const Eight    nw = eight_of_ints(_mm256_and_si256(north, post)), ne = eight_of_ints(_mm256_srli_epi32(north, 16));
     const Eight    south_east = eight_fma(x.share, se - sw, y.share * (ne - se));
@@ -63,13 +66,15 @@ static Eight slopes_about(const Elevation *elevation, const double x_m[8], const
         const double          per_m = 1 / level->spacing_m;
         const Eight           arm = eight_all(arm_m * per_m), back = eight_all(-arm_m * per_m);
         const Lattice         x = level_cells(x_m, level->x0_m, per_m), y = level_cells(y_m, level->y0_m, per_m);
-        const Lattice         west = moved(x, back), east = moved(x, arm), south = moved(y, back), north = moved(y, arm);
+        const Lattice         west = moved(x, back), east = moved(x, arm);
+        const Lattice         south = moved(y, back), north = moved(y, arm);
         const EightInt        nx = eight_int(level->nx), ny = eight_int(level->ny), one = eight_int(1);
         /* cells 0 .. n - 2; about them and the outline */
         EightInt in = _mm256_and_si256(_mm256_cmpgt_epi32(west.cell, outside), _mm256_cmpgt_epi32(south.cell, outside));
         in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(nx, one), east.cell));
         in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(ny, one), north.cell));
-        EightInt by = _mm256_and_si256(_mm256_cmpgt_epi32(east.cell, eight_int(-2)), _mm256_cmpgt_epi32(north.cell, eight_int(-2)));
+        EightInt by = _mm256_and_si256(_mm256_cmpgt_epi32(east.cell, eight_int(-2)),
+                                       _mm256_cmpgt_epi32(north.cell, eight_int(-2)));
         by = _mm256_and_si256(by, _mm256_cmpgt_epi32(nx, west.cell));
         by = _mm256_and_si256(by, _mm256_cmpgt_epi32(ny, south.cell));
         const unsigned here = eight_bits(_mm256_castsi256_ps(in)) & left;
@@ -190,7 +195,8 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
     class = _mm256_blendv_epi8(class, eight_int(SURFACE_ROCK), _mm256_castps_si256(rock));
     int32_t found[8];
     _mm256_storeu_si256((EightInt *)found, class);
-    for (; bordered; bordered &= bordered - 1) found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
+    for (; bordered; bordered &= bordered - 1)
+        found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
     for (int k = 0; k < 8; k++)
         if (lanes >> k & 1) surface[k] = found[k];
 }
@@ -200,8 +206,8 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
 /* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
  * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. SURFACE_NONE:
  * as invented. */
-static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope, double patchy,
-                                     double woods)
+static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope,
+                                     double patchy, double woods)
 {
     const double far_m = sqrt(x_m * x_m + y_m * y_m);
     double       ellipsoid_m, dz_per_h;
@@ -263,7 +269,8 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCe
     for (int k = 0; k < 8; k++) {
         if (!(lanes >> k & 1)) continue;
         const double z_m = elevation_height(&landscape->elevation, x_m[k], y_m[k], NULL);
-        surface[k] = (int32_t)unmapped_surface(cover, x_m[k], y_m[k], z_m, (double)slope[k], (double)patchy[k], (double)woods[k]);
+        surface[k] = (int32_t)unmapped_surface(cover, x_m[k], y_m[k], z_m, (double)slope[k], (double)patchy[k],
+                                               (double)woods[k]);
         if (surface[k] == SURFACE_NONE) invented |= 1u << k;
     }
     if (invented) invented_surfaces(surface, cover, cells, x_m, y_m, slopes, invented);

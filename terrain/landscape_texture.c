@@ -37,7 +37,8 @@ static Eight fade(double wavelength_m, Eight footprint_m)
 }
 
 /* Rows of the fields that eight places lie in, along directions of their own; a smooth wave of mean 0. */
-static Eight rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const double y_m[8], double apart_m, unsigned lanes)
+static Eight rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const double y_m[8], double apart_m,
+                     unsigned lanes)
 {
     double i[8], j[8];
     float  across_x[8] = {0}, across_y[8] = {0}, wave[8];
@@ -99,13 +100,15 @@ static Eight textures(const Cover *cover, PlotCells *cells, EightInt class, cons
         Eight       share = fade(rows[k].apart_m, footprint_m);
         share = eight_and(eight_and(share, eight_and(ours, known)), eight_less(eight_all(rows[k].apart_m), seen_m));
         const unsigned some = eight_bits(eight_more(share, eight_all(0)));
-        if (some) sum = eight_fma(eight_all(0.08) * share, rows_of(cells, cover->seed, x_m, y_m, rows[k].apart_m, some), sum);
+        if (!some) continue;
+        const Eight wave = rows_of(cells, cover->seed, x_m, y_m, rows[k].apart_m, some);
+        sum = eight_fma(eight_all(0.08) * share, wave, sum);
     }
     return eight_pick(known, eight_clamp(sum, 0.6, 1.4), eight_all(1));
 }
 
-void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface, const double *x_m,
-                        const double *y_m, const float *footprint_m)
+void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
+                        const double *x_m, const double *y_m, const float *footprint_m)
 {
     const Cover *cover = landscape->cover;
     PlotCells    cells;
@@ -153,7 +156,8 @@ void cover_measure_photo(Landscape *landscape)
     int k = 0;
     while (k < p->mips - 1 && (double)p->nx[k] * p->ny[k] > most) k++;
     const double cell_m = p->cell_m * exp2(k);
-    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0}, total = 0;
+    double       sum[SURFACE_COUNT][photo_channels] = {{0}}, count[SURFACE_COUNT] = {0}, all[photo_channels] = {0},
+        total = 0;
     for (int j = 0; j < p->ny[k]; j++)
         for (int i = 0; i < p->nx[k]; i++) {
             const double x_m = p->x0_m + (i + 0.5) * cell_m, y_m = p->y0_m + (j + 0.5) * cell_m;
@@ -181,8 +185,8 @@ bool landscape_has_photo(const Landscape *landscape)
     return cover && cover->photo.mips > 0;
 }
 
-void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m, double y_m,
-                      double footprint_m)
+void landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
+                      double y_m, double footprint_m)
 {
     static const double brightest = 6; /* of a class's mean: a white roof in a dark wood */
     const Cover *cover = landscape->cover;

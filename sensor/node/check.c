@@ -1,6 +1,6 @@
 #include "sensor/node/check.h"
 
-#include "sensor/node/config.h"
+#include "sensor/node/host_run.h"
 
 #include <errno.h>
 #include <getopt.h>
@@ -39,14 +39,28 @@ static bool files_are_there(const char *path, const Config *config)
     return good;
 }
 
+static bool air_is_there(const Config *config)
+{
+    Atmosphere *atmosphere = NULL;
+    const bool  there = atmosphere_open(&atmosphere, config->weather.atmosphere) == STATUS_OK;
+    atmosphere_close(atmosphere);
+    return there;
+}
+
 static bool check_file(const char *path)
 {
-    Config config = config_default();
-    if (config_read(&config, path) != STATUS_OK || config_check(&config) != STATUS_OK ||
-        !files_are_there(path, &config))
+    static Run run; /* too large for a stack */
+    Config    *config = &run.options.config;
+    run  = (Run){0};
+    *config = config_default();
+    if (config_read(config, path) != STATUS_OK || config_check(config) != STATUS_OK) return false;
+    const Config given = *config; /* a preset fills in what it says */
+    if (run_prepare(&run) != STATUS_OK || !air_is_there(config) || !files_are_there(path, config)) {
+        log_error("check: %s: not good", path);
         return false;
+    }
     printf("%s: good\n", path);
-    config_write_given(stdout, &config);
+    config_write_given(stdout, &given);
     return true;
 }
 

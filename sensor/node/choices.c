@@ -129,7 +129,8 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
         }
     }
     if (plan->munition && config->causal)
-        choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis (exercise.aim)");
+        choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
+                   "(exercise.aim)");
     else
         choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
 }
@@ -237,7 +238,8 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
             memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
         }
     }
-    choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)", config->causal ? " now" : "");
+    choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
+               config->causal ? " now" : "");
     choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
                config->observer.range_m, config->observer.height_m);
     *out = plan;
@@ -252,7 +254,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     if (status != STATUS_OK) return status;
     if (strcmp(config->exercise.host, host_munition) == 0) {
         if (!config->causal) {
-            log_error("replay: exercise.host: munition: needs --causal; without it the host is chosen from the whole log");
+            log_error("replay: exercise.host: munition: needs --causal; without it the host is chosen from the whole "
+                      "log");
             return STATUS_BAD_VALUE;
         }
         HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
@@ -263,7 +266,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
     }
     if (*config->exercise.host) {
         if (!dis_entity_id_parse(&host, config->exercise.host)) {
-            log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition", config->exercise.host);
+            log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition",
+                      config->exercise.host);
             return STATUS_BAD_VALUE;
         }
         return plan_host(out, choices, survey, config, host);

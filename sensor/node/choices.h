@@ -40,8 +40,8 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 void choose_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Unix time of exercise time 0. */
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
-/* The exercise identifier to hear: as configured, or the one with most usable Entity States; -1: all. Causal: also where
- * there is but one, others may come. */
+/* The exercise identifier to hear: as configured, or the one with most usable Entity States; -1: all. Causal: also
+ * where there is but one, others may come. */
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);

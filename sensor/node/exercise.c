@@ -5,11 +5,11 @@
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "entities/exercise.h"
+#include "sensor/node/stop.h"
 
 #include <errno.h>
 #include <getopt.h>
 #include <netdb.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -46,13 +46,14 @@ static const char help[] =
     "  --send ADDRESS       HOST, HOST:PORT, or [IPv6]:PORT; a host, a broadcast or a multicast group; port 3000;\n"
     "                       in real time, until the scenario ends or Ctrl-C\n"
     "  --datagrams DIR      each datagram as a file in this folder\n"
-    "how\n"
+    "what\n"
     "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or seed=7;\n"
     "                       may be given several times\n"
+    "  --keys               every key of a scenario, with its range and default\n"
+    "how, with --send\n"
     "  --interface NAME     send from this network interface, such as eth0\n"
     "  --ttl N              hops of multicast, 0 .. 255 (1)\n"
-    "  --speed X            exercise seconds a second, 0.01 .. 1000, or max (1)\n"
-    "  --keys               every key of a scenario, with its range and default\n";
+    "  --speed X            exercise seconds a second, 0.01 .. 1000, or max (1)\n";
 
 /* ---- command line ----------------------------------------------------------------------------- */
 
@@ -61,8 +62,10 @@ static bool to_number(char out[dis_udp_address_size], const char *host)
     const struct addrinfo hints = {.ai_socktype = SOCK_DGRAM};
     struct addrinfo      *found = NULL;
     const int             failure = getaddrinfo(host, NULL, &hints, &found);
-    if (failure || getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0, NI_NUMERICHOST) != 0) {
-        log_error("exercise: --send: no address is known for '%s': %s; give one in numbers", host, gai_strerror(failure));
+    if (failure || getnameinfo(found->ai_addr, found->ai_addrlen, out, dis_udp_address_size, NULL, 0,
+                               NI_NUMERICHOST) != 0) {
+        log_error("exercise: --send: no address is known for '%s': %s; give one in numbers", host,
+                  gai_strerror(failure));
         if (!failure) freeaddrinfo(found);
         return false;
     }
@@ -127,9 +130,13 @@ static int parse(Options *o, int argc, char **argv)
         {"out", 1, NULL, OUT},   {"send", 1, NULL, SEND},  {"set", 1, NULL, SET},    {"datagrams", 1, NULL, DATAGRAMS},
         {"ttl", 1, NULL, TTL},   {"speed", 1, NULL, SPEED}, {"keys", 0, NULL, KEYS}, {"interface", 1, NULL, INTERFACE},
         {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    optind = 0; /* start anew */
+    const char *of_sending = NULL; /* an option that means nothing without --send */
+    optind = 0;                    /* start anew */
     for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
         bool ok = true;
+        if (option == INTERFACE) of_sending = "interface";
+        if (option == TTL) of_sending = "ttl";
+        if (option == SPEED) of_sending = "speed";
         switch (option) {
         case OUT: o->out = optarg; break;
         case SEND: o->send = optarg; break;
@@ -159,6 +166,10 @@ static int parse(Options *o, int argc, char **argv)
         fputs("usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS); see `pitviper exercise --help`\n", stderr);
         return 1 + 2;
     }
+    if (of_sending && !o->send) {
+        log_error("exercise: --%s is of datagrams that are sent: give --send ADDRESS too, or leave it out", of_sending);
+        return 1 + 2;
+    }
     o->scenario = argv[optind];
     return !o->send || parse_address(&o->udp, o->send) ? 0 : 1 + 2;
 }
@@ -176,20 +187,26 @@ static bool apply_set(Scenario *scenario, const char *text)
     return scenario_set(scenario, key, equals + 1, "--set") == STATUS_OK;
 }
 
-/* A file, or a name among those that come with the program. */
+static bool is_file(const char *path)
+{
+    struct stat about;
+    return stat(path, &about) == 0 && !S_ISDIR(about.st_mode);
+}
+
+/* A file, or a name among those that come with the program; a folder of that name is neither. */
 static Status read_scenario(Scenario *scenario, const Options *o)
 {
     char path[path_size], name[256];
     snprintf(path, sizeof path, "%s", o->scenario);
-    if (access(path, F_OK) != 0 && !strchr(o->scenario, '/') && !strchr(o->scenario, '.') && strlen(o->scenario) < 200) {
+    if (!is_file(path) && !strchr(o->scenario, '/') && !strchr(o->scenario, '.') && strlen(o->scenario) < 200) {
         snprintf(name, sizeof name, "scenarios/%s.yaml", o->scenario);
         char bundled[path_size];
-        if (etc_path(bundled, sizeof bundled, name) && access(bundled, F_OK) == 0) memcpy(path, bundled, sizeof path);
-        else {
-            log_error("exercise: there is no file '%s' and no scenario of that name; `pitviper exercise --help` lists them",
-                      o->scenario);
+        if (!etc_path(bundled, sizeof bundled, name) || !is_file(bundled)) {
+            log_error("exercise: there is no file '%s' and no scenario of that name; `pitviper exercise --help` lists "
+                      "them", o->scenario);
             return STATUS_BAD_VALUE;
         }
+        memcpy(path, bundled, sizeof path);
     }
     return scenario_read(scenario, path);
 }
@@ -231,29 +248,11 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
 
 /* ---- the run ---------------------------------------------------------------------------------- */
 
-static volatile sig_atomic_t stop_asked;
-
-static void ask_to_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-}
-
-/* The second signal ends the program the hard way. SIGINT counts even where it was ignored: so shells start what runs
- * in the background of a script. nohup's SIGHUP stays ignored. */
-static void catch_signals(void)
-{
-    struct sigaction action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND}, before;
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
-}
-
-/* Until the wall clock says `until_s`; a signal ends it. At once when that is past: what is due is sent, late or not. */
+/* Until the wall clock says `until_s`; a signal ends it. At once when that is past: what is due is sent, late or
+ * not. */
 static void wait_until(double until_s)
 {
-    while (!stop_asked) {
+    while (!stop_asked()) {
         const double left_s = until_s - wall_clock_s();
         if (!(left_s > 0)) return;
         const double          part_s = fmin(left_s, 0.1);
@@ -287,9 +286,9 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
     const bool   terminal = isatty(STDERR_FILENO);
     const double begun_s = wall_clock_s();
     double       shown_s = begun_s, time_s = 0;
-    for (bool more = true; more && !stop_asked;) {
+    for (bool more = true; more && !stop_asked();) {
         if (run->udp && isfinite(speed)) wait_until(begun_s + exercise_time(exercise) / speed);
-        if (stop_asked) break;
+        if (stop_asked()) break;
         time_s = exercise_time(exercise);
         more   = exercise_step(exercise);
         if (terminal && wall_clock_s() - shown_s >= 1) {
@@ -350,7 +349,7 @@ int exercise_command(int argc, char **argv)
     status = scenario_check(&scenario);
     if (status == STATUS_OK) status = cast_create(&cast, &scenario);
     if (status == STATUS_OK) {
-        catch_signals();
+        stop_by_signals();
         const double epoch_unix_s = epoch_of(&scenario, o.send != NULL);
         status = open_outputs(&run, &o, epoch_unix_s);
         if (status == STATUS_OK) status = play(&run, cast, epoch_unix_s, o.speed);
@@ -360,7 +359,8 @@ int exercise_command(int argc, char **argv)
     if (run.udp) {
         const DisUdpCounters counters = dis_udp_counters(run.udp);
         if (counters.send_failed)
-            log_warn("exercise: %llu of %llu datagrams were not taken by the network", (unsigned long long)counters.send_failed,
+            log_warn("exercise: %llu of %llu datagrams were not taken by the network",
+                     (unsigned long long)counters.send_failed,
                      (unsigned long long)(counters.sent + counters.send_failed));
         dis_udp_close(run.udp);
     }

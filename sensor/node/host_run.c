@@ -36,7 +36,8 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
     size_t n;
     config_text(text, sizeof text, &o->config);
     n = strlen(text);
-    for (int i = 0; i < o->host_count; i++) n += (size_t)snprintf(text + n, sizeof text - n, "host=%.32s\n", o->host[i]);
+    for (int i = 0; i < o->host_count; i++)
+        n += (size_t)snprintf(text + n, sizeof text - n, "host=%.32s\n", o->host[i]);
     return sha256_bytes(out, text, n);
 }
 
@@ -116,7 +117,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
-              .effects = result->effects, .render = result->counters, .stage_count = session_stages, .stage = session_stage_name,
+              .effects = result->effects, .render = result->counters, .stage_count = session_stages,
+              .stage = session_stage_name,
               .stage_ms = stage_ms};
     const Status status = record_write_run(path, &record);
     free(hash);

@@ -5,8 +5,8 @@
 #include "sensor/node/options.h"
 #include "sensor/node/session.h"
 
-/* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so that
- * a part of a run equals that part of the whole. */
+/* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
+ * that a part of a run equals that part of the whole. */
 typedef struct FrameGrid {
     double origin, rate_hz;
 } FrameGrid;

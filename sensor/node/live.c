@@ -1,15 +1,15 @@
 /* sensor/node/live.c: listen, choose, then one frame after the other by the clock. */
 #include "sensor/node/live.h"
 
+#include "dis/exercise_clock.h"
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
-#include <errno.h>
 #include <libgen.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -21,8 +21,8 @@ static const int64_t look_ns = 100000000; /* a signal may come to another thread
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
-    DisRecorder *recorder;          /* NULL: none, or given up */
-    char         where[160];        /* `239.1.2.3 port 3000 on eth0` */
+    DisRecorder *recorder;          /* NULL: none */
+    char         where[dis_udp_where_size];
     LiveCounters counters;
     /* what was heard before the choices, each datagram its own memory */
     DisDatagram *heard;
@@ -39,28 +39,9 @@ typedef struct Live {
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
 
-static volatile sig_atomic_t stop_asked;
-
-static void ask_to_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-}
-
-/* The first signal ends the frame and the run, the second the program. SIGINT counts even where it was ignored: so shells
- * start what runs in the background of a script. nohup's SIGHUP stays ignored. */
-static void catch_signals(void)
-{
-    struct sigaction before, action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
-}
-
 static bool over(const Live *l)
 {
-    return stop_asked || wall_clock_s() - l->begun_s >= l->run.options.for_s;
+    return stop_asked() || wall_clock_s() - l->begun_s >= l->run.options.for_s;
 }
 
 /* ---- what arrives ------------------------------------------------------------------------------ */
@@ -112,8 +93,8 @@ static void say_troubles(Live *l)
     const double now_s = wall_clock_s();
     read_counters(l);
     if (!l->silence_said && now_s - l->heard_s >= silent_s) {
-        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o /tmp/heard.pcapng` shows what "
-                 "comes at all; --port, --address and --interface say where", l->where, silent_s);
+        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o /tmp/heard.pcapng` shows "
+                 "what comes at all; --port, --address and --interface say where", l->where, silent_s);
         l->silence_said = true;
     }
     if (lost(&l->counters) > l->lost_said && now_s - l->lost_said_s >= remind_s) {
@@ -124,7 +105,8 @@ static void say_troubles(Live *l)
         l->lost_said_s = now_s;
     }
     if (l->counters.frames_late > l->late_said && now_s - l->late_said_s >= remind_s) {
-        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate helps",
+        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate "
+                 "helps",
                  (unsigned long long)l->counters.frames_late);
         l->late_said   = l->counters.frames_late;
         l->late_said_s = now_s;
@@ -175,7 +157,8 @@ static Status listen_first(bool *heard, Live *l)
                 l->run.until_s = opening_until_s(&datagram, config);
                 until_ns       = dis_unix_ns_until(l->run.until_s);
                 if (l->heard_count > opening_before + 1) forget_heard(l, l->heard_count - opening_before - 1);
-                log_info("run: heard the first entity; listening for %g s (exercise.listen_s)", config->exercise.listen_s);
+                log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
+                         config->exercise.listen_s);
             } else if (l->heard_count >= 4 * opening_before) {
                 forget_heard(l, l->heard_count - opening_before);
             }
@@ -195,12 +178,6 @@ static Status listen_first(bool *heard, Live *l)
 
 /* ---- publishing -------------------------------------------------------------------------------- */
 
-/* Seconds past the hour as a relative stamp. */
-static uint32_t stamp_of(double unix_s)
-{
-    return (uint32_t)(int64_t)(fmod(unix_s, 3600) / 3600 * 2147483648.0) << 1;
-}
-
 static void publish_frame(void *user, const FrameRecord *frame)
 {
     Live         *l      = user;
@@ -209,8 +186,9 @@ static void publish_frame(void *user, const FrameRecord *frame)
     const bool    truth = strcmp(config->publish.dis, "truth") == 0;
     const DisRecordSender sender = {.version = l->first.version,
                                     .exercise = (uint8_t)(l->run.exercise >= 0 ? l->run.exercise : l->first.exercise),
-                                    .site = (uint16_t)config->node.site, .application = (uint16_t)config->node.application,
-                                    .timestamp = stamp_of(player_arrival_s(l->player, frame->time_s))};
+                                    .site = (uint16_t)config->node.site,
+                                    .application = (uint16_t)config->node.application,
+                                    .timestamp = dis_timestamp(player_arrival_s(l->player, frame->time_s), false)};
     for (int b = 0; b < BAND_COUNT; b++)
         if (l->run.bands >> b & 1) dis_udp_send(l->udp, pdu, dis_record_frame(pdu, &sender, frame, (Band)b, truth));
 }
@@ -282,13 +260,14 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o      = &run->options;
     Status         status = STATUS_OK;
     double         last   = -1; /* number of the last frame */
-    (void)plan;
+    const double   from_s = fmax(plan->start_s, o->config.exercise.from_s); /* NaN: none */
+    const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player      = player;
     l->rate_from_s = wall_clock_s();
     while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
         const double now_s  = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
-        const double n      = fmax(newest, last + 1);
+        const double n      = fmax(fmax(newest, last + 1), first);
         const double t_s    = frame_grid_s(grid, n);
         if (t_s > o->config.exercise.to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
@@ -315,7 +294,7 @@ static Status open_network(Live *l)
 {
     Config      *config = &l->run.options.config;
     DisUdpConfig udp    = dis_udp_default_config();
-    char         comment[224];
+    char         comment[dis_udp_where_size + 40];
     uint8_t      to[16];
     if (config->exercise.port == dis_port_any) {
         log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
@@ -327,8 +306,7 @@ static Status open_network(Live *l)
     memcpy(udp.interface, config->network.interface, sizeof udp.interface);
     udp.ttl          = config->network.ttl;
     udp.queue_octets = config->network.queue_mb << 20;
-    snprintf(l->where, sizeof l->where, "%s port %d%s%s", udp.address[0] ? udp.address : "all addresses", udp.port,
-             udp.interface[0] ? " on " : "", udp.interface);
+    dis_udp_where(l->where, &udp);
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
@@ -351,7 +329,8 @@ static Status run_node(Live *l)
     if (status != STATUS_OK || !heard) {
         conclude(l);
         if (status == STATUS_OK)
-            log_info("run: ended before the first frame: %llu datagrams heard", (unsigned long long)l->counters.datagrams);
+            log_info("run: ended before the first frame: %llu datagrams heard",
+                     (unsigned long long)l->counters.datagrams);
         return status;
     }
     status = run_survey(&l->run, &l->run.view);
@@ -360,8 +339,8 @@ static Status run_node(Live *l)
              (unsigned long long)l->counters.datagrams, (unsigned long long)l->run.own,
              (unsigned long long)lost(&l->counters), (unsigned long long)l->counters.frames_late);
     if (l->counters.files_failed || l->counters.files_left_out)
-        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or --no-files "
-                 "leaves more time", (unsigned long long)l->counters.files_left_out,
+        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
+                 "--no-files leaves more time", (unsigned long long)l->counters.files_left_out,
                  (unsigned long long)l->counters.files_failed);
     return status;
 }
@@ -381,7 +360,7 @@ int run_command(int argc, char **argv)
     if (*name) l->run.log_name = basename(name);
     l->late_said_s = l->lost_said_s = -INFINITY;
 
-    catch_signals();
+    stop_by_signals();
     thread_flush_denormals();
     const Status status = run_node(l);
     dis_recorder_close(l->recorder);

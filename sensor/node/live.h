@@ -1,5 +1,5 @@
-/* sensor/node/live.h: `pitviper run`: a node on a DIS exercise. Its frames are those that `replay --causal` makes of its
- * recording, to the bit: the same functions, asked at the same exercise times, by the same arrival times. */
+/* sensor/node/live.h: `pitviper run`: a node on a DIS exercise. Its frames are those that `replay --causal` makes of
+ * its recording, to the bit: the same functions, asked at the same exercise times, by the same arrival times. */
 #ifndef SENSOR_NODE_LIVE_H
 #define SENSOR_NODE_LIVE_H
 

@@ -1,8 +1,8 @@
 /* sensor/node/opening.h: what a causal run makes its choices from: what was heard up to exercise.listen_s after the
  * first usable Entity State. A live node and `replay --causal` of its recording come to the same by the same rule.
  *
- * The exercise begins with that Entity State, or at most opening_before datagrams earlier (a Start/Resume that tells the
- * time of day comes first): nobody has to keep more of a long silence. */
+ * The exercise begins with that Entity State, or at most opening_before datagrams earlier (a Start/Resume that tells
+ * the time of day comes first): nobody has to keep more of a long silence. */
 #ifndef SENSOR_NODE_OPENING_H
 #define SENSOR_NODE_OPENING_H
 

@@ -5,7 +5,8 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, HELP, KEY };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, HELP,
+      KEY };
 
 static const char *const names[] = {"replay", "run"};
 
@@ -72,8 +73,8 @@ static void print_help(CommandName command)
         const struct Row *row = &rows[i];
         char              left[40];
         if (!(row->where >> command & 1)) continue;
-        snprintf(left, sizeof left, "  --%s%s%s%s", row->name, row->argument ? " " : "", row->argument ? row->argument : "",
-                 row->help ? "" : ",");
+        snprintf(left, sizeof left, "  --%s%s%s%s", row->name, row->argument ? " " : "",
+                 row->argument ? row->argument : "", row->help ? "" : ",");
         if (!row->help) { /* a pair on one line */
             printf("%s", left);
             continue;
@@ -232,7 +233,8 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
         }
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
-        if (command == COMMAND_RUN) log_error("options: '%s' is none; a node listens, it is `replay` that takes a log", argv[optind]);
+        if (command == COMMAND_RUN)
+            log_error("options: '%s' is none; a node listens, it is `replay` that takes a log", argv[optind]);
         fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
                 command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
         return 1 + 2;

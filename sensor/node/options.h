@@ -12,7 +12,7 @@ typedef struct Options {
     CommandName command;
     const char *log, *out, *isa;
     int         threads, host_count, frames; /* frames: stop after so many; 0: never */
-    double      speed, for_s;   /* exercise seconds a second, INFINITY: as fast as it goes; stop after, INFINITY: never */
+    double      speed, for_s;   /* exercise seconds a second, INFINITY: as fast as it goes; stop after so long */
     bool        no_skip;
     const char *host[options_hosts_max]; /* several of them, ids; one is in the configuration */
     Config      config;

@@ -1,4 +1,5 @@
-/* sensor/node/patience.h: a place that takes no files while a live node goes on: said once, tried again now and then. */
+/* sensor/node/patience.h: a place that takes no files while a live node goes on: said once, tried again now and
+ * then. */
 #ifndef SENSOR_NODE_PATIENCE_H
 #define SENSOR_NODE_PATIENCE_H
 
@@ -13,18 +14,18 @@ typedef struct Patience {
 
 static const double patience_s = 10;
 
-/* Whether to try now. What is tried again says nothing of its own: patience_over says how it went. */
+/* Whether to try now. What is tried again in this thread says nothing of its own: patience_over says how it went. */
 static inline bool patience_due(const Patience *p)
 {
     const bool due = wall_clock_s() >= p->off_s;
-    if (due && p->failed) log_set_level((LogLevel)(LOG_ERROR + 1));
+    if (due && p->failed) log_hush(true);
     return due;
 }
 
 /* After a try, with its status; after none, with STATUS_IO. */
 static inline void patience_over(Patience *p, bool tried, Status status)
 {
-    if (tried && p->failed) log_set_level(LOG_INFO);
+    if (tried) log_hush(false);
     if (status == STATUS_OK) {
         if (p->failed) log_info("session: %s again; %d frames lack them", p->what, p->lacking);
         p->failed = false;

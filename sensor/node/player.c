@@ -146,7 +146,8 @@ static void note_munition(Player *player, const uint8_t *pdu, size_t octets)
     enum { id_octet = 12, kind_octet = 20 };
     if (octets <= kind_octet || pdu[kind_octet] != dis_kind_munition) return;
     const uint8_t    *at = pdu + id_octet;
-    const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]), (uint16_t)(at[4] << 8 | at[5])};
+    const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]),
+                            (uint16_t)(at[4] << 8 | at[5])};
     for (uint64_t i = 0; i < player->munitions && i < munitions_kept; i++)
         if (dis_entity_id_compare(player->munition[i], id) == 0) return;
     player->munition[player->munitions++ % munitions_kept] = id;

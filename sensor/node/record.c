@@ -3,9 +3,9 @@
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/node/stop.h"
 
 #include <getopt.h>
-#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -88,27 +88,6 @@ static int parse(Options *o, int argc, char **argv)
     return 0;
 }
 
-/* ---- when to stop ------------------------------------------------------------------------------------ */
-
-static volatile sig_atomic_t stop_asked;
-
-static void ask_to_stop(int number)
-{
-    (void)number;
-    stop_asked = 1;
-}
-
-/* The second signal ends the program the hard way, should the disk hang. SIGINT counts even where it was ignored: so
- * shells start what runs in the background of a script. nohup's SIGHUP stays ignored. */
-static void catch_signals(void)
-{
-    struct sigaction before, action = {.sa_handler = ask_to_stop, .sa_flags = (int)SA_RESETHAND};
-    sigemptyset(&action.sa_mask);
-    sigaction(SIGINT, &action, NULL);
-    sigaction(SIGTERM, &action, NULL);
-    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
-}
-
 /* ---- recording --------------------------------------------------------------------------------------- */
 
 typedef struct Recording {
@@ -159,7 +138,7 @@ static Status record(Recording *r, double for_s)
     const double  end_s = r->begun_s + for_s;
     Status        status = STATUS_OK;
     bool          more = false;
-    while (status == STATUS_OK && !stop_asked && r->left != 0) {
+    while (status == STATUS_OK && !stop_asked() && r->left != 0) {
         const double now_s = wall_clock_s();
         if (now_s >= end_s) break;
         if (terminal && now_s - r->shown_s >= show_s) show_progress(r, now_s);
@@ -179,27 +158,20 @@ static Status record(Recording *r, double for_s)
     return status;
 }
 
-/* The comment of the file, and what is said first. */
-static void describe(char *out, size_t out_size, const DisUdpConfig *config)
-{
-    snprintf(out, out_size, "%s port %d%s%s", config->address[0] ? config->address : "all addresses", config->port,
-             config->interface[0] ? " on " : "", config->interface);
-}
-
 int record_command(int argc, char **argv)
 {
     Options   o = {.for_s = INFINITY, .count = -1, .udp = dis_udp_default_config()};
     Recording r = {.left = -1};
-    char      where[160], comment[200];
+    char      where[dis_udp_where_size], comment[dis_udp_where_size + 40];
     uint8_t   to[16];
 
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
-    catch_signals();
+    stop_by_signals();
     /* The socket first: were it refused with the file open, an older recording would be gone for nothing. What arrives
      * until the file is there waits. */
     if (dis_udp_open(&r.udp, &o.udp) != STATUS_OK) return 1;
-    describe(where, sizeof where, &o.udp);
+    dis_udp_where(where, &o.udp);
     snprintf(comment, sizeof comment, "pitviper record: %s", where);
     if (dis_recorder_open(&r.recorder, o.out, comment) != STATUS_OK) {
         dis_udp_close(r.udp);

@@ -115,7 +115,8 @@ static Status open_log(Run *run, DisLog *log)
         choice_add(&run->choices, "port: any that carries DIS, nothing went to 3000 (exercise.port)");
     run->own = (uint64_t)opening_drop_own(log, &o->config);
     if (run->own > 0)
-        choice_add(&run->choices, "own: %llu datagrams of %d:%d are this node's, left out (node.site, node.application)",
+        choice_add(&run->choices, "own: %llu datagrams of %d:%d are this node's, left out (node.site, "
+                   "node.application)",
                    (unsigned long long)run->own, o->config.node.site, o->config.node.application);
     run->view = heard = *log;
     const bool starts = !o->config.causal || opening_of(&run->view, &heard, &run->until_s, log, &o->config);

@@ -98,7 +98,8 @@ typedef struct FrameDone {
     RenderCounters counters;
 } FrameDone;
 
-/* Hash, picture files and the line of truth. Live, the files are handed over, and a disk that takes nothing ends nothing. */
+/* Hash, picture files and the line of truth. Live, the files are handed over, and a disk that takes nothing ends
+ * nothing. */
 static Status write_files(char hash[sha256_text_size], Session *s, const FrameFiles *files, FrameRecord *record)
 {
     const bool live = s->shared->live;
@@ -194,8 +195,8 @@ static Status open_detectors(Chain *chain[BAND_COUNT], const SessionShared *shar
     Status        status = STATUS_OK;
     for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
         if (shared->sensors->has[b])
-            status = chain_create(&chain[b], &shared->sensors->preset[b], config->sensor.width_px, config->sensor.height_px,
-                                  places, (uint64_t)config->seed);
+            status = chain_create(&chain[b], &shared->sensors->preset[b], config->sensor.width_px,
+                                  config->sensor.height_px, places, (uint64_t)config->seed);
     return status;
 }
 
@@ -257,7 +258,8 @@ static Status open_session(Session *s)
     return shared->live && config->publish.files ? open_writer(s) : STATUS_OK;
 }
 
-Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player, const char *folder)
+Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
+                    const char *folder)
 {
     Session *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;

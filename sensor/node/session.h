@@ -36,7 +36,7 @@ typedef struct SessionResult {
     int     frames;
     int     listed;
     int     buried;                   /* frames whose eye was below the ground */
-    int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; known when closed */
+    int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */
@@ -48,7 +48,8 @@ typedef struct SessionResult {
 typedef struct Session Session;
 
 /* Prepares the folder `out` (frames, profiles, truth.jsonl). The player and shared must outlive the session. */
-Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player, const char *folder);
+Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
+                    const char *folder);
 /* Everything up to t_s, then the frame. t_s must not decrease. shown: false when the host is not there. */
 Status session_frame(bool *shown, Session *session, int number, double t_s);
 /* So far. */

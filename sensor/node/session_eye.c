@@ -4,7 +4,8 @@
 #include "dis/enumerations.h"
 #include "sensor/node/scene_rate.h"
 
-enum { expire_ticks = seeker_ticks_per_s / 10 }; /* nobody sees the silent meanwhile: poses and snapshots leave them out */
+/* nobody sees the silent meanwhile: poses and snapshots leave them out */
+enum { expire_ticks = seeker_ticks_per_s / 10 };
 
 /* The middle of the aim at t_s; false when it is not there. */
 static bool aim_pose(double p_ecef[3], const Session *s, double t_s)

@@ -1,5 +1,5 @@
-/* sensor/publish/dis_records.h: what the seeker sees, as Data PDUs (type 20) on the exercise: one a frame and band, never
- * more than 1400 octets, to all (0xFFFF), originating site:application:0, request 0.
+/* sensor/publish/dis_records.h: what the seeker sees, as Data PDUs (type 20) on the exercise: one a frame and band,
+ * never more than 1400 octets, to all (0xFFFF), originating site:application:0, request 0.
  *
  * Ids of datums are this program's own, experimental, registered with nobody.
  * Numbers are big-endian as all of DIS; f32 and f64 are IEEE 754; NaN: not computed.
@@ -52,7 +52,7 @@ typedef struct DisRecordSender {
 } DisRecordSender;
 
 /* One frame's PDU of one band. Returns its octets, at most dis_smallest_mtu. */
-size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame, Band band,
-                        bool truth);
+size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
+                        Band band, bool truth);
 
 #endif

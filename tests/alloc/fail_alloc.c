@@ -107,7 +107,8 @@ static bool fails(const void *caller)
         length = snprintf(line, sizeof line, "failed %016llx\n", (unsigned long long)place);
     } else if (!has_chosen && is_new(place)) {
         length = snprintf(line, sizeof line, "%016llx", (unsigned long long)place);
-        for (int i = 0; i < depth; i++) length += snprintf(line + length, sizeof line - (size_t)length, " %lx", (long)chain[i]);
+        for (int i = 0; i < depth; i++)
+            length += snprintf(line + length, sizeof line - (size_t)length, " %lx", (long)chain[i]);
         line[length++] = '\n';
     }
     say(line, length);

@@ -1,5 +1,5 @@
-/* The harness of benchmarks: what it says of times it was given, what it refuses, and that a broken promise shows in the
- * table, the file and the exit code. */
+/* The harness of benchmarks: what it says of times it was given, what it refuses, and that a broken promise shows in
+ * the table, the file and the exit code. */
 #include "tests/check.h"
 
 static int    works[2];

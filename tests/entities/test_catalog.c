@@ -103,7 +103,9 @@ static void many_rows_in_the_worst_order(void **state)
     CHECK(text);
     at = stpcpy(at, "type,model,origin\n");
     for (int i = 0; i < rows; i++)
-        at = stpcpy(at, i < rows / 2 ? "2,unknown,base\n" : i < rows - 1 ? "2.1,unknown,base\n" : "2.2,marker,centre\n");
+        at = stpcpy(at, i < rows / 2   ? "2,unknown,base\n"
+                        : i < rows - 1 ? "2.1,unknown,base\n"
+                                       : "2.2,marker,centre\n");
     Catalog     *catalog;
     const double begun_s = wall_clock_s();
     CHECK(open_text(&catalog, text) == STATUS_OK);

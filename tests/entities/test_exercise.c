@@ -144,7 +144,8 @@ static void keeps_its_promise(const char *set)
             const double spin_rps = v3_length(truth.w_body_rps), limit_m = scenario.dis.threshold_m;
             const double bent_mps2 = dead_reckoning_in_body_axes(e->algorithm) ? spin_rps * v3_length(truth.v_mps) : 0;
             const double unknown_mps2 = 2 * v3_length(truth.a_mps2) + bent_mps2 + 2;
-            const double turn_rps = dead_reckoning_turns(e->algorithm) ? sqrt(2 * 0.5 * threshold_rad) : spin_rps + 0.05;
+            const double turn_rps =
+                dead_reckoning_turns(e->algorithm) ? sqrt(2 * 0.5 * threshold_rad) : spin_rps + 0.05;
             /* an update keeps the rates of the last Entity State while they differ by less than this */
             const double stale_rps = scenario.dis.updates ? 0.1 : 0;
             if (!(v3_length(off) <= limit_m + sqrt(2 * unknown_mps2 * limit_m) * tick_s))
@@ -160,7 +161,8 @@ static void keeps_its_promise(const char *set)
         CHECK(entity_table_snapshot(&f.snapshot, f.table, now_s, f.arena) == STATUS_OK);
         for (int i = 0; i < cast->entity_count; i++) {
             JointReport joint[cast_max_joints];
-            const int   joints = cast_joints(joint, cast, i, now_s), at = snapshot_find(&f.snapshot, entity_id(cast->entity[i].number));
+            const int   joints = cast_joints(joint, cast, i, now_s);
+            const int   at = snapshot_find(&f.snapshot, entity_id(cast->entity[i].number));
             if (joints == 0 || at < 0) continue;
             const SnapshotEntity *seen = &f.snapshot.entity[at];
             const Model          *model = catalog_model(f.catalog, seen->model);
@@ -168,7 +170,8 @@ static void keeps_its_promise(const char *set)
             double               *value = calloc((size_t)model->node_count, sizeof *value);
             for (int n = 0; n < model->node_count; n++)
                 for (int j = 0; j < joints; j++)
-                    if (model->node[n].dis_class + model->node[n].dis_metric == joint[j].parameter) value[n] = joint[j].value;
+                    if (model->node[n].dis_class + model->node[n].dis_metric == joint[j].parameter)
+                        value[n] = joint[j].value;
             model_pose(want, model, value);
             for (int n = 0; n < model->node_count; n++) {
                 double turn[9];
@@ -189,14 +192,15 @@ static void keeps_its_promise(const char *set)
     }
     CHECK(looks > 8 * scenario.duration_s * scenario.dis.rate_hz);
     /* and it is no better than it has to be: thresholds are used, not ticks */
-    CHECK(worst_m > 0.8 * scenario.dis.threshold_m && worst_rad > 0.6 * threshold_rad && worst_joint_rad > 0.5 * threshold_rad);
+    CHECK(worst_m > 0.8 * scenario.dis.threshold_m && worst_rad > 0.6 * threshold_rad &&
+          worst_joint_rad > 0.5 * threshold_rad);
     for (int i = 0; i < cast->entity_count; i++) {
         const int number = cast->entity[i].number;
         CHECK(heard.reports[number] >= 3);
         CHECK(heard.longest_s[number] <= scenario.dis.heartbeat_s + tick_s);
     }
-    printf("%-60s %llu datagrams, worst %.3f m, %.2f deg, joints %.2f deg\n", set, (unsigned long long)heard.datagrams, worst_m,
-           worst_rad / rad_per_deg, worst_joint_rad / rad_per_deg);
+    printf("%-60s %llu datagrams, worst %.3f m, %.2f deg, joints %.2f deg\n", set, (unsigned long long)heard.datagrams,
+           worst_m, worst_rad / rad_per_deg, worst_joint_rad / rad_per_deg);
     exercise_destroy(exercise);
     cast_destroy(cast);
     scenario_destroy(&scenario);
@@ -213,8 +217,8 @@ static void promise_by_algorithm(void **state)
     }
 }
 
-/* Algorithm 8 knows of turns what 4 knows, in other axes: it takes as many reports. A wrong acceleration in body axes (that
- * of the world, with w x v in it) keeps the promise and takes half as many again. */
+/* Algorithm 8 knows of turns what 4 knows, in other axes: it takes as many reports. A wrong acceleration in body axes
+ * (that of the world, with w x v in it) keeps the promise and takes half as many again. */
 static void body_axes_are_as_good(void **state)
 {
     (void)state;
@@ -326,7 +330,8 @@ static void a_crowd_is_no_burst(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(promise_by_algorithm), cmocka_unit_test(promise_by_settings), cmocka_unit_test(body_axes_are_as_good),
+        cmocka_unit_test(promise_by_algorithm), cmocka_unit_test(promise_by_settings),
+        cmocka_unit_test(body_axes_are_as_good),
         cmocka_unit_test(the_same_octets),
         cmocka_unit_test(bundles_fit), cmocka_unit_test(losses_are_as_asked), cmocka_unit_test(leaving),
         cmocka_unit_test(updates_between_heartbeats), cmocka_unit_test(a_crowd_is_no_burst),

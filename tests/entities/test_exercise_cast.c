@@ -29,10 +29,12 @@ static void level_ground(void **state)
     (void)state;
     for (double lat_deg = -80; lat_deg <= 80; lat_deg += 32) {
         char text[256];
-        snprintf(text, sizeof text, "place: {lat_deg: %g, lon_deg: 20, height_m: 300}\nground: {swell_m: 0}\n", lat_deg);
+        snprintf(text, sizeof text, "place: {lat_deg: %g, lon_deg: 20, height_m: 300}\nground: {swell_m: 0}\n",
+                 lat_deg);
         Cast *cast = cast_of(text);
         for (int i = 0; i < 200; i++) {
-            const double x = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i) - 0.5), y = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i + 1) - 0.5);
+            const double x = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i) - 0.5);
+            const double y = 60000 * (random_uniform(3, 0, 0, 2 * (uint64_t)i + 1) - 0.5);
             double   slope[2], p[3] = {x, y, exercise_ground_at(slope, &cast->ground, x, y)}, q[3], p_ecef[3];
             Geodetic place;
             ecef_from_enu(p_ecef, &cast->ground.frame, p);
@@ -82,10 +84,12 @@ static void circle(void **state)
     (void)state;
     char text[2048] = "ground: {swell_m: 0}\nvehicles:\n  - {name: A, type: truck, speed_mps: 20, loop: true, route_m: [";
     for (int i = 0; i < 24; i++)
-        snprintf(text + strlen(text), 64, "%s[%.6f, %.6f]", i ? ", " : "", 300 * cos(2 * pi_rad * i / 24), 300 * sin(2 * pi_rad * i / 24));
+        snprintf(text + strlen(text), 64, "%s[%.6f, %.6f]", i ? ", " : "", 300 * cos(2 * pi_rad * i / 24),
+                 300 * sin(2 * pi_rad * i / 24));
     strcat(text, "]}\n  - {name: J, type: aircraft, height_m: 500, speed_mps: 60, loop: true, route_m: [");
     for (int i = 0; i < 24; i++)
-        snprintf(text + strlen(text), 64, "%s[%.6f, %.6f]", i ? ", " : "", 300 * cos(2 * pi_rad * i / 24), 300 * sin(2 * pi_rad * i / 24));
+        snprintf(text + strlen(text), 64, "%s[%.6f, %.6f]", i ? ", " : "", 300 * cos(2 * pi_rad * i / 24),
+                 300 * sin(2 * pi_rad * i / 24));
     strcat(text, "]}\n");
     Cast      *cast = cast_of(text);
     Kinematics k;
@@ -146,7 +150,8 @@ static void derivatives_and_attitudes(void **state)
             const double normal[3] = {-slope[0], -slope[1], 1};
             const double up[3] = {-at.r_enu_from_body[2], -at.r_enu_from_body[5], -at.r_enu_from_body[8]};
             CHECK_NEAR(at.p_enu[2], z, 1e-9);
-            CHECK_NEAR(v3_dot(up, i < 6 ? normal : (const double[3]){0, 0, 1}) / (i < 6 ? v3_length(normal) : 1), 1, 1e-8);
+            CHECK_NEAR(v3_dot(up, i < 6 ? normal : (const double[3]){0, 0, 1}) / (i < 6 ? v3_length(normal) : 1), 1,
+                       1e-8);
             m3_tmul(unit, at.r_enu_from_body, at.r_enu_from_body);
             for (int c = 0; c < 9; c++) CHECK_NEAR(unit[c], c % 4 == 0, 1e-12);
         }
@@ -200,7 +205,8 @@ static void shots(void **state)
         CHECK_NEAR(v3_length(off), 0, 1e-6);
         CHECK(cast_appearance(cast, round->target, round->impact_s + 0.01) & 1u << 15);
         CHECK(!(cast_appearance(cast, round->target, round->impact_s - 0.01) & 1u << 15));
-        CHECK(cast_present(cast, round->munition, round->fire_s) && !cast_present(cast, round->munition, round->impact_s));
+        CHECK(cast_present(cast, round->munition, round->fire_s) &&
+              !cast_present(cast, round->munition, round->impact_s));
     }
     v3_sub(off, cast->round[1].impact_enu, cast->round[1].launch_enu);
     CHECK_NEAR(cast->round[1].impact_s - 6, v3_length(off) / 400, 1e-6); /* at 400 m/s without motor and drag */
@@ -237,7 +243,8 @@ static void real_ground(void **state)
     }
     snprintf(text, sizeof text,
              "place: {lat_deg: 44.0565, lon_deg: -123.0690, height_m: 106}\nground: {elevation: %s}\nvehicles:\n"
-             "  - {name: A, type: truck, speed_mps: 10, route_m: [[-300, -100], [-100, 0], [100, -50], [300, 100]]}\n", path);
+             "  - {name: A, type: truck, speed_mps: 10, route_m: [[-300, -100], [-100, 0], [100, -50], [300, 100]]}\n",
+             path);
     Cast  *cast = cast_of(text);
     double worst_m = 0, worst_step = 0, last[9] = {0};
     for (double t = 0; t < 55; t += 0.05) {

@@ -36,18 +36,24 @@ static void what_is_wrong_is_said(void **state)
     refused("vehicles:\n" TANK "  - {name: A, type: tank}\n", ":3: vehicles: route_m~[[x, y], ...]");
     refused("vehicles:\n  - {name: A, route_m: [1, 2, 3]}\n", ":2: vehicles: route_m: 3 numbers");
     refused("vehicles:\n  - {name: A, route_m: [[0, 0], [5, 5], [5, 5]]}\n", ":2: ~place 2 is less than 0.1 m");
-    refused("vehicles:\n  - {name: A, loop: true, route_m: [[0, 0], [5, 5], [9, 0], [0, 0]]}\n", ":2: ~a loop closes by itself");
+    refused("vehicles:\n  - {name: A, loop: true, route_m: [[0, 0], [5, 5], [9, 0], [0, 0]]}\n",
+            ":2: ~a loop closes by itself");
     refused("vehicles:\n  - {name: A, loop: true, route_m: [[0, 0], [5, 5]]}\n", ":2: ~at least three places");
     refused("vehicles:\n  - {name: A, route_m: [[0, 60000]]}\n", ":2: route_m~-50000 .. 50000 m");
-    refused("vehicles:\n  - {name: A, route_m: [0, 0], type: 1.1.222.1}\n", ":2: vehicles: type: '1.1.222.1'~seven numbers");
+    refused("vehicles:\n  - {name: A, route_m: [0, 0], type: 1.1.222.1}\n",
+            ":2: vehicles: type: '1.1.222.1'~seven numbers");
     refused("vehicles:\n  - {name: A, route_m: [0, 0], type: 1.1.222.1.1.1.256}\n", "seven numbers");
-    refused("vehicles:\n  - {name: A, route_m: [0, 0], turret: spin}\n", ":2: turret: 'spin' is not one of none|still|swing");
+    refused("vehicles:\n  - {name: A, route_m: [0, 0], turret: spin}\n",
+            ":2: turret: 'spin' is not one of none|still|swing");
     refused("vehicles:\n  - {name: A, route_m: [0, 0], wheels: 6}\n", ":2: no such key: wheels");
     refused("vehicles:\n  - {name: A, route_m: [0, 0], count: 0}\n", ":2: count: '0'~1 .. 50000");
-    refused("vehicles:\n  - {name: A, route_m: [0, 0], appears_s: 5, leaves_s: 5}\n", "leaves_s is not after appears_s");
-    refused("vehicles:\n  - {name: A, route_m: [[0, 0], [9, 9]], speed_mps: 1, unsteady_m: 8}\n", ":2: vehicles: unsteady_m~3.6");
+    refused("vehicles:\n  - {name: A, route_m: [0, 0], appears_s: 5, leaves_s: 5}\n",
+            "leaves_s is not after appears_s");
+    refused("vehicles:\n  - {name: A, route_m: [[0, 0], [9, 9]], speed_mps: 1, unsteady_m: 8}\n",
+            ":2: vehicles: unsteady_m~3.6");
     refused("vehicles:\n" TANK TANK, "given twice");
-    refused("vehicles:\n" TANK "shots:\n  - {from: Tank 2, at_m: [0, 9], hit: ground}\n", ":4: shots: from: there is no 'Tank 2'");
+    refused("vehicles:\n" TANK "shots:\n  - {from: Tank 2, at_m: [0, 9], hit: ground}\n",
+            ":4: shots: from: there is no 'Tank 2'");
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at: \"\\ew\"}\n", ":4: shots: at: there is no '\\x1bw'");
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1, at: Tank 1}\n", "shoots at itself");
     refused("vehicles:\n" TANK "shots:\n  - {from: Tank 1}\n", ":4: shots: give either at");
@@ -56,7 +62,8 @@ static void what_is_wrong_is_said(void **state)
     refused("dis: {updates: true, version: 5}\n", "dis.updates: version 5 has no Entity State Update");
     refused("dis: {clock: yesterday}\n", "dis.clock: 'yesterday'~2024-06-21T18:00:00Z");
     refused("faults: {loss: 1.5}\n", ":1: faults.loss: '1.5'~0 .. 1");
-    refused("vehicles:\n  - {name: A, route_m: [0, 0], count: 50000}\n  - {name: B, route_m: [0, 0], count: 2}\n", "50002 entities~at most 50000");
+    refused("vehicles:\n  - {name: A, route_m: [0, 0], count: 50000}\n  - {name: B, route_m: [0, 0], count: 2}\n",
+            "50002 entities~at most 50000");
     refused("vehicles: 3\n", ":1: vehicles: expected a list");
 }
 
@@ -67,7 +74,8 @@ static void what_cannot_be_cast(void **state)
     static const struct { const char *text, *word; } bad[] = {
         {"vehicles:\n  - {name: A, type: tnak, route_m: [0, 0]}\n", ":2: vehicles: type: 'tnak'"},
         {"vehicles:\n  - {name: A, type: missile, route_m: [0, 0]}\n", ":2: vehicles: type: 'missile' is a munition"},
-        {"vehicles:\n" TANK "shots:\n  - {from: Tank 1, at_m: [40000, 0], hit: ground}\n", ":4: shots: what is fired at 0 s does not get there"},
+        {"vehicles:\n" TANK "shots:\n  - {from: Tank 1, at_m: [40000, 0], hit: ground}\n",
+         ":4: shots: what is fired at 0 s does not get there"},
         {"ground: {elevation: /nowhere.tif}\n", "/nowhere.tif"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
@@ -96,16 +104,20 @@ static void types(void **state)
 {
     (void)state;
     DisEntityType t;
-    CHECK(scenario_type_parse(&t, "1.2.225.20.1.255.7") && t.domain == 2 && t.country == 225 && t.specific == 255 && t.extra == 7);
-    CHECK(!scenario_type_parse(&t, "") && !scenario_type_parse(&t, "1.1.1.1.1.1") && !scenario_type_parse(&t, "1.1.1.1.1.1.1.1"));
-    CHECK(!scenario_type_parse(&t, "1.1.65536.1.1.1.1") && !scenario_type_parse(&t, "1..1.1.1.1.1") && !scenario_type_parse(&t, "1.1.1.1.1.1.1 "));
+    CHECK(scenario_type_parse(&t, "1.2.225.20.1.255.7") && t.domain == 2 && t.country == 225 && t.specific == 255 &&
+          t.extra == 7);
+    CHECK(!scenario_type_parse(&t, "") && !scenario_type_parse(&t, "1.1.1.1.1.1") &&
+          !scenario_type_parse(&t, "1.1.1.1.1.1.1.1"));
+    CHECK(!scenario_type_parse(&t, "1.1.65536.1.1.1.1") && !scenario_type_parse(&t, "1..1.1.1.1.1") &&
+          !scenario_type_parse(&t, "1.1.1.1.1.1.1 "));
 }
 
 /* The scenarios that come with the program are read and cast, every one. */
 static void bundled_scenarios(void **state)
 {
     (void)state;
-    static const char *const names[] = {"demo", "no-vehicles", "no-missile", "guns", "bad-pdus", "empty", "aircraft", "crowd"};
+    static const char *const names[] = {"demo", "no-vehicles", "no-missile", "guns", "bad-pdus", "empty", "aircraft",
+                                        "crowd"};
     log_set_sink(NULL, NULL);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         char     name[64], path[512];
@@ -135,7 +147,8 @@ static void the_most_there_may_be(void **state)
     for (int i = 0; i < scenario_max_groups - 1; i++) {
         n += (size_t)snprintf(text + n, size - n, "  - {name: A, loop: true, speed_mps: 9, type: truck, count: 20, route_m: [");
         for (int k = 0; k < 40; k++)
-            n += (size_t)snprintf(text + n, size - n, "%s%d,%d", k ? "," : "", (int)(900 * cos(k * 0.157)), (int)(900 * sin(k * 0.157)));
+            n += (size_t)snprintf(text + n, size - n, "%s%d,%d", k ? "," : "", (int)(900 * cos(k * 0.157)),
+                                  (int)(900 * sin(k * 0.157)));
         n += (size_t)snprintf(text + n, size - n, "]}\n");
     }
     n += (size_t)snprintf(text + n, size - n, "shots:\n  - {from: Tank 1, at: A 7, rounds: %d, every_s: 0.01, entity: false, type: 2.2.0.2.0.0.0}\n",
@@ -153,7 +166,8 @@ static void the_most_there_may_be(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_is_wrong_is_said), cmocka_unit_test(what_cannot_be_cast), cmocka_unit_test(set_from_outside),
+        cmocka_unit_test(what_is_wrong_is_said), cmocka_unit_test(what_cannot_be_cast),
+        cmocka_unit_test(set_from_outside),
         cmocka_unit_test(types), cmocka_unit_test(bundled_scenarios), cmocka_unit_test(the_most_there_may_be),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -25,7 +25,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
         data.variable_count = (int)(roll(&d) % 4);
         for (int k = 0; k < data.fixed_count; k++) data.fixed[k] = (DisFixedDatum){roll(&d), roll(&d)};
         for (int k = 0; k < data.variable_count; k++)
-            data.variable[k] = (DisVariableDatum){.id = roll(&d), .bits = roll(&d) % (8 * sizeof value), .value = value};
+            data.variable[k] = (DisVariableDatum){.id = roll(&d), .bits = roll(&d) % (8 * sizeof value),
+                                                  .value = value};
         octets += dis_encode_data(out + octets, 4096, &data);
     }
     return octets;

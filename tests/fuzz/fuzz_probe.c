@@ -68,7 +68,8 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     static const char *const cell[] = {"1", "0.5", "2", "us1976", "", "\"3\"", "-1e3", "lwir", "2026-06-21T10:00:00Z"};
     for (uint32_t row = 0; row < 3; row++)
         for (int i = 0; i < columns; i++) {
-            const char *text = row == 0 ? cell[0] : cell[(index / 8 + row * (uint32_t)i) % (sizeof cell / sizeof *cell)];
+            const uint32_t at = (index / 8 + row * (uint32_t)i) % (sizeof cell / sizeof *cell);
+            const char    *text = cell[row == 0 ? 0 : at];
             n += (size_t)sprintf((char *)out + n, "%s%s", text, i < columns - 1 ? "," : "\n");
         }
     return n;
@@ -90,7 +91,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         FILE  *out = open_memstream(&text, &written);
         if (!in || !out) abort();
         argv[0] = (char *)(uintptr_t)probe->name;
-        const Status status = probe_run(probe, probe->arguments && strcmp(probe->name, "rays") == 0 ? 2 : 1, argv, in, out);
+        const Status status = probe_run(probe, probe->arguments && strcmp(probe->name, "rays") == 0 ? 2 : 1, argv, in,
+                                        out);
         fclose(in);
         fclose(out);
         /* a line for each line, none of them longer than its own and its results */

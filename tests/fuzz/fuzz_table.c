@@ -1,5 +1,5 @@
-/* tests/fuzz/fuzz_table.c: any octets as a table of CSV, and as every table of etc/ itself whose columns it has. Without a
- * fuzzer run_corpus.c drives it. */
+/* tests/fuzz/fuzz_table.c: any octets as a table of CSV, and as every table of etc/ itself whose columns it has.
+ * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "entities/catalog.h"

@@ -1,7 +1,7 @@
 /* tests/fuzz/run_corpus.c: drives a fuzz entry point where there is no fuzzer.
  *
- * With files or folders of files named: each of them, as a fuzzer left them. Without: its own seeds, spoilt in ways that
- * depend on a counter alone, so that a failure comes again. */
+ * With files or folders of files named: each of them, as a fuzzer left them. Without: its own seeds, spoilt in ways
+ * that depend on a counter alone, so that a failure comes again. */
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "pitviper.h"

@@ -134,10 +134,13 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
 {
     (void)state;
     static TrackPoint points[6][4];
-    Track  tracks[6] = {track(10, 1, 1, points[0], 4, 0, 30), track(20, 2, 2, points[1], 4, 1, 20), track(21, 2, 2, points[2], 4, 5, 29),
-                        track(22, 2, 2, points[3], 4, 2, 29), track(23, 2, 2, points[4], 4, 0, 17), track(24, 2, 2, points[5], 1, 30, 30)};
+    Track  tracks[6] = {track(10, 1, 1, points[0], 4, 0, 30), track(20, 2, 2, points[1], 4, 1, 20),
+                        track(21, 2, 2, points[2], 4, 5, 29),
+                        track(22, 2, 2, points[3], 4, 2, 29), track(23, 2, 2, points[4], 4, 0, 17),
+                            track(24, 2, 2, points[5], 1, 30, 30)};
     points[3][3].deactivated = true;
-    Shot     shots[2] = {{.munition = {1, 1, 20}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 1, .detonation_s = 20},
+    Shot     shots[2] = {{.munition = {1, 1, 20}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 1,
+                          .detonation_s = 20},
                          {.munition = {1, 1, 21}, .target = {1, 1, 10}, .fire_s = 5, .detonation_s = NAN}};
     Survey   survey = {.track_count = 6, .track = tracks, .shot_count = 2, .shot = shots, .first_s = 0, .last_s = 30};
     Config   config = config_default();
@@ -153,7 +156,8 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     CHECK(says(&choices, "once that is heard"));
     survey.track_count = 5;
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
-    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.any_munition && says(&choices, "flies here now"));
+    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && !plan.any_munition &&
+          says(&choices, "flies here now"));
 
     strcpy(config.exercise.host, "1:1:99"); /* may come */
     strcpy(config.exercise.aim, "9:9:9");

@@ -107,8 +107,10 @@ static void ranges_of_several_keys_are_checked(void **state)
 static void where_it_comes_from_and_goes_to_is_not_hashed(void **state)
 {
     (void)state;
-    static const char *const same[][2] = {{"network.address", "239.1.2.3"}, {"network.ttl", "3"}, {"publish.dis", "truth"},
-                                          {"publish.files", "false"}, {"record.path", "a.pcapng"}, {"exercise.port", "4000"},
+    static const char *const same[][2] = {{"network.address", "239.1.2.3"}, {"network.ttl", "3"},
+                                          {"publish.dis", "truth"},
+                                          {"publish.files", "false"}, {"record.path", "a.pcapng"},
+                                          {"exercise.port", "4000"},
                                           {"exercise.to_s", "12"}},
                              *const other[][2] = {{"seed", "2"}, {"exercise.listen_s", "3"}, {"node.site", "7"}};
     static char plain[16384], text[16384];

@@ -1,4 +1,5 @@
-/* The Data PDUs of a frame, read octet by octet as dis_records.h describes them. tests/system/test_live.sh has tshark read them. */
+/* The Data PDUs of a frame, read octet by octet as dis_records.h describes them. tests/system/test_live.sh has tshark
+ * read them. */
 #include "tests/check.h"
 
 #include "sensor/publish/dis_records.h"
@@ -61,23 +62,26 @@ static FrameRecord frame_of(int targets, int hidden)
 {
     for (int i = 0; i < targets; i++) {
         entity[i].id = (DisEntityId){1, 2, (uint16_t)(100 + i)};
-        target[i]    = (Target){.index = i, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5, .los_az_rad = 1.25,
-                                .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
-                                .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75, .box = {i, 2, i + 3, 4}};
+        target[i]    = (Target){.index = i, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5,
+                                .los_az_rad = 1.25, .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
+                                .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75,
+                                .box = {i, 2, i + 3, 4}};
         for (int b = 0; b < BAND_COUNT; b++)
-            target[i].band[b] = (TargetBand){.contrast_k = b == BAND_LWIR ? 3.5 : NAN, .contrast = b == BAND_OPTICAL ? 0.25 : NAN,
-                                             .snr = 25};
+            target[i].band[b] = (TargetBand){.contrast_k = b == BAND_LWIR ? 3.5 : NAN,
+                                             .contrast = b == BAND_OPTICAL ? 0.25 : NAN, .snr = 25};
     }
     entity[targets].id = (DisEntityId){7, 8, 9};
     snapshot.count     = targets + 1;
     /* the camera looks north along the equator's meridian 0: forward +z, right +y (east), down -x */
     FrameRecord r = {.frame = 123456, .time_s = 1392.4, .snapshot = &snapshot, .host = &entity[targets],
                      .p_eye_ecef = {6378137.25, -2, 3}, .request = &request, .hfov_rad = 0.104719755,
-                     .r_ecef_from_cam = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .sun = &sun, .target = target, .target_count = targets};
+                     .r_ecef_from_cam = {0, -1, 0, 1, 0, 0, 0, 0, 1}, .sun = &sun, .target = target,
+                     .target_count = targets};
     return r;
 }
 
-static const DisRecordSender sender = {.version = 7, .exercise = 33, .site = 4711, .application = 1, .timestamp = 0x12345678};
+static const DisRecordSender sender = {.version = 7, .exercise = 33, .site = 4711, .application = 1,
+                                       .timestamp = 0x12345678};
 
 static void the_frame_is_where_the_description_says(void **state)
 {
@@ -106,7 +110,8 @@ static void the_frame_is_where_the_description_says(void **state)
      * there, and their sum is 180 degrees (the belly, z, looks to -x) */
     camera = variable(&bits, pdu, n, 600103, 0);
     CHECK(bits == 192);
-    double forward[3] = {cos(f64(camera + 8)) * cos(f64(camera)), cos(f64(camera + 8)) * sin(f64(camera)), -sin(f64(camera + 8))};
+    double forward[3] = {cos(f64(camera + 8)) * cos(f64(camera)), cos(f64(camera + 8)) * sin(f64(camera)),
+                         -sin(f64(camera + 8))};
     CHECK_NEAR(forward[0], 0, 1e-7); /* at the pole of Euler angles half the digits are lost */
     CHECK_NEAR(forward[1], 0, 1e-7);
     CHECK_NEAR(forward[2], 1, 1e-14);
@@ -149,7 +154,8 @@ static void truth_tells_all(void **state)
     const uint8_t *t = variable(&bits, pdu, n, 600202, 0);
     CHECK(bits == 448 && big(t, 8) == 0x0001000200660000 && big(t + 8, 2) == 2 && big(t + 14, 2) == 4);
     CHECK(f32(t + 16) == 30 && f32(t + 20) == 0.75 && f32(t + 24) == 1002 && f32(t + 28) == 200 && f32(t + 32) == 0.5);
-    CHECK(f32(t + 36) == 1.25 && f32(t + 40) == -0.125 && f32(t + 44) == 0.015625 && f32(t + 48) == -0.03125 && f32(t + 52) == 25);
+    CHECK(f32(t + 36) == 1.25 && f32(t + 40) == -0.125 && f32(t + 44) == 0.015625 && f32(t + 48) == -0.03125 &&
+          f32(t + 52) == 25);
     t = variable(&bits, pdu, n, 600202, 2); /* hidden, and said so */
     CHECK(big(t, 8) == 0x0001000200640000 && f32(t + 16) == 0);
 }

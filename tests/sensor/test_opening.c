@@ -14,7 +14,8 @@ static DisLog      log_ = {.datagram = datagram};
 static void make_pdus(void)
 {
     for (int k = 0; k < 2; k++) {
-        DisEntityState pdu = {.header = {.version = 7, .exercise = (uint8_t)(k + 1), .type = dis_pdu_entity_state, .family = 1},
+        DisEntityState pdu = {.header = {.version = 7, .exercise = (uint8_t)(k + 1), .type = dis_pdu_entity_state,
+                                         .family = 1},
                               .id = {10, 20, 30}, .p_ecef = {6378137, 0, 0}};
         report_octets = dis_encode_entity_state(report[k], sizeof report[k], &pdu);
         CHECK(report_octets > 0);
@@ -47,7 +48,8 @@ static void it_begins_with_the_first_usable_report(void **state)
     add(report[0], report_octets, nextafter(152, 200));
     add(report[0], report_octets, 160);
     CHECK(opening_of(&view, &heard, &until_s, &log_, &config));
-    CHECK(until_s == 152 && view.count == 6 && view.datagram == datagram && heard.count == 4 && heard.datagram == datagram);
+    CHECK(until_s == 152 && view.count == 6 && view.datagram == datagram && heard.count == 4 &&
+          heard.datagram == datagram);
     config.exercise.listen_s = 100;
     CHECK(opening_of(&view, &heard, &until_s, &log_, &config) && heard.count == 6); /* the log is shorter */
     config.exercise.exercise = 2;
@@ -84,8 +86,10 @@ static void own_datagrams_are_known_by_their_sender(void **state)
     add(report[0], report_octets, 2);
     add(comment, 32, 3);
     add(comment, 8, 4); /* nobody's: it is cut off */
-    CHECK(opening_own(&datagram[0], &config) && !opening_own(&datagram[1], &config) && !opening_own(&datagram[3], &config));
-    CHECK(opening_drop_own(&log_, &config) == 2 && log_.count == 2 && datagram[0].capture_s == 2 && datagram[1].capture_s == 4);
+    CHECK(opening_own(&datagram[0], &config) && !opening_own(&datagram[1], &config) &&
+          !opening_own(&datagram[3], &config));
+    CHECK(opening_drop_own(&log_, &config) == 2 && log_.count == 2 && datagram[0].capture_s == 2 &&
+          datagram[1].capture_s == 4);
     config.node.application = 20;
     config.node.site        = 10;
     CHECK(opening_drop_own(&log_, &config) == 1); /* its own entities too */

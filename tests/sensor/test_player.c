@@ -97,7 +97,8 @@ static EntityTable *make_table(void)
 static void what_comes_bit_by_bit_counts_as_the_whole_log(void **state)
 {
     (void)state;
-    static const double stamp_s[] = {100, 101, 100.5}, capture_s[] = {1000, 1003, 1003.1}, at_s[] = {101.1, 103.05, 103.2};
+    static const double stamp_s[] = {100, 101, 100.5}, capture_s[] = {1000, 1003, 1003.1},
+        at_s[] = {101.1, 103.05, 103.2};
     const DisLog        log = make_log(stamp_s, capture_s);
     EntityTable        *table = make_table();
     Player             *player = NULL;
@@ -119,7 +120,8 @@ static void what_comes_bit_by_bit_counts_as_the_whole_log(void **state)
     entity_table_destroy(table);
 }
 
-/* Whatever counts at t arrived by then, and what arrived by then counts at t: to the last bit, at today's Unix times. */
+/* Whatever counts at t arrived by then, and what arrived by then counts at t: to the last bit, at today's Unix
+ * times. */
 static void arrival_and_exercise_time_agree_to_the_last_bit(void **state)
 {
     (void)state;
@@ -136,7 +138,8 @@ static void arrival_and_exercise_time_agree_to_the_last_bit(void **state)
         CHECK(player_time_s(player, nextafter(until_s, INFINITY)) > t_s);
         /* and in the whole nanoseconds of arrivals */
         const int64_t until_ns = dis_unix_ns_until(until_s);
-        CHECK(player_time_s(player, dis_unix_s(until_ns)) <= t_s && player_time_s(player, dis_unix_s(until_ns + 1)) > t_s);
+        CHECK(player_time_s(player, dis_unix_s(until_ns)) <= t_s &&
+              player_time_s(player, dis_unix_s(until_ns + 1)) > t_s);
         player_destroy(player);
     }
 }
@@ -151,11 +154,15 @@ static void munitions_and_their_targets_are_known_when_they_were_heard(void **st
     Player      *player = NULL;
     for (int k = 0; k < 4; k++) {
         const uint32_t stamp = (uint32_t)((100.0 + k) / 3600 * 2147483648.0) << 1;
-        DisEntityState missile = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1, .timestamp = stamp},
-                                  .id = {1, 1, (uint16_t)(40 + k)}, .type = {2, 1, 222, 1, 1, 1, 0}, .p_ecef = {6378137, 10.0 * k, 0},
+        DisEntityState missile = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                             .timestamp = stamp},
+                                  .id = {1, 1, (uint16_t)(40 + k)}, .type = {2, 1, 222, 1, 1, 1, 0},
+                                  .p_ecef = {6378137, 10.0 * k, 0},
                                   .dead_reckoning = 1};
-        DisFire        fire = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_fire, .family = 2, .timestamp = stamp},
-                               .firing = {1, 1, 7}, .target = {1, 1, (uint16_t)(20 + k)}, .munition = {1, 1, (uint16_t)(40 + k - 1)},
+        DisFire        fire = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_fire, .family = 2,
+                                          .timestamp = stamp},
+                               .firing = {1, 1, 7}, .target = {1, 1, (uint16_t)(20 + k)},
+                               .munition = {1, 1, (uint16_t)(40 + k - 1)},
                                .p_ecef = {6378137, 0, 0}};
         const size_t   n = k % 2 ? dis_encode_fire(octets[k], sizeof octets[k], &fire)
                                  : dis_encode_entity_state(octets[k], sizeof octets[k], &missile);

@@ -41,6 +41,14 @@ printf 'terrain:\n  elevation: %s/a,%s/node.yaml\n' "$tmp" "$tmp" >"$tmp/files.y
 run check "$tmp/files.yaml"
 check "a file that is not there" complained "terrain.elevation: cannot read $tmp/a"
 check "one that is" test "$(grep -c 'cannot read' "$tmp/stderr")" = 1
+printf 'sensor:\n  bands: lwir,sonar\n' >"$tmp/bands.yaml"
+printf 'sensor:\n  preset: nobodys\n' >"$tmp/preset.yaml"
+printf 'weather:\n  atmosphere: of_mars\n' >"$tmp/air.yaml"
+for name in bands preset air; do
+    run check "$tmp/$name.yaml"
+    check "$name that no node has: exit code" [ $code = 1 ]
+    check "$name that no node has: said, and in which file" complained "(sonar|nobodys|of_mars)" && complained "$name.yaml"
+done
 run check
 check "no file: exit code" [ $code = 2 ]
 run check --default "$tmp/node.yaml"

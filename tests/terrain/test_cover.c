@@ -1,5 +1,5 @@
-/* Ground cover and texture of eight places at once: against a plain reading of what they are defined to be, one place at
- * a time in double, written here; against the paper statistics of value noise; and in whatever company. */
+/* Ground cover and texture of eight places at once: against a plain reading of what they are defined to be, one place
+ * at a time in double, written here; against the paper statistics of value noise; and in whatever company. */
 #include "tests/check.h"
 
 #include "terrain/landscape.h"
@@ -50,7 +50,8 @@ static SurfaceClass crop(uint64_t seed, uint64_t id, int64_t i, int64_t j)
     static const double arable[] = {0.38, 0.58, 0.70, 0.88, 1, 1}, pasture[] = {0.10, 0.15, 0.20, 0.62, 0.90, 1};
     static const SurfaceClass surface[] = {SURFACE_CROP,  SURFACE_PLOUGHED,  SURFACE_BARE_SOIL,
                                            SURFACE_GRASS, SURFACE_DRY_GRASS, SURFACE_SCRUB};
-    const double *share = noise(seed + 13, 1900, (double)(i >> 1) * 320, (double)(j >> 1) * 320) > -0.15 ? arable : pasture;
+    const double *share = noise(seed + 13, 1900, (double)(i >> 1) * 320, (double)(j >> 1) * 320) > -0.15 ? arable
+        : pasture;
     const double  u = unit(mixed(id, 7, 0));
     int           n = 0;
     while (u >= share[n]) n++;
@@ -153,10 +154,11 @@ static void cover_is_what_it_is_defined_to_be(void **state)
         CHECK((plain == SURFACE_NONE) == (surface[n] == SURFACE_NONE));
     }
     print_message("%d of %d places differ\n", differ, (int)places);
-    /* float moves borders by 1e-4 m, of wild patches (which change by some 0.01 a metre) by 1e-3 m, and there is a border
-     * every 10 m or so */
+    /* float moves borders by 1e-4 m, of wild patches (which change by some 0.01 a metre) by 1e-3 m, and there is a
+     * border every 10 m or so */
     CHECK(differ < places * 1e-4);
-    CHECK(of_class[SURFACE_NONE] > 100 && of_class[SURFACE_TRACK] > 300 && of_class[SURFACE_ROCK] > 100 && of_class[SURFACE_SCRUB] > 1000);
+    CHECK(of_class[SURFACE_NONE] > 100 && of_class[SURFACE_TRACK] > 300 && of_class[SURFACE_ROCK] > 100 &&
+          of_class[SURFACE_SCRUB] > 1000);
 }
 
 /* Of grass seen with pixels of 5.75 m two octaves are left, 0.05 strong. */
@@ -170,7 +172,8 @@ static void texture_is_what_it_is_defined_to_be(void **state)
     landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
     int count = 0;
     for (int n = 13; n < places; n++) {
-        const double plain = 1 + (double)0.05f * (noise(cover_seed + 25, 23, x_m[n], y_m[n]) + noise(cover_seed + 26, 71, x_m[n], y_m[n]));
+        const double plain = 1 + (double)0.05f * (noise(cover_seed + 25, 23, x_m[n],
+                                                        y_m[n]) + noise(cover_seed + 26, 71, x_m[n], y_m[n]));
         worst = fmax(worst, fabs((double)texture[n] - plain));
         if (n % 3) continue; /* by themselves: independent */
         sum += (double)texture[n] - 1;
@@ -196,7 +199,8 @@ static void company_changes_nothing(void **state)
     landscape_textures(texture, &land, places, surface, x_m, y_m, footprint_m);
     for (int n = 0; n < some; n++) {
         CHECK(landscape_surface(&land, x_m[n], y_m[n]) == surface[n]);
-        CHECK(landscape_texture(&land, (SurfaceClass)surface[n], x_m[n], y_m[n], (double)footprint_m[n]) == (double)texture[n]);
+        CHECK(landscape_texture(&land, (SurfaceClass)surface[n], x_m[n], y_m[n],
+                                (double)footprint_m[n]) == (double)texture[n]);
     }
     /* in another order, from another place in the eight */
     static double   back_x_m[some], back_y_m[some];
@@ -204,7 +208,8 @@ static void company_changes_nothing(void **state)
     static uint8_t  back_surface[some];
     for (int n = 0; n < some - 3; n++) {
         const int from = some - 1 - n;
-        back_x_m[n] = x_m[from], back_y_m[n] = y_m[from], back_footprint_m[n] = footprint_m[from], back_surface[n] = surface[from];
+        back_x_m[n] = x_m[from], back_y_m[n] = y_m[from], back_footprint_m[n] = footprint_m[from],
+            back_surface[n] = surface[from];
     }
     landscape_surfaces(again, &land, some - 3, back_x_m, back_y_m);
     landscape_textures(texture_again, &land, some - 3, back_surface, back_x_m, back_y_m, back_footprint_m);

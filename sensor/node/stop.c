@@ -1,0 +1,24 @@
+#include "sensor/node/stop.h"
+
+#include <signal.h>
+#include <stdatomic.h>
+#include <stddef.h>
+
+static atomic_bool asked; /* lock-free: a handler may set it, whichever thread it runs in */
+
+static void ask(int number)
+{
+    (void)number;
+    atomic_store(&asked, true);
+}
+
+void stop_by_signals(void)
+{
+    struct sigaction before, action = {.sa_handler = ask, .sa_flags = (int)SA_RESETHAND};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
+}
+
+bool stop_asked(void) { return atomic_load(&asked); }

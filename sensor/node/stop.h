@@ -1,0 +1,13 @@
+/* sensor/node/stop.h: how a command that goes on until it is told to ends: by Ctrl-C, or a signal that asks for it. */
+#ifndef SENSOR_NODE_STOP_H
+#define SENSOR_NODE_STOP_H
+
+#include <stdbool.h>
+
+/* From here on the first SIGINT, SIGTERM or SIGHUP asks to stop, and the second ends the program the hard way, should a
+ * disk or a device hang. SIGINT counts even where it was ignored: so shells start what runs in the background of a
+ * script. nohup's SIGHUP stays ignored. A signal may come to any thread and ends no wait: look now and then. */
+void stop_by_signals(void);
+bool stop_asked(void);
+
+#endif
