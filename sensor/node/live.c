@@ -124,7 +124,7 @@ static void say_troubles(Live *l)
         l->lost_said_s = now_s;
     }
     if (l->counters.frames_late > l->late_said && now_s - l->late_said_s >= remind_s) {
-        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate helps",
+        log_warn("run: frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a lower --rate helps",
                  (unsigned long long)l->counters.frames_late);
         l->late_said   = l->counters.frames_late;
         l->late_said_s = now_s;
