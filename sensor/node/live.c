@@ -3,6 +3,7 @@
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/publish/dis_records.h"
@@ -21,7 +22,8 @@ static const int64_t look_ns = 100000000; /* a signal may come to another thread
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
-    DisRecorder *recorder;          /* NULL: none, or given up */
+    DisRecorder *recorder;          /* NULL: none, or closed */
+    bool         record_whole;      /* all that was heard is in it */
     char         where[160];        /* `239.1.2.3 port 3000 on eth0` */
     LiveCounters counters;
     /* what was heard before the choices, each datagram its own memory */
@@ -271,8 +273,12 @@ static void conclude(Live *l)
     while (take(&datagram, l, last_ns)) {}
     read_counters(l);
     if (!l->recorder) return;
-    if (dis_recorder_close(l->recorder) == STATUS_OK) sha256_file(l->run.log_sha256, l->run.options.config.record.path);
-    l->recorder = NULL;
+    const char *path = l->run.options.config.record.path;
+    l->record_whole  = dis_recorder_close(l->recorder) == STATUS_OK && l->counters.record_failed == 0;
+    l->recorder      = NULL;
+    if (l->record_whole) sha256_file(l->run.log_sha256, path);
+    else log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
+                   (unsigned long long)l->counters.record_failed);
 }
 
 /* The newest frame whose time has come, else the next: who is late leaves frames out, and queues none. */
@@ -343,6 +349,8 @@ static Status run_node(Live *l)
 {
     bool   heard;
     Status status = run_prepare(&l->run);
+    /* now, not when the first entity is heard, hours later */
+    if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
     if (status != STATUS_OK) return status;
     l->begun_s = l->heard_s = wall_clock_s();
@@ -389,5 +397,5 @@ int run_command(int argc, char **argv)
     run_close(&l->run);
     forget_heard(l, l->heard_count);
     free(l->heard);
-    return status == STATUS_OK ? 0 : 1;
+    return status == STATUS_OK && (!*name || l->record_whole) ? 0 : 1;
 }

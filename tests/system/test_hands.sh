@@ -2,6 +2,8 @@
 # What hands do to a command line: slips are named with what was meant, in one line; what cannot be printed is a
 # failure; an installation works from where it lies. labels: small
 . "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
+free_port
 
 # refused WHAT PATTERN: the last run was a wrong command, told in one line, or two where the second says where help is
 refused() {
@@ -57,5 +59,26 @@ cp "$pitviper" "$tmp/moved/bin/"
 sed 's/^duration_s: 30/duration_s: 7/' etc/scenarios/demo.yaml >"$tmp/moved/share/pitviper/scenarios/demo.yaml"
 (cd / && "$tmp/moved/bin/pitviper" exercise demo -o "$tmp/moved.pcap") >"$tmp/stdout"
 check "share beside the program comes first" grep -q '^7.0 s' "$tmp/stdout"
+check "the demo's help builds nothing" [ "$(here=$PWD; cd / && "$here/etc/demo" --help | wc -l)" = 3 ]
+
+# ---- a live node says at once what it could not do at the end
+: >"$tmp/file"
+run run --port "$port" --for 1 --out "$tmp/file"
+check "run into a file: exit code 1" [ "$code" = 1 ]
+check "run into a file: before it listens" eval '! grep -q listening "$tmp/stderr"'
+# a disk that fills up after 4 KiB
+"$pitviper" exercise demo --send "127.0.0.1:$port" --set dis.heartbeat_s=0.1 >/dev/null 2>&1 &
+sender=$!
+(
+    trap '' XFSZ
+    ulimit -f 4
+    exec "$pitviper" run --port "$port" --for 3 --set exercise.listen_s=10 --out "$tmp/o" --record "$tmp/cut.pcapng"
+) >"$tmp/stdout" 2>"$tmp/stderr"
+check "a recording cut short: exit code 1" [ $? = 1 ]
+kill "$sender" 2>/dev/null
+wait "$sender" 2>/dev/null
+check "a recording cut short: is named" grep -q 'the recording .*/cut.pcapng ends early' "$tmp/stderr"
+run inspect "$tmp/cut.pcapng"
+check "what there is of it can be read" [ "$code" = 0 ]
 
 finish
