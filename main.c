@@ -14,8 +14,13 @@
 #include "sensor/probe.h"
 #include "terrain/probe.h"
 
+#include <errno.h>
+#include <fcntl.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 /* ---- probe: the rooms' lists ------------------------------------------------------------------ */
 
@@ -65,8 +70,7 @@ static int probe_command(int argc, char **argv)
         }
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    fprintf(stderr, "pitviper probe: no such probe: %s\n\n", argv[1]);
-    probe_usage(stderr);
+    fprintf(stderr, "pitviper probe: no such probe: %s; `pitviper probe --help` lists them\n", argv[1]);
     return 2;
 }
 
@@ -115,23 +119,64 @@ static void usage(FILE *to)
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
 }
 
+/* ---- what the shell hands over ---------------------------------------------------------------- */
+
+/* Standard input, output and error that were closed (`>&-`) would be the next files opened, and messages written into
+ * recordings. Read-only: what is printed there fails, and is said to. */
+static void fill_closed(void)
+{
+    int fd;
+    while ((fd = open("/dev/null", O_RDONLY)) >= 0 && fd <= STDERR_FILENO) {}
+    if (fd > STDERR_FILENO) close(fd);
+}
+
+static bool environment_good(void)
+{
+    const char *etc = getenv("PITVIPER_ETC");
+    struct stat there;
+    if (!etc || (stat(etc, &there) == 0 && S_ISDIR(there.st_mode))) return true;
+    log_error("PITVIPER_ETC: there is no folder '%s'; unset it, or name the one that holds catalog.csv", etc);
+    return false;
+}
+
+/* What could not be printed was not done. */
+static int printed(int code)
+{
+    if (fflush(stdout) == 0 && !ferror(stdout)) return code;
+    if (code == 0) log_error("cannot write the output: %s", errno ? strerror(errno) : "it is closed");
+    return code ? code : 1;
+}
+
+static int run_named(int argc, char **argv)
+{
+    char called[64];
+    for (int i = 0; i < command_count; i++) {
+        if (strcmp(argv[0], commands[i].name) != 0) continue;
+        if (!environment_good()) return 1;
+        snprintf(called, sizeof called, "pitviper %s", argv[0]);
+        argv[0] = called; /* as getopt names it */
+        return commands[i].run(argc, argv);
+    }
+    fprintf(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
+    return 2;
+}
+
 int main(int argc, char **argv)
 {
+    static char help[] = "--help";
+    fill_closed();
     if (argc < 2) {
         usage(stderr);
         return 2;
     }
-    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
+    if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(run_named(2, (char *[]){argv[2], help, NULL}));
+    if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         usage(stdout);
-        return 0;
+        return printed(0);
     }
     if (strcmp(argv[1], "--version") == 0) {
         puts("pitviper " PITVIPER_VERSION);
-        return 0;
+        return printed(0);
     }
-    for (int i = 0; i < command_count; i++)
-        if (strcmp(argv[1], commands[i].name) == 0) return commands[i].run(argc - 1, argv + 1);
-    fprintf(stderr, "pitviper: no such command: %s\n\n", argv[1]);
-    usage(stderr);
-    return 2;
+    return printed(run_named(argc - 1, argv + 1));
 }

@@ -123,7 +123,8 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
  * module's. */
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
 
-/* Path of a file under etc/: $PITVIPER_ETC, else the installed or source folder. False when too long. */
+/* Path of a file under etc/: $PITVIPER_ETC, else share/pitviper beside the program, the source folder or the installed
+ * one. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
 
 /* ---- settings: what people write in YAML files ------------------------------------------------ */
@@ -165,6 +166,7 @@ struct SettingTable {
     const SettingList *list;   /* NULL: none */
     int                list_count;
     size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
+    const char        *all_keys; /* what prints them: `pitviper check --default`; NULL: nothing */
 };
 
 enum { settings_file_octets = 1 << 20 };

@@ -305,8 +305,7 @@ int bench_command(int argc, char **argv, BenchNext *next)
     bench.suite = argv[1];
     for (const BenchSuite *suite; (suite = next(state));) found |= strcmp(suite->name, bench.suite) == 0;
     if (!found) {
-        fprintf(stderr, "pitviper bench: no such bench: %s\n\n", bench.suite);
-        usage(stderr, next);
+        fprintf(stderr, "pitviper bench: no such bench: %s; `pitviper bench --help` lists them\n", bench.suite);
         return 2;
     }
     if (!parse(&bench, &csv, argc - 1, argv + 1, next)) return 2;

@@ -14,6 +14,60 @@ int settings_find(const SettingTable *table, const char *name)
     return -1;
 }
 
+/* Slips of the finger between two words: a letter more, less, other, or two changed about. Words of 63 letters at most. */
+enum { word_size = 64 };
+static int slips(const char *a, const char *b)
+{
+    int       row[3][word_size], n = (int)strlen(b);
+    const int m = (int)strlen(a);
+    if (m >= word_size || n >= word_size) return word_size;
+    for (int j = 0; j <= n; j++) row[0][j] = j;
+    for (int i = 1; i <= m; i++) {
+        int *now = row[i % 3];
+        const int *above = row[(i + 2) % 3], *before = row[(i + 1) % 3];
+        now[0] = i;
+        for (int j = 1; j <= n; j++) {
+            const int other = above[j - 1] + (a[i - 1] != b[j - 1]), missing = above[j] + 1, more = now[j - 1] + 1;
+            now[j] = other < missing ? other : missing;
+            if (more < now[j]) now[j] = more;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && before[j - 2] + 1 < now[j])
+                now[j] = before[j - 2] + 1;
+        }
+    }
+    return row[m % 3][n];
+}
+
+/* The key that was meant: the nearest of two slips at most, one in short words; or the same key of another section. */
+static const char *meant(const SettingTable *table, const char *name)
+{
+    const char *best = NULL, *point = strrchr(name, '.'), *last = point ? point + 1 : name;
+    int         least = strlen(name) < 6 ? 2 : 3;
+    for (int i = 0; i < table->count + table->list_count; i++) {
+        const char *key = i < table->count ? table->row[i].name : table->list[i - table->count].name;
+        const int   n   = slips(name, key);
+        if (n < least) {
+            least = n;
+            best  = key;
+        }
+    }
+    for (int i = 0; !best && i < table->count; i++) {
+        const char *dot = strchr(table->row[i].name, '.');
+        if (strcmp(last, dot ? dot + 1 : table->row[i].name) == 0) best = table->row[i].name;
+    }
+    return best;
+}
+
+static Status say_unknown(const SettingTable *table, const char *source, const char *name)
+{
+    char        shown[160];
+    const char *best = meant(table, name);
+    text_escape(shown, sizeof shown, name, strlen(name));
+    log_error("%s: %s: no such key: %s%s%s%s", table->module, source, shown,
+              best ? "; did you mean " : table->all_keys ? "; all keys: " : "",
+              best ? best : table->all_keys ? table->all_keys : "", best ? "?" : "");
+    return STATUS_BAD_VALUE;
+}
+
 static bool is_choice(const char *choices, const char *value)
 {
     const size_t length = strlen(value);
@@ -46,7 +100,7 @@ static void say_bad(const SettingTable *table, const char *source, const Setting
     else if (isnan(row->low))
         log_error("%s: %s: %s: '%s' is not %s", table->module, source, row->name, shown, kind_of(row));
     else
-        log_error("%s: %s: %s: '%s' is not %s in %g .. %g%s%s", table->module, source, row->name, shown, kind_of(row),
+        log_error("%s: %s: %s: '%s' is not %s in %.10g .. %.10g%s%s", table->module, source, row->name, shown, kind_of(row),
                   row->low, row->high, *row->unit ? " " : "", row->unit);
 }
 
@@ -119,10 +173,7 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
                     const char *source)
 {
     const int row = settings_find(table, name);
-    if (row < 0) {
-        log_error("%s: %s: no such key: %s", table->module, source, name);
-        return STATUS_BAD_VALUE;
-    }
+    if (row < 0) return say_unknown(table, source, name);
     const Status status = store(out, table, &table->row[row], value, source);
     if (status == STATUS_OK && given) given[row] = true;
     return status;
@@ -243,12 +294,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
 
     snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", word);
     const int list = find_list(table, full), row = settings_find(table, full);
-    if (row < 0 && list < 0) {
-        char shown[key_size];
-        text_escape(shown, sizeof shown, full, strlen(full));
-        log_error("%s: %s: no such key: %s", table->module, source, shown);
-        return STATUS_BAD_VALUE;
-    }
+    if (row < 0 && list < 0) return say_unknown(table, source, full);
     bool *met = &seen[row >= 0 ? row : table->count + list];
     if (*met) {
         log_error("%s: %s: %s is given twice", table->module, source, full);

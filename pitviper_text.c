@@ -50,18 +50,36 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
     if (out_size) out[n] = 0;
 }
 
+/* Of an installation that was moved, or made with another --prefix: BIN/../share/pitviper. Empty: not known. */
+static void share_beside_program(char *out, size_t out_size)
+{
+    const ssize_t length = readlink("/proc/self/exe", out, out_size - 1);
+    out[length > 0 ? length : 0] = 0;
+    for (int i = 0; i < 2; i++) { /* the program's name, and bin */
+        char *slash = strrchr(out, '/');
+        if (slash) *slash = 0;
+    }
+    const size_t n = strlen(out);
+    if (snprintf(out + n, out_size - n, "/share/pitviper") >= (int)(out_size - n)) *out = 0;
+}
+
 bool etc_path(char *out, size_t out_size, const char *name)
 {
+    char        beside[4096];
     const char *from_environment = getenv("PITVIPER_ETC");
-    int         length;
     if (from_environment) {
-        length = snprintf(out, out_size, "%s/%s", from_environment, name);
-    } else {
-        length = snprintf(out, out_size, "%s/%s", PITVIPER_ETC_DIR, name);
-        if (length < 0 || (size_t)length >= out_size || access(out, R_OK) != 0)
-            length = snprintf(out, out_size, "%s/%s", PITVIPER_ETC_INSTALLED, name);
+        const int length = snprintf(out, out_size, "%s/%s", from_environment, name);
+        return length >= 0 && (size_t)length < out_size;
     }
-    return length >= 0 && (size_t)length < out_size;
+    share_beside_program(beside, sizeof beside);
+    const char *const folders[] = {beside, PITVIPER_ETC_DIR, PITVIPER_ETC_INSTALLED};
+    bool              fits      = false;
+    for (int i = 0; i < 3; i++) {
+        const int length = snprintf(out, out_size, "%s/%s", folders[i], name);
+        fits = length >= 0 && (size_t)length < out_size;
+        if (fits && access(out, R_OK) == 0) break;
+    }
+    return fits;
 }
 
 /* ---- files -------------------------------------------------------------------------------- */

@@ -142,9 +142,12 @@ int model_command(int argc, char **argv)
         usage(stdout);
         return 0;
     }
-    if (argc < 2 || strcmp(argv[1], "info") != 0) {
-        if (argc >= 2) fprintf(stderr, "pitviper model: no such action: %s\n\n", argv[1]);
+    if (argc < 2) {
         usage(stderr);
+        return 2;
+    }
+    if (strcmp(argv[1], "info") != 0) {
+        fprintf(stderr, "pitviper model: no such action: %s; there is `pitviper model info NAME|FILE`\n", argv[1]);
         return 2;
     }
     for (int i = 2; i < argc; i++) {

@@ -176,13 +176,14 @@ static void *add_shot(void *owner)
     return item;
 }
 
+#define ALL_KEYS "`pitviper exercise --keys`"
 static const SettingTable group_table = {.module = "scenario", .row = group_keys, .count = group_key_count,
-                                         .line_at = offsetof(ScenarioGroup, line)};
+                                         .line_at = offsetof(ScenarioGroup, line), .all_keys = ALL_KEYS};
 static const SettingTable shot_table = {.module = "scenario", .row = shot_keys, .count = shot_key_count,
-                                        .line_at = offsetof(ScenarioShot, line)};
+                                        .line_at = offsetof(ScenarioShot, line), .all_keys = ALL_KEYS};
 static const SettingList lists[] = {{"vehicles", &group_table, add_group}, {"shots", &shot_table, add_shot}};
 static const SettingTable table = {.module = "scenario", .row = keys, .count = key_count, .list = lists,
-                                   .list_count = 2};
+                                   .list_count = 2, .all_keys = ALL_KEYS};
 
 static Scenario default_scenario(void)
 {

@@ -143,7 +143,8 @@ static const Setting keys[] = {
 };
 enum { key_count = sizeof keys / sizeof keys[0] };
 _Static_assert((int)key_count <= (int)config_keys_max, "Config.given is too small");
-static const SettingTable table = {.module = "config", .row = keys, .count = key_count};
+static const SettingTable table = {.module = "config", .row = keys, .count = key_count,
+                                   .all_keys = "`pitviper check --default`"};
 
 Config config_default(void)
 {

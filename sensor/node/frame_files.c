@@ -17,11 +17,11 @@ enum { path_size = 4096, max_planes = 24, max_jobs = 16 };
 
 /* ---- folders -------------------------------------------------------------------------------- */
 
-static Status make_folders(const char *path)
+Status frame_files_folder(const char *path)
 {
     char part[path_size];
     if (!*path) {
-        log_error("replay: the folder for the products has no name; choose one with --out");
+        log_error("out: the folder for the products has no name; choose one with --out");
         return STATUS_BAD_VALUE;
     }
     if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return STATUS_BAD_VALUE;
@@ -30,7 +30,7 @@ static Status make_folders(const char *path)
         const char kept = *at;
         *at             = 0;
         if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-            log_error("replay: cannot make the folder %s: %s; choose another place with --out", part, strerror(errno));
+            log_error("out: cannot make the folder %s: %s; choose another place with --out", part, strerror(errno));
             return STATUS_IO;
         }
         *at = kept;
@@ -40,7 +40,7 @@ static Status make_folders(const char *path)
     if (stat(path, &there) == 0 && !S_ISDIR(there.st_mode)) errno = ENOTDIR;
     else errno = 0;
     if (errno || access(path, W_OK | X_OK) != 0) {
-        log_error("replay: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
+        log_error("out: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
         return STATUS_IO;
     }
     return STATUS_OK;
@@ -105,14 +105,14 @@ void frame_files_clear(const char *out)
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
 {
     char   path[path_size];
-    Status status = make_folders(out);
+    Status status = frame_files_folder(out);
     if (status == STATUS_OK) frame_files_clear(out);
     for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
         if (bands == 0) break;
         if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
             b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
         product_folder(path, out, b);
-        status = make_folders(path);
+        status = frame_files_folder(path);
     }
     return status;
 }

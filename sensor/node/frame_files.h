@@ -34,9 +34,11 @@ typedef struct FrameFiles {
     double          rate_px_s[2];   /* how the scene moves over the picture: column, row */
 } FrameFiles;
 
-/* clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
+/* folder: makes OUT, or says why not; what is in it stays.
+ * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
  * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
  * raw; a clear message when the place cannot be written. No bands: OUT alone. */
+Status frame_files_folder(const char *out);
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 /* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */

@@ -4,6 +4,7 @@
 #include "dis/exercise_clock.h"
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/stop.h"
@@ -21,7 +22,8 @@ static const int64_t look_ns = 100000000; /* a signal may come to another thread
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
-    DisRecorder *recorder;          /* NULL: none */
+    DisRecorder *recorder;          /* NULL: none, or closed */
+    bool         record_whole;      /* all that was heard is in it */
     char         where[dis_udp_where_size];
     LiveCounters counters;
     /* what was heard before the choices, each datagram its own memory */
@@ -105,7 +107,7 @@ static void say_troubles(Live *l)
         l->lost_said_s = now_s;
     }
     if (l->counters.frames_late > l->late_said && now_s - l->late_said_s >= remind_s) {
-        log_warn("run: %llu frames left out, their time had passed; a smaller --size, fewer --bands or a lower --rate "
+        log_warn("run: frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a lower --rate "
                  "helps",
                  (unsigned long long)l->counters.frames_late);
         l->late_said   = l->counters.frames_late;
@@ -249,8 +251,12 @@ static void conclude(Live *l)
     while (take(&datagram, l, last_ns)) {}
     read_counters(l);
     if (!l->recorder) return;
-    if (dis_recorder_close(l->recorder) == STATUS_OK) sha256_file(l->run.log_sha256, l->run.options.config.record.path);
-    l->recorder = NULL;
+    const char *path = l->run.options.config.record.path;
+    l->record_whole  = dis_recorder_close(l->recorder) == STATUS_OK && l->counters.record_failed == 0;
+    l->recorder      = NULL;
+    if (l->record_whole) sha256_file(l->run.log_sha256, path);
+    else log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
+                   (unsigned long long)l->counters.record_failed);
 }
 
 /* The newest frame whose time has come, else the next: who is late leaves frames out, and queues none. */
@@ -321,6 +327,8 @@ static Status run_node(Live *l)
 {
     bool   heard;
     Status status = run_prepare(&l->run);
+    /* now, not when the first entity is heard, hours later */
+    if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
     if (status != STATUS_OK) return status;
     l->begun_s = l->heard_s = wall_clock_s();
@@ -368,5 +376,5 @@ int run_command(int argc, char **argv)
     run_close(&l->run);
     forget_heard(l, l->heard_count);
     free(l->heard);
-    return status == STATUS_OK ? 0 : 1;
+    return status == STATUS_OK && (!*name || l->record_whole) ? 0 : 1;
 }

@@ -234,7 +234,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            log_error("options: '%s' is none; a node listens, it is `replay` that takes a log", argv[optind]);
+            log_error("options: '%s' is no option; a node listens, it is `replay` that takes a log", argv[optind]);
         fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
                 command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
         return 1 + 2;

@@ -73,7 +73,7 @@ static int parse(Options *o, int argc, char **argv)
             if (!ok) log_error("record: --count: '%s' is not a whole number from 1 on", optarg);
             break;
         case HELP: fputs(help, stdout); return 1;
-        default: fputs("pitviper record --help says what there is\n", stderr); return 1 + 2;
+        default: fputs("see `pitviper record --help`\n", stderr); return 1 + 2;
         }
         if (!ok) return 1 + 2;
     }

@@ -41,7 +41,8 @@ static const Setting box_rows[] = {
     {"inside.label", SETTING_TEXT, SETTING_AT(Box, label), 0, 0, NULL, "", "on the lid"},
     {"seed", SETTING_LONG, SETTING_AT(Box, seed), 0, 1e15, NULL, "", ""},
 };
-static const SettingTable table = {.module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1};
+static const SettingTable table = {.module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1,
+                                   .all_keys = "ask"};
 
 static Status read_text(Box *box, bool *given, const char *text)
 {
@@ -80,7 +81,12 @@ static void what_is_wrong_is_said_with_its_line(void **state)
     static const struct {
         const char *text, *said;
     } bad[] = {
-        {"count: 4\ncuont: 5\n", ":2: no such key: cuont"},
+        {"count: 4\ncuont: 5\n", ":2: no such key: cuont; did you mean count?"},
+        {"inside:\n  weihgt_gk: 1\n", ":2: no such key: inside.weihgt_gk; did you mean inside.weight_kg?"},
+        {"weight_kg: 1\n", "no such key: weight_kg; did you mean inside.weight_kg?"},
+        {"thigs: []\n", "no such key: thigs; did you mean things?"},
+        {"sedges: 1\n", "no such key: sedges; all keys: ask"}, /* three slips from any */
+        {"saad: 1\n", "no such key: saad; all keys: ask"},     /* two, in a short word */
         {"count: 4\ncount: 5\n", ":2: count is given twice"},
         {"count: 10\n", ":1: count: '10' is not a whole number in 0 .. 9"},
         {"count: 1.5\n", "'1.5' is not a whole number"},
