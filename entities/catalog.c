@@ -76,37 +76,16 @@ static Status find_or_build(int *out, Catalog *catalog, const char *name, const 
     return STATUS_OK;
 }
 
-/* The built-in models, each by whoever is free: what a model is does not depend on it, and its number is given. */
-typedef struct Building {
-    Catalog *catalog;
-    double   sag_m;
-    Status  *status; /* [model_count] */
-} Building;
-
-static void build_model(void *user, int worker, int m)
-{
-    const Building *building = user;
-    const char     *source = building->catalog->source[m];
-    (void)worker;
-    if (parametric_known(source))
-        building->status[m] = parametric_build(building->catalog->model + m, source, building->sag_m);
-}
-
+/* The built-in models, when all rows have named theirs. */
 static Status build_models(Catalog *catalog, double sag_m)
 {
-    Building building = {catalog, sag_m, calloc((size_t)catalog->model_count, sizeof *building.status)};
-    Pool    *pool = NULL;
-    Status   status = building.status ? STATUS_OK : STATUS_NO_MEMORY;
-    const int threads = thread_processors() < catalog->model_count ? thread_processors() : catalog->model_count;
-    if (status == STATUS_OK) status = pool_create(&pool, threads);
-    if (status == STATUS_OK) pool_run(pool, catalog->model_count, build_model, &building);
+    Status status = STATUS_OK;
     for (int m = 0; m < catalog->model_count && status == STATUS_OK; m++) {
-        status = building.status[m];
+        if (!parametric_known(catalog->source[m])) continue;
+        status = parametric_build(catalog->model + m, catalog->source[m], sag_m);
         if (status != STATUS_OK)
             log_error("catalog: cannot build a model: model=\"%s\" reason=%s", catalog->source[m], status_name(status));
     }
-    pool_destroy(pool);
-    free(building.status);
     return status;
 }
 
