@@ -63,20 +63,26 @@ static void share_beside_program(char *out, size_t out_size)
     if (snprintf(out + n, out_size - n, "/share/pitviper") >= (int)(out_size - n)) *out = 0;
 }
 
+static bool join(char *out, size_t out_size, const char *folder, const char *name)
+{
+    const size_t n = strlen(folder), m = strlen(name);
+    if (n + 1 + m >= out_size) return false;
+    memcpy(out, folder, n);
+    out[n] = '/';
+    memcpy(out + n + 1, name, m + 1);
+    return true;
+}
+
 bool etc_path(char *out, size_t out_size, const char *name)
 {
     char        beside[4096];
     const char *from_environment = getenv("PITVIPER_ETC");
-    if (from_environment) {
-        const int length = snprintf(out, out_size, "%s/%s", from_environment, name);
-        return length >= 0 && (size_t)length < out_size;
-    }
+    if (from_environment) return join(out, out_size, from_environment, name);
     share_beside_program(beside, sizeof beside);
     const char *const folders[] = {beside, PITVIPER_ETC_DIR, PITVIPER_ETC_INSTALLED};
     bool              fits      = false;
     for (int i = 0; i < 3; i++) {
-        const int length = snprintf(out, out_size, "%s/%s", folders[i], name);
-        fits = length >= 0 && (size_t)length < out_size;
+        fits = join(out, out_size, folders[i], name);
         if (fits && access(out, R_OK) == 0) break;
     }
     return fits;
