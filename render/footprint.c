@@ -8,11 +8,34 @@
  * pixel is its own value times what the footprints leave of it, plus the footprints.
  *
  * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
-#include "render/footprint_private.h"
+#include "render/render_private.h"
 
 /* Below this both ways (or this one way and four times as much the other) the footprint is the better of the two: edge
  * samples, 1 / 16 px apart along an axis, are wrong by up to 1 / 16 px of width, 0.4 % of 16 px. */
 static const double small_px = 16;
+
+/* The target's sample nearest the centre of a pixel. */
+typedef struct FootprintTruth {
+    double   square_px; /* of its distance */
+    float    range_m, temp_k, normal[3];
+    uint16_t part, material;
+} FootprintTruth;
+
+struct Footprint {
+    int     entity;                    /* snapshot index */
+    double  box[4];                    /* of all its vertices, px */
+    int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
+    int     x0, y0, x1, y1;            /* pixels that it may touch */
+    double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
+    double *area;                      /* px, a pixel */
+    FootprintTruth *truth;             /* a pixel; NULL: not wanted */
+    /* over the target, px within the image */
+    double  visible, amodal, hidden_ground, hidden_entity;
+    double  veiled[BAND_COUNT];          /* area x what the veil takes */
+    double  square[picture_plane_count]; /* area x radiance^2 */
+    double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
+    int     amodal_box[4];
+};
 
 /* ---- planning ------------------------------------------------------------------------------- */
 
@@ -21,8 +44,6 @@ static bool is_small(const TargetPixels *t)
     const double w = t->projected_box[2] - t->projected_box[0], h = t->projected_box[3] - t->projected_box[1];
     return t->projected && fmin(w, h) < small_px && fmax(w, h) < 4 * small_px;
 }
-
-static int in_twos(double cells) { return footprint_coarse * (int)ceil(cells / footprint_coarse); }
 
 static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
 {
@@ -33,8 +54,8 @@ static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
     /* never fewer than the edges of larger targets get */
     const int per_px = looks_for_edges(job->request) ? job->request->edge_samples : job->request->samples;
     if (w > 0 && h > 0) {
-        f->columns = in_twos(fmax(job->request->target_samples, ceil(w) * per_px));
-        f->rows    = in_twos(fmax(job->request->target_samples, ceil(h) * per_px));
+        f->columns = (int)fmax(job->request->target_samples, ceil(w) * per_px);
+        f->rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
     }
     f->x0 = (int)fmax(0, floor(f->box[0])), f->x1 = (int)fmin(view->width, ceil(f->box[2]));
     f->y0 = (int)fmax(0, floor(f->box[1])), f->y1 = (int)fmin(view->height, ceil(f->box[3]));
@@ -79,11 +100,106 @@ Status footprints_plan(Job *job, Arena *arena)
     return status;
 }
 
-/* ---- into the picture ----------------------------------------------------------------------- */
+/* ---- cells ---------------------------------------------------------------------------------- */
+
+typedef struct Span {
+    double low, high; /* px */
+} Span;
+
+static Span cell_span(const Footprint *f, int axis, int cell)
+{
+    const int    cells = axis == 0 ? f->columns : f->rows;
+    const double low = f->box[axis], length = f->box[axis + 2] - low;
+    return (Span){low + length * cell / cells, low + length * (cell + 1) / cells};
+}
+
+static double overlap(Span a, double low, double high)
+{
+    const double length = fmin(a.high, high) - fmax(a.low, low);
+    return length > 0 ? length : 0;
+}
 
 void footprint_box(double box_px[4], const Footprint *f) { memcpy(box_px, f->box, sizeof f->box); }
 
-void footprint_grow_box(void *user, const Footprint *f, int pixel, int x, int y, double area)
+uint64_t footprint_key(const Footprint *f, int cell)
+{
+    return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
+}
+
+double footprint_area(const Footprint *f, int cell)
+{
+    return overlap(cell_span(f, 0, cell % f->columns), f->x0, f->x1) *
+           overlap(cell_span(f, 1, cell / f->columns), f->y0, f->y1);
+}
+
+/* Where a cell is sampled: columns shifted among rows, and rows among columns, by the golden section, so that an edge
+ * along either is met in many more steps than there are cells across, and one along a diagonal, too. */
+static void cell_sample(double at_px[2], const Footprint *f, int cell)
+{
+    static const double golden = 0.6180339887498949;
+    const int    column = cell % f->columns, row = cell / f->columns;
+    const double u = 0.5 + row * golden, v = 0.5 + column * golden;
+    at_px[0] = f->box[0] + (f->box[2] - f->box[0]) * (column + u - floor(u)) / f->columns;
+    at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
+}
+
+/* visit(user, pixel of the footprint, area) for each pixel that a cell lies over. */
+typedef void VisitPixel(void *user, const Footprint *f, int pixel, int x, int y, double area);
+
+static void over_pixels(const Footprint *f, int cell, VisitPixel *visit, void *user)
+{
+    const Span across = cell_span(f, 0, cell % f->columns), down = cell_span(f, 1, cell / f->columns);
+    for (int y = (int)fmax(f->y0, floor(down.low)); y < f->y1 && y < down.high; y++)
+        for (int x = (int)fmax(f->x0, floor(across.low)); x < f->x1 && x < across.high; x++) {
+            const double area = overlap(across, x, x + 1) * overlap(down, y, y + 1);
+            if (area > 0) visit(user, f, (y - f->y0) * (f->x1 - f->x0) + x - f->x0, x, y, area);
+        }
+}
+
+typedef struct Splat {
+    double *sum, value;
+} Splat;
+
+static void splat_pixel(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)f, (void)x, (void)y;
+    const Splat *splat = user;
+    splat->sum[pixel] += area * splat->value;
+}
+
+void footprint_splat(Scratch *s, int plane)
+{
+    Footprint *f = s->block.footprint;
+    for (int i = 0; i < s->hits.count; i++) {
+        Splat splat = {f->sum[plane], s->out[i]};
+        over_pixels(f, s->block.cell[i], splat_pixel, &splat);
+        f->square[plane] += footprint_area(f, s->block.cell[i]) * s->out[i] * s->out[i];
+    }
+}
+
+/* ---- sampling ------------------------------------------------------------------------------- */
+
+typedef struct TruthSample {
+    const Scratch *s;
+    int            sample;
+    double         at_px[2];
+} TruthSample;
+
+static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)area;
+    const TruthSample *t = user;
+    const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
+    FootprintTruth    *to = &f->truth[pixel];
+    const Scratch     *s = t->s;
+    if (!(square_px < to->square_px)) return;
+    *to = (FootprintTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
+                           .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
+                           .material = s->material[t->sample]};
+    for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
+}
+
+static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y, double area)
 {
     (void)f, (void)pixel, (void)area;
     int *box = user;
@@ -92,6 +208,139 @@ void footprint_grow_box(void *user, const Footprint *f, int pixel, int x, int y,
     box[2] = x + 1 > box[2] ? x + 1 : box[2];
     box[3] = y + 1 > box[3] ? y + 1 : box[3];
 }
+
+/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked. With
+ * no_skip all stay. */
+static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
+{
+    const int count = s->rays.count;
+    int       kept = 0;
+    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
+    for (int i = 0; i < count; i++) {
+        if (!s->meets[i] && !job->request->no_skip) continue;
+        s->block.cell[kept] = first_cell + i;
+        s->meets[kept]      = s->meets[i];
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][kept] = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept] = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    s->rays.count   = kept;
+    s->rays.columns = 0;
+}
+
+/* What hides the target where its own samples did not meet it first. */
+static void count_hidden(Footprint *f, const Scratch *s)
+{
+    const uint32_t id = (uint32_t)f->entity + 1;
+    for (int i = 0; i < s->all.count; i++) {
+        if (!s->meets[i]) continue;
+        const int    cell = s->block.cell[i];
+        const double area = footprint_area(f, cell);
+        f->amodal += area;
+        over_pixels(f, cell, grow_amodal, f->amodal_box);
+        if (s->all.entity[i] == id) continue;
+        if (s->all.entity[i]) {
+            f->hidden_entity += area;
+            f->hidden_by[s->all.entity[i] - 1] += area;
+        } else {
+            f->hidden_ground += area;
+        }
+    }
+}
+
+/* Samples that met the target, close together: nobody else's are shaded here. */
+static void keep_target(const Footprint *f, Scratch *s)
+{
+    const uint32_t id = (uint32_t)f->entity + 1;
+    const Hits    *from = &s->all;
+    Hits          *to = &s->hits;
+    int            kept = 0;
+    for (int i = 0; i < from->count; i++) {
+        if (from->entity[i] != id) continue;
+        s->block.cell[kept] = s->block.cell[i];
+        to->range_m[kept]   = from->range_m[i];
+        to->entity[kept]    = from->entity[i];
+        to->part[kept]      = from->part[i];
+        to->model[kept]     = from->model[i];
+        to->surface[kept]   = from->surface[i];
+        for (int k = 0; k < 3; k++) {
+            to->p_enu[k][kept]       = from->p_enu[k][i];
+            to->n_geo[k][kept]       = from->n_geo[k][i];
+            to->n_enu[k][kept]       = from->n_enu[k][i];
+            s->rays.o_enu[k][kept]   = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept]   = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    to->count   = s->rays.count = kept;
+    to->columns = s->rays.columns = 0;
+}
+
+static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)user, (void)x, (void)y;
+    f->area[pixel] += area;
+}
+
+static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cell, int count, int listed)
+{
+    const View  *view = &job->request->view;
+    const double t0 = wall_clock_s();
+    for (int i = 0; i < count; i++) {
+        double at_px[2], d_enu[3];
+        cell_sample(at_px, f, first_cell + i);
+        view_ray(d_enu, view, at_px[0], at_px[1]);
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][i] = view->p_enu[k];
+            s->rays.d_enu[k][i] = d_enu[k];
+        }
+        s->rays.far_m[i] = INFINITY;
+    }
+    s->rays.count   = count;
+    s->rays.columns = f->columns;
+    s->counters.rays_primary += (uint64_t)count;
+    s->counters.rays_small_targets += (uint64_t)count;
+    keep_amodal(f, s, job, first_cell);
+    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
+                         &s->counters.visibility);
+    if (job->picture->target) count_hidden(f, s);
+    s->visibility_s += wall_clock_s() - t0;
+    keep_target(f, s);
+    if (s->hits.count == 0) return;
+    trace_shadows(s, job);
+    shade_block(s, job);
+    for (int i = 0; i < s->hits.count; i++) {
+        const int cell = s->block.cell[i];
+        f->visible += footprint_area(f, cell);
+        for (int b = 0; b < BAND_COUNT; b++) f->veiled[b] += footprint_area(f, cell) * veil_taken(s, job, (Band)b, i);
+        over_pixels(f, cell, add_area, NULL);
+        if (!f->truth) continue;
+        TruthSample truth = {.s = s, .sample = i};
+        cell_sample(truth.at_px, f, cell);
+        over_pixels(f, cell, offer_truth, &truth);
+    }
+}
+
+void footprint_task(void *user, int worker, int index)
+{
+    const Job *job = user;
+    Scratch   *s = job->scratch[worker];
+    Footprint *f = &job->footprint[job->footprint_turn[index]];
+    const int  cells = f->columns * f->rows;
+    s->counters.small_targets++;
+    if (cells == 0) return;
+    const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
+                                                 f->box[2], f->box[3], job->request->hidden_entity);
+    s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
+    /* whole rows, and fours of them where they fit: their rays go in squares */
+    const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
+    for (int cell = 0; cell < cells; cell += block)
+        sample_cells(f, s, job, cell, cells - cell < block ? cells - cell : block, listed);
+}
+
+/* ---- into the picture ----------------------------------------------------------------------- */
 
 void footprints_cover(Job *job)
 {
@@ -157,7 +406,7 @@ static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
     for (int y = f->y0, k = 0; y < f->y1; y++)
         for (int x = f->x0; x < f->x1; x++, k++) {
             if (!(f->area[k] > 0)) continue;
-            footprint_grow_box(target->box, f, k, x, y, f->area[k]);
+            grow_amodal(target->box, f, k, x, y, f->area[k]);
             target->peak_area = fmax(target->peak_area, f->area[k]);
             for (int plane = 0; plane < picture_plane_count; plane++) {
                 if (!f->sum[plane]) continue;
