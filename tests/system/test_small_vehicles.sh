@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Vehicles of a few pixels, with hot exhausts and glints: their intensity as sampled by default against 200 x 200
+# samples over each. 8-12 um within 1.5 % (seen: 1.0), optical 2 % (1.1); 3.4-4.8 um glints in the sun: 8 % (5.5).
+. "$(dirname "$0")/common.sh"
+command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+
+exercise demo "$tmp/demo.pcap"
+for samples in 48 200; do
+    run replay "$tmp/demo.pcap" --bands optical,mwir,lwir --size 360x243 --rate 2 --no-files --to 1358 --threads 2 \
+        --host 1:3001:31 --set exercise.aim=1:3001:11 --set "sensor.target_samples=$samples" --out "$tmp/$samples"
+    check "$samples samples a side" [ $code = 0 ]
+done
+python3 - "$tmp/48/truth.jsonl" "$tmp/200/truth.jsonl" <<'P' || fail "intensities"
+import json, sys
+limit = {"optical": 0.02, "mwir": 0.08, "lwir": 0.015}
+worst, count = dict.fromkeys(limit, 0), 0
+for few, many in zip(*[map(json.loads, open(path)) for path in sys.argv[1:]]):
+    for a, b in zip(few["targets"], many["targets"]):
+        if not 1 < b["pixels"] < 200:
+            continue
+        count += 1
+        for band in limit:
+            off = abs(a["bands"][band]["intensity_w_sr"] / b["bands"][band]["intensity_w_sr"] - 1)
+            worst[band] = max(worst[band], off)
+print(count, "sightings, worst:", {band: "%.1f %%" % (100 * off) for band, off in worst.items()})
+sys.exit(not (count >= 40 and all(worst[band] <= limit[band] for band in limit)))
+P
+finish
