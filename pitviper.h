@@ -361,12 +361,6 @@ static inline void m3_tmul(double out[9], const double a[9], const double b[9])
             out[3 * i + j] = a[i] * b[j] + a[3 + i] * b[3 + j] + a[6 + i] * b[6 + j];
 }
 
-static inline void m3_transpose(double out[9], const double a[9])
-{
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) out[3 * i + j] = a[3 * j + i];
-}
-
 static inline void m3_identity(double out[9])
 {
     for (int i = 0; i < 9; i++) out[i] = i % 4 == 0;

@@ -2,38 +2,13 @@
  * where they end. A sample's answer hangs on its own path alone, whatever comes beside it. */
 #include "render/air_private.h"
 
-#include <immintrin.h>
+#include "terrain/eight.h"
 
-typedef __m256 Eight;
-
-static inline Eight all(double x) { return _mm256_set1_ps((float)x); }
-static inline Eight mul(Eight a, Eight b) { return _mm256_mul_ps(a, b); }
-static inline Eight add(Eight a, Eight b) { return _mm256_add_ps(a, b); }
-static inline Eight sub(Eight a, Eight b) { return _mm256_sub_ps(a, b); }
-static inline Eight mul_add(Eight a, Eight b, Eight c) { return _mm256_fmadd_ps(a, b, c); }
-static inline Eight between(Eight a, Eight b, Eight t) { return mul_add(t, sub(b, a), a); }
-static inline Eight magnitude(Eight x) { return _mm256_andnot_ps(all(-0.0), x); }
+static inline Eight mul(Eight a, Eight b) { return a * b; }
+static inline Eight add(Eight a, Eight b) { return a + b; }
+static inline Eight sub(Eight a, Eight b) { return a - b; }
 /* NaN, as the unused end of a block may hold, becomes low. */
-static inline Eight within(Eight x, Eight low, Eight high) { return _mm256_min_ps(_mm256_max_ps(x, low), high); }
-
-static inline Eight narrow(const double *p)
-{
-    return _mm256_set_m128(_mm256_cvtpd_ps(_mm256_loadu_pd(p + 4)), _mm256_cvtpd_ps(_mm256_loadu_pd(p)));
-}
-
-/* 2^x for x < 128, relative error below 2e-7, exact at 0; below -126 as there. Minimax over half a step either way. */
-static inline Eight exp2_eight(Eight x)
-{
-    x = _mm256_max_ps(x, all(-126));
-    const Eight n = _mm256_round_ps(x, _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC), f = sub(x, n);
-    Eight p = mul_add(all(0.0013264723896), f, all(0.0096715128699));
-    p = mul_add(p, f, all(0.0555073375424));
-    p = mul_add(p, f, all(0.2402224208036));
-    p = mul_add(p, f, all(0.6931469775915));
-    p = mul_add(p, f, all(1));
-    return _mm256_castsi256_ps(
-        _mm256_add_epi32(_mm256_castps_si256(p), _mm256_slli_epi32(_mm256_cvtps_epi32(n), 23)));
-}
+static inline Eight within(Eight x, Eight low, Eight high) { return eight_min(eight_max(x, low), high); }
 
 /* ---- where eight paths end, in the table's own steps ------------------------------------------- */
 
@@ -69,65 +44,69 @@ static Look look_from(const Air *air)
                   .per_ln_temp = _mm256_loadu_ps(per_ln_temp),
                   .row_shift = _mm_cvtsi32_si128(table->row_shift),
                   .row_mask = _mm256_set1_epi32((1 << table->row_shift) - 1),
-                  .row_share = all(ldexp(1, -table->row_shift)),
+                  .row_share = eight_all(ldexp(1, -table->row_shift)),
                   .height_most_m = _mm256_set1_ps(nextafterf(top_m, 0)),
-                  .eye_m = all(eye_m),
-                  .down_m = all(-eye_m),
-                  .per_fall_m = all(1 / fmax(eye_m, air_least_fall_m)),
-                  .per_climb_m = all(1 / fmax(air_top_m - eye_m, 1e-3)),
-                  .sun_east = all(level > 1e-10 ? air->sun_d_enu[0] / level : 1),
-                  .sun_north = all(level > 1e-10 ? air->sun_d_enu[1] / level : 0),
-                  .slope_low = all((double)table->slope_low),
-                  .slope_steps = all((double)table->slope_steps),
-                  .turn_low = all((double)table->turn_low),
-                  .turn_steps = all((double)table->turn_steps),
-                  .turn_most = all(table->turns - 1e-3)};
+                  .eye_m = eight_all(eye_m),
+                  .down_m = eight_all(-eye_m),
+                  .per_fall_m = eight_all(1 / fmax(eye_m, air_least_fall_m)),
+                  .per_climb_m = eight_all(1 / fmax(air_top_m - eye_m, 1e-3)),
+                  .sun_east = eight_all(level > 1e-10 ? air->sun_d_enu[0] / level : 1),
+                  .sun_north = eight_all(level > 1e-10 ? air->sun_d_enu[1] / level : 0),
+                  .slope_low = eight_all((double)table->slope_low),
+                  .slope_steps = eight_all((double)table->slope_steps),
+                  .turn_low = eight_all((double)table->turn_low),
+                  .turn_steps = eight_all((double)table->turn_steps),
+                  .turn_most = eight_all(table->turns - 1e-3)};
 }
 
 static inline __m256i bits_above(Eight x, double low)
 {
-    return _mm256_sub_epi32(_mm256_castps_si256(x), _mm256_castps_si256(all(low)));
+    return _mm256_sub_epi32(_mm256_castps_si256(x), _mm256_castps_si256(eight_all(low)));
 }
 
 static inline __m256i row_times(__m256i i, int row) { return _mm256_mullo_epi32(i, _mm256_set1_epi32(row)); }
 
 static inline void find_places(Places *p, const Look *look, const float *range_m, const Rays *rays, int i)
 {
-    const Eight dx = narrow(rays->d_enu[0] + i), dy = narrow(rays->d_enu[1] + i), dz = narrow(rays->d_enu[2] + i);
-    const Eight ox = narrow(rays->o_enu[0] + i), oy = narrow(rays->o_enu[1] + i), per_earth = all(1 / earth_radius_m);
+    const Eight dx = eight_of_doubles(rays->d_enu[0] + i), dy = eight_of_doubles(rays->d_enu[1] + i),
+                dz = eight_of_doubles(rays->d_enu[2] + i);
+    const Eight ox = eight_of_doubles(rays->o_enu[0] + i), oy = eight_of_doubles(rays->o_enu[1] + i),
+                per_earth = eight_all(1 / earth_radius_m);
     const Eight far_m = _mm256_set1_ps(nextafterf((float)air_far_m, 0)); /* (1 << air_octaves) nearest ones */
-    const Eight at = within(_mm256_loadu_ps(range_m + i), all(0), far_m), level2 = mul_add(dx, dx, mul(dy, dy));
+    const Eight at = within(_mm256_loadu_ps(range_m + i), eight_all(0), far_m), level2 = eight_fma(dx, dx, mul(dy, dy));
     /* the tangent plane leaves the Earth: by the eye's own distance from the origin, and along the path */
-    const Eight climb = mul_add(mul_add(ox, dx, mul(oy, dy)), per_earth, dz);
-    const Eight bend = mul(level2, all(0.5 / earth_radius_m));
-    const Eight rise_m = _mm256_max_ps(mul(at, mul_add(at, bend, climb)), look->down_m);
+    const Eight climb = eight_fma(eight_fma(ox, dx, mul(oy, dy)), per_earth, dz);
+    const Eight bend = mul(level2, eight_all(0.5 / earth_radius_m));
+    const Eight rise_m = _mm256_max_ps(mul(at, eight_fma(at, bend, climb)), look->down_m);
 
     /* height and range by their own bits */
-    const Eight h = _mm256_min_ps(add(add(look->eye_m, rise_m), all(air_low_m)), look->height_most_m);
-    const Eight r = mul(at, all(1 / air_near_m));
-    const __m256i hb = bits_above(_mm256_max_ps(h, all(air_low_m)), air_low_m);
-    const __m256i rb = bits_above(_mm256_max_ps(r, all(1)), 1);
+    const Eight h = _mm256_min_ps(add(add(look->eye_m, rise_m), eight_all(air_low_m)), look->height_most_m);
+    const Eight r = mul(at, eight_all(1 / air_near_m));
+    const __m256i hb = bits_above(_mm256_max_ps(h, eight_all(air_low_m)), air_low_m);
+    const __m256i rb = bits_above(_mm256_max_ps(r, eight_all(1)), 1);
     const __m256i hi = _mm256_srl_epi32(hb, look->row_shift), ri = _mm256_srli_epi32(rb, air_range_shift);
     _mm256_store_ps(p->height, mul(_mm256_cvtepi32_ps(_mm256_and_si256(hb, look->row_mask)), look->row_share));
     const __m256i rest = _mm256_and_si256(rb, _mm256_set1_epi32((1 << air_range_shift) - 1));
-    _mm256_store_ps(p->range, mul(_mm256_cvtepi32_ps(rest), all(1.0 / (1 << air_range_shift))));
+    _mm256_store_ps(p->range, mul(_mm256_cvtepi32_ps(rest), eight_all(1.0 / (1 << air_range_shift))));
     _mm256_store_si256((__m256i *)p->node, _mm256_add_epi32(row_times(hi, air_range_row), ri));
-    p->near = _mm256_min_ps(r, all(1));
+    p->near = _mm256_min_ps(r, eight_all(1));
 
-    const Eight rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, all(1e-3)));
-    const Eight root = _mm256_or_ps(_mm256_sqrt_ps(magnitude(rise)), _mm256_and_ps(rise, all(-0.0)));
-    const Eight s = within(mul(sub(root, look->slope_low), look->slope_steps), all(0), all(air_slopes - 1e-3));
+    const Eight rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, eight_all(1e-3)));
+    const Eight root = _mm256_or_ps(_mm256_sqrt_ps(eight_abs(rise)), _mm256_and_ps(rise, eight_all(-0.0)));
+    const Eight s = within(mul(sub(root, look->slope_low), look->slope_steps), eight_all(0),
+                     eight_all(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(s);
     /* range over the whole way, which ends at the ground or the top, and within its limits */
     const Eight per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
-    const Eight gone = within(mul(magnitude(rise_m), per_m), mul(at, all(1 / air_longest_way_m)),
-                              mul(at, all(1 / air_shortest_way_m)));
-    const Eight w = within(mul(_mm256_sqrt_ps(gone), all(air_shares)), all(0), all(air_shares - 1e-3));
+    const Eight gone = within(mul(eight_abs(rise_m), per_m), mul(at, eight_all(1 / air_longest_way_m)),
+                              mul(at, eight_all(1 / air_shortest_way_m)));
+    const Eight w = within(mul(_mm256_sqrt_ps(gone), eight_all(air_shares)), eight_all(0),
+                     eight_all(air_shares - 1e-3));
     const __m256i wi = _mm256_cvttps_epi32(w);
-    const Eight level = _mm256_sqrt_ps(_mm256_max_ps(level2, all(1e-12)));
-    const Eight cosine = _mm256_div_ps(mul_add(dx, look->sun_east, mul(dy, look->sun_north)), level);
-    const Eight turn = _mm256_sqrt_ps(_mm256_max_ps(sub(all(1), cosine), all(0)));
-    const Eight a = within(mul(sub(turn, look->turn_low), look->turn_steps), all(0), look->turn_most);
+    const Eight level = _mm256_sqrt_ps(_mm256_max_ps(level2, eight_all(1e-12)));
+    const Eight cosine = _mm256_div_ps(eight_fma(dx, look->sun_east, mul(dy, look->sun_north)), level);
+    const Eight turn = _mm256_sqrt_ps(_mm256_max_ps(sub(eight_all(1), cosine), eight_all(0)));
+    const Eight a = within(mul(sub(turn, look->turn_low), look->turn_steps), eight_all(0), look->turn_most);
     const __m256i ai = _mm256_cvttps_epi32(a);
     _mm256_store_ps(p->slope, sub(s, _mm256_cvtepi32_ps(si)));
     _mm256_store_ps(p->share, sub(w, _mm256_cvtepi32_ps(wi)));
@@ -140,13 +119,14 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
  * terms leave 1e-4 over the widest step. */
 static inline void find_temps(Places *p, const Look *look, const float *temp_k)
 {
-    const Eight t = within(_mm256_loadu_ps(temp_k), all(emitter_temp_k[0]), all(emitter_temp_k[air_temps - 1]));
+    const Eight t = within(_mm256_loadu_ps(temp_k), eight_all(emitter_temp_k[0]),
+                     eight_all(emitter_temp_k[air_temps - 1]));
     __m256i k = _mm256_setzero_si256();
     for (int step = 1; step < air_temps - 1; step++) /* true is -1 */
-        k = _mm256_sub_epi32(k, _mm256_castps_si256(_mm256_cmp_ps(t, all(emitter_temp_k[step]), _CMP_GE_OQ)));
+        k = _mm256_sub_epi32(k, _mm256_castps_si256(_mm256_cmp_ps(t, eight_all(emitter_temp_k[step]), _CMP_GE_OQ)));
     const Eight a = _mm256_permutevar8x32_ps(look->temp_low, k);
     const Eight z = _mm256_div_ps(sub(t, a), add(t, a)), z2 = mul(z, z);
-    const Eight ln = mul(z, mul_add(z2, mul_add(z2, all(0.4), all(2.0 / 3)), all(2)));
+    const Eight ln = mul(z, eight_fma(z2, eight_fma(z2, eight_all(0.4), eight_all(2.0 / 3)), eight_all(2)));
     p->temp = mul(ln, _mm256_permutevar8x32_ps(look->per_ln_temp, k));
     _mm256_store_si256((__m256i *)p->heat_node,
                        _mm256_add_epi32(row_times(k, air_nodes), _mm256_load_si256((const __m256i *)p->node)));
@@ -177,7 +157,8 @@ static inline void depths(Eight out[air_lights], const AirLight *light, const Pl
     __m128 row[8];
     for (int j = 0; j < 8; j++) {
         const float *low = light->depth[p->node[j]], *high = low + air_range_row * air_lights;
-        row[j] = along(between(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])), p->range[j]);
+        row[j] = along(eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])),
+                         p->range[j]);
     }
     turn_four(out, row);
 }
@@ -189,13 +170,13 @@ static inline void scattered_sources(Eight out[air_lights], const AirLight *ligh
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->turn_node[j] * air_lights, *high = low + air_slope_nodes * air_lights;
         const Eight turn = _mm256_set1_ps(p->turn[j]);
-        const Eight a = between(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
-        const Eight b = between(_mm256_loadu_ps(low + air_share_row * air_lights),
+        const Eight a = eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
+        const Eight b = eight_mix(_mm256_loadu_ps(low + air_share_row * air_lights),
                                 _mm256_loadu_ps(high + air_share_row * air_lights), turn);
-        row[j] = along(between(a, b, _mm256_set1_ps(p->slope[j])), p->share[j]);
+        row[j] = along(eight_mix(a, b, _mm256_set1_ps(p->slope[j])), p->share[j]);
     }
     turn_four(out, row);
-    for (int k = 0; k < air_lights; k++) out[k] = exp2_eight(out[k]);
+    for (int k = 0; k < air_lights; k++) out[k] = eight_exp2(out[k]);
 }
 
 /* Both thermal bands' values, after each other. */
@@ -207,8 +188,8 @@ static inline void heats(Eight out[2 * air_warm_values], const AirHeat *heat, co
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->heat_node[j] * values, *high = low + air_range_row * values;
         const Eight height = _mm256_set1_ps(p->height[j]);
-        row[j] = between(between(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
-                         between(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
+        row[j] = eight_mix(eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
+                         eight_mix(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
                          _mm256_set1_ps(p->range[j]));
     }
     for (int j = 0; j < 8; j += 4) {
@@ -225,7 +206,7 @@ static inline void heats(Eight out[2 * air_warm_values], const AirHeat *heat, co
 
 static inline Eight transmit(Eight depth, const Places *p)
 {
-    return exp2_eight(sub(all(0), mul(p->near, depth)));
+    return eight_exp2(sub(eight_all(0), mul(p->near, depth)));
 }
 
 static inline void store_veil(Veils *out, int i, Eight emitted, Eight sun, Eight own, Eight added)
@@ -244,7 +225,7 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
     Places p;
     find_places(&p, look, range_m, rays, i);
 
-    Eight mwir_sun = all(0), mwir_scattered = all(0);
+    Eight mwir_sun = eight_all(0), mwir_scattered = eight_all(0);
     for (int g = 0; g < table->lights; g++) {
         const AirLight *light = table->light[g];
         Eight depth[air_lights], source[air_lights];
@@ -252,12 +233,12 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
         for (int k = 0; k < light->bands; k++) any |= out[light->band[k]] != NULL;
         if (!any) continue;
         depths(depth, light, &p);
-        for (int k = 0; k < air_lights; k++) source[k] = all(0);
+        for (int k = 0; k < air_lights; k++) source[k] = eight_all(0);
         if (table->scattered) scattered_sources(source, light, &p);
         for (int k = 0; k < light->bands; k++) {
             const AirBand band = light->band[k];
             if (!out[band]) continue;
-            const Eight sun = transmit(depth[k], &p), added = mul(sub(all(1), sun), source[k]);
+            const Eight sun = transmit(depth[k], &p), added = mul(sub(eight_all(1), sun), source[k]);
             if (band == AIR_MWIR)
                 mwir_sun = sun, mwir_scattered = added;
             else
@@ -269,7 +250,7 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
         find_temps(&p, look, temp_k + i);
     } else {
         memcpy(p.heat_node, p.node, sizeof p.heat_node);
-        p.temp = all(0);
+        p.temp = eight_all(0);
     }
     Eight value[2 * air_warm_values];
     heats(value, table->heat, &p);
@@ -279,8 +260,8 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
         if (!out[band]) continue;
         const Eight own = transmit(v[air_warm_own], &p);
         const Eight sun = band == AIR_MWIR && table->scattered ? mwir_sun : own;
-        const Eight emitted = temp_k ? transmit(between(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
-        Eight added = mul(sub(all(1), own), v[air_warm_source]);
+        const Eight emitted = temp_k ? transmit(eight_mix(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
+        Eight added = mul(sub(eight_all(1), own), v[air_warm_source]);
         if (band == AIR_MWIR) added = add(added, mwir_scattered);
         store_veil(out[band], i, emitted, sun, own, added);
     }
@@ -312,7 +293,7 @@ static void find_ranges(float *range_m, const Air *air, const Hits *hits, const 
 
 static bool any_ends(const float *range_m)
 {
-    return _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(range_m), all(INFINITY), _CMP_LT_OQ)) != 0;
+    return _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(range_m), eight_all(INFINITY), _CMP_LT_OQ)) != 0;
 }
 
 static void veil_even(Veils *out, const Air *air, AirBand band, const Hits *hits)

@@ -95,7 +95,7 @@ static void say_troubles(Live *l)
     const double now_s = wall_clock_s();
     read_counters(l);
     if (!l->silence_said && now_s - l->heard_s >= silent_s) {
-        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o /tmp/heard.pcapng` shows "
+        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o heard.pcapng` shows "
                  "what comes at all; --port, --address and --interface say where", l->where, silent_s);
         l->silence_said = true;
     }
