@@ -272,10 +272,45 @@ BenchRow bench_row_of(const char *what, const BenchTime *time, const char *rate_
 /* The compiler must take this memory for read. */
 static inline void bench_keep(const void *memory) { __asm__ volatile("" : : "g"(memory) : "memory"); }
 
+/* ---- time against error: the settings of one approximation ---------------------------------------- */
+
+/* One setting. */
+typedef struct BenchPoint {
+    const char *setting;     /* "2 x 2" */
+    BenchTime   time;        /* all settings of a knob are timed in turn, by one bench_time */
+    double      error;       /* in BenchKnob.error_unit, against a reference that does not approximate */
+    double      bytes;       /* memory it needs; 0: the same for all */
+    bool        is_default;  /* exactly one is */
+} BenchPoint;
+
+typedef struct BenchKnob {
+    const char *name;        /* "rays a pixel" */
+    const char *turned_by;   /* the configuration's key, or where the constant stands: "render/air.c" */
+    const char *of;          /* what is timed: "a frame of 320 x 216, three bands" */
+    const char *error_unit, *against; /* "%"; "256 rays a pixel" */
+    double      stated;      /* the largest error that is promised of the default */
+} BenchKnob;
+
+/* Rows of the table, a plot, and the verdict: the default must keep what is stated, and no other setting may be better
+ * beyond noise in time, error or memory without being worse in another of them: the Pareto front. */
+void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count);
+
 /* The command: argv[0] NAME, then options; suites are walked by next(&state) from a zeroed state. Exit code: 1 when a
  * suite failed or an error is beyond its limit. */
 typedef const BenchSuite *BenchNext(size_t state[2]);
 int bench_command(int argc, char **argv, BenchNext *next);
+
+/* ---- reports: a page that needs no other file ----------------------------------------------------- */
+
+/* Opens path.part and writes the head, with the house's style; NULL, logged. What follows is written by fprintf as
+ * markup, or by these. */
+FILE  *html_begin(const char *path, const char *title);
+/* Text as text: what would be markup is escaped. */
+__attribute__((format(printf, 2, 3))) void html_text(FILE *page, const char *format, ...);
+/* A picture inside the page. type: "png", "svg+xml". */
+void   html_image(FILE *page, const char *type, const void *bytes, size_t count, const char *alt);
+/* Ends the page and gives the file its name. STATUS_IO, logged, and no file, when anything of it could not be written. */
+Status html_end(FILE *page, const char *path);
 
 /* ---- small vectors ------------------------------------------------------------------------ */
 /* Matrices are row by row: r_a_from_b[3 * row + column]. */

@@ -183,6 +183,22 @@ void bench_add(Bench *bench, const BenchRow *row)
     fputc('\n', bench->csv);
 }
 
+/* ---- knobs ------------------------------------------------------------------------------------ */
+
+void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count)
+{
+    char what[256];
+    for (int i = 0; i < count; i++) {
+        snprintf(what, sizeof what, "%s: %s%s", knob->name, point[i].setting, point[i].is_default ? " (default)" : "");
+        BenchRow row   = bench_row_of(what, &point[i].time, NULL, 1);
+        row.error      = point[i].error;
+        row.error_unit = knob->error_unit;
+        row.against    = knob->against;
+        if (point[i].is_default) row.error_limit = knob->stated;
+        bench_add(bench, &row);
+    }
+}
+
 /* ---- the machine ------------------------------------------------------------------------------ */
 
 static void processor_name(char out[128])
