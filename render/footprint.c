@@ -334,7 +334,7 @@ void footprint_task(void *user, int worker, int index)
     s->counters.small_targets++;
     if (cells == 0) return;
     const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
-                                                 f->box[2], f->box[3], job->request->hidden_entity);
+                                                 f->box[2], f->box[3], job->request->hidden_entity, &s->counters.visibility);
     s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
     /* whole rows, and fours of them where they fit: their rays go in squares */
     const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;

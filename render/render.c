@@ -400,7 +400,7 @@ static Tile tile_of(const Job *job, int task)
 static int list_entities(Scratch *s, const Job *job, const Tile *tile)
 {
     const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, tile->x0, tile->y0,
-                                              tile->x1, tile->y1, job->request->hidden_entity);
+                                              tile->x1, tile->y1, job->request->hidden_entity, &s->counters.visibility);
     int       listed = 0;
     for (int k = 0; k < all; k++)
         if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];

@@ -3,7 +3,7 @@
 static const struct {
     const char *name, *what;
 } rows[SKIP_COUNT] = {
-    [SKIP_BLOCK]         = {"block", "entities outside a block of pixels: ray-entity pairs"},
+    [SKIP_BLOCK]         = {"block", "entities outside a block of pixels: block-entity pairs"},
     [SKIP_SPHERE]        = {"sphere", "entities missed or hidden, by their sphere: ray-entity pairs"},
     [SKIP_PART]          = {"part", "parts missed, by box and sphere: ray-part pairs"},
     [SKIP_GROUND_BEHIND] = {"ground_behind", "ground behind the part that was met: rays"},

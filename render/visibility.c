@@ -8,7 +8,7 @@ struct Visibility {
     const Landscape *landscape;
     Ground           ground;
     unsigned         skips_off;
-    int              count;
+    int              count, drawable;
     PosedEntity     *entity; /* [count], as in the snapshot */
     int             *in_view; /* those that blocks within the image of visibility_look may see; NULL: not asked */
     int              in_view_count;
@@ -39,6 +39,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
         m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
         parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body,
                    snapshot_damage(e));
+        v->drawable += posed->model >= 0;
     }
     *out = v;
     return STATUS_OK;
@@ -91,13 +92,18 @@ Status visibility_look(Visibility *v, const View *view, Arena *arena)
 }
 
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden)
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters)
 {
     /* what lies beyond a side of the image is met by no ray of a block within the image */
     const bool within = v->in_view && column0_px >= 0 && row0_px >= 0 && column1_px <= v->in_view_columns &&
                         row1_px <= v->in_view_rows;
     const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
-    return spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px, hidden);
+    const int listed = spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px,
+                                        hidden);
+    const int hides = hidden >= 0 && v->entity[hidden].model >= 0;
+    counters->skipped[SKIP_BLOCK] += (uint64_t)(v->drawable - hides - listed);
+    return listed;
 }
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
@@ -312,7 +318,6 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     counters->rays_ground += (uint64_t)count;
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
-    counters->skipped[SKIP_BLOCK] += drawable * (uint64_t)count - offered;
     counters->skipped[SKIP_SPHERE] += offered - asked;
 
     PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */

@@ -50,7 +50,8 @@ Status visibility_look(Visibility *v, const View *view, Arena *arena);
 /* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
  * without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden);
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters);
 
 /* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */

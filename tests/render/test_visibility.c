@@ -164,7 +164,7 @@ static void a_sphere_covers_its_ellipse(void **state)
         for (int row = 0; row < 256; row += 32)
             for (int column = 0; column < 256; column += 32) {
                 int list[most_entities], amodal;
-                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1);
+                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
                 block_rays(&rays, &view, column, row);
                 visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
                 uint8_t meets[hits_capacity];
@@ -233,7 +233,7 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32;
             int       list[most_entities];
-            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1);
+            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
             for (int i = 0; i < rays.count; i++) {
@@ -489,8 +489,8 @@ static void skipping_changes_no_bit(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32, hidden = scene % 2 ? 5 : -1;
             int       list[most_entities], every[most_entities];
-            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden);
-            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden),
+            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0});
+            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0}),
                              hidden < 0 ? 24 : 23);
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, skip, &rays, list, count, hidden, &stage.counters);
