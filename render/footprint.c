@@ -209,15 +209,16 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
     box[3] = y + 1 > box[3] ? y + 1 : box[3];
 }
 
-/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked. With
- * no_skip all stay. */
+/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked.
+ * Without SKIP_CELL all stay. */
 static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
 {
-    const int count = s->rays.count;
-    int       kept = 0;
-    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity);
+    const int  count = s->rays.count;
+    const bool leave_out = skips(job->request->skips_off, SKIP_CELL);
+    int        kept = 0;
+    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity, &s->counters.visibility);
     for (int i = 0; i < count; i++) {
-        if (!s->meets[i] && !job->request->no_skip) continue;
+        if (!s->meets[i] && leave_out) continue;
         s->block.cell[kept] = first_cell + i;
         s->meets[kept]      = s->meets[i];
         for (int k = 0; k < 3; k++) {
@@ -226,6 +227,7 @@ static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell
         }
         s->rays.far_m[kept++] = s->rays.far_m[i];
     }
+    s->counters.visibility.skipped[SKIP_CELL] += (uint64_t)(count - kept);
     s->rays.count   = kept;
     s->rays.columns = 0;
 }
@@ -332,7 +334,7 @@ void footprint_task(void *user, int worker, int index)
     s->counters.small_targets++;
     if (cells == 0) return;
     const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
-                                                 f->box[2], f->box[3], job->request->hidden_entity);
+                                                 f->box[2], f->box[3], job->request->hidden_entity, &s->counters.visibility);
     s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
     /* whole rows, and fours of them where they fit: their rays go in squares */
     const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;

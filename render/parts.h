@@ -58,11 +58,12 @@ double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_e
 /* Whether any triangle is ahead. */
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
 /* The same of rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where one is
- * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. */
-void parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+ * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. Returns how many ray-node
+ * pairs Embree was asked for. */
+uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
                       const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
-/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. */
-void parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. Returns as above. */
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
                     const double *far_m, const int *list, int count, bool ask_all);
 /* A triangle that was met, as it stands now: for as many hits as meet it. */
 typedef struct PosedFacet {

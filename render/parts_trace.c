@@ -478,12 +478,13 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
     if (kept > 0) fill_up(chunk);
 }
 
-static void first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o[3],
+static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o[3],
                        const double *const d[3], const double *far_m, const int *list, int count, bool ask_all, bool alone)
 {
     Chunk    chunk;
     NodeRays rays;
     Packet   packet;
+    uint64_t asked = 0;
     for (int first = 0; first < count; first += chunk_rays) {
         take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
                    ask_all);
@@ -497,19 +498,22 @@ static void first_hits(double *range_m, PartHit *hit, const PosedEntity *entity,
             for (int i = 0; i < chunk.count; i++) {
                 if (!(rays.meets[i / 4] >> i % 4 & 1)) continue;
                 packet_add(&packet, &rays, i, chunk.best_m[i]);
+                asked++;
                 if (packet.count == lanes) packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
             }
             packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
         }
     }
+    return asked;
 }
 
-static void any_hits(uint8_t *met, const PosedEntity *entity, const double *const o[3], const double *const d[3],
+static uint64_t any_hits(uint8_t *met, const PosedEntity *entity, const double *const o[3], const double *const d[3],
                      const double *far_m, const int *list, int count, bool ask_all, bool alone)
 {
     Chunk    chunk;
     NodeRays rays;
     Packet   packet;
+    uint64_t asked = 0;
     for (int first = 0; first < count; first += chunk_rays) {
         take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
                    ask_all);
@@ -523,23 +527,25 @@ static void any_hits(uint8_t *met, const PosedEntity *entity, const double *cons
             for (int i = 0; i < chunk.count; i++) {
                 if (!(rays.meets[i / 4] >> i % 4 & 1) || (met[chunk.ray[i]] && !ask_all)) continue;
                 packet_add(&packet, &rays, i, chunk.best_m[i]);
+                asked++;
                 if (packet.count == lanes) packet_any_hits(met, &packet, &chunk, alone);
             }
             packet_any_hits(met, &packet, &chunk, alone);
         }
     }
+    return asked;
 }
 
-void parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
                       const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all)
 {
-    first_hits(range_m, hit, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
+    return first_hits(range_m, hit, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
 }
 
-void parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
                     const double *far_m, const int *list, int count, bool ask_all)
 {
-    any_hits(met, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
+    return any_hits(met, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
 }
 
 double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],

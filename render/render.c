@@ -56,8 +56,12 @@ static void trace_veils(Scratch *s, const Job *job)
             box[1] = fmin(box[1], block->y[p]), box[3] = fmax(box[3], block->y[p] + 1.0);
         }
     }
-    const int volumes = job->effects.count == 0 ? 0 : veil_block(s->veil_list, job->effects.volume, job->effects.count,
-                                                                 &job->request->view, box[0], box[1], box[2], box[3]);
+    int volumes = job->effects.count;
+    for (int n = 0; n < volumes; n++) s->veil_list[n] = n;
+    if (volumes > 0 && skips(job->request->skips_off, SKIP_SMOKE)) {
+        volumes = veil_block(s->veil_list, job->effects.volume, volumes, &job->request->view, box[0], box[1], box[2], box[3]);
+        s->counters.visibility.skipped[SKIP_SMOKE] += (uint64_t)(job->effects.count - volumes);
+    }
     veil_rays(&s->veil, job->effects.volume, s->veil_list, volumes, &s->rays, s->hits.range_m,
               render_air_bands(block->bands, job->request->optical));
 }
@@ -396,7 +400,7 @@ static Tile tile_of(const Job *job, int task)
 static int list_entities(Scratch *s, const Job *job, const Tile *tile)
 {
     const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, tile->x0, tile->y0,
-                                              tile->x1, tile->y1, job->request->hidden_entity);
+                                              tile->x1, tile->y1, job->request->hidden_entity, &s->counters.visibility);
     int       listed = 0;
     for (int k = 0; k < all; k++)
         if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];
@@ -447,10 +451,11 @@ typedef struct Refinement {
     int      n;
 } Refinement;
 
-/* Whether the planes still hold all that a pixel's own sample gave to the sums. With no_skip it is traced again. */
+/* Whether the planes still hold all that a pixel's own sample gave to the sums; else it is traced again. */
 static bool planes_remember(const Job *job)
 {
-    return job->request->samples == 1 && !job->picture->profile && job->effects.count == 0 && !job->request->no_skip;
+    return job->request->samples == 1 && !job->picture->profile && job->effects.count == 0 &&
+           skips(job->request->skips_off, SKIP_RETRACE);
 }
 
 /* Takes from the sums what the block's pixels gave with one sample each, as the planes say; before they change. */
@@ -479,6 +484,7 @@ static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
         add_radiance(s, job, plane);
     }
     if (pairs) count_targets(s, job, listed, pairs);
+    s->counters.visibility.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
 }
 
 /* The block's pixels once more with n samples a side, in place of what they had. */
@@ -670,7 +676,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     if (status == STATUS_OK) status = allocate_job(&job, workers, arena);
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,
-                                   request->no_skip, arena);
+                                   request->skips_off, arena);
     if (status == STATUS_OK) status = visibility_look(visibility, &request->view, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;

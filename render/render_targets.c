@@ -100,6 +100,7 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
         const int      index = s->list[n];
         const uint32_t id    = (uint32_t)index + 1;
         TargetCount   *count = &s->target[index];
+        uint64_t       left_out = 0;
 
         s->some.count = 0;
         for (int i = 0; i < s->hits.count; i++) {
@@ -109,7 +110,10 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
             }
             const double o_enu[3] = {s->rays.o_enu[0][i], s->rays.o_enu[1][i], s->rays.o_enu[2][i]};
             const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
-            if (!visibility_may_lie_beyond(job->visibility, index, o_enu, d_enu, s->hits.range_m[i])) continue;
+            if (!visibility_may_lie_beyond(job->visibility, index, o_enu, d_enu, s->hits.range_m[i])) {
+                left_out++;
+                continue;
+            }
             const int to      = s->some.count++;
             s->some_index[to] = i;
             for (int k = 0; k < 3; k++) {
@@ -118,8 +122,9 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
             }
             s->some.far_m[to] = INFINITY;
         }
+        s->counters.visibility.skipped[SKIP_AMODAL] += left_out;
         if (s->some.count == 0) continue;
-        visibility_entity_only(s->meets, job->visibility, &s->some, index);
+        visibility_entity_only(s->meets, job->visibility, &s->some, index, &s->counters.visibility);
         for (int k = 0; k < s->some.count; k++) {
             if (!s->meets[k]) continue;
             const int     i = s->some_index[k], x = block->x[i / samples], y = block->y[i / samples];
@@ -179,6 +184,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     to->rays_sun_parts += from->rays_sun_parts;
     to->skipped_parts += from->skipped_parts;
     to->skipped_sun_parts += from->skipped_sun_parts;
+    for (int k = 0; k < SKIP_COUNT; k++) to->skipped[k] += from->skipped[k];
 }
 
 static int compare_pairs(const void *a, const void *b)

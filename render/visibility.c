@@ -7,8 +7,8 @@ struct Visibility {
     const Tracer    *tracer;
     const Landscape *landscape;
     Ground           ground;
-    bool             no_skip;
-    int              count;
+    unsigned         skips_off;
+    int              count, drawable;
     PosedEntity     *entity; /* [count], as in the snapshot */
     int             *in_view; /* those that blocks within the image of visibility_look may see; NULL: not asked */
     int              in_view_count;
@@ -16,12 +16,12 @@ struct Visibility {
 };
 
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
-                         const Snapshot *snapshot, bool no_skip, Arena *arena)
+                         const Snapshot *snapshot, unsigned skips_off, Arena *arena)
 {
     const int   count = snapshot->count;
     Visibility *v = arena_alloc(arena, 1, sizeof *v);
     if (!v) return STATUS_NO_MEMORY;
-    *v = (Visibility){.tracer = tracer, .landscape = ground, .no_skip = no_skip, .count = count};
+    *v = (Visibility){.tracer = tracer, .landscape = ground, .skips_off = skips_off, .count = count};
     ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
     v->entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->entity);
     if (!v->entity) return STATUS_NO_MEMORY;
@@ -39,6 +39,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
         m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
         parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body,
                    snapshot_damage(e));
+        v->drawable += posed->model >= 0;
     }
     *out = v;
     return STATUS_OK;
@@ -48,7 +49,7 @@ int visibility_damage(const Visibility *v, int index) { return v->entity[index].
 
 /* ---- which entities a block may see ------------------------------------------------------- */
 
-/* Of among[count] (NULL: the first count), those whose bounding sphere meets the block's pyramid; all with no_skip. */
+/* Of among[count] (NULL: the first count), those whose bounding sphere meets the block's pyramid; all without SKIP_BLOCK. */
 static int spheres_in_block(int *list, const Visibility *v, const View *view, const int *among, int among_count,
                             const double box_px[4], int hidden)
 {
@@ -63,7 +64,7 @@ static int spheres_in_block(int *list, const Visibility *v, const View *view, co
     for (int i = 0; i < among_count; i++) {
         const int k = among ? among[i] : i;
         if (k == hidden || v->entity[k].model < 0) continue;
-        if (!v->no_skip) {
+        if (skips(v->skips_off, SKIP_BLOCK)) {
             double from_eye[3], c_cam[3];
             v3_sub(from_eye, v->entity[k].centre_enu, view->p_enu);
             m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
@@ -91,13 +92,18 @@ Status visibility_look(Visibility *v, const View *view, Arena *arena)
 }
 
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden)
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters)
 {
     /* what lies beyond a side of the image is met by no ray of a block within the image */
     const bool within = v->in_view && column0_px >= 0 && row0_px >= 0 && column1_px <= v->in_view_columns &&
                         row1_px <= v->in_view_rows;
     const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
-    return spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px, hidden);
+    const int listed = spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px,
+                                        hidden);
+    const int hides = hidden >= 0 && v->entity[hidden].model >= 0;
+    counters->skipped[SKIP_BLOCK] += (uint64_t)(v->drawable - hides - listed);
+    return listed;
 }
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
@@ -206,10 +212,14 @@ static void classify_ground(Hits *hits, const Landscape *landscape)
 }
 
 static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
-                        const double *const d[3], const double *far_m)
+                        const double *const d[3], const double *far_m, VisibilityCounters *counters)
 {
-    if (v->no_skip) ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
-    else ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+    if (skips(v->skips_off, SKIP_GROUND_WALK)) {
+        ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+        counters->skipped[SKIP_GROUND_WALK] += (uint64_t)count;
+    } else {
+        ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    }
 }
 
 enum { clear_rays = 128 }; /* that are looked at together */
@@ -262,22 +272,25 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     memcpy(limit_m, rays->far_m, (size_t)count * sizeof *limit_m);
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
     const int asked_count = list_count < 0 ? v->count : list_count;
-    uint64_t  asked = 0, drawable = 0;
+    uint64_t  offered = 0, asked = 0, drawable = 0;
     for (int k = 0; k < v->count; k++) drawable += k != hidden && v->entity[k].model >= 0;
     bool ordered = false;
     for (int k = 0; k < asked_count; k++) {
         const int          index = list_count < 0 ? k : list[k];
         const PosedEntity *entity = &v->entity[index];
         if (index == hidden || entity->model < 0) continue;
-        if (v->no_skip) memset(ask, 1, sizeof ask);
-        else rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        else memset(ask, 1, sizeof ask);
         if (!ordered) order_rays(order, count, rays->columns);
         ordered = true;
         const int listed = list_asked(asked_ray, order, ask, count);
+        offered += (uint64_t)count;
         if (listed == 0) continue;
         asked += (uint64_t)listed;
         for (int n = 0; n < listed; n++) nearer_m[asked_ray[n]] = INFINITY;
-        parts_first_hits(nearer_m, part_hit, entity, o, d, limit_m, asked_ray, listed, v->no_skip);
+        counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                        parts_first_hits(nearer_m, part_hit, entity, o, d, limit_m, asked_ray, listed,
+                                                         !skips(v->skips_off, SKIP_PART));
         for (int n = 0; n < listed; n++) {
             const int i = asked_ray[n];
             if (!(nearer_m[i] < INFINITY)) continue;
@@ -286,11 +299,17 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         }
     }
     /* the ground comes first where it is as near: it is asked just past whom the ray met */
-    for (int i = 0; i < count; i++)
-        until_m[i] = v->no_skip ? rays->far_m[i] : hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
-    if (!v->no_skip && ground_lies_below(v, hits->entity, count, o, d, until_m))
+    const bool behind = skips(v->skips_off, SKIP_GROUND_BEHIND);
+    for (int i = 0; i < count; i++) {
+        until_m[i] = hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
+        counters->skipped[SKIP_GROUND_BEHIND] += behind && hits->entity[i];
+    }
+    if (skips(v->skips_off, SKIP_GROUND_BELOW) && ground_lies_below(v, hits->entity, count, o, d, until_m)) {
         for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
-    else ground_hits(hits->range_m, ground_hit, v, count, o, d, until_m);
+        counters->skipped[SKIP_GROUND_BELOW] += (uint64_t)count;
+    } else {
+        ground_hits(hits->range_m, ground_hit, v, count, o, d, behind ? until_m : rays->far_m, counters);
+    }
     for (int i = 0; i < count; i++) {
         if (!hits->entity[i]) continue;
         if (hits->range_m[i] <= limit_m[i]) hits->entity[i] = 0;
@@ -299,6 +318,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
     counters->rays_ground += (uint64_t)count;
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
+    counters->skipped[SKIP_SPHERE] += offered - asked;
 
     PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
     for (int i = 0; i < count; i++) {
@@ -398,35 +418,45 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
         const PosedEntity *entity = &v->entity[k];
         if (entity->model < 0) continue;
         drawable++;
-        if (v->no_skip) memset(ask, 1, sizeof ask);
-        else if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
-        else rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
-        for (int i = 0; i < count && !v->no_skip; i++) ask[i] &= !dark[i];
+        if (skips(v->skips_off, SKIP_SUN_SPHERE)) {
+            if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
+            rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
+            for (int i = 0; i < count; i++) ask[i] &= !dark[i];
+        } else {
+            memset(ask, 1, sizeof ask);
+        }
         const int listed = list_asked(list, in_turn, ask, count);
-        parts_any_hits(dark, entity, o, d, far_m, list, listed, v->no_skip);
+        counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                        parts_any_hits(dark, entity, o, d, far_m, list, listed,
+                                                       !skips(v->skips_off, SKIP_PART));
         asked += (uint64_t)listed;
     }
     counters->rays_sun_parts += asked;
     counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
+    counters->skipped[SKIP_SUN_SPHERE] += drawable * (uint64_t)count - asked;
 
     /* the ground is asked only for what the parts left lit */
     int left = 0, lit = 0;
-    if (!v->no_skip) leave_out_clear(ask, v, count, o, dark, d_enu);
+    if (skips(v->skips_off, SKIP_SUN_CLEAR)) leave_out_clear(ask, v, count, o, dark, d_enu);
+    else memset(ask, 1, (size_t)count);
     for (int i = 0; i < count; i++) {
         shadow[hit_of[i]] = dark[i];
-        lit += !dark[i] || v->no_skip;
-        if (!v->no_skip && (dark[i] || !ask[i])) continue;
+        const bool stopped = dark[i] && skips(v->skips_off, SKIP_SUN_STOPPED);
+        counters->skipped[SKIP_SUN_STOPPED] += stopped;
+        counters->skipped[SKIP_SUN_CLEAR] += !stopped && !ask[i];
+        lit += !stopped;
+        if (stopped || !ask[i]) continue;
         for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
         hit_of[left++] = hit_of[i];
     }
-    ground_hits(range_m, NULL, v, left, o, d, far_m);
+    ground_hits(range_m, NULL, v, left, o, d, far_m, counters);
     for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
     counters->rays_sun_ground += (uint64_t)lit;
 }
 
 /* ---- one entity alone --------------------------------------------------------------------- */
 
-void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index)
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -435,20 +465,23 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
         memset(meets, 0, (size_t)rays->count);
         return;
     }
-    if (v->no_skip) memset(meets, 1, (size_t)rays->count);
-    else rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, (size_t)rays->count);
     int       order[hits_capacity], list[hits_capacity];
     order_rays(order, rays->count, rays->columns);
     const int listed = list_asked(list, order, meets, rays->count);
     memset(meets, 0, (size_t)rays->count);
-    parts_any_hits(meets, entity, o, d, rays->far_m, list, listed, v->no_skip);
+    counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                    parts_any_hits(meets, entity, o, d, rays->far_m, list, listed,
+                                                   !skips(v->skips_off, SKIP_PART));
 }
 
 bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
 {
     const PosedEntity *entity = &v->entity[index];
     double             m[3], across[3];
-    if (v->no_skip) return true;
+    if (!skips(v->skips_off, SKIP_AMODAL)) return true;
     if (entity->model < 0) return false;
     v3_sub(m, entity->centre_enu, o_enu);
     const double along = v3_dot(m, d_enu), past_m = range_m - along;

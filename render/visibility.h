@@ -12,6 +12,7 @@
 #include "entities/catalog.h"
 #include "entities/snapshot.h"
 #include "render/hits.h"
+#include "render/skip.h"
 #include "render/view.h"
 #include "terrain/elevation.h"
 #include "terrain/landscape.h"
@@ -31,11 +32,12 @@ typedef struct Visibility Visibility;
 typedef struct VisibilityCounters {
     uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* asked of each tracer */
     uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
+    uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
 } VisibilityCounters;
 
-/* ground may be NULL (none). The arena owns what the frame needs. no_skip: ask everybody for every ray. */
+/* ground may be NULL (none). The arena owns what the frame needs. skips_off: 1 << Skip. */
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
-                         const Snapshot *snapshot, bool no_skip, Arena *arena);
+                         const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
 /* How damaged an entity is shown: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
@@ -46,9 +48,10 @@ int visibility_damage(const Visibility *v, int index);
 Status visibility_look(Visibility *v, const View *view, Arena *arena);
 
 /* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
- * with no_skip). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
+ * without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
-                              double column1_px, double row1_px, int hidden);
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters);
 
 /* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
  * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
@@ -61,10 +64,10 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
                        VisibilityCounters *counters);
 
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
-void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index);
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
 
 /* Whether any of entity `index` may lie farther along a ray than the first hit there, at range_m, which was looked for
- * with it: else it is not in the ray's way at all. True with no_skip. */
+ * with it: else it is not in the ray's way at all. True without SKIP_AMODAL. */
 bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
 
 /* Bounding box of an entity's vertices on the image, clipped to nothing: x0, y0, x1, y1 in px. False when any

@@ -7,19 +7,17 @@
 
 enum { a_row = 5 };
 
-static DisEntityState vehicle_at(const BenchScene *scene, DisEntityType type, int index, int vehicles)
+Status bench_scene_place(const BenchScene *scene, const BenchPlace *place)
 {
     const LocalFrame *frame = &scene->landscape->frame;
-    const int         rows = (vehicles + a_row - 1) / a_row;
-    const double      p_enu[3] = {40.0 * (index % a_row) - 20.0 * (vehicles < a_row ? vehicles - 1 : a_row - 1),
-                                  40.0 * (index / a_row) - 20.0 * (rows - 1), 0};
-    const double      turn = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index);
+    const double      turn = place->turn_rad;
     const double      r_enu_from_body[9] = {sin(turn), cos(turn), 0, cos(turn), -sin(turn), 0, 0, 0, -1};
-    double            on_ground[3] = {p_enu[0], p_enu[1], elevation_height(&scene->landscape->elevation, p_enu[0], p_enu[1], NULL)};
+    const double      p_enu[3] = {place->east_m, place->north_m,
+                                  elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) + place->above_m};
     double            r_ecef_from_body[9], euler[3];
-    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .force = 1, .type = type,
-                             .id = {1, 1, (uint16_t)(index + 1)}, .appearance = 1u << 22, .dead_reckoning = 2};
-    ecef_from_enu(pdu.p_ecef, frame, on_ground);
+    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .force = 1, .type = place->type,
+                             .id = {1, 1, (uint16_t)place->number}, .appearance = place->appearance, .dead_reckoning = 2};
+    ecef_from_enu(pdu.p_ecef, frame, p_enu);
     m3_mul(r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
     euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r_ecef_from_body);
     pdu.psi_rad   = (float)euler[0];
@@ -29,7 +27,16 @@ static DisEntityState vehicle_at(const BenchScene *scene, DisEntityType type, in
     pdu.variable[0] = (DisVariableParameter){.parameter = 4096 + 11, .value = (float)(turn - 3)};
     pdu.variable[1] = (DisVariableParameter){.parameter = 4416 + 13, .value = 0.1f};
     pdu.variable_count = 2;
-    return pdu;
+    return entity_table_entity_state(scene->table, &pdu, scene->sun_now_s);
+}
+
+static BenchPlace vehicle_place(DisEntityType type, int index, int vehicles)
+{
+    const int rows = (vehicles + a_row - 1) / a_row;
+    return (BenchPlace){.type = type, .number = index + 1, .appearance = 1u << 22,
+                        .east_m = 40.0 * (index % a_row) - 20.0 * (vehicles < a_row ? vehicles - 1 : a_row - 1),
+                        .north_m = 40.0 * (index / a_row) - 20.0 * (rows - 1),
+                        .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
 }
 
 Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
@@ -46,8 +53,8 @@ Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char 
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
-        const DisEntityState pdu = vehicle_at(&scene, types[k % type_count], k, vehicles);
-        status = entity_table_entity_state(scene.table, &pdu, scene.sun_now_s);
+        const BenchPlace place = vehicle_place(types[k % type_count], k, vehicles);
+        status = bench_scene_place(&scene, &place);
     }
     if (status == STATUS_OK) *out = scene;
     else bench_scene_close(&scene);

@@ -20,6 +20,15 @@ Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char 
                         int type_count, int vehicles);
 void   bench_scene_close(BenchScene *scene);
 
+/* One more report at the scene's time: so far east and north of the origin, this high above the ground. */
+typedef struct BenchPlace {
+    DisEntityType type;
+    int           number;        /* 1 .. 65535: whose report it is */
+    double        east_m, north_m, above_m, turn_rad; /* turn: from north by east */
+    uint32_t      appearance;
+} BenchPlace;
+Status bench_scene_place(const BenchScene *scene, const BenchPlace *place);
+
 /* A view of the origin from this far south of it and this high above it. */
 View bench_view(const BenchScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
 

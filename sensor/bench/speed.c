@@ -66,7 +66,7 @@ static double differs(const Speed *s, const BenchFrame *frame)
     char       hash[sha256_text_size], plain_hash[sha256_text_size];
     plain.pool            = s->one;
     plain.arena           = s->arena[2];
-    plain.request.no_skip = true;
+    plain.request.skips_off = skips_all_off;
     bench_frame(&plain);
     if (plain.status != STATUS_OK || bench_frame_hash(hash, frame) != STATUS_OK ||
         bench_frame_hash(plain_hash, &plain) != STATUS_OK)

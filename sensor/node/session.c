@@ -74,7 +74,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
                                .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
-                               .no_skip = s->shared->no_skip};
+                               .skips_off = s->shared->no_skip ? skips_all_off : 0};
     if (adaptive(config)) {
         request->edge_samples   = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;

@@ -70,7 +70,7 @@ static void threads_and_skips_change_no_bit(void **state)
         Pool *pool = NULL;
         assert_int_equal(pool_create(&pool, threads), STATUS_OK);
         for (int no_skip = 0; no_skip < (threads == 1 ? 2 : 1); no_skip++) {
-            request.no_skip = no_skip;
+            request.skips_off = no_skip ? skips_all_off : 0;
             const Picture other = hand_render(&request, pool);
             same_planes(&one, &other, 15);
             assert_memory_equal(one.profile, other.profile, 600 * radar_bounces * sizeof *one.profile);

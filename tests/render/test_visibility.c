@@ -77,7 +77,7 @@ static Visibility *see(bool with_ground, bool no_skip)
 {
     Visibility *v = NULL;
     assert_int_equal(visibility_create(&v, stage.tracer, with_ground ? &stage.landscape : NULL, &stage.landscape.frame,
-                                       &stage.snapshot, no_skip, stage.arena), STATUS_OK);
+                                       &stage.snapshot, no_skip ? skips_all_off : 0, stage.arena), STATUS_OK);
     return v;
 }
 
@@ -164,11 +164,11 @@ static void a_sphere_covers_its_ellipse(void **state)
         for (int row = 0; row < 256; row += 32)
             for (int column = 0; column < 256; column += 32) {
                 int list[most_entities], amodal;
-                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1);
+                const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
                 block_rays(&rays, &view, column, row);
                 visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
                 uint8_t meets[hits_capacity];
-                visibility_entity_only(meets, v, &rays, 0);
+                visibility_entity_only(meets, v, &rays, 0, &(VisibilityCounters){0});
                 for (int i = 0; i < rays.count; i++) {
                     double d_cam[3], across[3];
                     pixel_direction(d_cam, &view, &rays, i);
@@ -233,7 +233,7 @@ static void a_plate_covers_the_pixels_between_its_edges(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32;
             int       list[most_entities];
-            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1);
+            const int count = visibility_block_entities(list, v, &view, column, row, column + 32, row + 32, -1, &(VisibilityCounters){0});
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, v, &rays, list, count, -1, &stage.counters);
             for (int i = 0; i < rays.count; i++) {
@@ -310,7 +310,7 @@ static void the_nearest_wins_and_the_lowest_id_of_equals(void **state)
         /* whole, whoever stands before it */
         uint8_t meets[1];
         for (int k = 0; k < 3; k++) {
-            visibility_entity_only(meets, v, &rays, k);
+            visibility_entity_only(meets, v, &rays, k, &(VisibilityCounters){0});
             assert_int_equal(meets[0], 1);
         }
     }
@@ -337,12 +337,12 @@ static void the_ground_hides_and_is_hidden(void **state)
     CHECK(hits.surface[0] > 0 && hits.surface[0] < SURFACE_COUNT);
     assert_int_equal(hits.surface[0], landscape_surface(&stage.landscape, hits.p_enu[0][0], hits.p_enu[1][0]));
     CHECK_NEAR(hits.p_enu[2][0], z, 1e-9);
-    visibility_entity_only(meets, v, &rays, 0);
+    visibility_entity_only(meets, v, &rays, 0, &(VisibilityCounters){0});
     assert_int_equal(meets[0], 1);
     for (int k = 2; k < 4; k++) {
         double    box[4];
         const View view = view_towards((const double[3]){10, 10, z + 100}, (const double[3]){60, 10, z}, 64, 64, 100);
-        visibility_entity_only(meets, v, &rays, k);
+        visibility_entity_only(meets, v, &rays, k, &(VisibilityCounters){0});
         assert_int_equal(meets[0], 0);
         assert_false(visibility_project_box(box, v, &view, k));
     }
@@ -489,8 +489,8 @@ static void skipping_changes_no_bit(void **state)
         for (int block = 0; block < 9; block++) {
             const int column = block % 3 * 32, row = block / 3 * 32, hidden = scene % 2 ? 5 : -1;
             int       list[most_entities], every[most_entities];
-            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden);
-            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden),
+            const int count = visibility_block_entities(list, skip, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0});
+            assert_int_equal(visibility_block_entities(every, all, &view, column, row, column + 32, row + 32, hidden, &(VisibilityCounters){0}),
                              hidden < 0 ? 24 : 23);
             block_rays(&rays, &view, column, row);
             visibility_first_hit(&hits, skip, &rays, list, count, hidden, &stage.counters);
@@ -502,8 +502,8 @@ static void skipping_changes_no_bit(void **state)
             visibility_shadow(other_shadow, all, &hits, sun, &stage.counters);
             assert_memory_equal(shadow, other_shadow, (size_t)rays.count);
             for (int k = 0; k < 24; k += 5) {
-                visibility_entity_only(meets, skip, &rays, k);
-                visibility_entity_only(other_meets, all, &rays, k);
+                visibility_entity_only(meets, skip, &rays, k, &(VisibilityCounters){0});
+                visibility_entity_only(other_meets, all, &rays, k, &(VisibilityCounters){0});
                 assert_memory_equal(meets, other_meets, (size_t)rays.count);
             }
             for (int i = 0; i < rays.count; i++) {

@@ -31,6 +31,11 @@ for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300
     has speed "$what"
 done
 
+table skip
+for what in "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" "walked together" \
+            "sun rays miss" "stops the sun" "too low to stop" "nothing behind" "beside a small target" "first rays" "smoke" \
+            "all of them" "bands nobody asked for" "planes nobody asked for"; do has skip "$what"; done
+
 run bench speed --quick --size 17
 check "a size that is none is refused" [ $code = 1 ]
 check "and said" complained "size: '17' is not"

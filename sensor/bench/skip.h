@@ -1,0 +1,9 @@
+/* sensor/bench/skip.h: `pitviper bench skip`: what each exact skip saves, and in which scene most. */
+#ifndef SENSOR_BENCH_SKIP_H
+#define SENSOR_BENCH_SKIP_H
+
+#include "pitviper.h"
+
+Status bench_skip(Bench *bench);
+
+#endif
