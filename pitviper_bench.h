@@ -1,0 +1,51 @@
+/* pitviper_bench.h: what the files of the bench command share; for pitviper_bench*.c and pitviper_plot.c alone. */
+#ifndef PITVIPER_BENCH_H
+#define PITVIPER_BENCH_H
+
+#include "pitviper.h"
+
+enum { bench_options_max = 16 };
+
+typedef struct BenchOption {
+    char        name[24];
+    const char *value;
+} BenchOption;
+
+/* A row as it is kept for the report: its texts are its own. */
+typedef struct BenchKept {
+    BenchRow row;
+    char    *plot;     /* SVG that stands behind the row; NULL: none */
+} BenchKept;
+
+typedef struct BenchPart {     /* a suite, of all rooms */
+    const char *name, *help, *reads;
+    int         first, count;  /* of the rows kept */
+    int         failed;        /* suites that could not be run to their end */
+    double      took_s;
+} BenchPart;
+
+struct Bench {
+    const char *suite;
+    bool        quick, terminal;
+    int         threads, options, rows, broken; /* broken: rows whose error is beyond its limit */
+    BenchOption option[bench_options_max];
+    const char *plots;         /* folder; NULL: none asked for */
+    bool        out_of_memory, spoilt; /* spoilt: a plot could not be written */
+    FILE       *csv;
+    BenchKept  *kept;          /* [kept_count] */
+    int         kept_count, kept_capacity;
+    BenchPart  *part;
+    int         parts;
+};
+
+/* At share 0 .. 1 of sorted values, between them in proportion. */
+double bench_quantile(const double *value, int count, double share);
+/* Three figures and a unit; seconds in what fits. */
+void   bench_show(char out[32], double value, const char *unit);
+/* Whether its error keeps its limit, or has none. */
+bool   bench_holds(const BenchRow *row);
+
+/* Frees what is kept. */
+void   bench_forget(Bench *bench);
+
+#endif
