@@ -207,7 +207,7 @@ void bench_add(Bench *bench, const BenchRow *row)
 {
     char       median_text[32], best[32], rate[32], ratio[96] = "", error[32], what[256];
     const bool holds = bench_holds(row);
-    if (bench->rows++ == 0) show_head(bench);
+    if (bench->rows++ == 0 || bench->part[bench->parts - 1].first == bench->kept_count) show_head(bench);
     bench->broken += !holds;
     if (!keep(bench, row)) bench->out_of_memory = true;
     snprintf(what, sizeof what, "%s%s%s", row->what, row->mark ? " " : "", or_empty(row->mark));

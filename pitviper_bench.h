@@ -4,7 +4,7 @@
 
 #include "pitviper.h"
 
-enum { bench_options_max = 16 };
+enum { bench_options_max = 16, bench_parts_max = 64 };
 
 typedef struct BenchOption {
     char        name[24];
@@ -24,9 +24,18 @@ typedef struct BenchPart {     /* a suite, of all rooms */
     double      took_s;
 } BenchPart;
 
+typedef struct BenchMachine {
+    char        processor[128], governor[32], system[80], compiler[80], libraries[512];
+    const char *isa;
+    int         cores;
+    double      load, memory_gb;   /* load: of the last minute, before the run; NaN: unknown */
+} BenchMachine;
+void bench_machine_read(BenchMachine *out);
+void bench_machine_line(char out[512], const BenchMachine *machine);
+
 struct Bench {
     const char *suite;
-    bool        quick, terminal;
+    bool        quick, terminal, all;
     int         threads, options, rows, broken; /* broken: rows whose error is beyond its limit */
     BenchOption option[bench_options_max];
     const char *plots;         /* folder; NULL: none asked for */
@@ -34,7 +43,7 @@ struct Bench {
     FILE       *csv;
     BenchKept  *kept;          /* [kept_count] */
     int         kept_count, kept_capacity;
-    BenchPart  *part;
+    BenchPart  *part;          /* [parts] */
     int         parts;
 };
 
@@ -45,6 +54,10 @@ void   bench_show(char out[32], double value, const char *unit);
 /* Whether its error keeps its limit, or has none. */
 bool   bench_holds(const BenchRow *row);
 
+/* The rows that are kept, part by part, with their plots, what failed first. took_s: the whole run. */
+Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s);
+/* `bench compare A.csv B.csv [--report FILE] [--slower FACTOR]`; argv[0]: compare. Exit code. */
+int    bench_compare(int argc, char **argv);
 /* Frees what is kept. */
 void   bench_forget(Bench *bench);
 
