@@ -1,10 +1,14 @@
 #include "sensor/bench.h"
 
+#include "sensor/bench/network.h"
 #include "sensor/bench/speed.h"
 
 const BenchSuite sensor_benches[] = {
     {.name = "speed", .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: the target that fills "
      "the picture; models/brlcad/ktank.obj of the reference data, else the built-in tank",
-     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone", .run = bench_speed},
+     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone", .run = bench_speed,
+     .reads = "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add up to "
+     "the frame (bars: their share), and `rays alone` is the least that a frame could take."},
+    {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
 };
 const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;
