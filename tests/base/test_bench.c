@@ -231,6 +231,92 @@ static void a_plot_shows_each_setting_once(void **state)
     CHECK(COMMAND("bench", "knob", "--quick", "--plots", "/proc/nowhere") == 1);
 }
 
+/* ---- two runs side by side -------------------------------------------------------------------- */
+
+static const char *const csv_head = "# version: 0.1\n# machine: a box\n# rounds: full\n# threads: 2\n"
+                                    "bench,what,median,best,unit,error,error_limit,error_unit,lower_quartile,upper_quartile\n";
+
+static int compare(const char *a, const char *b, const char *slower)
+{
+    char path[2][text_file_size], text[2][4096];
+    snprintf(text[0], sizeof text[0], "%s%s", csv_head, a);
+    snprintf(text[1], sizeof text[1], "%s%s", csv_head, b);
+    text_file(path[0], text[0]);
+    text_file(path[1], text[1]);
+    const int code = slower ? COMMAND("bench", "compare", path[0], path[1], "--slower", slower)
+                            : COMMAND("bench", "compare", path[0], path[1]);
+    remove(path[0]);
+    remove(path[1]);
+    return code;
+}
+
+static void what_became_worse_fails_a_comparison(void **state)
+{
+    const char *const base = "s,frame,1e-3,0.9e-3,s,0.5,1,m,0.95e-3,1.05e-3\n";
+    (void)state;
+    CHECK(compare(base, base, "1.01") == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", NULL) == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", "1.2") == 1);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", "1.4") == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,0.9e-3,s,0.5,1,m,1.0e-3,1.6e-3\n", "1.2") == 0); /* the quartiles meet */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,0.9,1,m,,\n", NULL) == 0);                /* worse, within its limit */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,1.1,1,m,,\n", NULL) == 1);
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,,1,m,,\n", NULL) == 1);                   /* no longer known */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,inf,1,m,,\n", NULL) == 1);
+    CHECK(compare("s,frame,1,,s,3,1,m,,\n", "s,frame,1,,s,2,1,m,,\n", NULL) == 0);      /* broken before, and now less so */
+    CHECK(compare(base, "s,another,1e-3,,s,9,1,m,,\n", NULL) == 0);                      /* only in one: told, not judged */
+    CHECK(compare("s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "1.1") == 0); /* one name twice: in turn */
+}
+
+static void a_table_that_is_none_is_refused(void **state)
+{
+    static const char *const bad[] = {"s,frame,1e-3,,s,0.5,1\n", "s,frame,many,,s,0.5,1,m,,\n", "s,frame,-1,,s,0.5,1,m,,\n",
+                                      "s,frame,1e999,,s,0.5,1,m,,\n", "s,\"frame,1,,s,0.5,1,m,,\n", "s,frame,nan,,s,0.5,1,m,,\n"};
+    char path[text_file_size];
+    (void)state;
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) CHECK(compare(bad[k], bad[k], NULL) == 1);
+    text_file(path, "");
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+    remove(path);
+    text_file(path, "a,b\n1,2\n");
+    log_set_sink(check_listen, NULL);
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+    CHECK(strstr(check_said, "no column `bench`"));
+    log_set_sink(NULL, NULL);
+    CHECK(COMMAND("bench", "compare", path) == 2);
+    CHECK(COMMAND("bench", "compare", path, path, path) == 2);
+    CHECK(COMMAND("bench", "compare", path, path, "--slower", "0.5") == 2);
+    CHECK(COMMAND("bench", "compare", path, path, "--report") == 2);
+    remove(path);
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+}
+
+/* ---- all, as a page --------------------------------------------------------------------------- */
+
+static void a_page_says_first_what_failed(void **state)
+{
+    char        path[text_file_size];
+    static char text[65536];
+    (void)state;
+    text_file(path, "");
+    settings[0] = point_of("coarse", 0.5e-3, 0.02, 4, 0);
+    settings[1] = point_of("default", 1e-3, 0.02, 2.5, 0);
+    settings[2] = point_of("fine", 2e-3, 0.02, 0.2, 0);
+    settings[1].is_default = true;
+    error_now = 0.5;
+    CHECK(COMMAND("bench", "all", "--quick", "--report", path, "--size", "3x4") == 1);
+    FILE *file = fopen(path, "r");
+    CHECK(file != NULL);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    const char *failed = strstr(text, "1 of 2 errors beyond their limit; 1 suites did not come"), *row = strstr(text, "a knob: default");
+    const char *machine = strstr(text, "<h2>Machine"), *plot = strstr(text, "<svg");
+    CHECK(failed && row && machine && plot && failed < row && row < machine && machine < plot);
+    CHECK(strstr(text, "a &quot;work&quot;, counted") && strstr(text, "broken did not come to its end"));
+    remove(path);
+    CHECK(COMMAND("bench", "judged", "--quick", "--report", "/nowhere/at/all.html") == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -240,6 +326,9 @@ int main(void)
         cmocka_unit_test(a_setting_that_is_better_and_nowhere_worse_dominates),
         cmocka_unit_test(a_default_off_the_front_fails_and_is_told_why),
         cmocka_unit_test(a_plot_shows_each_setting_once),
+        cmocka_unit_test(what_became_worse_fails_a_comparison),
+        cmocka_unit_test(a_table_that_is_none_is_refused),
+        cmocka_unit_test(a_page_says_first_what_failed),
         cmocka_unit_test(the_file_has_a_row_for_each_and_says_what_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
