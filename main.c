@@ -22,46 +22,67 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- probe: the rooms' lists ------------------------------------------------------------------ */
+/* ---- what the rooms list ---------------------------------------------------------------------- */
 
-static const struct ProbeList {
-    const Probe *probe;
-    const int   *count;
-} probe_lists[] = {
-    {terrain_probes, &terrain_probe_count},
-    {entities_probes, &entities_probe_count},
-    {render_probes, &render_probe_count},
-    {sensor_probes, &sensor_probe_count},
+typedef struct RoomList {
+    const void *first;
+    size_t      size;  /* of one */
+    const int  *count;
+} RoomList;
+#define ROOM_LIST(list, count) {list, sizeof *(list), &(count)}
+
+static const RoomList probe_lists[] = {
+    ROOM_LIST(terrain_probes, terrain_probe_count),
+    ROOM_LIST(entities_probes, entities_probe_count),
+    ROOM_LIST(render_probes, render_probe_count),
+    ROOM_LIST(sensor_probes, sensor_probe_count),
 };
 
-static const Probe *next_probe(size_t *list, int *at)
+static const RoomList bench_lists[] = {
+    ROOM_LIST(dis_benches, dis_bench_count),
+    ROOM_LIST(entities_benches, entities_bench_count),
+    ROOM_LIST(sensor_benches, sensor_bench_count),
+};
+
+/* state: list, place in it; from zeroes. NULL: no more. */
+static const void *next_of(const RoomList *list, size_t lists, size_t state[2])
 {
-    for (; *list < sizeof probe_lists / sizeof *probe_lists; (*list)++, *at = 0)
-        if (*at < *probe_lists[*list].count) return &probe_lists[*list].probe[(*at)++];
+    for (; state[0] < lists; state[0]++, state[1] = 0) {
+        const RoomList *at = &list[state[0]];
+        if (state[1] < (size_t)*at->count) return (const char *)at->first + at->size * state[1]++;
+    }
     return NULL;
+}
+
+static const Probe *next_probe(size_t state[2])
+{
+    return next_of(probe_lists, sizeof probe_lists / sizeof *probe_lists, state);
+}
+
+static const BenchSuite *next_bench(size_t state[2])
+{
+    return next_of(bench_lists, sizeof bench_lists / sizeof *bench_lists, state);
 }
 
 static void probe_usage(FILE *to)
 {
-    size_t list = 0;
-    int    at   = 0;
+    size_t state[2] = {0};
     fputs("usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv > results.csv\n\n"
           "Reads CSV with a header; writes each row again with the results behind it. Other columns pass through;\n"
           "a row that cannot be computed says why in the column `error`. Columns marked $ are text, ? may be missing.\n", to);
-    for (const Probe *probe; (probe = next_probe(&list, &at));)
+    for (const Probe *probe; (probe = next_probe(state));)
         fprintf(to, "\n  %s%s%s\n      %s\n      in:  %s\n      out: %s\n", probe->name, probe->arguments ? " " : "",
                 probe->arguments ? probe->arguments : "", probe->help, probe->in, probe->out);
 }
 
 static int probe_command(int argc, char **argv)
 {
-    size_t list = 0;
-    int    at   = 0;
+    size_t state[2] = {0};
     if (argc < 2 || strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0) {
         probe_usage(argc < 2 ? stderr : stdout);
         return argc < 2 ? 2 : 0;
     }
-    for (const Probe *probe; (probe = next_probe(&list, &at));) {
+    for (const Probe *probe; (probe = next_probe(state));) {
         if (strcmp(argv[1], probe->name) != 0) continue;
         if (!probe->arguments && argc > 2) {
             fprintf(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows come from standard input\n",
@@ -74,26 +95,9 @@ static int probe_command(int argc, char **argv)
     return 2;
 }
 
-/* ---- bench: the rooms' lists ------------------------------------------------------------------ */
-
-static const struct BenchList {
-    const BenchSuite *suite;
-    const int        *count;
-} bench_lists[] = {
-    {dis_benches, &dis_bench_count},
-    {entities_benches, &entities_bench_count},
-    {sensor_benches, &sensor_bench_count},
-};
-
-/* state: list, place in it. */
-static const BenchSuite *next_bench(size_t state[2])
-{
-    for (; state[0] < sizeof bench_lists / sizeof *bench_lists; state[0]++, state[1] = 0)
-        if (state[1] < (size_t)*bench_lists[state[0]].count) return &bench_lists[state[0]].suite[state[1]++];
-    return NULL;
-}
-
 static int run_bench(int argc, char **argv) { return bench_command(argc, argv, next_bench); }
+
+/* ---- the commands ----------------------------------------------------------------------------- */
 
 static const struct Command {
     const char *name;

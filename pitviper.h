@@ -219,7 +219,8 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
 
 /* ---- benchmarks: time beside error ---------------------------------------------------------------- */
 
-/* One line of a table. What has no answer is NaN, or NULL for text; bench_row gives a row of those. */
+/* One line of a table. What has no answer is NaN, or NULL for text; bench_row gives a row of those. A row is known by
+ * suite and `what`, in other versions and on other machines, too: no measured figure in it. */
 typedef struct BenchRow {
     const char *what;
     double      median, best;      /* of an item; unit "s" is shown as ns .. s, any other as it is */
@@ -230,6 +231,8 @@ typedef struct BenchRow {
     const char *to;
     double      error, error_limit;/* holds when error <= limit; no limit: measured, not judged */
     const char *error_unit, *against;
+    double      low, high;         /* quartiles of the rounds, in unit: what noise is */
+    const char *mark;              /* behind `what`, and no part of it: "* default" */
 } BenchRow;
 
 typedef struct Bench Bench;
@@ -240,6 +243,7 @@ typedef struct BenchSuite {
     const char *name, *help;
     const char *options;           /* beyond those of every bench, as usage shows them: "size=WxH,model=FILE"; NULL */
     Status    (*run)(Bench *bench);/* on failure logs why */
+    const char *reads;             /* how to read its table, one sentence for a report; NULL: as the others of this name */
 } BenchSuite;
 
 BenchRow bench_row(const char *what);
@@ -292,8 +296,14 @@ typedef struct BenchKnob {
 } BenchKnob;
 
 /* Rows of the table, a plot, and the verdict: the default must keep what is stated, and no other setting may be better
- * beyond noise in time, error or memory without being worse in another of them: the Pareto front. */
+ * beyond noise in time, error or memory without being worse in another of them: the Pareto front, marked `*`. The rule
+ * stands in pitviper_bench_knob.c. */
 void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count);
+bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b); /* a dominates b */
+bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, int index);
+/* Run time against error, log-log, as SVG of its own style, for light and dark: each setting with its name, the front as
+ * a line, the default ringed, what is stated dashed. */
+void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count);
 
 /* The command: argv[0] NAME, then options; suites are walked by next(&state) from a zeroed state. Exit code: 1 when a
  * suite failed or an error is beyond its limit. */

@@ -6,39 +6,25 @@
 #include "sensor/bench/speed.h"
 
 #include "sensor/bench/raw.h"
-#include "sensor/node/frame_files.h"
-#include "sensor/publish/image_file.h"
+#include "sensor/bench/speed_private.h"
+#include "sensor/node/config.h"
 #include "terrain/bench_ground.h"
 
 #include <errno.h>
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { views = 4, what_size = 160, vehicles = 20, vehicles_quick = 5 };
+enum { views = 4, vehicles = 20, vehicles_quick = 5 };
 
 static const struct {
     const char *name;
     double      back_m, above_m;
 } places[views] = {{"40 m up", 300, 40}, {"100 m up", 600, 100}, {"300 m up", 1500, 300}, {"1000 m up", 3000, 1000}};
 static const double hfov_rad = 40 * (3.14159265358979323846 / 180);
-static const unsigned three_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-
-typedef struct Speed {
-    Bench     *bench;
-    int        width, height;
-    double     east_m, north_m;
-    LocalFrame frame;
-    Landscape  landscape;
-    BenchScene scene, close;   /* twenty vehicles; one */
-    Pool      *one, *many;
-    Arena     *arena[3];       /* of frames on many threads, on one, and others */
-    char       threads[24];    /* "2 threads" */
-    char       target[96];     /* what fills the picture, and where from */
-} Speed;
 
 /* ---- frames ----------------------------------------------------------------------------------- */
 
-static RenderRequest request_of(const View *view, unsigned bands, bool truth)
+RenderRequest speed_request(const View *view, unsigned bands, bool truth)
 {
     const Config config = config_default();
     return (RenderRequest){.view = *view, .bands = bands, .truth = truth, .optical = OPTICAL_RGB, .samples = 1,
@@ -54,7 +40,7 @@ static RenderRequest one_ray(const RenderRequest *request)
     return plain;
 }
 
-static BenchFrame frame_of(const Speed *s, const BenchScene *scene, const RenderRequest *request, bool many)
+BenchFrame speed_frame(const Speed *s, const BenchScene *scene, const RenderRequest *request, bool many)
 {
     return (BenchFrame){.scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
 }
@@ -106,9 +92,9 @@ static Status make_ground(Speed *s)
         low  = level->post[i] < low ? level->post[i] : low;
         high = level->post[i] > high ? level->post[i] : high;
     }
-    snprintf(what, sizeof what, "ground: %.0f M posts, relief %.0f m, %s", 1e-6 * (double)posts, (high - low) * level->step_m,
-             s->threads);
-    BenchRow row  = bench_row(what);
+    snprintf(what, sizeof what, "%.0f M posts, heights %.0f m apart", 1e-6 * (double)posts, (high - low) * level->step_m);
+    BenchRow row  = bench_row("ground: posts");
+    row.against   = what;
     row.median    = times_s[0];
     row.unit      = "s";
     row.rate      = 1e-6 * (double)posts / times_s[0];
@@ -173,14 +159,14 @@ static Status time_view(Speed *s, int v)
 {
     enum { MANY, ONE, SIMPLE, SIMPLE_ONE, RAW, RAW_ONE, WORKS };
     const View    view = bench_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
-    const RenderRequest request = request_of(&view, three_bands, true), simple_request = one_ray(&request);
-    char          what[what_size], against[what_size];
+    const RenderRequest request = speed_request(&view, three_bands, true), simple_request = one_ray(&request);
+    char          what[what_size];
     BenchTime     time[WORKS];
     RawRays      *raw = NULL, *raw_one = NULL;
     BenchRow      row;
-    BenchFrame    many = frame_of(s, &s->scene, &request, true), one = frame_of(s, &s->scene, &request, false);
-    BenchFrame    simple = frame_of(s, &s->scene, &simple_request, true);
-    BenchFrame    simple_one = frame_of(s, &s->scene, &simple_request, false), shown = simple;
+    BenchFrame    many = speed_frame(s, &s->scene, &request, true), one = speed_frame(s, &s->scene, &request, false);
+    BenchFrame    simple = speed_frame(s, &s->scene, &simple_request, true);
+    BenchFrame    simple_one = speed_frame(s, &s->scene, &simple_request, false), shown = simple;
 
     bench_progress(s->bench, places[v].name);
     shown.arena = s->arena[2];
@@ -196,7 +182,7 @@ static Status time_view(Speed *s, int v)
     bench_time(time, s->bench, work, WORKS);
 
     /* frames share arenas, so each is made once more before its planes are compared */
-    snprintf(what, sizeof what, "%s: frame, 3 bands and truth, %s", places[v].name, s->threads);
+    snprintf(what, sizeof what, "%s: frame, 3 bands and truth, %s", places[v].name, all_threads);
     row       = bench_row_of(what, &time[MANY], "frames/s", 1);
     row.ratio = bench_ratio(&time[MANY], &time[RAW]);
     row.to    = "rays alone";
@@ -208,22 +194,31 @@ static Status time_view(Speed *s, int v)
     snprintf(what, sizeof what, "%s: the same, 1 thread", places[v].name);
     row       = bench_row_of(what, &time[ONE], "frames/s", 1);
     row.ratio = bench_ratio(&time[ONE], &time[MANY]);
-    row.to    = s->threads;
+    row.to    = all_threads;
     bench_add(s->bench, &row);
 
     double plain_error = NAN;
-    snprintf(what, sizeof what, "%s: one ray a pixel, %s", places[v].name, s->threads);
-    row             = bench_row_of(what, &time[SIMPLE], "frames/s", 1);
-    row.ratio       = bench_ratio(&time[SIMPLE], &time[RAW]);
-    row.to          = "rays alone";
-    row.error       = 100 * antialias_error(s, &request, &plain_error);
-    row.error_limit = 100 * plain_error;
-    row.error_unit  = "%";
-    snprintf(against, sizeof against, "rms of the adaptive picture against 16 x 16 rays; of one ray %.2g %%", 100 * plain_error);
-    row.against = against;
+    snprintf(what, sizeof what, "%s: one ray a pixel, %s", places[v].name, all_threads);
+    const double adaptive_error = antialias_error(s, &request, &plain_error);
+    row            = bench_row_of(what, &time[SIMPLE], "frames/s", 1);
+    row.ratio      = bench_ratio(&time[SIMPLE], &time[RAW]);
+    row.to         = "rays alone";
+    row.error      = 100 * plain_error;
+    row.error_unit = "%";
+    row.against    = "rms against 256 rays a pixel";
     bench_add(s->bench, &row);
 
-    snprintf(what, sizeof what, "%s: its rays alone, %s", places[v].name, s->threads);
+    snprintf(what, sizeof what, "%s: adaptive edges and small targets", places[v].name);
+    row             = bench_row(what);
+    row.ratio       = bench_ratio(&time[MANY], &time[SIMPLE]);
+    row.to          = "one ray a pixel";
+    row.error       = 100 * adaptive_error;
+    row.error_limit = 100 * plain_error;
+    row.error_unit  = "%";
+    row.against     = "rms against 256 rays a pixel; limit: that of one ray";
+    bench_add(s->bench, &row);
+
+    snprintf(what, sizeof what, "%s: its rays alone, %s", places[v].name, all_threads);
     row            = bench_row_of(what, &time[RAW], "M rays/s", 1e6 / rays);
     row.ratio      = bench_ratio(&time[RAW_ONE], &time[RAW]);
     row.to         = "1 thread / this";
@@ -245,7 +240,7 @@ static const struct {
     BenchStage  stage;
     const char *name;
 } stage_names[] = {
-    {STAGE_SNAPSHOT, "snapshot"}, {STAGE_AIR, "air"}, {STAGE_PREPARE, "prepare: planes, poses, boxes"},
+    {STAGE_FRAME, "frame"}, {STAGE_SNAPSHOT, "snapshot"}, {STAGE_AIR, "air"}, {STAGE_PREPARE, "prepare: planes, poses, boxes"},
     {STAGE_VISIBILITY, "visibility"}, {STAGE_SUN, "sun rays"}, {STAGE_SHADE, "shading"}, {STAGE_RADAR, "radar"},
     {STAGE_REST, "rest: truth planes, areas, edges found"}, {STAGE_TRUTH, "truth of targets"},
     {STAGE_FOOTPRINTS, "of all this: pass over small targets"}, {STAGE_BASE, "of all this: pass over every pixel"},
@@ -299,13 +294,13 @@ static Status time_stages(Speed *s, const char *name, BenchFrame *frame, int cou
 
 static Status time_picture(Speed *s, const char *name, const BenchScene *scene, const RenderRequest *request)
 {
-    BenchFrame many = frame_of(s, scene, request, true), one = frame_of(s, scene, request, false);
+    BenchFrame many = speed_frame(s, scene, request, true), one = speed_frame(s, scene, request, false);
     char       what[what_size];
     BenchTime  time[2];
     bench_progress(s->bench, name);
     const BenchWork work[2] = {{bench_frame, &many, 1}, {bench_frame, &one, 1}};
     bench_time(time, s->bench, work, 2);
-    snprintf(what, sizeof what, "%s, %s", name, s->threads);
+    snprintf(what, sizeof what, "%s, %s", name, all_threads);
     BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
     row.ratio    = bench_ratio(&time[1], &time[0]);
     row.to       = "1 thread / this";
@@ -375,7 +370,7 @@ static Status time_close(Speed *s)
     BenchFrame    first = {.scene = &s->close, .pool = s->many, .arena = s->arena[2]};
     RenderRequest request;
     View view = bench_view(&s->close, 30, 6, 20 * rad_per_deg, s->width, s->height);
-    request   = request_of(&view, three_bands, true);
+    request   = speed_request(&view, three_bands, true);
     first.request = request;
     bench_frame(&first);
     if (first.status != STATUS_OK) return first.status;
@@ -384,129 +379,22 @@ static Status time_close(Speed *s)
     first.request = request;
     bench_frame(&first);
     if (first.status != STATUS_OK) return first.status;
-    const double share = 100 * first.picture.target[0].visible / ((double)s->width * s->height);
     const RenderRequest plain = one_ray(&request);
     RenderRequest optical = plain;
     optical.bands = 1u << BAND_OPTICAL;
     optical.truth = false;
-    snprintf(name, sizeof name, "%.40s on %.0f %% of the pixels", s->target, share);
+    BenchRow share = bench_row("close target: pixels that it covers");
+    share.median   = 100 * first.picture.target[0].visible / ((double)s->width * s->height);
+    share.unit     = "%";
+    share.against  = s->target;
+    bench_add(s->bench, &share);
+    snprintf(name, sizeof name, "close target");
     status = time_pair(s, name, &s->close, &request);
-    snprintf(name, sizeof name, "%.40s: optical alone, one ray a pixel", s->target);
+    snprintf(name, sizeof name, "close target: optical alone, one ray a pixel");
     if (status == STATUS_OK) status = time_picture(s, name, &s->close, &optical);
-    BenchFrame simple = frame_of(s, &s->close, &plain, false), one = frame_of(s, &s->close, &request, false);
-    if (status == STATUS_OK) status = time_stages(s, "tank, one ray a pixel, 1 thread", &simple, 1);
-    return status == STATUS_OK ? time_stages(s, "tank, 1 thread", &one, 1) : status;
-}
-
-/* ---- files ------------------------------------------------------------------------------------ */
-
-typedef struct Encode {
-    FrameFiles files;
-    Pool      *pool;
-    Status     status;
-    char       hash[sha256_text_size];
-} Encode;
-
-static void encode(void *user)
-{
-    Encode *e = user;
-    e->status = frame_files_write(e->hash, &e->files, e->pool);
-}
-
-/* Values of the file's planes that are not those of the picture. */
-static double differing(const char *out, const Picture *p)
-{
-    const size_t count = (size_t)p->width * (size_t)p->height;
-    char         path[128];
-    float       *read = malloc(count * sizeof *read);
-    double       bad = NAN;
-    snprintf(path, sizeof path, "%s/frames/lwir/000000.exr", out);
-    if (read && image_read_f32(read, path, "Y") == STATUS_OK) {
-        bad = 0;
-        for (size_t i = 0; i < count; i++) bad += memcmp(&read[i], &p->lwir[i], sizeof *read) != 0;
-    }
-    free(read);
-    return bad;
-}
-
-static void remove_folder(const char *out)
-{
-    static const char *const parts[] = {"optical", "mwir", "lwir", "truth"};
-    char path[128];
-    for (int k = 0; k < 4; k++)
-        for (int e = 0; e < 3; e++) {
-            snprintf(path, sizeof path, "%s/frames/%s%s", out, parts[k], e == 0 ? "/000000.exr" : e == 1 ? "/000000.png" : "");
-            remove(path);
-        }
-    snprintf(path, sizeof path, "%s/frames", out);
-    remove(path);
-    remove(out);
-}
-
-static Status time_files(Speed *s)
-{
-    const Config config = config_default();
-    const View   view = bench_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
-    const RenderRequest request = request_of(&view, three_bands, true);
-    BenchFrame   frame = frame_of(s, &s->scene, &request, true);
-    Chain       *chain[BAND_COUNT] = {NULL};
-    FrameLevel   level[BAND_COUNT] = {{0}};
-    char         out[64] = "/tmp/pitviper-bench-XXXXXX", what[what_size];
-    BenchTime    time[2];
-    bench_progress(s->bench, "files");
-    bench_frame(&frame);
-    Status status = frame.status;
-    if (status == STATUS_OK && !mkdtemp(out)) status = STATUS_IO;
-    if (status != STATUS_OK) return status;
-    status = frame_files_prepare(out, three_bands, 0);
-    Encode with = {.pool = s->many, .files = {.out = out, .config = &config, .world = &s->scene.world, .picture = &frame.picture,
-                   .snapshot = &frame.snapshot, .request = &frame.request, .host = "observer", .config_sha256 = "",
-                   .unix_s = s->scene.unix_s, .png = true, .chain = chain, .level = level}};
-    Encode without = with;
-    without.files.png = false;
-    const BenchWork work[2] = {{encode, &with, 1}, {encode, &without, 1}};
-    if (status == STATUS_OK) bench_time(time, s->bench, work, 2);
-    if (status == STATUS_OK) status = with.status != STATUS_OK ? with.status : without.status;
-    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        snprintf(what, sizeof what, "files of a frame: EXR%s and hash, %s", k ? "" : ", PNG", s->threads);
-        BenchRow row    = bench_row_of(what, &time[k], "frames/s", 1);
-        row.error       = differing(out, &frame.picture);
-        row.error_limit = 0;
-        row.error_unit  = "values";
-        row.against     = "read again";
-        bench_add(s->bench, &row);
-    }
-    remove_folder(out);
-    return status;
-}
-
-/* ---- memory ----------------------------------------------------------------------------------- */
-
-static double status_mb(const char *key)
-{
-    char   line[256];
-    double kb = NAN;
-    FILE  *file = fopen("/proc/self/status", "r");
-    while (file && fgets(line, sizeof line, file))
-        if (strncmp(line, key, strlen(key)) == 0) kb = strtod(line + strlen(key), NULL);
-    if (file) fclose(file);
-    return kb * 1024e-6;
-}
-
-static void say_memory(Speed *s)
-{
-    size_t posts, pyramids;
-    bench_ground_bytes(&posts, &pyramids, &s->landscape.elevation);
-    const struct { const char *what; double mb; } rows[] = {
-        {"memory: posts", 1e-6 * (double)posts}, {"memory: their pyramid", 1e-6 * (double)pyramids},
-        {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},
-        {"memory: resident at the end", status_mb("VmRSS:")}, {"memory: resident at most", status_mb("VmHWM:")}};
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        BenchRow row = bench_row(rows[k].what);
-        row.median   = rows[k].mb;
-        row.unit     = "MB";
-        bench_add(s->bench, &row);
-    }
+    BenchFrame simple = speed_frame(s, &s->close, &plain, false), one = speed_frame(s, &s->close, &request, false);
+    if (status == STATUS_OK) status = time_stages(s, "close target, one ray a pixel, 1 thread", &simple, 1);
+    return status == STATUS_OK ? time_stages(s, "close target, 1 thread", &one, 1) : status;
 }
 
 /* ---- the whole -------------------------------------------------------------------------------- */
@@ -537,7 +425,6 @@ static Status open_speed(Speed *s)
     s->height  = (int)size[1];
     s->east_m  = floor(1000 * ground_km[0]);
     s->north_m = floor(1000 * ground_km[1]);
-    snprintf(s->threads, sizeof s->threads, "%d thread%s", bench_threads(s->bench), bench_threads(s->bench) > 1 ? "s" : "");
     Status status = pool_create(&s->one, 1);
     if (status == STATUS_OK) status = pool_create(&s->many, bench_threads(s->bench));
     for (int k = 0; k < 3 && status == STATUS_OK; k++)
@@ -566,25 +453,25 @@ static Status time_all(Speed *s)
     BenchFrame frame[views];
     for (int v = 0; v < views && status == STATUS_OK; v++) {
         const View          view = bench_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
-        const RenderRequest request = request_of(&view, three_bands, true);
-        frame[v] = frame_of(s, &s->scene, &request, false);
+        const RenderRequest request = speed_request(&view, three_bands, true);
+        frame[v] = speed_frame(s, &s->scene, &request, false);
         status   = time_view(s, v);
     }
     if (status == STATUS_OK) status = time_stages(s, "mean of the views, 1 thread", frame, views);
 
     const View    small = bench_view(&s->scene, places[1].back_m, places[1].above_m, 20 * rad_per_deg, 256, 256);
-    RenderRequest lwir = request_of(&small, 1u << BAND_LWIR, false);
+    RenderRequest lwir = speed_request(&small, 1u << BAND_LWIR, false);
     if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR alone", &s->scene, &lwir);
-    BenchFrame lwir_frame = frame_of(s, &s->scene, &lwir, false);
+    BenchFrame lwir_frame = speed_frame(s, &s->scene, &lwir, false);
     if (status == STATUS_OK) status = time_stages(s, "LWIR alone, 1 thread", &lwir_frame, 1);
     lwir.truth = true;
     if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR and truth", &s->scene, &lwir);
     if (status == STATUS_OK) status = time_close(s);
     const View          wide = bench_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
-    const RenderRequest radar = request_of(&wide, 1u << BAND_RADAR, true);
+    const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
-    if (status == STATUS_OK) status = time_files(s);
-    if (status == STATUS_OK) say_memory(s);
+    if (status == STATUS_OK) status = speed_files(s);
+    if (status == STATUS_OK) speed_memory(s);
     return status;
 }
 

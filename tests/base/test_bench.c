@@ -2,6 +2,9 @@
  * the table, the file and the exit code. */
 #include "tests/check.h"
 
+#include <stdlib.h>
+#include <unistd.h>
+
 static int    works[2];
 static double error_now;
 
@@ -29,6 +32,68 @@ static Status judged_run(Bench *bench)
     return STATUS_OK;
 }
 
+/* ---- the rule of knobs ------------------------------------------------------------------------ */
+
+/* Nine rounds about a time, each so much above or below it. */
+static BenchPoint point_of(const char *setting, double s, double spread, double error, double bytes)
+{
+    BenchPoint p = {.setting = setting, .time = {.rounds = 9}, .error = error, .bytes = bytes};
+    for (int r = 0; r < 9; r++) p.time.item_s[r] = s * (1 + spread * (r * 5 % 9 - 4) / 4);
+    bench_time_finish(&p.time);
+    return p;
+}
+
+static const BenchKnob knob = {.name = "a knob", .turned_by = "sensor.<key>", .of = "a work", .error_unit = "%",
+                               .against = "the whole & more", .stated = 2};
+
+static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
+{
+    (void)state;
+    const BenchPoint held = point_of("held", 1e-3, 0.02, 1, 1e6);
+    const struct {
+        BenchPoint point;
+        bool       dominates, is_dominated;
+    } cases[] = {
+        {point_of("faster", 0.8e-3, 0.02, 1, 1e6), true, false},
+        {point_of("closer", 1e-3, 0.02, 0.8, 1e6), true, false},
+        {point_of("smaller", 1e-3, 0.02, 1, 0.8e6), true, false},
+        {point_of("faster and worse", 0.5e-3, 0.02, 1.1, 1e6), false, false},
+        {point_of("closer and slower", 1.1e-3, 0.02, 0.5, 1e6), false, false},
+        {point_of("slower, memory saves it", 1.5e-3, 0.02, 1, 0.5e6), false, false},
+        {point_of("worse, memory saves it", 1e-3, 0.02, 2, 0.5e6), false, false},
+        {point_of("slower", 1.2e-3, 0.02, 1, 1e6), false, true},
+        {point_of("all worse", 2e-3, 0.02, 2, 2e6), false, true},
+        {point_of("the same", 1e-3, 0.02, 1, 1e6), false, false},
+        {point_of("noise of time", 0.95e-3, 0.02, 1, 1e6), false, false},
+        {point_of("noise of a busy machine", 0.85e-3, 0.5, 1, 1e6), false, false},
+        {point_of("noise of error", 1e-3, 0.02, 0.95, 1e6), false, false},
+        {point_of("memory unknown", 0.8e-3, 0.02, 1, 0), true, false},
+        {point_of("error unknown", 0.5e-3, 0.02, NAN, 1e6), false, false},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        if (bench_dominates(&knob, &cases[k].point, &held) != cases[k].dominates ||
+            bench_dominates(&knob, &held, &cases[k].point) != cases[k].is_dominated) {
+            print_error("%s\n", cases[k].point.setting);
+            CHECK(false);
+        }
+    }
+    const BenchPoint unknown = cases[14].point;
+    CHECK(!bench_on_front(&knob, &unknown, 1, 0));
+    /* far below what is stated, a difference is rounding; the faster wins nothing by it either */
+    const BenchPoint tiny = point_of("", 1e-3, 0.02, 1e-9, 0), less = point_of("", 1e-3, 0.02, 1e-10, 0);
+    CHECK(!bench_dominates(&knob, &less, &tiny) && !bench_dominates(&knob, &tiny, &less));
+    const BenchPoint three[3] = {held, cases[0].point, cases[4].point};
+    CHECK(!bench_on_front(&knob, three, 3, 0) && bench_on_front(&knob, three, 3, 1) && bench_on_front(&knob, three, 3, 2));
+}
+
+static BenchPoint settings[3];
+
+static Status knob_run(Bench *bench)
+{
+    bench_knob(bench, &knob, settings, 3);
+    return STATUS_OK;
+}
+
 static Status broken_run(Bench *bench)
 {
     (void)bench;
@@ -36,9 +101,9 @@ static Status broken_run(Bench *bench)
 }
 
 static const BenchSuite suites[] = {{.name = "judged", .help = "", .options = "size=WxH,model=FILE", .run = judged_run},
-                                    {.name = "broken", .help = "", .run = broken_run}};
+                                    {.name = "broken", .help = "", .run = broken_run}, {.name = "knob", .help = "", .run = knob_run}};
 
-static const BenchSuite *next(size_t state[2]) { return state[0] < 2 ? &suites[state[0]++] : NULL; }
+static const BenchSuite *next(size_t state[2]) { return state[0] < 3 ? &suites[state[0]++] : NULL; }
 
 static int command(int argc, const char *const *argv)
 {
@@ -96,7 +161,7 @@ static void the_file_has_a_row_for_each_and_says_what_holds(void **state)
     CHECK(COMMAND("bench", "judged", "--quick", "--csv", path) == 0);
     Table table;
     CHECK(table_open(&table, path) == STATUS_OK);
-    CHECK(table.rows == 2 && table.columns == 14);
+    CHECK(table.rows == 2 && table.columns == 17);
     CHECK(strcmp(table_text(&table, 0, table_column(&table, "what")), "a \"work\", counted") == 0);
     CHECK(strcmp(table_text(&table, 0, table_column(&table, "holds")), "yes") == 0);
     CHECK(strcmp(table_text(&table, 0, table_column(&table, "error")), "0.5") == 0);
@@ -109,12 +174,161 @@ static void the_file_has_a_row_for_each_and_says_what_holds(void **state)
     remove(path);
 }
 
+static void a_default_off_the_front_fails_and_is_told_why(void **state)
+{
+    (void)state;
+    char path[text_file_size];
+    text_file(path, "");
+    settings[0] = point_of("coarse", 0.5e-3, 0.02, 4, 0);
+    settings[1] = point_of("default", 1e-3, 0.02, 1, 0);
+    settings[2] = point_of("fine", 2e-3, 0.02, 0.2, 0);
+    settings[1].is_default = true;
+    CHECK(COMMAND("bench", "knob", "--csv", path) == 0);
+    Table table;
+    CHECK(table_open(&table, path) == STATUS_OK && table.rows == 4);
+    const int mark = table_column(&table, "mark"), what = table_column(&table, "what"), error = table_column(&table, "error");
+    CHECK(strcmp(table_text(&table, 1, what), "a knob: default") == 0);
+    CHECK(strcmp(table_text(&table, 1, mark), "* default") == 0 && strcmp(table_text(&table, 2, mark), "*") == 0);
+    CHECK(strcmp(table_text(&table, 3, error), "0") == 0);
+    table_close(&table);
+
+    settings[2] = point_of("fine", 0.9e-3, 0.02, 0.2, 0);
+    CHECK(COMMAND("bench", "knob", "--quick") == 0); /* shown, not judged */
+    CHECK(COMMAND("bench", "knob", "--csv", path) == 1);
+    CHECK(table_open(&table, path) == STATUS_OK);
+    CHECK(strcmp(table_text(&table, 1, mark), "default") == 0 && strcmp(table_text(&table, 3, error), "1") == 0);
+    CHECK(strstr(table_text(&table, 3, table_column(&table, "against")), "'fine': 0.90 x the time, 0.20 x the error"));
+    table_close(&table);
+
+    settings[2] = point_of("fine", 2e-3, 0.02, 0.2, 0);
+    settings[1].error = 2.1; /* stated: 2 */
+    CHECK(COMMAND("bench", "knob", "--quick") == 1);
+    remove(path);
+}
+
+/* What is text in a picture stays text, and points without a figure do not spoil it. */
+static void a_plot_shows_each_setting_once(void **state)
+{
+    (void)state;
+    char              folder[] = "/tmp/pitviper_plots_XXXXXX", path[64];
+    static char       text[32768];
+    CHECK(mkdtemp(folder) != NULL);
+    settings[0] = point_of("<a> & b", 0.5e-3, 0.02, 0, 2e6);
+    settings[1] = point_of("default", 1e-3, 0.02, 1, 1e6);
+    settings[2] = point_of("unknown", 2e-3, 0.02, NAN, 0);
+    settings[1].is_default = true;
+    COMMAND("bench", "knob", "--quick", "--plots", folder);
+    snprintf(path, sizeof path, "%s/a-knob.svg", folder);
+    FILE *file = fopen(path, "r");
+    CHECK(file != NULL);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    CHECK(strstr(text, "&lt;a&gt; &amp; b (2 MB)") && !strstr(text, "<a>") && !strstr(text, "nan") && !strstr(text, "inf"));
+    CHECK(strstr(text, "1 without a time or an error") && strstr(text, "stated: 2 %") && strstr(text, "</svg>"));
+    CHECK(strstr(text, "run time, us") && strstr(text, "class=\"df\""));
+    remove(path);
+    rmdir(folder);
+    CHECK(COMMAND("bench", "knob", "--quick", "--plots", "/proc/nowhere") == 1);
+}
+
+/* ---- two runs side by side -------------------------------------------------------------------- */
+
+static const char *const csv_head = "# version: 0.1\n# machine: a box\n# rounds: full\n# threads: 2\n"
+                                    "bench,what,median,best,unit,error,error_limit,error_unit,lower_quartile,upper_quartile\n";
+
+static int compare(const char *a, const char *b, const char *slower)
+{
+    char path[2][text_file_size], text[2][4096];
+    snprintf(text[0], sizeof text[0], "%s%s", csv_head, a);
+    snprintf(text[1], sizeof text[1], "%s%s", csv_head, b);
+    text_file(path[0], text[0]);
+    text_file(path[1], text[1]);
+    const int code = slower ? COMMAND("bench", "compare", path[0], path[1], "--slower", slower)
+                            : COMMAND("bench", "compare", path[0], path[1]);
+    remove(path[0]);
+    remove(path[1]);
+    return code;
+}
+
+static void what_became_worse_fails_a_comparison(void **state)
+{
+    const char *const base = "s,frame,1e-3,0.9e-3,s,0.5,1,m,0.95e-3,1.05e-3\n";
+    (void)state;
+    CHECK(compare(base, base, "1.01") == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", NULL) == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", "1.2") == 1);
+    CHECK(compare(base, "s,frame,1.3e-3,1.2e-3,s,0.5,1,m,1.25e-3,1.35e-3\n", "1.4") == 0);
+    CHECK(compare(base, "s,frame,1.3e-3,0.9e-3,s,0.5,1,m,1.0e-3,1.6e-3\n", "1.2") == 0); /* the quartiles meet */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,0.9,1,m,,\n", NULL) == 0);                /* worse, within its limit */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,1.1,1,m,,\n", NULL) == 1);
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,,1,m,,\n", NULL) == 1);                   /* no longer known */
+    CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,inf,1,m,,\n", NULL) == 1);
+    CHECK(compare("s,frame,1,,s,3,1,m,,\n", "s,frame,1,,s,2,1,m,,\n", NULL) == 0);      /* broken before, and now less so */
+    CHECK(compare(base, "s,another,1e-3,,s,9,1,m,,\n", NULL) == 0);                      /* only in one: told, not judged */
+    CHECK(compare("s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "1.1") == 0); /* one name twice: in turn */
+}
+
+static void a_table_that_is_none_is_refused(void **state)
+{
+    static const char *const bad[] = {"s,frame,1e-3,,s,0.5,1\n", "s,frame,many,,s,0.5,1,m,,\n", "s,frame,-1,,s,0.5,1,m,,\n",
+                                      "s,frame,1e999,,s,0.5,1,m,,\n", "s,\"frame,1,,s,0.5,1,m,,\n", "s,frame,nan,,s,0.5,1,m,,\n"};
+    char path[text_file_size];
+    (void)state;
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) CHECK(compare(bad[k], bad[k], NULL) == 1);
+    text_file(path, "");
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+    remove(path);
+    text_file(path, "a,b\n1,2\n");
+    log_set_sink(check_listen, NULL);
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+    CHECK(strstr(check_said, "no column `bench`"));
+    log_set_sink(NULL, NULL);
+    CHECK(COMMAND("bench", "compare", path) == 2);
+    CHECK(COMMAND("bench", "compare", path, path, path) == 2);
+    CHECK(COMMAND("bench", "compare", path, path, "--slower", "0.5") == 2);
+    CHECK(COMMAND("bench", "compare", path, path, "--report") == 2);
+    remove(path);
+    CHECK(COMMAND("bench", "compare", path, path) == 1);
+}
+
+/* ---- all, as a page --------------------------------------------------------------------------- */
+
+static void a_page_says_first_what_failed(void **state)
+{
+    char        path[text_file_size];
+    static char text[65536];
+    (void)state;
+    text_file(path, "");
+    settings[0] = point_of("coarse", 0.5e-3, 0.02, 4, 0);
+    settings[1] = point_of("default", 1e-3, 0.02, 2.5, 0);
+    settings[2] = point_of("fine", 2e-3, 0.02, 0.2, 0);
+    settings[1].is_default = true;
+    error_now = 0.5;
+    CHECK(COMMAND("bench", "all", "--quick", "--report", path, "--size", "3x4") == 1);
+    FILE *file = fopen(path, "r");
+    CHECK(file != NULL);
+    text[fread(text, 1, sizeof text - 1, file)] = 0;
+    fclose(file);
+    const char *failed = strstr(text, "1 of 2 errors beyond their limit; 1 suites did not come"), *row = strstr(text, "a knob: default");
+    const char *machine = strstr(text, "<h2>Machine"), *plot = strstr(text, "<svg");
+    CHECK(failed && row && machine && plot && failed < row && row < machine && machine < plot);
+    CHECK(strstr(text, "a &quot;work&quot;, counted") && strstr(text, "broken did not come to its end"));
+    remove(path);
+    CHECK(COMMAND("bench", "judged", "--quick", "--report", "/nowhere/at/all.html") == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(medians_and_ratios_are_those_of_rounds),
         cmocka_unit_test(an_error_beyond_its_limit_fails_the_run),
         cmocka_unit_test(what_it_does_not_know_it_refuses),
+        cmocka_unit_test(a_setting_that_is_better_and_nowhere_worse_dominates),
+        cmocka_unit_test(a_default_off_the_front_fails_and_is_told_why),
+        cmocka_unit_test(a_plot_shows_each_setting_once),
+        cmocka_unit_test(what_became_worse_fails_a_comparison),
+        cmocka_unit_test(a_table_that_is_none_is_refused),
+        cmocka_unit_test(a_page_says_first_what_failed),
         cmocka_unit_test(the_file_has_a_row_for_each_and_says_what_holds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

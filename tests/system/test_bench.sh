@@ -3,19 +3,24 @@
 . "$(dirname "$0")/common.sh"
 
 unset PITVIPER_DATA
-# table SUITE: runs it, table in $tmp/SUITE.csv
-table() {
-    run bench "$1" --quick --threads 2 --csv "$tmp/$1.csv"
-    check "$1 ends well" [ $code = 0 ]
-    check "$1 names the machine first" grep -q "pitviper [0-9]" <(head -n 1 "$tmp/stdout")
-    check "$1: the file too" grep -q "^# .*pitviper [0-9]" <(head -n 1 "$tmp/$1.csv")
-    check "$1: every error keeps its limit" [ "$(grep -c ',no$' "$tmp/$1.csv")" = 0 ]
-    check "$1: some have one" [ "$(grep -c ',yes$' "$tmp/$1.csv")" -ge 4 ]
-    check "$1: every row has as many columns as the header" \
-        awk -F, 'NR == 2 { n = NF } NR > 1 { line = $0; gsub(/"[^"]*"/, "", line); if (split(line, x, ",") != n) exit 1 }' "$tmp/$1.csv"
-    check "$1: every row has a figure above 0" \
-        awk 'NR > 2 { line = $0; gsub(/"[^"]*"/, "", line); split(line, x, ","); if (!(x[3] > 0)) { print; exit 1 } }' "$tmp/$1.csv"
-}
+run bench all --quick --threads 2 --csv "$tmp/all.csv" --report "$tmp/all.html"
+check "all ends well" [ $code = 0 ]
+[ $code = 0 ] || { grep -F '**' "$tmp/stdout"; cat "$tmp/stderr"; }
+check "it names the machine first" grep -q "pitviper [0-9]" <(head -n 1 "$tmp/stdout")
+check "the file too" grep -q "^# .*pitviper [0-9]" <(head -n 1 "$tmp/all.csv")
+for key in version machine rounds threads libraries; do check "the file says its $key" grep -q "^# $key: [^ ]" "$tmp/all.csv"; done
+check "every error keeps its limit" eval '! grep -q ",no," "$tmp/all.csv"'
+# the rows without comments and quoted texts
+sed -e '/^#/d' -e 's/"[^"]*"//g' "$tmp/all.csv" >"$tmp/bare.csv"
+check "every row has as many columns as the header" awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 }' "$tmp/bare.csv"
+check "every row has a figure: a time, a rate, a ratio or an error" \
+    awk -F, 'NR > 1 && !($3 > 0 || $6 > 0 || $8 > 0 || $10 != "") { print; exit 1 }' "$tmp/bare.csv"
+for suite in dis network speed; do
+    check "$suite: some rows have a limit" [ "$(grep -c "^$suite,.*,yes," "$tmp/all.csv")" -ge 2 ]
+    check "$suite: a chapter of the page" grep -q "<h2 id=\"$suite\">" "$tmp/all.html"
+done
+# table SUITE: its rows
+table() { grep "^$1," "$tmp/all.csv" >"$tmp/$1.csv"; }
 # has SUITE WHAT
 has() { check "$1 has a row: $2" grep -q "^$1,.*$2" "$tmp/$1.csv"; }
 
@@ -27,7 +32,7 @@ table speed
 for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300 m up: frame" "1000 m up: frame" \
             "rays alone" "one ray a pixel" "1 thread: snapshot" "1 thread: air" "1 thread: visibility" "1 thread: sun rays" \
             "1 thread: shading" "small targets" "pass over edges" "truth of targets" "hash of the planes" "256 x 256" \
-            "of the pixels: one ray a pixel" "optical alone, one ray" "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
+            "close target: one ray a pixel" "adaptive edges" "1 thread: frame" "optical alone, one ray" "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
 
@@ -35,6 +40,48 @@ table skip
 for what in "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" "walked together" \
             "sun rays miss" "stops the sun" "too low to stop" "nothing behind" "beside a small target" "first rays" "smoke" \
             "all of them" "bands nobody asked for" "planes nobody asked for"; do has skip "$what"; done
+
+table network
+for what in "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: most" recorder "live node: ready" "live node: reports heard" \
+            "live node: arrival to pose" "live node: frame time to published" "live node: memory"; do
+    has network "$what"
+done
+
+# ---- the page, and two runs side by side
+if command -v python3 >/dev/null; then
+    check "the page is HTML: every element that is opened is closed" python3 - "$tmp/all.html" <<'END'
+import html.parser, sys
+class Page(html.parser.HTMLParser):
+    open, rows = [], 0
+    def handle_starttag(self, tag, attributes):
+        if tag not in ('meta', 'img', 'br'): self.open.append(tag)
+        self.rows += tag == 'tr'
+    def handle_startendtag(self, tag, attributes): pass
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag, (tag, self.getpos())
+page = Page()
+page.feed(open(sys.argv[1]).read())
+assert not page.open and page.rows > 90, (page.open, page.rows)
+END
+fi
+run bench compare "$tmp/all.csv" "$tmp/all.csv" --slower 1.01 --report "$tmp/compare.html"
+check "a run is like itself" [ $code = 0 ]
+rows=$(grep -c within\ noise "$tmp/stdout")
+check "in every row" grep -qE "^($((rows - 1))) rows in both: \1 within noise" "$tmp/stdout"
+check "and is a page" grep -q '</html>' "$tmp/compare.html"
+awk -F, -v OFS=, '$2 == "Fire: decode" { $3 *= 1.5; $4 *= 1.5; $15 *= 1.5; $16 *= 1.5 } { print }' "$tmp/all.csv" >"$tmp/slow.csv"
+run bench compare "$tmp/all.csv" "$tmp/slow.csv" --slower 1.3
+check "a slower row ends it with 1" [ $code = 1 ]
+check "and is named, alone" [ "$(grep 'slower 1.50 x' "$tmp/stdout" | grep -c 'dis: Fire: decode')" = 1 ]
+sed '/^dis,Fire: encode,/d; s/^# machine: .*/# machine: another/' "$tmp/all.csv" | sed '/^dis,Detonation: decode,/s/,0,0,octets,/,3,0,octets,/' >"$tmp/worse.csv"
+run bench compare "$tmp/all.csv" "$tmp/worse.csv"
+check "an error beyond its limit ends it with 1" [ $code = 1 ]
+check "and is named" grep -q 'dis: Detonation: decode.*error beyond its limit' "$tmp/stdout"
+check "a row that is gone is named" grep -q 'dis: Fire: encode.*only in the first' "$tmp/stdout"
+check "another machine is named" grep -q 'Different machines' "$tmp/stdout"
+head -c 3000 /dev/urandom >"$tmp/noise.csv"
+run bench compare "$tmp/all.csv" "$tmp/noise.csv"
+check "noise is refused" [ $code = 1 ]
 
 run bench speed --quick --size 17
 check "a size that is none is refused" [ $code = 1 ]

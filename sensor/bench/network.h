@@ -1,0 +1,9 @@
+/* sensor/bench/network.h: `pitviper bench network`, this room's part: a live node and somebody who sends to it. */
+#ifndef SENSOR_BENCH_NETWORK_H
+#define SENSOR_BENCH_NETWORK_H
+
+#include "pitviper.h"
+
+Status bench_live(Bench *bench);
+
+#endif
