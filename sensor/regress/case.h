@@ -24,7 +24,7 @@
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row of range
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row of range
  * bins; truth.jsonl and run.json as the run wrote them. */
 #ifndef SENSOR_REGRESS_CASE_H
 #define SENSOR_REGRESS_CASE_H
