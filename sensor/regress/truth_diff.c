@@ -10,8 +10,9 @@ static const struct Field {
     {"time_s", 1e-6, 0},           /* stamps of DIS step by 1.7 us */
     {"ecef_m", 1e-3, 0},           {"lat_deg", 1e-8, 0},          {"lon_deg", 1e-8, 0},   /* 1 mm */
     {"height_m", 1e-3, 0},         {"psi_deg", 1e-4, 0},          {"theta_deg", 1e-4, 0},
-    {"phi_deg", 1e-4, 0},          {"speed_mps", 1e-3, 0},        {"azimuth_deg", 1e-4, 0},
-    {"elevation_deg", 1e-4, 0},    {"hfov_deg", 1e-6, 0},         {"vfov_deg", 1e-6, 0},
+    {"phi_deg", 1e-4, 0},          {"speed_mps", 1e-3, 0},        {"azimuth_deg", 0.005, 0},
+    {"elevation_deg", 0.005, 0}, /* a hundredth of the sun's disc: the air's refraction, not the sun, is beyond */
+      {"hfov_deg", 1e-6, 0},         {"vfov_deg", 1e-6, 0},
     {"ecef_from_cam", 2e-6, 0},    /* 1e-4 degree */
     {"range_m", 1e-3, 1e-6},       {"closing_mps", 1e-3, 1e-6},   {"aspect_deg", 1e-3, 0},
     {"depression_deg", 1e-4, 0},   {"los_az_deg", 1e-4, 0},       {"los_el_deg", 1e-4, 0},

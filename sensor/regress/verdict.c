@@ -121,7 +121,7 @@ static void say_number(ChannelResult *r, Channel channel)
     else if (isfinite(v->max)) snprintf(worst, sizeof worst, "%.3g%s%s", v->max, space, unit);
     else snprintf(worst, sizeof worst, "%.4g became %.4g", v->expected, v->got);
     if (rows[channel].planes > 1) snprintf(plane, sizeof plane, "%s: ", frame_plane_name(r->plane));
-    snprintf(r->line, sizeof r->line, "%s%.2g %% of pixels beyond %s, worst %s at frame %d (%d, %d)", plane,
+    snprintf(r->line, sizeof r->line, "%s%.3g %% of pixels beyond %s, worst %s at frame %d (%d, %d)", plane,
              100 * v->share, limit, worst, r->frame, v->column, v->row);
 }
 
@@ -168,10 +168,10 @@ static void hold_ids(ChannelResult *result, const Held *h, Channel channel, Fram
     const PlaneVerdict *v = &found.verdict;
     found.failed = v->beyond > 0 || (double)at_edges > h->tolerance->edge_share * (double)h->edges;
     if (v->beyond > 0)
-        snprintf(found.line, sizeof found.line, "%.2g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
+        snprintf(found.line, sizeof found.line, "%.3g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
                  "%.0f", 100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
     else if (at_edges > 0)
-        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels show another %s in frame %d, allowed %.2g %%",
+        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels show another %s in frame %d, allowed %.3g %%",
                  at_edges, h->edges, rows[channel].name, found.frame, 100 * h->tolerance->edge_share);
     for (size_t i = 0; h->other && i < h->count; i++) h->other[i] |= was[i] != is[i];
     keep_worse(result, &found);
@@ -190,7 +190,7 @@ static void hold_profile(ChannelResult *result, const Held *h)
     for (int b = 0; b < frame_bounces; b++) full = fmax(full, largest(was->profile[b], (size_t)was->bins));
     float *db = malloc(2 * (size_t)was->bins * sizeof *db);
     for (int b = 0; db && b < frame_bounces; b++) {
-        ChannelResult found = {.there = true, .frame = is->number, .plane = FRAME_PLANES, .unit = "dB",
+        ChannelResult found = {.there = true, .frame = is->number, .plane = FRAME_PLANES, .bounce = b, .unit = "dB",
                                .limit = h->tolerance->profile_db * (1 + 1e-6)};
         PlaneVerdict *v = &found.verdict;
         plane_to_db(db, was->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
@@ -198,7 +198,7 @@ static void hold_profile(ChannelResult *result, const Held *h)
         compare_numbers(v, NULL, db, db + was->bins, was->bins, 1, found.limit, 0, NULL);
         found.failed = v->share > h->tolerance->share;
         if (v->column >= 0)
-            snprintf(found.line, sizeof found.line, "bounce %d: %.2g %% of bins beyond %.3g dB, worst %.3g dB at frame %d, "
+            snprintf(found.line, sizeof found.line, "bounce %d: %.3g %% of bins beyond %.3g dB, worst %.3g dB at frame %d, "
                      "%.1f m", b + 1, 100 * v->share, found.limit, v->max, is->number, was->near_m + v->column * was->bin_m);
         if (b == 0 && fabs(was->near_m - is->near_m) > 0.01 * was->bin_m) {
             found.failed = true;

@@ -29,6 +29,7 @@ typedef struct ChannelResult {
     bool         picture;
     int          frame;
     FramePlane   plane;
+    int          bounce;        /* of a profile, which has no plane: FRAME_PLANES */
     PlaneVerdict verdict;
     double       limit, relative; /* absolute, and of the expected */
     const char  *unit;
