@@ -12,6 +12,7 @@
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
+#include "sensor/regress/regress.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -106,6 +107,7 @@ static const struct Command {
 } commands[] = {
     {"run", run_command, "listen to an exercise on the network and show it live"},
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
+    {"regress", regress_command, "show recorded exercises again and compare with what they showed"},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
     {"check", check_command, "say whether a file of settings is good; or print one to begin with"},
     {"exercise", exercise_command, "write or send an exercise from a scenario"},

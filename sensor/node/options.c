@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, HELP,
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, ONLY, HELP,
       KEY };
 
 static const char *const names[] = {"replay", "run"};
@@ -28,6 +28,8 @@ static const struct Row {
     {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
     {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
      "only this span of exercise time, in seconds as `pitviper inspect` shows\nthem; frames keep the numbers they have in the whole"},
+    {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
+     "these frames alone, by their numbers; each is what it is in the whole"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
      "site:application:entity that carries the sensor; may be given several\ntimes"},
     {"host", HOST, IN_RUN, NULL, "ID",
@@ -139,6 +141,37 @@ static bool add_host(Options *o, const char *text)
     return true;
 }
 
+static int compare_ints(const void *a, const void *b)
+{
+    const int x = *(const int *)a, y = *(const int *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* 3,7,12: in order, each once. */
+static bool parse_only(Options *o, const char *text)
+{
+    char      one[16];
+    long long number;
+    o->only_count = 0;
+    for (const char *at = text; at;) {
+        const size_t length = strcspn(at, ",");
+        snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), at);
+        if (!text_to_long(&number, one) || number < 0 || number > 999999 || o->only_count == options_only_max) {
+            log_error("options: --only: '%s' is not a list of at most %d frame numbers in 0 .. 999999, for example "
+                      "3,7,12", text, options_only_max);
+            return false;
+        }
+        o->only[o->only_count++] = (int)number;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    qsort(o->only, (size_t)o->only_count, sizeof *o->only, compare_ints);
+    int kept = 1;
+    for (int i = 1; i < o->only_count; i++)
+        if (o->only[i] != o->only[kept - 1]) o->only[kept++] = o->only[i];
+    o->only_count = kept;
+    return true;
+}
+
 static bool take(Options *o, const struct Row *row, const char *text)
 {
     char source[24];
@@ -169,6 +202,7 @@ static bool take(Options *o, const struct Row *row, const char *text)
         o->isa = text;
         return ok;
     case NO_PNG: o->config.publish.png = false; return true;
+    case ONLY: return parse_only(o, text);
     case NO_FILES: o->config.publish.files = false; return true;
     default: return true; /* CONFIG was read before */
     }

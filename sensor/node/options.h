@@ -4,7 +4,7 @@
 
 #include "sensor/node/config.h"
 
-enum { options_hosts_max = 64 };
+enum { options_hosts_max = 64, options_only_max = 256 };
 
 typedef enum CommandName { COMMAND_REPLAY, COMMAND_RUN } CommandName;
 
@@ -15,6 +15,7 @@ typedef struct Options {
     double      speed, for_s;   /* exercise seconds a second, INFINITY: as fast as it goes; stop after so long */
     bool        no_skip;
     const char *host[options_hosts_max]; /* several of them, ids; one is in the configuration */
+    int         only_count, only[options_only_max]; /* frames to be made, ascending, each once; 0: all */
     Config      config;
 } Options;
 

@@ -30,6 +30,28 @@ static void pace(double begun_s, double first_s, double t_s, double speed)
     while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {}
 }
 
+/* Whether frame n is wanted; at: of --only, the next one. */
+static bool wanted(const Options *o, int *at, double n)
+{
+    if (o->only_count == 0) return true;
+    while (*at < o->only_count && o->only[*at] < n) (*at)++;
+    return *at < o->only_count && o->only[*at] == n;
+}
+
+/* What --only leaves of a span: up to the last frame it names, which must all be there. */
+static Status take_only(double *last, const Options *o, double first)
+{
+    if (o->only_count == 0) return STATUS_OK;
+    const int low = o->only[0], high = o->only[o->only_count - 1];
+    if (low < first || high > *last) {
+        log_error("replay: --only: there is no frame %d, they go from %.0f to %.0f; see also --from, --to and --rate",
+                  low < first ? low : high, first, *last);
+        return STATUS_BAD_VALUE;
+    }
+    *last = high;
+    return STATUS_OK;
+}
+
 /* The span of the plan and of --from and --to, or, causal, to the last that was heard unless --to goes beyond. */
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
@@ -50,15 +72,18 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
         return STATUS_BAD_VALUE;
     }
     if (single) last = first;
+    Status    status  = take_only(&last, o, first);
+    int       next    = 0;
     const double begun_s = wall_clock_s();
-    for (double n = first; n <= last; n++) {
+    for (double n = first; n <= last && status == STATUS_OK; n++) {
         const double t_s = single ? from_s : frame_grid_s(grid, n);
         bool         shown;
+        if (!wanted(o, &next, n)) continue;
         pace(begun_s, single ? from_s : frame_grid_s(grid, first), t_s, o->speed);
-        const Status status = session_frame(&shown, session, (int)n, t_s);
-        if (status != STATUS_OK) return status;
-        show_progress(n, first, last, begun_s);
+        status = session_frame(&shown, session, (int)n, t_s);
+        if (status == STATUS_OK) show_progress(n, first, last, begun_s);
     }
+    if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0) {
         log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
                   session_host(session));

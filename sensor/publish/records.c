@@ -1,6 +1,7 @@
 #include "sensor/publish/records.h"
 
 #include <errno.h>
+#include <gnu/libc-version.h>
 #include <jansson.h>
 #include <unistd.h>
 
@@ -174,6 +175,21 @@ static void set_count(json_t *object, const char *key, uint64_t count)
     json_object_set_new(object, key, json_integer((json_int_t)count));
 }
 
+/* What these pictures were computed with. Headers of the libraries belong to the files that know them: versions come
+ * from the build (CMakeLists.txt); of the C library, whose functions are in every number, from the running one. */
+static json_t *libraries_json(void)
+{
+    json_t *libraries = json_object();
+    json_object_set_new(libraries, "embree", json_string(PITVIPER_EMBREE_VERSION));
+    json_object_set_new(libraries, "openimageio", json_string(PITVIPER_OPENIMAGEIO_VERSION));
+    json_object_set_new(libraries, "geographiclib", json_string(PITVIPER_GEOGRAPHICLIB_VERSION));
+    json_object_set_new(libraries, "erfa", json_string(PITVIPER_ERFA_VERSION));
+    json_object_set_new(libraries, "fftw", json_string(PITVIPER_FFTW_VERSION));
+    json_object_set_new(libraries, "libc", json_string(gnu_get_libc_version()));
+    json_object_set_new(libraries, "compiler", json_string(PITVIPER_COMPILER));
+    return libraries;
+}
+
 static json_t *live_json(const LiveCounters *c)
 {
     json_t *live = json_object();
@@ -248,6 +264,7 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "seed", json_integer(r->seed));
     json_object_set_new(run, "threads", json_integer(r->threads));
     json_object_set_new(run, "isa", json_string(r->isa));
+    json_object_set_new(run, "libraries", libraries_json());
     json_object_set_new(run, "hosts", texts(r->host, r->host_count));
     json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
     json_object_set_new(run, "frames", json_integer(r->frames));

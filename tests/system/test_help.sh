@@ -17,7 +17,7 @@ for command in $commands; do
 done
 run replay --help
 for option in --bands --size --rate --from --to --host --threads --seed --speed --isa --no-png --config --out --causal \
-              --no-skip --samples; do
+              --no-skip --samples --only; do
     check "replay --help names $option" grep -q -- "$option" "$tmp/stdout"
 done
 run run --help

@@ -1,0 +1,143 @@
+#include "sensor/regress/case.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#define AT(member) SETTING_AT(Case, member)
+
+static const Setting keys[] = {
+    {"purpose", SETTING_TEXT, AT(purpose), 0, 0, NULL, "", "what the case is for, in one sentence"},
+    {"scenario", SETTING_TEXT, AT(scenario), 0, 0, NULL, "",
+     "of `pitviper exercise`: a name, or a YAML file in the case's folder"},
+    {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
+     "its --set, KEY=VALUE separated by blanks or lines"},
+    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "",
+     "or a recording: in the case's folder, or ${PITVIPER_DATA}/..."},
+    {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "", "settings of `pitviper replay`, indented below `config: |`"},
+    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "or a file of them in the case's folder"},
+    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "", "numbers of the frames to look at, as replay gives them"},
+    {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
+    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s", "for each child; one that takes longer is ended"},
+    {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, of itself"},
+    {"tolerance.normal", SETTING_DOUBLE, AT(tolerance.normal), 0, 2, NULL, "", "each component of a normal"},
+    {"tolerance.temp_k", SETTING_DOUBLE, AT(tolerance.temp_k), 0, 1000, NULL, "K", "surface temperature"},
+    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "", "optical radiance, of itself"},
+    {"tolerance.optical_w_m2_sr", SETTING_DOUBLE, AT(tolerance.optical_w_m2_sr), 0, 1e4, NULL, "W/(m2 sr)",
+     "and this much more"},
+    {"tolerance.mwir_k", SETTING_DOUBLE, AT(tolerance.mwir_k), 0, 1000, NULL, "K", "apparent temperature"},
+    {"tolerance.lwir_k", SETTING_DOUBLE, AT(tolerance.lwir_k), 0, 1000, NULL, "K", "apparent temperature"},
+    {"tolerance.radar_db", SETTING_DOUBLE, AT(tolerance.radar_db), 0, 100, NULL, "dB", "radar picture"},
+    {"tolerance.profile_db", SETTING_DOUBLE, AT(tolerance.profile_db), 0, 100, NULL, "dB", "range profile"},
+    {"tolerance.radar_span_db", SETTING_DOUBLE, AT(tolerance.radar_span_db), 1, 200, NULL, "dB",
+     "radar: what is this far below the brightest counts as nothing"},
+    {"tolerance.share", SETTING_DOUBLE, AT(tolerance.share), 0, 1, NULL, "",
+     "of pixels that may lie beyond, temperature and radiance"},
+    {"tolerance.edge_share", SETTING_DOUBLE, AT(tolerance.edge_share), 0, 1, NULL, "",
+     "of edge pixels whose ids may differ, when libraries or ISA are others"},
+    {"tolerance.truth", SETTING_DOUBLE, AT(tolerance.truth), 0, 1e6, NULL, "",
+     "factor of the tolerances of truth.jsonl"},
+};
+static const SettingTable table = {.module = "regress", .row = keys, .count = sizeof keys / sizeof *keys,
+                                   .all_keys = "`pitviper regress --keys`"};
+
+/* Why these: below what a user of the products would notice, above the rounding of sensor/regress/frame.h: a number that
+ * crosses from one step to the next is still within. */
+Case case_default(void)
+{
+    return (Case){.causal = true, .timeout_s = 300,
+                  .tolerance = {.range_rel = 3e-5,   /* 6 cm in 2 km: two steps of the record */
+                                .normal = 0.004,     /* 0.2 degree: two steps of the record */
+                                .temp_k = 0.05,      /* a tenth of the scatter of good thermometry of surfaces */
+                                .optical_rel = 0.01, .optical_w_m2_sr = 1e-3, /* half a step of 8 bits; a dark night */
+                                .mwir_k = 0.05, .lwir_k = 0.05, /* NETD of the sensors that look at it */
+                                .radar_db = 0.1, .profile_db = 0.1, /* what the radar models promise: Mie, trihedral */
+                                .radar_span_db = 60, /* the display shows 40 */
+                                .share = 0.001,      /* 6 pixels of 96 x 64 */
+                                .edge_share = 0.02,  /* ISAs of the tracer differ in t for 5 % of the rays, in ids for none */
+                                .truth = 1}};
+}
+
+/* Whether what was read can be run. */
+static Status check(const Case *c, const char *path)
+{
+    const char *wrong = NULL;
+    if (!*c->purpose) wrong = "purpose: is missing; say in one sentence what the case is for";
+    else if (!*c->log && !*c->scenario) wrong = "log: or scenario: is missing; name a recording, or a scenario such as demo";
+    else if (*c->log && *c->scenario) wrong = "log: and scenario: are both given; leave one out";
+    else if (*c->log && *c->scenario_set) wrong = "scenario_set: is of a scenario, and a log is given; leave it out";
+    else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
+    else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to look at, such as [3, 7, 12]";
+    else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a record is to be small";
+    for (int i = 0; !wrong && i < c->frames.count; i++) {
+        if (c->frames.number[i] != floor(c->frames.number[i])) wrong = "frames: these are whole numbers, such as [3, 7, 12]";
+        if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i])) wrong = "frames: are to ascend, each once";
+    }
+    if (!wrong) return STATUS_OK;
+    log_error("regress: %s: %s", path, wrong);
+    return STATUS_BAD_VALUE;
+}
+
+/* The last part of the folder's path; of `.`, that of where it is. */
+static void name_of(char out[128], const char *folder)
+{
+    char *whole = realpath(folder, NULL);
+    const char *last = whole ? strrchr(whole, '/') : NULL;
+    text_escape(out, 128, last && last[1] ? last + 1 : folder, strnlen(last && last[1] ? last + 1 : folder, 100));
+    free(whole);
+}
+
+Status case_read(Case *out, const char *folder)
+{
+    char path[case_path_size];
+    Case read = case_default();
+    if (snprintf(read.folder, sizeof read.folder, "%s", folder) >= (int)sizeof read.folder - 64) {
+        log_error("regress: %.200s...: the path is too long; go nearer with cd", folder);
+        return STATUS_BAD_VALUE;
+    }
+    name_of(read.name, folder);
+    snprintf(path, sizeof path, "%.4000s/case.yaml", folder);
+    if (access(path, F_OK) != 0) {
+        log_error("regress: there is no %s; a case is a folder that holds one (`pitviper regress --help`)", path);
+        return STATUS_BAD_VALUE;
+    }
+    Status status = settings_read(&read, NULL, &table, path);
+    if (status == STATUS_OK) status = check(&read, path);
+    if (status == STATUS_OK) *out = read;
+    return status;
+}
+
+bool case_path(char out[case_path_size], char reason[256], const Case *c, const char *name)
+{
+    char        variable[64];
+    const char *rest = name, *before = c->folder, *slash = "/";
+    if (strncmp(name, "${", 2) == 0) {
+        const char *end = strchr(name, '}');
+        if (!end || end - name - 2 >= (long)sizeof variable) {
+            snprintf(reason, 256, "%.100s: the ${ is not closed", name);
+            return false;
+        }
+        snprintf(variable, sizeof variable, "%.*s", (int)(end - name - 2), name + 2);
+        before = getenv(variable);
+        rest   = end + 1;
+        slash  = "";
+        if (!before || !*before) {
+            snprintf(reason, 256, "%s is not set; let it name the folder of the recordings", variable);
+            return false;
+        }
+    } else if (*name == '/') {
+        before = slash = "";
+    }
+    if (snprintf(out, case_path_size, "%s%s%s", before, slash, rest) < case_path_size) return true;
+    snprintf(reason, 256, "%.100s...: the path is too long", name);
+    return false;
+}
+
+void case_write_keys(FILE *to)
+{
+    const Case plain = case_default();
+    static const bool none[sizeof keys / sizeof *keys] = {false};
+    fputs("# case.yaml of `pitviper regress`: every key with its default, behind a #. purpose, frames, and one of scenario\n"
+          "# and log must be given.\n", to);
+    settings_write(to, &table, &plain, none);
+}

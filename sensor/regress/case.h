@@ -1,0 +1,70 @@
+/* sensor/regress/case.h: a case of the regression: what is shown again, and how near it must come to its record.
+ *
+ * A case is a folder:
+ *
+ *     case.yaml   what to run and what to look at (below)
+ *     record/     the products as they should be; written by `pitviper regress --update`, by nobody else
+ *     card.md     when and why the record changed, newest first; written with it
+ *
+ * Whatever else lies there is left alone. case.yaml:
+ *
+ *     purpose: a missile flies at a truck in a column of five     # one sentence
+ *     scenario: demo              # a name that `pitviper exercise` knows, or a YAML file in this folder
+ *     scenario_set: seed=7 dis.version=6    # its --set, separated by blanks or lines
+ *     # log: column.pcap          # or a recording, in this folder or as ${PITVIPER_DATA}/logs/column.pcap
+ *     config: |                   # settings of `pitviper replay`, as in a file of --config
+ *       sensor:
+ *         width_px: 96
+ *         height_px: 64
+ *     # config_file: node.yaml    # or such a file in this folder
+ *     frames: [3, 7, 12]          # numbers, as replay gives them
+ *     causal: true                # --causal; this is the default
+ *     timeout_s: 300              # a child that takes longer is ended, and the case has failed
+ *     tolerance:                  # over the defaults, which case_default has with their reasons
+ *       lwir_k: 0.05
+ *
+ * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row of range
+ * bins; truth.jsonl and run.json as the run wrote them. */
+#ifndef SENSOR_REGRESS_CASE_H
+#define SENSOR_REGRESS_CASE_H
+
+#include "pitviper.h"
+
+enum { case_path_size = 4096, case_frames_max = 64 };
+
+/* The largest difference that is none. Numbers: share of pixels that may lie beyond. */
+typedef struct Tolerance {
+    double range_rel;              /* range: of itself */
+    double normal;                 /* each component */
+    double temp_k;
+    double optical_rel, optical_w_m2_sr; /* both added */
+    double mwir_k, lwir_k;         /* apparent temperature */
+    double radar_db, profile_db;
+    double radar_span_db;          /* what lies this far below the brightest counts as nothing */
+    double share;                  /* of pixels, temperature and radiance */
+    double edge_share;             /* of edge pixels whose ids may differ; only under other libraries or another ISA */
+    double truth;                  /* factor of the tolerances of truth.jsonl's fields (sensor/regress/truth_diff.c) */
+} Tolerance;
+
+typedef struct Case {
+    char       folder[case_path_size], name[128];
+    char       purpose[400];
+    char       log[1024], scenario[1024], scenario_set[4096];
+    char       config[16384], config_file[1024];
+    NumberList frames;
+    bool       causal;
+    double     timeout_s;
+    Tolerance  tolerance;
+} Case;
+
+Case   case_default(void);
+/* case.yaml of this folder. Any bytes; on failure logs file, line, key, value, range and what to do. */
+Status case_read(Case *out, const char *folder);
+/* Where a file that the case names is: ${NAME} from the environment, else relative to the folder. False, and why in
+ * reason, when that variable is not set or the path too long. */
+bool   case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
+/* The keys of case.yaml with ranges and meaning: for --help. */
+void   case_write_keys(FILE *to);
+
+#endif

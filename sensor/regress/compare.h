@@ -1,0 +1,34 @@
+/* sensor/regress/compare.h: two planes held against each other. Pure functions, no allocation.
+ *
+ * A pixel is beyond when not |got - expected| <= limit; equal infinities, and NaN against NaN, differ by 0; one that is
+ * finite against one that is not by infinity. */
+#ifndef SENSOR_REGRESS_COMPARE_H
+#define SENSOR_REGRESS_COMPARE_H
+
+#include "pitviper.h"
+
+typedef struct PlaneVerdict {
+    size_t compared, beyond;
+    double share;              /* beyond / compared; 0 of none */
+    double max, rms;           /* of the difference; infinity when anything finite met what is not */
+    int    column, row;        /* where max is, the first of them; -1: nothing differs */
+    double expected, got;      /* there */
+} PlaneVerdict;
+
+/* limit: absolute + relative |expected|. difference: got - expected [height][width], may be NULL. ignored: pixels left
+ * out where not 0, may be NULL; their difference is 0. */
+void compare_numbers(PlaneVerdict *out, float *difference, const float *expected, const float *got, int width,
+                     int height, double absolute, double relative, const uint8_t *ignored);
+/* Every difference is beyond, max is 1 then. allowed: pixels that may differ and are only counted in *edges (which may
+ * be NULL); NULL: none. */
+void compare_ids(PlaneVerdict *out, size_t *edges, const uint32_t *expected, const uint32_t *got, int width, int height,
+                 const uint8_t *allowed);
+/* 1 where one of the four neighbours has another id, in either plane; adds to what is there. Returns how many are 1. */
+size_t mark_edges(uint8_t *edge, const uint32_t *expected, const uint32_t *got, int width, int height);
+
+/* Radiance to apparent temperature, K; NaN where there is none. low_m .. high_m: the band. */
+void plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t count, double low_m, double high_m);
+/* Power to dB over `full`; what is span_db below it, or less, is -span_db. */
+void plane_to_db(float *out, const float *power, size_t count, double full, double span_db);
+
+#endif

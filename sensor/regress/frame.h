@@ -1,0 +1,61 @@
+/* sensor/regress/frame.h: all recorded planes of one frame, from a run's folder or from a record's one EXR.
+ *
+ * A record is small because its numbers are rounded, below the tolerances of case_default; a run is rounded the same
+ * way before it is compared, so that equal runs differ by nothing at all. One step of each:
+ *
+ *     range_m            16 bits of mantissa      1.5e-5 of itself at most
+ *     nx, ny, nz         1/512                    0.002
+ *     temp_k             1/32 K                   0.03 K
+ *     optical            7 bits of mantissa       0.8 % at most
+ *     mwir, lwir         10, 11 bits              0.03 K apparent at 300 K at most
+ *     radar, profile     7 bits                   0.03 dB at most
+ *     entity, part, material   as they are
+ *
+ * In the file a number is its count of steps, less that of its left neighbour, so that deflate finds small numbers
+ * (half the size of rounded floats): see code_plane. 96 x 64 in all bands is some 45 kB a frame. */
+#ifndef SENSOR_REGRESS_FRAME_H
+#define SENSOR_REGRESS_FRAME_H
+
+#include "pitviper.h"
+
+typedef enum FramePlane {
+    FRAME_RANGE, FRAME_ENTITY, FRAME_PART, FRAME_MATERIAL, FRAME_TEMP, FRAME_NX, FRAME_NY, FRAME_NZ,
+    FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR,
+    FRAME_PLANES
+} FramePlane;
+
+enum { frame_bounces = 3, frame_size_max = 8192, frame_bins_max = 65536 };
+
+typedef struct RecordFrame {
+    int       number, width, height;
+    float    *number_plane[FRAME_PLANES]; /* [height][width]; NULL: not there, or of ids */
+    uint32_t *id_plane[FRAME_PLANES];     /* entity, part, material */
+    int       bins;                       /* 0: no profile */
+    double    near_m, bin_m;              /* middle of the first bin; between two */
+    float    *profile[frame_bounces];     /* [bins] */
+    char      date[32];                   /* of the exercise, as EXR writes it */
+} RecordFrame;
+
+const char *frame_plane_name(FramePlane plane); /* channel in the record */
+bool        frame_plane_is_id(FramePlane plane);
+
+/* Frame `number` of replay's folder, rounded. STATUS_IO, logged, when it is not there. */
+Status frame_from_run(RecordFrame *out, const char *folder, int number);
+/* The same of record/. like: only a frame of that size and number of bins is read; else STATUS_BAD_VALUE, logged. */
+Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like);
+Status frame_to_record(const char *folder, const RecordFrame *frame);
+void   frame_free(RecordFrame *frame);
+
+/* Whole steps: to the nearest number of so many bits of mantissa (1 .. 22); to the nearest multiple of a step. Infinity
+ * and NaN have a place of their own; -0 is 0. value_of is the inverse. */
+typedef struct Rounding {
+    int    bits; /* 0: by step */
+    double step;
+} Rounding;
+int32_t steps_of(const Rounding *rounding, float value);
+float   value_of(const Rounding *rounding, int32_t steps);
+/* Differences to the left neighbour, as the file has them; and back. May not alias. */
+void    code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding);
+void    decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding);
+
+#endif

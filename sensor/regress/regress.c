@@ -1,0 +1,318 @@
+#include "sensor/regress/regress.h"
+
+#include "sensor/node/stop.h"
+#include "sensor/regress/report.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <ftw.h>
+#include <getopt.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { cases_max = 4096 };
+
+static const char help[] =
+    "usage: pitviper regress CASE ... [options]\n"
+    "       pitviper regress --update CASE ... --why TEXT [options]\n"
+    "\n"
+    "Shows recorded exercises again and holds pictures, truth and counters against what was recorded when they were\n"
+    "found right. CASE is a folder with a case.yaml, or a folder of such folders.\n"
+    "\n"
+    "  --update             write the record anew, and say why in card.md\n"
+    "  --why TEXT           that reason; with --update alone, and then it must be given\n"
+    "  --junit FILE         JUnit XML for a test server\n"
+    "  --report FILE        one HTML page: expected, got and difference of each channel that failed\n"
+    "  --work DIR           where everything is made, and kept (default: a temporary folder, kept when a case fails)\n"
+    "  --jobs N             cases at a time (default: one for each processor)\n"
+    "  --keys               every key of case.yaml, with its range and default\n"
+    "  --help               this\n"
+    "\n"
+    "a case\n"
+    "  case.yaml            purpose: one sentence; scenario: (a name of `pitviper exercise`, or a file) or log: (a file, or\n"
+    "                       ${PITVIPER_DATA}/...); config: | (settings of replay); frames: [3, 7, 12]; tolerance: what is\n"
+    "                       other than by default. --keys says all\n"
+    "  record/              written by --update: a small EXR of each frame, truth.jsonl, run.json\n"
+    "  card.md              written by --update: when and why the record changed, newest first\n"
+    "\n"
+    "what is compared, in the way of the data; what fails first is named, as the probable cause of what fails after it\n"
+    "  time, counters, pose; entity, part, range, normal, targets; material; sun; temperature; optical, mwir, lwir,\n"
+    "  radar, radar profile; target signals. Ids and counters must be the same; radiance may differ by 0.05 K apparent,\n"
+    "  1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number crosses from one step of the record to the next\n"
+    "  within that.\n"
+    "\n"
+    "Each case runs in processes of its own: one that crashes or hangs has failed by itself. A log that is not here is\n"
+    "skipped; a record that is not yet there has failed. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
+
+typedef struct Options {
+    bool        update;
+    const char *why, *junit, *report, *work;
+    int         jobs;
+} Options;
+
+typedef struct Suite {
+    Options          o;
+    CaseResult     **result;
+    int              count, done, printed;
+    CaseHow          how;
+    bool            *ended;
+    double           begun_s;
+    pthread_mutex_t  lock;
+} Suite;
+
+/* ---- command line ----------------------------------------------------------------------------- */
+
+static int refuse(const char *format, const char *text)
+{
+    log_error(format, text);
+    fputs("see `pitviper regress --help`\n", stderr);
+    return 1 + 2;
+}
+
+/* 0: go on; else exit with this code - 1. */
+static int parse(Options *o, int argc, char **argv)
+{
+    enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, KEYS, HELP };
+    static const struct option options[] = {
+        {"update", 0, NULL, UPDATE}, {"why", 1, NULL, WHY}, {"junit", 1, NULL, JUNIT}, {"report", 1, NULL, REPORT},
+        {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"keys", 0, NULL, KEYS}, {"help", 0, NULL, HELP},
+        {NULL, 0, NULL, 0}};
+    long long jobs;
+    optind = 0;
+    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+        switch (option) {
+        case UPDATE: o->update = true; break;
+        case WHY: o->why = optarg; break;
+        case JUNIT: o->junit = optarg; break;
+        case REPORT: o->report = optarg; break;
+        case WORK: o->work = optarg; break;
+        case JOBS:
+            if (!text_to_long(&jobs, optarg) || jobs < 1 || jobs > 256)
+                return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
+            o->jobs = (int)jobs;
+            break;
+        case KEYS: case_write_keys(stdout); return 1;
+        case HELP: fputs(help, stdout); return 1;
+        default: fputs("see `pitviper regress --help`\n", stderr); return 1 + 2;
+        }
+    }
+    if (optind == argc) {
+        fputs("usage: pitviper regress CASE ... [options]; see `pitviper regress --help`\n", stderr);
+        return 1 + 2;
+    }
+    if (o->update && (!o->why || strspn(o->why, " \t\r\n") == strlen(o->why)))
+        return refuse("regress: --update needs --why TEXT: %s", "say in a sentence why the record changes; card.md keeps it");
+    if (o->why && !o->update) return refuse("regress: --why is of --update; %s", "give both, or neither");
+    if (o->update && (o->junit || o->report))
+        return refuse("regress: --update compares nothing, so it has no --junit and no --report; %s", "run again without --update");
+    if (o->work && !*o->work) return refuse("regress: --work: the folder has no name%s", "");
+    return 0;
+}
+
+/* ---- the cases -------------------------------------------------------------------------------- */
+
+static bool is_case(const char *folder)
+{
+    char        path[case_path_size + 16];
+    struct stat there;
+    snprintf(path, sizeof path, "%.4090s/case.yaml", folder);
+    return stat(path, &there) == 0;
+}
+
+static int named_before(const Suite *s, const char *name)
+{
+    int count = 0;
+    for (int i = 0; i < s->count; i++) count += strcmp(s->result[i]->c.name, name) == 0;
+    return count;
+}
+
+/* A case that cannot be read is a result too. */
+static bool add_case(Suite *s, const char *folder)
+{
+    CaseResult *r = calloc(1, sizeof *r);
+    if (!r || s->count == cases_max) {
+        free(r);
+        log_error("regress: more than %d cases, or out of memory", cases_max);
+        return false;
+    }
+    char *real = realpath(folder, NULL);
+    for (int i = 0; i < s->count; i++) {
+        char      *other = realpath(s->result[i]->c.folder, NULL);
+        const bool same  = real && other && strcmp(real, other) == 0;
+        free(other);
+        if (!same) continue;
+        log_error("regress: %s is given twice", folder);
+        free(real);
+        free(r);
+        return false;
+    }
+    free(real);
+    if (case_read(&r->c, folder) != STATUS_OK) {
+        free(r);
+        return false;
+    }
+    const int before = named_before(s, r->c.name);
+    if (before == 0) snprintf(r->work, sizeof r->work, "%.3900s/%s", s->o.work, r->c.name);
+    else snprintf(r->work, sizeof r->work, "%.3900s/%s-%d", s->o.work, r->c.name, before + 1);
+    s->result[s->count++] = r;
+    return true;
+}
+
+static bool add_argument(Suite *s, const char *argument)
+{
+    struct dirent **entry;
+    char            path[case_path_size];
+    char           *folder = strdup(argument);
+    bool            ok     = folder != NULL;
+    int             found  = 0;
+    for (size_t n = ok ? strlen(folder) : 0; n > 1 && folder[n - 1] == '/'; n--) folder[n - 1] = 0;
+    const int entries = ok && !is_case(folder) ? scandir(folder, &entry, NULL, alphasort) : -1;
+    for (int i = 0; i < entries; i++) {
+        if (ok && entry[i]->d_name[0] != '.' &&
+            snprintf(path, sizeof path, "%s/%s", folder, entry[i]->d_name) < (int)sizeof path && is_case(path)) {
+            ok = add_case(s, path);
+            found++;
+        }
+        free(entry[i]);
+    }
+    if (entries >= 0) free(entry);
+    if (ok && found == 0) ok = add_case(s, folder); /* which says what is missing */
+    free(folder);
+    return ok;
+}
+
+/* ---- showing ---------------------------------------------------------------------------------- */
+
+const char *case_state_name(CaseState state)
+{
+    static const char *const names[CASE_STATES] = {"ok", "FAILED", "FAILED", "FAILED", "skipped"};
+    return names[state];
+}
+
+static void print_line(const CaseResult *r)
+{
+    printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "", r->line);
+    if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
+    putchar('\n');
+}
+
+static void show_progress(const Suite *s)
+{
+    if (!isatty(STDERR_FILENO)) return;
+    const double spent_s = wall_clock_s() - s->begun_s;
+    fprintf(stderr, "\r\x1b[K  %d of %d cases, %.0f s%s", s->done, s->count, spent_s, s->done == s->count ? "\r\x1b[K" : "");
+}
+
+/* In the order in which they were given, each as soon as those before it are done. */
+static void take_case(void *user, int worker, int task)
+{
+    Suite *s = user;
+    (void)worker;
+    run_case(s->result[task], &s->how);
+    pthread_mutex_lock(&s->lock);
+    s->ended[task] = true;
+    s->done++;
+    if (isatty(STDERR_FILENO)) fputs("\r\x1b[K", stderr);
+    for (; s->printed < s->count && s->ended[s->printed]; s->printed++) print_line(s->result[s->printed]);
+    fflush(stdout);
+    show_progress(s);
+    pthread_mutex_unlock(&s->lock);
+}
+
+/* ---- folders ---------------------------------------------------------------------------------- */
+
+static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *where)
+{
+    (void)about;
+    (void)kind;
+    (void)where;
+    return remove(path);
+}
+
+/* Only ever what this process has made by mkdtemp. */
+static void remove_made(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }
+
+/* A folder of our own, or the one that was named. */
+static bool open_work(Suite *s, char own[case_path_size])
+{
+    *own = 0;
+    if (s->o.work) return make_folder(s->o.work);
+    const char *tmp = getenv("TMPDIR");
+    snprintf(own, case_path_size, "%.3000s/pitviper-regress-XXXXXX", tmp && *tmp ? tmp : "/tmp");
+    if (!mkdtemp(own)) {
+        log_error("regress: cannot make a folder in %s: %s; name one with --work, or set TMPDIR", tmp && *tmp ? tmp : "/tmp",
+                  strerror(errno));
+        *own = 0;
+        return false;
+    }
+    s->o.work = own;
+    return true;
+}
+
+/* ---- the command ------------------------------------------------------------------------------ */
+
+static bool run_all(Suite *s)
+{
+    Pool     *pool;
+    const int processors = thread_processors();
+    int       jobs       = s->o.jobs ? s->o.jobs : processors;
+    if (jobs > s->count) jobs = s->count;
+    s->how = (CaseHow){.threads = processors / jobs > 1 ? processors / jobs : 1, .update = s->o.update, .why = s->o.why};
+    s->begun_s = wall_clock_s();
+    if (pool_create(&pool, jobs) != STATUS_OK) {
+        log_error("regress: cannot start %d threads; fewer --jobs", jobs);
+        return false;
+    }
+    log_set_sink(run_case_log, NULL);
+    show_progress(s);
+    pool_run(pool, s->count, take_case, s);
+    log_set_sink(NULL, NULL);
+    pool_destroy(pool);
+    return true;
+}
+
+static int summary(const Suite *s)
+{
+    int of[CASE_STATES] = {0};
+    for (int i = 0; i < s->count; i++) of[s->result[i]->state]++;
+    const int failed = of[CASE_FAILED] + of[CASE_BROKEN] + of[CASE_NO_RECORD];
+    printf("%d case%s: %d %s, %d failed, %d skipped, %.1f s\n", s->count, s->count == 1 ? "" : "s", of[CASE_OK],
+           s->o.update ? "updated" : "ok", failed, of[CASE_SKIPPED], wall_clock_s() - s->begun_s);
+    return failed;
+}
+
+int regress_command(int argc, char **argv)
+{
+    Suite     s = {.lock = PTHREAD_MUTEX_INITIALIZER};
+    char      own[case_path_size];
+    const int stop = parse(&s.o, argc, argv);
+    int       code = 1, failed = 0;
+    if (stop) return stop - 1;
+    thread_flush_denormals();
+    stop_by_signals();
+    s.result = calloc(cases_max, sizeof *s.result);
+    s.ended  = calloc(cases_max, sizeof *s.ended);
+    if (!s.result || !s.ended || !open_work(&s, own)) goto done;
+    for (int i = optind; i < argc; i++)
+        if (!add_argument(&s, argv[i])) {
+            code = 2;
+            goto done;
+        }
+    if (!run_all(&s)) goto done;
+    failed = summary(&s);
+    code   = failed ? 1 : 0;
+    if (s.o.junit && junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
+    if (s.o.report && report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
+    for (int i = 0; i < s.count && *own; i++)
+        if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
+    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) printf("what failed is kept in %s\n", own);
+
+done:
+    if (!failed && s.o.work && *own) remove_made(own);
+    for (int i = 0; i < s.count; i++) free(s.result[i]);
+    free(s.result);
+    free(s.ended);
+    return code;
+}

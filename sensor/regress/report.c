@@ -1,0 +1,274 @@
+#include "sensor/regress/report.h"
+
+#include "sensor/regress/picture.h"
+
+#include <stdlib.h>
+
+enum { path_size = case_path_size + 64, shown_width = 384, thumbnail_width = 192, plot_width = 760, plot_height = 220 };
+
+static void record_folder(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/record", r->c.folder); }
+static void out_folder(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/out", r->work); }
+static void scratch_file(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/report.png", r->work); }
+
+static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResult *r, int number)
+{
+    char path[path_size];
+    out_folder(path, r);
+    if (frame_from_run(got, path, number) != STATUS_OK) return false;
+    record_folder(path, r);
+    if (frame_from_record(expected, path, got) == STATUS_OK) return true;
+    frame_free(got);
+    return false;
+}
+
+/* ---- a channel that failed -------------------------------------------------------------------- */
+
+static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, Colours colours, Scale scale,
+                       const char *scratch, const char *caption)
+{
+    fputs("<figure>", page);
+    if (!picture_put(page, &plane, 1, p->width, p->height, colours, scale, shown_width, scratch, caption))
+        fputs("(this picture could not be made)", page);
+    fputs("<figcaption>", page);
+    html_text(page, "%s", caption);
+    fputs("</figcaption></figure>\n", page);
+}
+
+/* Which pixels show another id. */
+static void mark_differences(float *difference, size_t count)
+{
+    for (size_t i = 0; i < count; i++) difference[i] = difference[i] != 0;
+}
+
+static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *found, const RecordFrame *expected,
+                         const RecordFrame *got)
+{
+    ChannelPlanes p;
+    char          scratch[path_size];
+    scratch_file(scratch, r);
+    if (!channel_planes(&p, found, expected, got, &r->c.tolerance)) return;
+    const size_t  count   = (size_t)p.width * (size_t)p.height;
+    const bool    ids     = frame_plane_is_id(found->plane);
+    const Colours colours = ids ? COLOURS_IDS : COLOURS_HEAT;
+    const Scale   scale   = scale_of(p.expected, p.got, count);
+    put_figure(page, p.expected, &p, colours, scale, scratch, "expected");
+    put_figure(page, p.got, &p, colours, scale, scratch, "got");
+    if (ids) {
+        mark_differences(p.difference, count);
+        put_figure(page, p.difference, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, "where they differ: bright");
+        fputs("<p class=\"dim\">one colour an id; dark: none</p>\n", page);
+    } else {
+        const Scale change = scale_of_difference(p.difference, count, found->limit);
+        put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, "got - expected");
+        fputs("<p class=\"dim\">both: ", page);
+        legend_put(page, colours, scale, found->unit, scratch);
+        fputs(" &nbsp; difference: ", page);
+        legend_put(page, COLOURS_SIGNED, change, found->unit, scratch);
+        fputs(" &nbsp; beyond the ends: as at the ends; violet: no number</p>\n", page);
+    }
+    free(p.expected);
+    free(p.got);
+    free(p.difference);
+}
+
+static void put_line(FILE *page, const float *db, int bins, double span_db, const char *style)
+{
+    fputs("<polyline fill=\"none\" points=\"", page);
+    for (int i = 0; i < bins; i++)
+        fprintf(page, "%.1f,%.1f ", (i + 0.5) * plot_width / bins, -(double)db[i] / span_db * plot_height);
+    fprintf(page, "\" %s/>", style);
+}
+
+static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *found, const RecordFrame *expected,
+                        const RecordFrame *got)
+{
+    const int    bins = got->bins, b = found->bounce;
+    const double span_db = r->c.tolerance.radar_span_db;
+    float       *db   = bins > 0 && expected->bins == bins ? malloc(2 * (size_t)bins * sizeof *db) : NULL;
+    double       full = 0;
+    if (!db) return;
+    for (int k = 0; k < frame_bounces; k++)
+        for (int i = 0; i < bins; i++) full = fmax(full, isfinite(expected->profile[k][i]) ? (double)expected->profile[k][i] : 0);
+    plane_to_db(db, expected->profile[b], (size_t)bins, full, span_db);
+    plane_to_db(db + bins, got->profile[b], (size_t)bins, full, span_db);
+    for (int i = 0; i < 2 * bins; i++)
+        if (!isfinite(db[i])) db[i] = (float)-span_db;
+    fprintf(page, "<figure><svg width=\"%d\" height=\"%d\" viewBox=\"0 -5 %d %d\" role=\"img\"><title>range profile</title>"
+            "<rect x=\"0\" y=\"0\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"gray\"/>", plot_width, plot_height + 10,
+            plot_width, plot_height + 10, plot_width, plot_height);
+    put_line(page, db, bins, span_db, "stroke=\"#2a7d3f\" stroke-width=\"3\"");
+    put_line(page, db + bins, bins, span_db, "stroke=\"#c0392b\" stroke-width=\"1\"");
+    fputs("</svg><figcaption>", page);
+    html_text(page, "bounce %d: expected green and thick, got red and thin; %.1f .. %.1f m from left to right, 0 dB at the "
+              "top, -%.0f dB below", b + 1, got->near_m, got->near_m + (bins - 1) * got->bin_m, span_db);
+    fputs("</figcaption></figure>\n", page);
+    free(db);
+}
+
+static void put_channel(FILE *page, const CaseResult *r, int channel)
+{
+    const ChannelResult *found = &r->verdict.channel[channel];
+    RecordFrame          expected = {0}, got = {0};
+    fputs("<h3>", page);
+    html_text(page, "%s%s", channel_name((Channel)channel), channel == r->verdict.first ? ": the probable cause" : "");
+    fputs("</h3>\n<p>", page);
+    html_text(page, "%s", found->line);
+    fputs("</p>\n", page);
+    if ((found->picture || channel == CHANNEL_PROFILE) && both_frames(&expected, &got, r, found->frame)) {
+        if (found->picture) put_pictures(page, r, found, &expected, &got);
+        else put_profile(page, r, found, &expected, &got);
+        frame_free(&expected);
+        frame_free(&got);
+    }
+}
+
+/* ---- a case ----------------------------------------------------------------------------------- */
+
+static void put_numbers(FILE *page, const CaseResult *r)
+{
+    fputs("<table><tr><th>channel</th><th>verdict</th><th class=\"n\">beyond</th><th class=\"n\">largest</th>"
+          "<th class=\"n\">rms</th><th>where</th><th>what</th></tr>\n", page);
+    for (int k = 0; k < CHANNEL_COUNT; k++) {
+        const ChannelResult *c = &r->verdict.channel[k];
+        const PlaneVerdict  *v = &c->verdict;
+        if (!c->there) continue;
+        fprintf(page, "<tr><td>%s</td><td class=\"%s\">%s</td>", channel_name((Channel)k), c->failed ? "bad" : "good",
+                c->failed ? "failed" : "ok");
+        if (c->picture || k == CHANNEL_PROFILE) {
+            fprintf(page, "<td class=\"n\">%.3g %%</td><td class=\"n\">%.3g %s</td><td class=\"n\">%.3g %s</td>",
+                    100 * v->share, v->max, c->unit ? c->unit : "", v->rms, c->unit ? c->unit : "");
+            if (v->column >= 0 && c->picture) fprintf(page, "<td>frame %d (%d, %d)</td>", c->frame, v->column, v->row);
+            else if (v->column >= 0) fprintf(page, "<td>frame %d, bin %d</td>", c->frame, v->column);
+            else fputs("<td></td>", page);
+        } else {
+            fprintf(page, "<td class=\"n\">%d field%s</td><td></td><td></td><td></td>", c->diffs, c->diffs == 1 ? "" : "s");
+        }
+        fputs("<td>", page);
+        html_text(page, "%s", c->line);
+        fputs("</td></tr>\n", page);
+    }
+    fputs("</table>\n", page);
+}
+
+static void put_block(FILE *page, const char *head, const char *text)
+{
+    if (!*text) return;
+    fprintf(page, "<h3>%s</h3>\n<pre style=\"white-space:pre-wrap\"><code>", head);
+    html_text(page, "%s", text);
+    fputs("</code></pre>\n", page);
+}
+
+static void put_failed(FILE *page, const CaseResult *r, int number)
+{
+    fprintf(page, "<h2 id=\"case%d\">", number);
+    html_text(page, "%s", r->c.name);
+    fputs("</h2>\n<p class=\"dim\">", page);
+    html_text(page, "%s", r->c.purpose);
+    fputs("</p>\n<p class=\"bad\">", page);
+    html_text(page, "%s", r->line);
+    fputs("</p>\n", page);
+    if (r->compared) put_numbers(page, r);
+    for (int k = 0; k < CHANNEL_COUNT && r->compared; k++)
+        if (r->verdict.channel[k].failed) put_channel(page, r, k);
+    put_block(page, "What is other than when it was recorded", r->compared ? r->verdict.remarks : "");
+    put_block(page, "Last lines of the run", r->said);
+    put_block(page, "By hand", r->command);
+}
+
+/* One picture a band, of the first frame. */
+static void put_thumbnails(FILE *page, const CaseResult *r)
+{
+    static const FramePlane band[] = {FRAME_OPTICAL_R, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR};
+    static const char *const name[] = {"optical", "optical", "mwir, W/(m2 sr)", "lwir, W/(m2 sr)", "radar, dB"};
+    char        out[path_size], scratch[path_size];
+    RecordFrame f = {0};
+    out_folder(out, r);
+    scratch_file(scratch, r);
+    if (frame_from_run(&f, out, (int)r->c.frames.number[0]) != STATUS_OK) return;
+    const size_t count = (size_t)f.width * (size_t)f.height;
+    float       *db    = malloc(count * sizeof *db);
+    for (size_t i = 0; i < sizeof band / sizeof *band && db; i++) {
+        const float *plane[3] = {f.number_plane[band[i]], f.number_plane[FRAME_OPTICAL_G], f.number_plane[FRAME_OPTICAL_B]};
+        const bool   rgb      = band[i] == FRAME_OPTICAL_R && plane[1] && plane[2];
+        if (!plane[0]) continue;
+        if (band[i] == FRAME_RADAR) {
+            double full = 0;
+            for (size_t k = 0; k < count; k++) full = isfinite(plane[0][k]) ? fmax(full, (double)plane[0][k]) : full;
+            plane_to_db(db, plane[0], count, full, r->c.tolerance.radar_span_db);
+            plane[0] = db;
+        }
+        Scale scale = scale_of(plane[0], NULL, count);
+        if (rgb) scale.low = 0;
+        fputs("<figure>", page);
+        picture_put(page, plane, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT, scale, thumbnail_width, scratch, name[i]);
+        fputs("<figcaption>", page);
+        if (rgb || band[i] == FRAME_OPTICAL_Y) html_text(page, "%s", name[i]);
+        else html_text(page, "%s: %.4g .. %.4g", name[i], scale.low, scale.high);
+        fputs("</figcaption></figure>\n", page);
+    }
+    free(db);
+    frame_free(&f);
+}
+
+static void put_passed(FILE *page, const CaseResult *r, int number)
+{
+    fprintf(page, "<details id=\"case%d\"><summary><b>", number);
+    html_text(page, "%s", r->c.name);
+    fprintf(page, "</b> <span class=\"%s\">%s</span> ", r->state == CASE_OK ? "good" : "dim", case_state_name(r->state));
+    html_text(page, "%s%s", r->c.purpose, "");
+    fputs("</summary>\n", page);
+    if (*r->line) {
+        fputs("<p>", page);
+        html_text(page, "%s", r->line);
+        fputs("</p>\n", page);
+    }
+    if (r->compared) {
+        put_thumbnails(page, r);
+        put_numbers(page, r);
+        put_block(page, "What is other than when it was recorded", r->verdict.remarks);
+        put_block(page, "By hand", r->command);
+    }
+    fputs("</details>\n", page);
+}
+
+static bool has_failed(const CaseResult *r) { return r->state != CASE_OK && r->state != CASE_SKIPPED; }
+
+static void put_summary(FILE *page, const CaseResult *const *result, int count)
+{
+    int failed = 0, skipped = 0;
+    for (int i = 0; i < count; i++) {
+        failed += has_failed(result[i]);
+        skipped += result[i]->state == CASE_SKIPPED;
+    }
+    fprintf(page, "<p>pitviper " PITVIPER_VERSION ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each shows a "
+            "recorded exercise again and is held against what it showed when it was found right. Of what failed, the channel "
+            "nearest to the source of the data is named: it is the probable cause of those after it.</p>\n", count,
+            count == 1 ? "" : "s", failed ? "bad" : "good", failed, skipped);
+    fputs("<table><tr><th>case</th><th>result</th><th>what</th><th class=\"n\">s</th></tr>\n", page);
+    for (int i = 0; i < count; i++) {
+        const CaseResult *r = result[i];
+        fprintf(page, "<tr><td><a href=\"#case%d\">", i);
+        html_text(page, "%s", r->c.name);
+        fprintf(page, "</a></td><td class=\"%s\">%s</td><td>", has_failed(r) ? "bad" : r->state == CASE_OK ? "good" : "dim",
+                case_state_name(r->state));
+        html_text(page, "%s", *r->line ? r->line : r->c.purpose);
+        fprintf(page, "</td><td class=\"n\">%.1f</td></tr>\n", r->seconds);
+    }
+    fputs("</table>\n", page);
+}
+
+Status report_write(const char *path, const CaseResult *const *result, int count)
+{
+    FILE *page = html_begin(path, "Regression");
+    bool  passed = false;
+    if (!page) return STATUS_IO;
+    put_summary(page, result, count);
+    for (int i = 0; i < count; i++) {
+        if (has_failed(result[i])) put_failed(page, result[i], i);
+        else passed = true;
+    }
+    if (passed) fputs("<h2>Passed and skipped</h2>\n", page);
+    for (int i = 0; i < count; i++)
+        if (!has_failed(result[i])) put_passed(page, result[i], i);
+    return html_end(page, path);
+}

@@ -1,0 +1,232 @@
+#include "sensor/regress/run_case.h"
+
+#include "sensor/node/frame_files.h"
+#include "sensor/node/stop.h"
+#include "sensor/regress/child.h"
+#include "sensor/regress/update.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { path_size = case_path_size + 64, tail_size = 3000 };
+
+/* ---- what is said ---------------------------------------------------------------------------- */
+
+static _Thread_local CaseResult *case_here;
+
+static void say(CaseResult *r, const char *text)
+{
+    const size_t n = strlen(r->said);
+    snprintf(r->said + n, sizeof r->said - n, "%s", text);
+}
+
+void run_case_log(void *user, LogLevel level, const char *line)
+{
+    (void)user;
+    const char *head = level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "";
+    if (!case_here) {
+        fprintf(stderr, "%s%s\n", head, line);
+        return;
+    }
+    say(case_here, head);
+    say(case_here, line);
+    say(case_here, "\n");
+}
+
+/* The last error that was said: the reason. */
+static void last_error(char *out, size_t out_size, const char *said)
+{
+    const char *found = NULL;
+    for (const char *at = said; (at = strstr(at, "error: ")); at++)
+        if (at == said || at[-1] == '\n') found = at + 7;
+    if (found) snprintf(out, out_size, "%.*s", (int)strcspn(found, "\n"), found);
+    else snprintf(out, out_size, "it said nothing");
+}
+
+__attribute__((format(printf, 3, 4))) static bool end_case(CaseResult *r, CaseState state, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    r->state = state;
+    vsnprintf(r->line, sizeof r->line, format, arguments);
+    va_end(arguments);
+    return false;
+}
+
+/* ---- children -------------------------------------------------------------------------------- */
+
+/* False when it did not end well; the case has ended then. */
+static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
+{
+    char     out_path[path_size], error_path[path_size], tail[tail_size], reason[512];
+    ChildEnd end;
+    snprintf(out_path, sizeof out_path, "%.4080s/%s.stdout", r->work, name);
+    snprintf(error_path, sizeof error_path, "%.4080s/%s.stderr", r->work, name);
+    const size_t n = strlen(r->command);
+    child_text(r->command + n, sizeof r->command - n - 2, line);
+    strcat(r->command, "\n");
+    if (child_run(&end, line, out_path, error_path, r->c.timeout_s) != STATUS_OK) {
+        last_error(reason, sizeof reason, r->said);
+        return end_case(r, CASE_BROKEN, "%s", reason);
+    }
+    child_tail(tail, sizeof tail, error_path);
+    say(r, tail);
+    if (end.stopped) return end_case(r, CASE_BROKEN, "stopped");
+    if (end.timed_out)
+        return end_case(r, CASE_BROKEN, "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs longer",
+                        name, r->c.timeout_s);
+    if (end.signal)
+        return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
+    if (end.code) {
+        last_error(reason, sizeof reason, tail);
+        return end_case(r, CASE_BROKEN, "`pitviper %s` could not do it: %s", name, reason);
+    }
+    return true;
+}
+
+/* The log of a scenario; false when the case has ended. */
+static bool make_log(char log[path_size], CaseResult *r)
+{
+    char        scenario[case_path_size], reason[256], set[sizeof r->c.scenario_set];
+    ChildLine   line = {0};
+    struct stat there;
+    if (!case_path(scenario, reason, &r->c, r->c.scenario)) return end_case(r, CASE_BROKEN, "scenario: %s", reason);
+    const bool is_file = stat(scenario, &there) == 0 && S_ISREG(there.st_mode);
+    if (!is_file && strpbrk(r->c.scenario, "/.")) return end_case(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
+    snprintf(log, path_size, "%.4080s/log.pcapng", r->work);
+    bool fits = child_add(&line, "pitviper") && child_add(&line, "exercise") &&
+                child_add(&line, is_file ? scenario : r->c.scenario) && child_add(&line, "-o") && child_add(&line, log);
+    memcpy(set, r->c.scenario_set, sizeof set);
+    char *rest = set;
+    for (char *one; (one = strtok_r(rest, " \t\r\n", &rest));)
+        fits = fits && child_add(&line, "--set") && child_add(&line, one);
+    if (!fits) return end_case(r, CASE_BROKEN, "scenario_set: too many settings");
+    return run_child(r, &line, "exercise");
+}
+
+static bool find_log(char log[path_size], CaseResult *r)
+{
+    char path[case_path_size], reason[256];
+    if (!case_path(path, reason, &r->c, r->c.log)) return end_case(r, CASE_SKIPPED, "log absent: %s", reason);
+    if (access(path, R_OK) != 0) return end_case(r, CASE_SKIPPED, "log absent: %.400s: %s", path, strerror(errno));
+    snprintf(log, path_size, "%s", path);
+    return true;
+}
+
+/* config.yaml of the work folder, from the lines of the case; or the file that it names. */
+static bool find_config(char config[path_size], CaseResult *r)
+{
+    char path[case_path_size], reason[256];
+    *config = 0;
+    if (*r->c.config_file) {
+        if (!case_path(path, reason, &r->c, r->c.config_file)) return end_case(r, CASE_BROKEN, "config_file: %s", reason);
+        snprintf(config, path_size, "%s", path);
+    } else if (*r->c.config) {
+        snprintf(config, path_size, "%.4080s/config.yaml", r->work);
+        FILE *file = fopen(config, "w");
+        bool  ok   = file && fputs(r->c.config, file) >= 0;
+        if (file && fclose(file) != 0) ok = false;
+        if (!ok) return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config, strerror(errno));
+    }
+    return true;
+}
+
+static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const char *config)
+{
+    char      out[path_size], only[8 * case_frames_max], threads[16];
+    size_t    n    = 0;
+    ChildLine line = {0};
+    for (int i = 0; i < r->c.frames.count; i++)
+        n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
+    snprintf(out, sizeof out, "%.4080s/out", r->work);
+    snprintf(threads, sizeof threads, "%d", how->threads);
+    const char *const fixed[] = {"pitviper", "replay", log, "--out", out, "--only", only, "--threads", threads, "--no-png",
+                                 "--set", "publish.files=true"};
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) child_add(&line, fixed[i]);
+    if (*config) {
+        child_add(&line, "--config");
+        child_add(&line, config);
+    }
+    if (r->c.causal) child_add(&line, "--causal");
+    frame_files_clear(out); /* of an earlier run in the same --work: nothing of it may be taken for this one's */
+    return run_child(r, &line, "replay");
+}
+
+/* ---- the case -------------------------------------------------------------------------------- */
+
+static bool has_record(CaseResult *r)
+{
+    char path[path_size];
+    snprintf(path, sizeof path, "%.4080s/record/run.json", r->c.folder);
+    if (access(path, F_OK) != 0)
+        return end_case(r, CASE_NO_RECORD, "no record yet: look at what it shows, then `pitviper regress --update %.300s --why "
+                        "TEXT`", r->c.folder);
+    for (int i = 0; i < r->c.frames.count; i++) {
+        snprintf(path, sizeof path, "%.4000s/record/%06.0f.exr", r->c.folder, r->c.frames.number[i]);
+        if (access(path, F_OK) != 0)
+            return end_case(r, CASE_BROKEN, "the record has no frame %.0f: `pitviper regress --update %.300s --why TEXT` makes "
+                            "it anew", r->c.frames.number[i], r->c.folder);
+    }
+    return true;
+}
+
+static void compare_case(CaseResult *r)
+{
+    char record[path_size], out[path_size], reason[512];
+    snprintf(record, sizeof record, "%.4080s/record", r->c.folder);
+    snprintf(out, sizeof out, "%.4080s/out", r->work);
+    r->compared = verdict_of(&r->verdict, &r->c, record, out) == STATUS_OK;
+    if (!r->compared) {
+        last_error(reason, sizeof reason, r->said);
+        end_case(r, CASE_BROKEN, "%s", reason);
+        return;
+    }
+    const int first = r->verdict.first;
+    r->state        = first < 0 ? CASE_OK : CASE_FAILED;
+    if (first < 0) {
+        if (strstr(r->verdict.remarks, "bits differ"))
+            snprintf(r->line, sizeof r->line, "%s", strstr(r->verdict.remarks, "bits differ"));
+        r->line[strcspn(r->line, "\n")] = 0;
+        return;
+    }
+    int others = 0;
+    for (int k = first + 1; k < CHANNEL_COUNT; k++) others += r->verdict.channel[k].failed;
+    snprintf(r->line, sizeof r->line, "%s: %s", channel_name((Channel)first), r->verdict.channel[first].line);
+    if (others) {
+        const size_t n = strlen(r->line);
+        snprintf(r->line + n, sizeof r->line - n, " (and %d channel%s after it)", others, others > 1 ? "s" : "");
+    }
+}
+
+bool make_folder(const char *path) { return frame_files_folder(path) == STATUS_OK; }
+
+static void run_it(CaseResult *r, const CaseHow *how)
+{
+    char log[path_size], config[path_size];
+    if (*r->c.log && !find_log(log, r)) return;
+    if (!how->update && !has_record(r)) return;
+    if (!make_folder(r->work)) {
+        end_case(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);
+        return;
+    }
+    if (!*r->c.log && !make_log(log, r)) return;
+    if (!find_config(config, r) || !show_again(r, how, log, config)) return;
+    if (how->update) update_case(r, how->why);
+    else compare_case(r);
+}
+
+void run_case(CaseResult *r, const CaseHow *how)
+{
+    const double begun_s = wall_clock_s();
+    if (stop_asked()) {
+        end_case(r, CASE_BROKEN, "stopped");
+        return;
+    }
+    case_here = r;
+    run_it(r, how);
+    case_here  = NULL;
+    r->seconds = wall_clock_s() - begun_s;
+}

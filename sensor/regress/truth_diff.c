@@ -1,0 +1,133 @@
+/* sensor/regress/truth_diff.c: fields of truth.jsonl and run.json, each by its own tolerance. */
+#include "sensor/regress/verdict.h"
+
+/* By the last word of the path. Products say angles to what a seeker could use; what follows from pixels (how many, how
+ * bright) has the tolerances of the pictures. A field that is not here may come, but not go or change beyond 1e-6. */
+static const struct Field {
+    const char *name;
+    double      absolute, relative;
+} fields[] = {
+    {"time_s", 1e-6, 0},           /* stamps of DIS step by 1.7 us */
+    {"ecef_m", 1e-3, 0},           {"lat_deg", 1e-8, 0},          {"lon_deg", 1e-8, 0},   /* 1 mm */
+    {"height_m", 1e-3, 0},         {"psi_deg", 1e-4, 0},          {"theta_deg", 1e-4, 0},
+    {"phi_deg", 1e-4, 0},          {"speed_mps", 1e-3, 0},        {"azimuth_deg", 0.005, 0},
+    {"elevation_deg", 0.005, 0}, /* a hundredth of the sun's disc: the air's refraction, not the sun, is beyond */
+      {"hfov_deg", 1e-6, 0},         {"vfov_deg", 1e-6, 0},
+    {"ecef_from_cam", 2e-6, 0},    /* 1e-4 degree */
+    {"range_m", 1e-3, 1e-6},       {"closing_mps", 1e-3, 1e-6},   {"aspect_deg", 1e-3, 0},
+    {"depression_deg", 1e-4, 0},   {"los_az_deg", 1e-4, 0},       {"los_el_deg", 1e-4, 0},
+    {"los_rate_dps", 1e-3, 1e-5},  {"boresight_error_deg", 1e-4, 0},
+    {"pixels", 0.02, 0.005},       {"visible_fraction", 0.005, 0},{"amodal_box_px", 0.02, 0},
+    {"box_px", 0, 0},              {"age_s", 1e-5, 0},            {"position_error_m", 1e-3, 1e-3},
+    {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
+    {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
+    {"width_px", 0, 0},            {"height_px", 0, 0},           {"entity", 0, 0},      {"marking", 0, 0},
+    {"type", 0, 0},                {"model", 0, 0},               {"occluded_by", 0, 0}, {"gimbal_at_limit", 0, 0},
+    {"name", 0, 0},                {"bands", 0, 0},               {"frame", 0, 0},
+};
+
+/* The word that names a value: the last without a place in a list. */
+static const struct Field *field_of(const char *path)
+{
+    const char *dot = NULL;
+    for (const char *at = path; *at; at++) {
+        if (*at == '[') at += strcspn(at, "]"); /* ids hold no dots, types might */
+        if (!*at) break;
+        if (*at == '.') dot = at;
+    }
+    const char  *word   = dot ? dot + 1 : path;
+    const size_t length = strcspn(word, "[");
+    for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
+        if (strlen(fields[i].name) == length && strncmp(fields[i].name, word, length) == 0) return &fields[i];
+    return NULL;
+}
+
+static Channel channel_of(const char *path)
+{
+    if (strncmp(path, "time_s", 6) == 0) return CHANNEL_TIME;
+    if (strncmp(path, "sun", 3) == 0) return CHANNEL_SUN;
+    if (strncmp(path, "targets", 7) == 0) return strstr(path, "].bands.") ? CHANNEL_SIGNALS : CHANNEL_TARGETS;
+    return CHANNEL_POSE;
+}
+
+static void value_text(char out[96], const JsonValue *value)
+{
+    if (!value) snprintf(out, 96, "absent");
+    else if (value->text) snprintf(out, 96, "%.80s", value->text);
+    else snprintf(out, 96, "%.10g", value->number);
+}
+
+/* The first of each channel is said; the others are counted. */
+static void differs(ChannelResult *result, int frame, const char *path, const JsonValue *expected, const JsonValue *got)
+{
+    char was[96], is[96], place[40] = "";
+    result->failed = true;
+    if (result->diffs++) return;
+    value_text(was, expected);
+    value_text(is, got);
+    if (frame >= 0) snprintf(place, sizeof place, " in frame %d", frame);
+    snprintf(result->line, sizeof result->line, "%.160s is %s, was %s%s", path, is, was, place);
+    result->frame = frame;
+}
+
+static bool equal(const JsonValue *expected, const JsonValue *got, const struct Field *field, double factor)
+{
+    if (expected->text || got->text) return expected->text && got->text && strcmp(expected->text, got->text) == 0;
+    if (isnan(expected->number) && isnan(got->number)) return true;
+    const double limit = field ? factor * (field->absolute + field->relative * fabs(expected->number))
+                               : 1e-6 * fabs(expected->number);
+    return fabs(got->number - expected->number) <= limit;
+}
+
+/* Both lists are sorted: side by side. */
+static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
+                 double factor, Channel (*of)(const char *), bool (*concerns)(const char *), bool exact)
+{
+    int i = 0, k = 0;
+    while (i < expected->count || k < got->count) {
+        const JsonValue *was = i < expected->count ? &expected->value[i] : NULL;
+        const JsonValue *is  = k < got->count ? &got->value[k] : NULL;
+        const int order = !was ? 1 : !is ? -1 : strcmp(was->path, is->path);
+        const char *path = order <= 0 ? was->path : is->path;
+        if (order > 0) was = NULL;
+        if (order < 0) is = NULL;
+        i += order <= 0;
+        k += order >= 0;
+        if (!concerns(path)) continue;
+        const struct Field *field = exact ? NULL : field_of(path);
+        result[of(path)].there = true;
+        if (!was && !field && !exact) continue; /* a field that is new */
+        const bool same = was && is && (exact ? was->number == is->number : equal(was, is, field, factor));
+        if (!same) differs(&result[of(path)], frame, path, was, is);
+    }
+}
+
+/* Hashes are looked at apart. */
+static bool is_truth(const char *path) { return strcmp(path, "frame_sha256") != 0; }
+
+void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
+                   double factor)
+{
+    walk(result, frame, expected, got, factor, channel_of, is_truth, false);
+}
+
+static Channel to_counters(const char *path)
+{
+    (void)path;
+    return CHANNEL_COUNTERS;
+}
+
+static bool is_counter(const char *path)
+{
+    static const char *const heads[] = {"counters.datagrams", "counters.pdus.", "counters.dropped.",
+                                        "counters.packets_without_datagram", "counters.own", "counters.entities.",
+                                        "counters.effects."};
+    for (size_t i = 0; i < sizeof heads / sizeof *heads; i++)
+        if (strncmp(path, heads[i], strlen(heads[i])) == 0) return true;
+    return false;
+}
+
+void verdict_counters(ChannelResult result[CHANNEL_COUNT], const JsonValues *expected, const JsonValues *got)
+{
+    walk(result, -1, expected, got, 0, to_counters, is_counter, true);
+}

@@ -1,0 +1,200 @@
+#include "sensor/regress/update.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { path_size = case_path_size + 64, file_most = 64 << 20 };
+
+static Status write_file(const char *path, const char *text, size_t octets)
+{
+    char  part[path_size + 16];
+    FILE *file = (size_t)snprintf(part, sizeof part, "%s.part", path) < sizeof part ? fopen(part, "wb") : NULL;
+    bool  ok   = file && fwrite(text, 1, octets, file) == octets;
+    if (file && fclose(file) != 0) ok = false;
+    if (ok && rename(part, path) == 0) return STATUS_OK;
+    log_error("regress: cannot write %s: %s", path, strerror(errno));
+    if (file) unlink(part);
+    return STATUS_IO;
+}
+
+static Status copy_file(const char *from_folder, const char *to_folder, const char *name)
+{
+    char   path[path_size], *text;
+    size_t octets;
+    snprintf(path, sizeof path, "%.4090s/%s", from_folder, name);
+    Status status = text_read_file(&text, &octets, "regress", path, file_most);
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%.4090s/%s", to_folder, name);
+    status = write_file(path, text, octets);
+    free(text);
+    return status;
+}
+
+/* NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json: what a record is made of. */
+static bool is_of_record(const char *name)
+{
+    if (strcmp(name, "truth.jsonl") == 0 || strcmp(name, "run.json") == 0) return true;
+    for (int i = 0; i < 6; i++)
+        if (name[i] < '0' || name[i] > '9') return false;
+    return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".profile.exr") == 0;
+}
+
+/* Its own files only; into another folder, or away (NULL). */
+static bool move_files(const char *folder, const char *to)
+{
+    char from_path[path_size + 300], to_path[path_size + 300];
+    bool ok        = true;
+    DIR *directory = opendir(folder);
+    if (!directory) return errno == ENOENT;
+    for (struct dirent *entry; (entry = readdir(directory));) {
+        if (!is_of_record(entry->d_name)) continue;
+        snprintf(from_path, sizeof from_path, "%s/%s", folder, entry->d_name);
+        snprintf(to_path, sizeof to_path, "%s/%s", to ? to : "", entry->d_name);
+        ok = (to ? rename(from_path, to_path) : unlink(from_path)) == 0 && ok;
+    }
+    closedir(directory);
+    return ok;
+}
+
+static Status write_products(const CaseResult *r, const char *out, const char *to, char date[32])
+{
+    Status status = make_folder(to) && move_files(to, NULL) ? STATUS_OK : STATUS_IO;
+    for (int i = 0; i < r->c.frames.count && status == STATUS_OK; i++) {
+        RecordFrame frame = {0};
+        status = frame_from_run(&frame, out, (int)r->c.frames.number[i]);
+        if (status == STATUS_OK) status = frame_to_record(to, &frame);
+        if (status == STATUS_OK && i == 0) memcpy(date, frame.date, sizeof frame.date);
+        frame_free(&frame);
+    }
+    if (status == STATUS_OK) status = copy_file(out, to, "truth.jsonl");
+    if (status == STATUS_OK) status = copy_file(out, to, "run.json");
+    return status;
+}
+
+/* What is in the card already, from its first paragraph on; NULL: nothing. */
+static char *old_card(const char *path)
+{
+    char  *text;
+    size_t octets;
+    if (access(path, F_OK) != 0 || text_read_file(&text, &octets, "regress", path, file_most) != STATUS_OK) return NULL;
+    char *first = strncmp(text, "## ", 3) == 0 ? text : strstr(text, "\n## ");
+    if (first && *first == '\n') first++;
+    memmove(text, first ? first : text + octets, strlen(first ? first : text + octets) + 1);
+    return text;
+}
+
+static void put_line(FILE *to, const char *text)
+{
+    for (; *text; text++) fputc((unsigned char)*text < ' ' ? ' ' : *text, to);
+}
+
+/* What the update changes: each channel that the old record would fail. */
+static void put_changes(FILE *to, const CaseResult *r)
+{
+    if (!r->compared) {
+        fputs("- what: the first record\n", to);
+        return;
+    }
+    int count = 0;
+    for (int k = 0; k < CHANNEL_COUNT; k++)
+        if (r->verdict.channel[k].failed && count++ >= 0)
+            fprintf(to, "- what: %s: %s\n", channel_name((Channel)k), r->verdict.channel[k].line);
+    if (count == 0) fputs("- what: nothing beyond tolerance\n", to);
+}
+
+static Status write_card(const CaseResult *r, const char *why, const JsonValues *run, const char *date)
+{
+    char   path[path_size], *text = NULL;
+    size_t octets = 0;
+    snprintf(path, sizeof path, "%.4090s/card.md", r->c.folder);
+    const JsonValue *version = json_values_find(run, "pitviper"), *hash = json_values_find(run, "config_sha256");
+    char            *old = old_card(path);
+    FILE            *card = open_memstream(&text, &octets);
+    if (!card) {
+        free(old);
+        return STATUS_NO_MEMORY;
+    }
+    fprintf(card, "# %s\n\n", r->c.name);
+    put_line(card, r->c.purpose);
+    fprintf(card, "\n\n## pitviper %s, exercise of %.4s-%.2s-%.2s %s UTC\n\n- why: ",
+            version && version->text ? version->text : "?", date, date + 5, date + 8, strlen(date) > 11 ? date + 11 : "");
+    put_line(card, why);
+    fputc('\n', card);
+    put_changes(card, r);
+    fprintf(card, "- settings: %s\n- frames:", hash && hash->text ? hash->text : "?");
+    for (int i = 0; i < r->c.frames.count; i++) fprintf(card, " %.0f", r->c.frames.number[i]);
+    fprintf(card, "\n%s%s", old && *old ? "\n" : "", old ? old : "");
+    free(old);
+    const bool   ok     = fclose(card) == 0;
+    const Status status = ok ? write_file(path, text, octets) : STATUS_NO_MEMORY;
+    free(text);
+    return status;
+}
+
+static Status read_run(JsonValues *out, const char *folder)
+{
+    char   path[path_size], *text;
+    size_t octets;
+    snprintf(path, sizeof path, "%.4090s/run.json", folder);
+    Status status = text_read_file(&text, &octets, "regress", path, file_most);
+    if (status != STATUS_OK) return status;
+    status = json_values_read(out, text, octets, "regress", path);
+    free(text);
+    return status;
+}
+
+/* Octets of the record, for the line. */
+static double record_octets(const char *folder)
+{
+    char        path[path_size + 300];
+    double      sum       = 0;
+    struct stat about;
+    DIR        *directory = opendir(folder);
+    for (struct dirent *entry; directory && (entry = readdir(directory));) {
+        snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
+        if (is_of_record(entry->d_name) && stat(path, &about) == 0) sum += (double)about.st_size;
+    }
+    if (directory) closedir(directory);
+    return sum;
+}
+
+void update_case(CaseResult *r, const char *why)
+{
+    char       out[path_size], record[path_size], fresh[path_size], date[32] = "";
+    JsonValues run = {0};
+    snprintf(out, sizeof out, "%.4080s/out", r->work);
+    snprintf(record, sizeof record, "%.4080s/record", r->c.folder);
+    snprintf(fresh, sizeof fresh, "%.4080s/record.part", r->c.folder);
+
+    /* an old record that cannot be read is no reason to keep it */
+    char kept[sizeof r->said];
+    memcpy(kept, r->said, sizeof kept);
+    if (access(record, F_OK) == 0) r->compared = verdict_of(&r->verdict, &r->c, record, out) == STATUS_OK;
+    memcpy(r->said, kept, sizeof kept);
+
+    Status status = read_run(&run, out);
+    if (status == STATUS_OK) status = write_products(r, out, fresh, date);
+    if (status == STATUS_OK && !(make_folder(record) && move_files(record, NULL) && move_files(fresh, record))) {
+        log_error("regress: cannot write in %s: %s", record, strerror(errno));
+        status = STATUS_IO;
+    }
+    if (status == STATUS_OK) status = write_card(r, why, &run, date);
+    move_files(fresh, NULL);
+    rmdir(fresh);
+    json_values_free(&run);
+    r->updated = status == STATUS_OK;
+    r->state   = r->updated ? CASE_OK : CASE_BROKEN;
+    if (!r->updated) {
+        snprintf(r->line, sizeof r->line, "the record was not written: %s", status_name(status));
+        return;
+    }
+    if (r->compared && r->verdict.first >= 0)
+        snprintf(r->line, sizeof r->line, "recorded, %.0f kB; was %s: %.500s", record_octets(record) / 1000,
+                 channel_name((Channel)r->verdict.first), r->verdict.channel[r->verdict.first].line);
+    else
+        snprintf(r->line, sizeof r->line, "recorded, %.0f kB%s", record_octets(record) / 1000,
+                 r->compared ? "; nothing beyond tolerance of the one before" : "");
+}

@@ -1,0 +1,433 @@
+#include "sensor/regress/verdict.h"
+
+#include "sensor/detector/preset.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+
+enum { file_most = 64 << 20 };
+
+static const struct ChannelRow {
+    const char *name, *unit;
+    FramePlane  plane[4];
+    int         planes;
+} rows[CHANNEL_COUNT] = {
+    [CHANNEL_TIME] = {.name = "time"},
+    [CHANNEL_COUNTERS] = {.name = "counters"},
+    [CHANNEL_POSE] = {.name = "pose"},
+    [CHANNEL_ENTITY] = {"entity", "", {FRAME_ENTITY}, 1},
+    [CHANNEL_PART] = {"part", "", {FRAME_PART}, 1},
+    [CHANNEL_RANGE] = {"range", "m", {FRAME_RANGE}, 1},
+    [CHANNEL_NORMAL] = {"normal", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
+    [CHANNEL_TARGETS] = {.name = "targets"},
+    [CHANNEL_MATERIAL] = {"material", "", {FRAME_MATERIAL}, 1},
+    [CHANNEL_SUN] = {.name = "sun"},
+    [CHANNEL_TEMP] = {"temperature", "K", {FRAME_TEMP}, 1},
+    [CHANNEL_OPTICAL] = {"optical", "W/(m2 sr)", {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y}, 4},
+    [CHANNEL_MWIR] = {"mwir", "K", {FRAME_MWIR}, 1},
+    [CHANNEL_LWIR] = {"lwir", "K", {FRAME_LWIR}, 1},
+    [CHANNEL_RADAR] = {"radar", "dB", {FRAME_RADAR}, 1},
+    [CHANNEL_PROFILE] = {.name = "radar profile", .unit = "dB"},
+    [CHANNEL_SIGNALS] = {.name = "target signals"},
+};
+
+const char *channel_name(Channel channel) { return rows[channel].name; }
+
+/* ---- units ----------------------------------------------------------------------------------- */
+
+/* Largest finite value: what dB are counted from. */
+static double largest(const float *value, size_t count)
+{
+    double most = 0;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(value[i]) && (double)value[i] > most) most = (double)value[i];
+    return most;
+}
+
+/* A plane of numbers in the unit it is judged in. full: of the expected plane, for dB. */
+static void to_unit(float *out, const float *value, size_t count, FramePlane plane, double full, const Tolerance *t)
+{
+    double low_m, high_m;
+    if (plane == FRAME_MWIR || plane == FRAME_LWIR) {
+        preset_band(&low_m, &high_m, plane == FRAME_MWIR ? BAND_MWIR : BAND_LWIR, OPTICAL_PAN, -1);
+        plane_to_kelvin(out, value, count, low_m, high_m);
+    } else if (plane == FRAME_RADAR) {
+        plane_to_db(out, value, count, full, t->radar_span_db);
+    } else {
+        memcpy(out, value, count * sizeof *out);
+    }
+}
+
+static void limits_of(double *absolute, double *relative, FramePlane plane, const Tolerance *t)
+{
+    *absolute = *relative = 0;
+    switch (plane) {
+    case FRAME_RANGE: *relative = t->range_rel; break;
+    case FRAME_NX:
+    case FRAME_NY:
+    case FRAME_NZ: *absolute = t->normal; break;
+    case FRAME_TEMP: *absolute = t->temp_k; break;
+    case FRAME_MWIR: *absolute = t->mwir_k; break;
+    case FRAME_LWIR: *absolute = t->lwir_k; break;
+    case FRAME_RADAR: *absolute = t->radar_db; break;
+    case FRAME_OPTICAL_R:
+    case FRAME_OPTICAL_G:
+    case FRAME_OPTICAL_B:
+    case FRAME_OPTICAL_Y:
+        *absolute = t->optical_w_m2_sr;
+        *relative = t->optical_rel;
+        break;
+    default: break;
+    }
+    /* both were rounded to floats: what is exactly at the limit is within */
+    *absolute *= 1 + 1e-6;
+    *relative *= 1 + 1e-6;
+}
+
+/* ---- one plane ------------------------------------------------------------------------------- */
+
+/* Keeps the worse: a failure, then the larger share, then the larger difference. */
+static void keep_worse(ChannelResult *result, const ChannelResult *found)
+{
+    const bool worse = !result->there || found->failed > result->failed ||
+                       (found->failed == result->failed &&
+                        (found->verdict.share > result->verdict.share ||
+                         (found->verdict.share == result->verdict.share && found->verdict.max > result->verdict.max)));
+    if (worse) *result = *found;
+}
+
+/* Of a plane that only one of them has. */
+static void one_sided(ChannelResult *result, Channel channel, FramePlane plane, int frame, bool recorded)
+{
+    ChannelResult found = {.there = true, .failed = true, .frame = frame, .plane = plane,
+                           .verdict = {.share = 1, .max = INFINITY}};
+    snprintf(found.line, sizeof found.line, "%s of frame %d is %s", plane < FRAME_PLANES ? frame_plane_name(plane)
+             : rows[channel].name, frame, recorded ? "in the record and not in the run" : "not in the record");
+    keep_worse(result, &found);
+}
+
+static bool is_geometry(Channel channel) { return channel == CHANNEL_RANGE || channel == CHANNEL_NORMAL; }
+
+static void say_number(ChannelResult *r, Channel channel)
+{
+    const PlaneVerdict *v = &r->verdict;
+    char                limit[64], worst[48], plane[24] = "";
+    const char         *unit = rows[channel].unit, *space = *unit ? " " : "";
+    if (channel == CHANNEL_RANGE) snprintf(limit, sizeof limit, "%.3g of it", r->relative);
+    else if (channel == CHANNEL_OPTICAL) snprintf(limit, sizeof limit, "%.3g %%", 100 * r->relative);
+    else snprintf(limit, sizeof limit, "%.3g%s%s", r->limit, space, unit);
+    if (channel == CHANNEL_OPTICAL && isfinite(v->max) && v->expected > 0)
+        snprintf(worst, sizeof worst, "%.3g %%", 100 * v->max / v->expected);
+    else if (isfinite(v->max)) snprintf(worst, sizeof worst, "%.3g%s%s", v->max, space, unit);
+    else snprintf(worst, sizeof worst, "%.4g became %.4g", v->expected, v->got);
+    if (rows[channel].planes > 1) snprintf(plane, sizeof plane, "%s: ", frame_plane_name(r->plane));
+    snprintf(r->line, sizeof r->line, "%s%.3g %% of pixels beyond %s, worst %s at frame %d (%d, %d)", plane,
+             100 * v->share, limit, worst, r->frame, v->column, v->row);
+}
+
+typedef struct Held {
+    const RecordFrame *expected, *got;
+    const Tolerance   *tolerance;
+    uint8_t           *edge, *other;  /* NULL: ids must be the same */
+    float             *scratch;       /* [3][count] */
+    size_t             count, edges;
+} Held;
+
+static void hold_numbers(ChannelResult *result, const Held *h, Channel channel, FramePlane plane)
+{
+    const float *was = h->expected->number_plane[plane], *is = h->got->number_plane[plane];
+    if (!was && !is) return;
+    if (!was || !is) {
+        one_sided(result, channel, plane, h->got->number, was != NULL);
+        return;
+    }
+    const double  full  = plane == FRAME_RADAR ? largest(was, h->count) : 0;
+    ChannelResult found = {.there = true, .picture = true, .frame = h->got->number, .plane = plane,
+                           .unit = rows[channel].unit};
+    limits_of(&found.limit, &found.relative, plane, h->tolerance);
+    to_unit(h->scratch, was, h->count, plane, full, h->tolerance);
+    to_unit(h->scratch + h->count, is, h->count, plane, full, h->tolerance);
+    compare_numbers(&found.verdict, NULL, h->scratch, h->scratch + h->count, h->got->width, h->got->height, found.limit,
+                    found.relative, h->other);
+    found.failed = is_geometry(channel) ? found.verdict.beyond > 0 : found.verdict.share > h->tolerance->share;
+    if (found.verdict.column >= 0) say_number(&found, channel);
+    keep_worse(result, &found);
+}
+
+static void hold_ids(ChannelResult *result, const Held *h, Channel channel, FramePlane plane)
+{
+    const uint32_t *was = h->expected->id_plane[plane], *is = h->got->id_plane[plane];
+    size_t          at_edges = 0;
+    if (!was && !is) return;
+    if (!was || !is) {
+        one_sided(result, channel, plane, h->got->number, was != NULL);
+        return;
+    }
+    ChannelResult found = {.there = true, .picture = true, .frame = h->got->number, .plane = plane, .unit = ""};
+    compare_ids(&found.verdict, &at_edges, was, is, h->got->width, h->got->height, h->edge);
+    const PlaneVerdict *v = &found.verdict;
+    found.failed = v->beyond > 0 || (double)at_edges > h->tolerance->edge_share * (double)h->edges;
+    if (v->beyond > 0)
+        snprintf(found.line, sizeof found.line, "%.3g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
+                 "%.0f", 100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
+    else if (at_edges > 0)
+        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels show another %s in frame %d, allowed %.3g %%",
+                 at_edges, h->edges, rows[channel].name, found.frame, 100 * h->tolerance->edge_share);
+    for (size_t i = 0; h->other && i < h->count; i++) h->other[i] |= was[i] != is[i];
+    keep_worse(result, &found);
+}
+
+/* Sum of the bounces: a profile's bins share one scale. */
+static void hold_profile(ChannelResult *result, const Held *h)
+{
+    const RecordFrame *was = h->expected, *is = h->got;
+    if (was->bins == 0 && is->bins == 0) return;
+    if (was->bins != is->bins) {
+        one_sided(result, CHANNEL_PROFILE, FRAME_PLANES, is->number, was->bins > 0);
+        return;
+    }
+    double full = 0;
+    for (int b = 0; b < frame_bounces; b++) full = fmax(full, largest(was->profile[b], (size_t)was->bins));
+    float *db = malloc(2 * (size_t)was->bins * sizeof *db);
+    for (int b = 0; db && b < frame_bounces; b++) {
+        ChannelResult found = {.there = true, .frame = is->number, .plane = FRAME_PLANES, .bounce = b, .unit = "dB",
+                               .limit = h->tolerance->profile_db * (1 + 1e-6)};
+        PlaneVerdict *v = &found.verdict;
+        plane_to_db(db, was->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
+        plane_to_db(db + was->bins, is->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
+        compare_numbers(v, NULL, db, db + was->bins, was->bins, 1, found.limit, 0, NULL);
+        found.failed = v->share > h->tolerance->share;
+        if (v->column >= 0)
+            snprintf(found.line, sizeof found.line, "bounce %d: %.3g %% of bins beyond %.3g dB, worst %.3g dB at frame %d, "
+                     "%.1f m", b + 1, 100 * v->share, found.limit, v->max, is->number, was->near_m + v->column * was->bin_m);
+        if (b == 0 && fabs(was->near_m - is->near_m) > 0.01 * was->bin_m) {
+            found.failed = true;
+            snprintf(found.line, sizeof found.line, "begins at %.3f m, was %.3f m in frame %d", is->near_m, was->near_m,
+                     is->number);
+        }
+        keep_worse(result, &found);
+    }
+    free(db);
+}
+
+void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expected, const RecordFrame *got,
+                   const Tolerance *tolerance, bool edges_allowed)
+{
+    const size_t count = (size_t)got->width * (size_t)got->height;
+    Held         h = {.expected = expected, .got = got, .tolerance = tolerance, .count = count};
+    h.scratch = malloc(2 * count * sizeof *h.scratch);
+    if (edges_allowed) {
+        h.edge  = calloc(count, 1);
+        h.other = calloc(count, 1);
+    }
+    if (h.scratch && (!edges_allowed || (h.edge && h.other))) {
+        for (int p = 0; p < FRAME_PLANES && h.edge; p++)
+            if (expected->id_plane[p] && got->id_plane[p])
+                h.edges = mark_edges(h.edge, expected->id_plane[p], got->id_plane[p], got->width, got->height);
+        /* ids first: pixels that show another thing are not asked how far it is */
+        for (int pass = 0; pass < 2; pass++)
+            for (int c = 0; c < CHANNEL_COUNT; c++)
+                for (int i = 0; i < rows[c].planes; i++) {
+                    const FramePlane plane = rows[c].plane[i];
+                    if (frame_plane_is_id(plane) != (pass == 0)) continue;
+                    if (pass == 0) hold_ids(&result[c], &h, (Channel)c, plane);
+                    else hold_numbers(&result[c], &h, (Channel)c, plane);
+                }
+        hold_profile(&result[CHANNEL_PROFILE], &h);
+    } else {
+        one_sided(&result[CHANNEL_TIME], CHANNEL_TIME, FRAME_PLANES, got->number, true);
+        snprintf(result[CHANNEL_TIME].line, sizeof result->line, "out of memory at frame %d", got->number);
+    }
+    free(h.scratch);
+    free(h.edge);
+    free(h.other);
+}
+
+bool channel_planes(ChannelPlanes *out, const ChannelResult *r, const RecordFrame *expected, const RecordFrame *got,
+                    const Tolerance *tolerance)
+{
+    const size_t  count = (size_t)got->width * (size_t)got->height;
+    PlaneVerdict  verdict;
+    ChannelPlanes p = {.width = got->width, .height = got->height, .expected = malloc(count * sizeof(float)),
+                       .got = malloc(count * sizeof(float)), .difference = malloc(count * sizeof(float))};
+    const bool    ids = frame_plane_is_id(r->plane);
+    const bool    there = ids ? expected->id_plane[r->plane] && got->id_plane[r->plane]
+                              : expected->number_plane[r->plane] && got->number_plane[r->plane];
+    if (!p.expected || !p.got || !p.difference || !there) {
+        free(p.expected);
+        free(p.got);
+        free(p.difference);
+        return false;
+    }
+    if (ids) {
+        for (size_t i = 0; i < count; i++) {
+            p.expected[i] = (float)expected->id_plane[r->plane][i];
+            p.got[i]      = (float)got->id_plane[r->plane][i];
+        }
+    } else {
+        const double full = r->plane == FRAME_RADAR ? largest(expected->number_plane[r->plane], count) : 0;
+        to_unit(p.expected, expected->number_plane[r->plane], count, r->plane, full, tolerance);
+        to_unit(p.got, got->number_plane[r->plane], count, r->plane, full, tolerance);
+    }
+    compare_numbers(&verdict, p.difference, p.expected, p.got, p.width, p.height, 0, 0, NULL);
+    *out = p;
+    return true;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------- */
+
+__attribute__((format(printf, 2, 3))) static void remark(Verdict *v, const char *format, ...)
+{
+    const size_t n = strlen(v->remarks);
+    va_list      arguments;
+    va_start(arguments, format);
+    if (n + 2 < sizeof v->remarks) {
+        vsnprintf(v->remarks + n, sizeof v->remarks - n - 1, format, arguments);
+        strcat(v->remarks, "\n");
+    }
+    va_end(arguments);
+}
+
+static Status read_json(JsonValues *out, const char *folder, const char *name)
+{
+    char   path[case_path_size + 32], *text;
+    size_t octets;
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    Status status = text_read_file(&text, &octets, "regress", path, file_most);
+    if (status != STATUS_OK) return status;
+    status = json_values_read(out, text, octets, "regress", path);
+    free(text);
+    return status;
+}
+
+static const char *text_of(const JsonValues *values, const char *path)
+{
+    const JsonValue *value = json_values_find(values, path);
+    return value && value->text ? value->text : "";
+}
+
+/* Version, ISA, libraries; and what else explains a difference. */
+static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is)
+{
+    static const char *const build[] = {"pitviper", "isa"};
+    v->same_build = true;
+    for (int i = 0; i < 2; i++)
+        if (strcmp(text_of(was, build[i]), text_of(is, build[i])) != 0) {
+            v->same_build = false;
+            remark(v, "%s is %s, the record's was %s", build[i], text_of(is, build[i]), text_of(was, build[i]));
+        }
+    for (int i = 0; i < is->count; i++) {
+        const char *path = is->value[i].path;
+        if (strncmp(path, "libraries.", 10) != 0 || !is->value[i].text) continue;
+        if (strcmp(text_of(was, path), is->value[i].text) == 0) continue;
+        v->same_build = false;
+        remark(v, "%s is %s, the record's was %s", path + 10, is->value[i].text, text_of(was, path));
+    }
+    if (strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
+        remark(v, "the settings are not those of the record (config_sha256)");
+    if (strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0)
+        remark(v, "the log is not that of the record (log_sha256)");
+    for (int i = 0; i < is->count; i++) {
+        const char *path = is->value[i].path;
+        if (strncmp(path, "choices[", 8) == 0 && is->value[i].text && strcmp(text_of(was, path), is->value[i].text) != 0)
+            remark(v, "chosen: %s; was: %s", is->value[i].text, text_of(was, path));
+    }
+}
+
+static void look_at_hashes(Verdict *v, const JsonValues *was, const JsonValues *is)
+{
+    int differ = 0, count = 0;
+    for (int i = 0; i < is->count; i++) {
+        if (strncmp(is->value[i].path, "frame_sha256[", 13) != 0 || !is->value[i].text) continue;
+        count++;
+        differ += strcmp(text_of(was, is->value[i].path), is->value[i].text) != 0;
+    }
+    if (differ == 0 || !v->same_build) return;
+    remark(v, v->first < 0 ? "bits differ in %d of %d frames, within tolerance" : "bits differ in %d of %d frames", differ,
+           count);
+}
+
+/* Line of this frame, flattened. STATUS_IO when there is none. */
+static Status truth_of(JsonValues *out, const char *folder, int frame)
+{
+    char   path[case_path_size + 32], source[case_path_size + 64], *text;
+    size_t octets;
+    snprintf(path, sizeof path, "%s/truth.jsonl", folder);
+    Status status = text_read_file(&text, &octets, "regress", path, file_most);
+    if (status != STATUS_OK) return status;
+    status   = STATUS_IO;
+    int line = 1;
+    for (char *at = text; *at && status == STATUS_IO; line++) {
+        const size_t length = strcspn(at, "\n");
+        JsonValues   values;
+        snprintf(source, sizeof source, "%s:%d", path, line);
+        if (length > 0) {
+            const Status read = json_values_read(&values, at, length, "regress", source);
+            if (read != STATUS_OK) status = read;
+            else {
+                const JsonValue *number = json_values_find(&values, "frame");
+                if (number && number->number == frame) {
+                    *out   = values;
+                    status = STATUS_OK;
+                } else {
+                    json_values_free(&values);
+                }
+            }
+        }
+        at += length + (at[length] == '\n');
+    }
+    if (status == STATUS_IO) log_error("regress: %s: holds no line of frame %d", path, frame);
+    free(text);
+    return status;
+}
+
+static Status hold_frame(Verdict *v, const Case *c, const char *record, const char *run, int number)
+{
+    RecordFrame expected = {0}, got = {0};
+    JsonValues  was = {0}, is = {0};
+    Status      status = frame_from_run(&got, run, number);
+    if (status == STATUS_OK) status = frame_from_record(&expected, record, &got);
+    if (status == STATUS_OK) status = truth_of(&was, record, number);
+    if (status == STATUS_OK) status = truth_of(&is, run, number);
+    if (status == STATUS_OK) {
+        verdict_truth(v->channel, number, &was, &is, c->tolerance.truth);
+        verdict_frame(v->channel, &expected, &got, &c->tolerance, !v->same_build);
+    }
+    json_values_free(&was);
+    json_values_free(&is);
+    frame_free(&expected);
+    frame_free(&got);
+    return status;
+}
+
+Status verdict_of(Verdict *out, const Case *c, const char *record, const char *run)
+{
+    JsonValues was = {0}, is = {0};
+    *out = (Verdict){.first = -1};
+    Status status = read_json(&was, record, "run.json");
+    if (status == STATUS_OK) status = read_json(&is, run, "run.json");
+    if (status == STATUS_OK) {
+        look_at_runs(out, &was, &is);
+        verdict_counters(out->channel, &was, &is);
+        if (strcmp(text_of(&was, "hosts[0]"), text_of(&is, "hosts[0]")) != 0) {
+            out->channel[CHANNEL_POSE] = (ChannelResult){.there = true, .failed = true, .diffs = 1, .frame = -1};
+            snprintf(out->channel[CHANNEL_POSE].line, sizeof out->channel->line, "the host is %.100s, was %.100s",
+                     text_of(&is, "hosts[0]"), text_of(&was, "hosts[0]"));
+        }
+        out->channel[CHANNEL_TIME].there = true;
+    }
+    for (int i = 0; i < c->frames.count && status == STATUS_OK; i++)
+        status = hold_frame(out, c, record, run, (int)c->frames.number[i]);
+    for (int k = 0; k < CHANNEL_COUNT; k++) {
+        ChannelResult *r = &out->channel[k];
+        if (r->diffs > 1) {
+            const size_t n = strlen(r->line);
+            snprintf(r->line + n, sizeof r->line - n, ", and %d more", r->diffs - 1);
+        }
+        if (r->failed && out->first < 0) out->first = k;
+    }
+    if (status == STATUS_OK) look_at_hashes(out, &was, &is);
+    json_values_free(&was);
+    json_values_free(&is);
+    return status;
+}
