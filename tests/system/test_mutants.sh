@@ -13,11 +13,8 @@ compare() { "$tools/picture_difference" "$1" "$2"; }
 
 # replayed PROGRAM CASE OUT: the case's exercise, as its first lines say it is seen
 replayed() {
-    local options
-    read -ra options < <(sed -n 's/^# *seen by: //p' "tests/regress/$2/scenario.yaml")
-    [ ${#options[@]} -gt 0 ] || { fail "$2: no line 'seen by:'"; return; }
-    [ -f "$tmp/$2.pcap" ] || exercise "tests/regress/$2/scenario.yaml" "$tmp/$2.pcap"
-    "$1" replay "$tmp/$2.pcap" --out "$3" --size 96x64 --threads 2 --no-png "${options[@]}" >"$tmp/stdout" 2>"$tmp/stderr" || {
+    regress_case "$2"
+    "$1" replay "$tmp/$2.pcap" --out "$3" --size 96x64 --threads 2 --no-png "${case_options[@]}" >"$tmp/stdout" 2>"$tmp/stderr" || {
         fail "$1 does not replay $2"
         cat "$tmp/stderr"
     }
@@ -34,7 +31,7 @@ caught() {
     checks=$((checks + 1))
     [ -d "$tmp/$case" ] || replayed "$pitviper" "$case" "$tmp/$case"
     replayed "$program" "$case" "$tmp/$case-$mutant"
-    check "$mutant: other hashes" differ "$tmp/$case" "$tmp/$case-$mutant"
+    check "$mutant: other hashes" not same_hashes "$tmp/$case" "$tmp/$case-$mutant"
     compare "$tmp/$case" "$tmp/$case-$mutant" >"$tmp/planes" || { fail "$mutant: cannot be compared"; return; }
     found=$(column "$tmp/planes" "$planes" clear)
     printf '%-20s %-13s clear: %s\n' "$mutant" "$case" \
@@ -43,7 +40,6 @@ caught() {
     [ -z "$same" ] || check "$mutant: not a bit of $same" [ "$(column "$tmp/planes" "$same" changed)" = 0 ]
     rm -rf "${tmp:?}/$case-$mutant"
 }
-differ() { ! same_hashes "$@"; }
 mutant() { caught "$1" "$tools/mutants/pitviper_mutant_$1" "${@:2}"; }
 
 # Half of what was counted when this was written, so that another scene of the same kind still passes.
@@ -65,7 +61,7 @@ check "and no plane that differs" [ "$(column "$tmp/planes" '.*' changed)" = 0 ]
 # what follows the first PDU of a datagram is lost: vehicles are missing
 replayed "$pitviper" bundles "$tmp/bundles"
 replayed "$tools/mutants/pitviper_mutant_bundle" bundles "$tmp/bundles-lost"
-check "bundle: other hashes" differ "$tmp/bundles" "$tmp/bundles-lost"
+check "bundle: other hashes" not same_hashes "$tmp/bundles" "$tmp/bundles-lost"
 seen() { json_numbers "$1/truth.jsonl" pixels | wc -l; }
 printf '%-20s %-13s targets: %d of %d\n' bundle bundles "$(seen "$tmp/bundles-lost")" "$(seen "$tmp/bundles")"
 check "bundle: fewer targets" [ "$(seen "$tmp/bundles-lost")" -lt "$(seen "$tmp/bundles")" ]
