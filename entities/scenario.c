@@ -75,7 +75,7 @@ static const Setting keys[] = {
     {"duration_s", SETTING_DOUBLE, AT(duration_s), 0, 1e6, NULL, "s", ""},
     {"seed", SETTING_LONG, AT(seed), 0, 1e15, NULL, "", "of everything random"},
     {"scale", SETTING_DOUBLE, AT(scale), 0.0001, 1000, NULL, "", "factor of every count above 1"},
-    {"place.lat_deg", SETTING_DOUBLE, AT(place.lat_deg), -89, 89, NULL, "deg", "where x and y are 0"},
+    {"place.lat_deg", SETTING_DOUBLE, AT(place.lat_deg), -90, 90, NULL, "deg", "where x and y are 0"},
     {"place.lon_deg", SETTING_DOUBLE, AT(place.lon_deg), -180, 180, NULL, "deg", ""},
     {"place.height_m", SETTING_DOUBLE, AT(place.height_m), -400, 8000, NULL, "m",
      "of invented ground, above the ellipsoid"},

@@ -53,3 +53,18 @@ complained() { grep -qiE -e "$1" "$tmp/stderr"; }
 # is A OP B, for numbers that are not integers; false when either is missing
 is() { awk -v a="${1:-nan}" -v b="${3:-nan}" "BEGIN { exit !(a + 0 == a && b + 0 == b && a + 0 $2 b + 0) }"; }
 same_hashes() { [ -n "$(hashes "$1")" ] && [ "$(hashes "$1")" = "$(hashes "$2")" ]; }
+not() { ! "$@"; }
+quiet() { "$@" >/dev/null 2>&1; }
+# same_planes A B: of the bands that both have, to the bit. What differs is printed.
+same_planes() {
+    local said
+    said=$("$build/tests/picture_difference" "$1" "$2" 2>&1) || { echo "$said"; return 1; }
+    ! grep -v ' changed 0 ' <<<"$said"
+}
+# regress_case NAME: its log in $tmp/NAME.pcap, and the options it is seen with in the array case_options
+regress_case() {
+    local yaml=tests/regress/$1/scenario.yaml
+    read -ra case_options < <(sed -n 's/^# *seen by: //p' "$yaml")
+    [ ${#case_options[@]} -gt 0 ] || fail "$yaml: no line 'seen by:'"
+    [ -f "$tmp/$1.pcap" ] || exercise "$yaml" "$tmp/$1.pcap"
+}
