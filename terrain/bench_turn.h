@@ -16,6 +16,13 @@ static inline void bench_turn(Bench *bench, const BenchKnob *knob, const BenchWo
     bench_knob(bench, knob, point, count);
 }
 
+/* For qsort of doubles. */
+static inline int bench_by_value(const void *pa, const void *pb)
+{
+    const double a = *(const double *)pa, b = *(const double *)pb;
+    return (a > b) - (a < b);
+}
+
 /* A number that takes part in a largest error; NaN shows. */
 static inline void bench_worst(double *worst, double error)
 {

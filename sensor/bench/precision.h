@@ -31,9 +31,9 @@ Status precision_render(Picture *out, Precision *p, PrecisionShot shot, const Re
 double precision_rms(const Picture *got, const Picture *want);
 double precision_rms_k(const Picture *got, const Picture *want, const PlanckTable *lwir);
 
-/* The suites. */
-Status precision_frames(Bench *bench);
-Status precision_models(Bench *bench);
+/* The suite, and what of it stands in files of its own. */
+Status bench_precision(Bench *bench);
+Status precision_models(Precision *p);
 Status precision_detectors(Bench *bench);
 
 #endif
