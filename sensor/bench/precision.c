@@ -37,6 +37,19 @@ RenderRequest precision_request(const Precision *p, PrecisionShot shot, int widt
     return request;
 }
 
+double precision_go_round(View *view, const Precision *p, int turn)
+{
+    const double aim_enu[3] = {0, 0, elevation_height(&p->landscape.elevation, 0, 0, NULL) + 1};
+    const double c = cos(1.3 * turn), s = sin(1.3 * turn), x = view->p_enu[0], y = view->p_enu[1];
+    double       d_enu[3];
+    view->p_enu[0] = c * x - s * y, view->p_enu[1] = s * x + c * y;
+    v3_sub(d_enu, aim_enu, view->p_enu);
+    const double range_m = v3_length(d_enu);
+    v3_scale(d_enu, 1 / range_m, d_enu);
+    camera_upright(view->r_enu_from_cam, d_enu);
+    return range_m;
+}
+
 Status precision_render(Picture *out, Precision *p, PrecisionShot shot, const RenderRequest *request, Arena *arena)
 {
     const BenchFrame *frame = &p->shot[shot];

@@ -25,6 +25,8 @@ Status precision_open(Precision *out, Bench *bench);
 void   precision_close(Precision *p);
 /* A middle piece of a shot's view, no larger than it, as a node asks for it by default. */
 RenderRequest precision_request(const Precision *p, PrecisionShot shot, int width, int height);
+/* Goes about the vehicle in the middle, by 1.3 rad a turn, and looks at it; returns its range, m. */
+double precision_go_round(View *view, const Precision *p, int turn);
 /* Of a shot's poses and air; in the arena, which is not reset. */
 Status precision_render(Picture *out, Precision *p, PrecisionShot shot, const RenderRequest *request, Arena *arena);
 /* Root of the mean squared difference over the radiance planes, each over its own mean; of thermal ones as K. */

@@ -2,8 +2,6 @@
  * between mirrors. */
 #include "sensor/bench/precision.h"
 
-#include "sensor/node/seeker.h"
-
 /* ---- over pixels and edges -------------------------------------------------------------------- */
 
 typedef struct RaySetting {
@@ -128,16 +126,8 @@ static PrecisionShot target_shot(int size) { return size == 0 ? SHOT_NEAR : SHOT
 /* The truck in the middle from one side or another, so many pixels long. */
 static RenderRequest target_request(const Precision *p, int size, int turn, double px, int side_px)
 {
-    RenderRequest   request = precision_request(p, target_shot(size), side_px, side_px);
-    View           *view = &request.view;
-    const double    aim_enu[3] = {0, 0, elevation_height(&p->landscape.elevation, 0, 0, NULL) + 1};
-    const double    c = cos(1.3 * turn), s = sin(1.3 * turn), x = view->p_enu[0], y = view->p_enu[1];
-    double          d_enu[3];
-    view->p_enu[0] = c * x - s * y, view->p_enu[1] = s * x + c * y;
-    v3_sub(d_enu, aim_enu, view->p_enu);
-    view->focal_px = px * v3_length(d_enu) / 7.4;
-    v3_scale(d_enu, 1 / v3_length(d_enu), d_enu);
-    camera_upright(view->r_enu_from_cam, d_enu);
+    RenderRequest request = precision_request(p, target_shot(size), side_px, side_px);
+    request.view.focal_px = px * precision_go_round(&request.view, p, turn) / 7.4;
     return request;
 }
 
