@@ -3,6 +3,7 @@
 #include "entities/bench.h"
 #include "entities/model_info.h"
 #include "entities/probe.h"
+#include "render/bench.h"
 #include "render/probe.h"
 #include "sensor/node/check.h"
 #include "sensor/bench.h"
@@ -12,6 +13,7 @@
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
+#include "terrain/bench.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -81,7 +83,9 @@ static const struct BenchList {
     const int        *count;
 } bench_lists[] = {
     {dis_benches, &dis_bench_count},
+    {terrain_benches, &terrain_bench_count},
     {entities_benches, &entities_bench_count},
+    {render_benches, &render_bench_count},
     {sensor_benches, &sensor_bench_count},
 };
 
