@@ -3,6 +3,7 @@
 #include "entities/bench.h"
 #include "entities/model_info.h"
 #include "entities/probe.h"
+#include "render/bench.h"
 #include "render/probe.h"
 #include "sensor/node/check.h"
 #include "sensor/bench.h"
@@ -13,6 +14,7 @@
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
 #include "sensor/regress/regress.h"
+#include "terrain/bench.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -41,7 +43,9 @@ static const RoomList probe_lists[] = {
 
 static const RoomList bench_lists[] = {
     ROOM_LIST(dis_benches, dis_bench_count),
+    ROOM_LIST(terrain_benches, terrain_bench_count),
     ROOM_LIST(entities_benches, entities_bench_count),
+    ROOM_LIST(render_benches, render_bench_count),
     ROOM_LIST(sensor_benches, sensor_bench_count),
 };
 

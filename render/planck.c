@@ -158,7 +158,7 @@ double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
 
 /* Cells are uniform in 1/T, in which L is nearly an exponential of constant slope (so the relative error is
  * the same all over); each holds the cubic that has the exact value and derivative at both its ends. */
-enum { table_cells = 4096, table_bins = 8192 };
+enum { table_cells = planck_table_cells, table_bins = 8192 };
 static const double table_low_k = 180, table_high_k = 1500;
 
 struct PlanckTable {

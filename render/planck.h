@@ -15,6 +15,7 @@ double planck_band_inverse(double low_m, double high_m, double radiance_w_m2_sr)
 /* The fast one: a table in temperature, relative error < 1e-5 over 180 .. 1500 K (test_planck.c), the exact
  * function outside. */
 typedef struct PlanckTable PlanckTable;
+enum { planck_table_cells = 4096 };
 Status planck_table_create(PlanckTable **out, double low_m, double high_m);
 void   planck_table_destroy(PlanckTable *table);
 double planck_table_radiance(const PlanckTable *table, double temp_k);

@@ -147,7 +147,7 @@ static void next_bounce(RadarReturns *out, int bounce, Scratch *s, const RadarCo
 
     visibility_first_hit(&s->between, v, &s->back, NULL, -1, hidden, counters);
     for (int k = 0; k < s->back.count; k++)
-        if (!(s->between.range_m[k] < INFINITY)) out->power[bounce][s->back_sample[k]] = (float)s->back_power[k];
+        if (!(s->between.range_m[k] < INFINITY)) out->power[bounce][s->back_sample[k]] += (float)s->back_power[k];
 }
 
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
@@ -161,6 +161,6 @@ void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility 
         memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
     }
     first_bounce(out, &s, config, materials, hits, rays, material);
-    for (int b = 1; b < radar_bounces && s.paths.count > 0; b++)
-        next_bounce(out, b, &s, config, v, materials, rays, hidden, counters);
+    for (int b = 1; b < radar_bounces + config->more_bounces && s.paths.count > 0; b++)
+        next_bounce(out, b < radar_bounces ? b : radar_bounces - 1, &s, config, v, materials, rays, hidden, counters);
 }

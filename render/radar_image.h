@@ -13,6 +13,7 @@ enum { radar_bounces = 3 };
 
 typedef struct RadarConfig {
     double lobe_rad; /* rms half width of the exit lobe: antenna cone and surface roughness together; 0.05 */
+    int    more_bounces; /* followed beyond radar_bounces and counted with the last; below 0: fewer. For benchmarks */
 } RadarConfig;
 
 typedef struct RadarReturns {

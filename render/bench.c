@@ -1,0 +1,8 @@
+#include "render/bench.h"
+
+const BenchSuite render_benches[] = {
+    {.name = "precision", .help = "black bodies, light on surfaces, smoke", .run = bench_precision_light},
+    {.name = "precision", .help = "a frame's tables of the air and the sky", .run = bench_precision_air},
+    {.name = "precision", .help = "rays against ground and parts", .run = bench_precision_trace},
+};
+const int render_bench_count = sizeof render_benches / sizeof *render_benches;

@@ -1,0 +1,15 @@
+/* render/bench.h: what `pitviper bench` can measure of this room. */
+#ifndef RENDER_BENCH_H
+#define RENDER_BENCH_H
+
+#include "pitviper.h"
+
+extern const BenchSuite render_benches[];
+extern const int        render_bench_count;
+
+/* Of the suite `precision`. */
+Status bench_precision_light(Bench *bench);
+Status bench_precision_air(Bench *bench);
+Status bench_precision_trace(Bench *bench);
+
+#endif

@@ -1,0 +1,32 @@
+/* terrain/bench_turn.h: what the rooms' files on time against error share. */
+#ifndef TERRAIN_BENCH_TURN_H
+#define TERRAIN_BENCH_TURN_H
+
+#include "pitviper.h"
+
+enum { bench_settings_max = 16 };
+
+/* Times the settings of a knob in turn, work[k] being point[k]'s, and hands them on. */
+static inline void bench_turn(Bench *bench, const BenchKnob *knob, const BenchWork *work, BenchPoint *point, int count)
+{
+    BenchTime time[bench_settings_max];
+    bench_progress(bench, knob->name);
+    bench_time(time, bench, work, count);
+    for (int k = 0; k < count; k++) point[k].time = time[k];
+    bench_knob(bench, knob, point, count);
+}
+
+/* For qsort of doubles. */
+static inline int bench_by_value(const void *pa, const void *pb)
+{
+    const double a = *(const double *)pa, b = *(const double *)pb;
+    return (a > b) - (a < b);
+}
+
+/* A number that takes part in a largest error; NaN shows. */
+static inline void bench_worst(double *worst, double error)
+{
+    if (!(error <= *worst)) *worst = error;
+}
+
+#endif
