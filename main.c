@@ -3,6 +3,7 @@
 #include "entities/bench.h"
 #include "entities/model_info.h"
 #include "entities/probe.h"
+#include "render/bench.h"
 #include "render/probe.h"
 #include "sensor/node/check.h"
 #include "sensor/bench.h"
@@ -82,6 +83,7 @@ static const struct BenchList {
 } bench_lists[] = {
     {dis_benches, &dis_bench_count},
     {entities_benches, &entities_bench_count},
+    {render_benches, &render_bench_count},
     {sensor_benches, &sensor_bench_count},
 };
 
