@@ -45,6 +45,7 @@ Status stability_parts(Bench *bench);    /* rays against triangles */
 Status stability_ground(Bench *bench);   /* rays against the height field */
 Status stability_light(Bench *bench);    /* Planck, air, smoke, surfaces */
 Status stability_sun(Bench *bench);      /* the sun at the horizon, overhead, behind */
-Status stability_pictures(Bench *bench); /* views, sizes, crowds */
+Status stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
+Status stability_crowd(Bench *bench);    /* how many there are, where the eye is, the radar */
 
 #endif

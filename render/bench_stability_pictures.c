@@ -26,7 +26,7 @@ typedef struct Ranges {
     double       radiance, size, edge_px, range; /* worst: of rho E cos / pi and Planck, of the area; px; of the range */
 } Ranges;
 
-/* The block fills 40 columns at every range, but near by, where a wide view sees it whole. Both ways of sampling: as what
+/* The block fills 100 columns at every range. Both ways of sampling: as what
  * it is, and as a small target, 5 columns wide. */
 static void one_range(Ranges *r, double range_m, double columns)
 {
@@ -66,7 +66,7 @@ static const Ranges *ranges(void *user, bool quick)
     r->done = true;
     for (int k = 0; k <= (quick ? 6 : 60); k++) {
         const double range_m = 0.1 * pow(2e6, k / (quick ? 6.0 : 60));
-        one_range(r, range_m, 40);
+        one_range(r, range_m, 100);
         one_range(r, range_m, 5);
     }
     return r;

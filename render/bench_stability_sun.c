@@ -74,6 +74,7 @@ static double horizon_jump(void *user, bool quick)
     enum { most_steps = 240 };
     static double at[most_steps + 1][values];
     double        scale[values] = {0}, worst = 0;
+    bool          looked_at[most_steps] = {false};
     Lit          *lit = user;
     const int     steps = quick ? 24 : most_steps;
     const double  low = -0.6 * rad_per_deg, step = 1.2 * rad_per_deg / steps;
@@ -85,9 +86,13 @@ static double horizon_jump(void *user, bool quick)
     }
     for (int k = 0; k < values; k++) scale[k] = fmax(scale[k], 1e-6);
     for (int n = 0; n < (quick ? 2 : 8); n++) {
-        int steepest = 0;
-        for (int i = 1; i < steps; i++)
-            if (change(at[i], at[i + 1], scale) > change(at[steepest], at[steepest + 1], scale)) steepest = i;
+        int    steepest = 0;
+        double most = -1;
+        for (int i = 0; i < steps; i++) {
+            const double here = looked_at[i] ? -1 : change(at[i], at[i + 1], scale);
+            if (here > most) most = here, steepest = i;
+        }
+        looked_at[steepest] = true;
         double a = low + steepest * step, b = a + step, left[values], right[values];
         memcpy(left, at[steepest], sizeof left);
         memcpy(right, at[steepest + 1], sizeof right);
@@ -97,7 +102,6 @@ static double horizon_jump(void *user, bool quick)
             else a = 0.5 * (a + b), memcpy(left, lit->value, sizeof left);
         }
         worst = fmax(worst, change(left, right, scale));
-        memcpy(at[steepest + 1], at[steepest], sizeof at[steepest]); /* not again */
     }
     return worst;
 }
