@@ -14,7 +14,7 @@
 double radar_lobe(double lobe_rad, double cosine)
 {
     if (!(cosine > 0)) return 0;
-    const double s2 = 0.5 * lobe_rad * lobe_rad;
+    const double s2 = clamp(0.5 * lobe_rad * lobe_rad, 0.5e-18, 0.5e12); /* neither 0 / 0 nor infinity times 0 */
     return exp((cosine - 1) / s2) / (2 * pi_rad * s2 * -expm1(-1 / s2));
 }
 

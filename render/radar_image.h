@@ -23,7 +23,7 @@ typedef struct RadarReturns {
 
 /* Share of the power that leaves an exit lobe about a direction into one at an angle of this cosine to it,
  * 1/sr: exp(-(1 - cosine) / s^2) over a hemisphere, s^2 = lobe_rad^2 / 2; its integral over that hemisphere is
- * 1 exactly, its mean square angle lobe_rad^2 (to lobe_rad^2 / 3, relative). 0 beyond a right angle. */
+ * 1 exactly, its mean square angle lobe_rad^2 (to lobe_rad^2 / 3, relative). 0 beyond a right angle. Below 1e-9 and beyond 1e6 rad those count. */
 double radar_lobe(double lobe_rad, double cosine);
 
 /* Total of a sample = sum of power over the bounces. hidden as in visibility_first_hit. Some 350 KB of stack. */

@@ -638,7 +638,8 @@ static void choose_quanta(Job *job)
     const int            edge    = looks_for_edges(request) ? request->edge_samples : 1;
     /* 2 x 2 is for the ground's own edges: at most 2^2 (16 x 16)^2 2^16 = 2^34 a pixel, of 2^26 */
     job->steps_per_px     = (int64_t)4 * request->samples * request->samples * edge * edge << 16;
-    job->profile_limit    = exp2(ceil(log2(2 / (pi_rad * job->world->radar.lobe_rad * job->world->radar.lobe_rad))));
+    const double lobe_rad = fmax(job->world->radar.lobe_rad, 1e-9); /* as radar_lobe has it */
+    job->profile_limit    = exp2(ceil(log2(2 / (pi_rad * lobe_rad * lobe_rad))));
     job->profile_quantum  = job->profile_limit * exp2(ceil(log2(pixels)) - 61);
     job->radiance_limit   = exp2(20);
     job->radiance_quantum = job->radiance_limit * exp2(ceil(log2(pixels)) - 61);

@@ -494,6 +494,27 @@ static void a_wrong_instruction_set_is_refused(void **state)
     tracer_destroy(NULL);
 }
 
+/* Farther than Embree's floats go, and from nowhere: its own assertion would end the program. */
+static void rays_from_beyond_any_float_meet_nothing(void **state)
+{
+    (void)state;
+    static const double from[4][3] = {{1e30, 0, 0}, {0, 1e300, 1e300}, {INFINITY, 0, 0}, {NAN, 0, 0}};
+    const double        aside[3] = {0, 0, 1};
+    Model model;
+    Scene s;
+    hand_plate(&model, 1.5, 1);
+    scene_open(&s, &model, "avx2");
+    const NodePose pose = at_rest();
+    scene_pose(&s, &pose, (const double[3]){0, 0, 0}, (const double[9]){1, 0, 0, 0, 1, 0, 0, 0, 1});
+    for (int k = 0; k < 8; k++) {
+        PartHit hit;
+        CHECK(isinf(parts_first_hit(&hit, &s.entity, from[k / 2], aside, INFINITY, k % 2)));
+        CHECK(!parts_occluded(&s.entity, from[k / 2], aside, k % 2));
+    }
+    tracer_destroy(s.tracer);
+    hand_free(&model);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -509,6 +530,7 @@ int main(void)
         cmocka_unit_test(company_does_not_show_on_a_truck),
         cmocka_unit_test(a_crowd_is_asked_again),
         cmocka_unit_test(a_wrong_instruction_set_is_refused),
+        cmocka_unit_test(rays_from_beyond_any_float_meet_nothing),
     };
     thread_flush_denormals();
     alarm(120); /* a tracer that never returns is a failure, not a wait */

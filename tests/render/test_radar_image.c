@@ -345,6 +345,18 @@ static void sky_gives_nothing(void **state)
     CHECK(sum.first_hits == 0 && sum.power[0] == 0 && sum.power[1] == 0 && sum.power[2] == 0);
 }
 
+/* A perfect mirror and an even hemisphere are the ends, not 0 / 0. */
+static void no_lobe_is_too_narrow_or_too_wide(void **state)
+{
+    (void)state;
+    static const double narrow[3] = {0, 1e-300, 1e-10}, wide[2] = {1e8, 1e300};
+    for (int k = 0; k < 3; k++) {
+        CHECK_NEAR(radar_lobe(narrow[k], 1) * pi_rad * 1e-18, 1, 1e-12);
+        CHECK(radar_lobe(narrow[k], 0.999) == 0);
+    }
+    for (int k = 0; k < 2; k++) CHECK_NEAR(radar_lobe(wide[k], 0.5) * 2 * pi_rad, 1, 1e-9);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -356,6 +368,7 @@ int main(void)
         cmocka_unit_test(the_way_home_must_be_free),
         cmocka_unit_test(earth_scatters_by_its_gamma),
         cmocka_unit_test(sky_gives_nothing),
+        cmocka_unit_test(no_lobe_is_too_narrow_or_too_wide),
     };
     return cmocka_run_group_tests(tests, open_bench, close_bench);
 }
