@@ -12,6 +12,7 @@
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
+#include "terrain/bench.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -81,6 +82,7 @@ static const struct BenchList {
     const int        *count;
 } bench_lists[] = {
     {dis_benches, &dis_bench_count},
+    {terrain_benches, &terrain_bench_count},
     {entities_benches, &entities_bench_count},
     {sensor_benches, &sensor_bench_count},
 };

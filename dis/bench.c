@@ -2,6 +2,7 @@
  * headers, from a counter; each row's error is octets that do not come back. */
 #include "dis/bench.h"
 
+#include "dis/bench_stability.h"
 #include "dis/log.h"
 #include "dis/reader.h"
 #include "dis/warfare.h"
@@ -295,5 +296,7 @@ static Status bench_dis(Bench *bench)
 const BenchSuite dis_benches[] = {
     {.name = "dis", .help = "PDUs: decode, encode, bundles, a capture",
      .run = bench_dis},
+    {.name = "stability", .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
+     .run = dis_bench_stability},
 };
 const int dis_bench_count = sizeof dis_benches / sizeof *dis_benches;

@@ -1,0 +1,9 @@
+#include "terrain/bench.h"
+
+#include "terrain/bench_stability.h"
+
+const BenchSuite terrain_benches[] = {
+    {.name = "stability", .help = "places from pole to pole, frames, sun, geoid; grids with cliffs, spikes and voids",
+     .run = terrain_bench_stability},
+};
+const int terrain_bench_count = sizeof terrain_benches / sizeof *terrain_benches;

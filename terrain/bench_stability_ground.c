@@ -1,0 +1,2 @@
+#include "terrain/bench_stability.h"
+Status terrain_bench_stability_ground(Bench *bench) { (void)bench; return STATUS_OK; }
