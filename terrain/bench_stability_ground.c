@@ -150,7 +150,7 @@ static Status grids(Bench *bench)
     for (int n = 0; n < count * SHAPES + !quick; n++) {
         const bool   huge = n == count * SHAPES, large = huge || n % count == count - 1;
         Elevation    ground = {0};
-        const Status status = fill(&ground, huge ? &huge_sheet : &sheets[n % count], huge ? NOISE : (Shape)(n / count));
+        const Status status = fill(&ground, huge ? &huge_sheet : &sheets[n % count], huge ? CLIFF : (Shape)(n / count));
         if (status != STATUS_OK) return status;
         look(&errors, &ground, quick ? 400 : 20000);
         if (!huge && (!large || !quick || n / count == NOISE)) wrong += wrong_entries(&ground);
