@@ -349,6 +349,7 @@ Status entities_bench_stability(Bench *bench)
     tracks(bench);
     joints(bench);
     Status status = entities_bench_stability_inputs(bench);
+    if (status == STATUS_OK) status = entities_bench_stability_text(bench);
     if (status == STATUS_OK) status = entities_bench_stability_models(bench);
     return status;
 }

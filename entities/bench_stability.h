@@ -5,7 +5,8 @@
 #include "pitviper.h"
 
 Status entities_bench_stability(Bench *bench);
-Status entities_bench_stability_inputs(Bench *bench); /* numbers from outside: entities/bench_stability_inputs.c */
+Status entities_bench_stability_inputs(Bench *bench); /* numbers of PDUs: entities/bench_stability_inputs.c */
+Status entities_bench_stability_text(Bench *bench);   /* numbers in files: entities/bench_stability_text.c */
 Status entities_bench_stability_models(Bench *bench); /* entities/bench_stability_models.c */
 
 /* The worst so far; what is no number is worse than any. */
