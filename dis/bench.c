@@ -3,6 +3,7 @@
 #include "dis/bench.h"
 
 #include "dis/bench_network.h"
+#include "dis/bench_stability.h"
 #include "dis/log.h"
 #include "dis/reader.h"
 #include "dis/warfare.h"
@@ -302,5 +303,7 @@ const BenchSuite dis_benches[] = {
      .run = bench_network,
      .reads = "Rates are what was received beside the share that was lost on the way, sender and receiver on the same machine; "
      "latencies run from the kernel's stamp of a datagram."},
+    {.name = "stability", .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
+     .run = dis_bench_stability},
 };
 const int dis_bench_count = sizeof dis_benches / sizeof *dis_benches;

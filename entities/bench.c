@@ -2,6 +2,7 @@
  * motion of each algorithm integrated step by step. */
 #include "entities/bench.h"
 
+#include "entities/bench_stability.h"
 #include "entities/dead_reckoning.h"
 #include "entities/entity_table.h"
 
@@ -235,5 +236,7 @@ static Status bench_table(Bench *bench)
 
 const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
+    {.name = "stability", .help = "motion and attitude at their edges, every number from outside, models nobody would build",
+     .run = entities_bench_stability},
 };
 const int entities_bench_count = sizeof entities_benches / sizeof *entities_benches;

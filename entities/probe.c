@@ -25,6 +25,9 @@ static const char *dead_reckon_row(void *state, const ProbeValue *in, ProbeValue
     three(k.w_body_rps, in + 13);
     r_ecef_from_body_euler(k.r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
     dead_reckon(&moved, &k, in[16].number);
+    for (int i = 0; i < 9; i++)
+        if (!isfinite(moved.p_ecef[i % 3]) || !isfinite(moved.r_ecef_from_body[i]))
+            return "the way, or a turn or its square, is beyond 1e308";
     for (int i = 0; i < 3; i++) out[i].number = moved.p_ecef[i];
     euler_from_r_ecef_from_body(&out[3].number, &out[4].number, &out[5].number, moved.r_ecef_from_body);
     return NULL;

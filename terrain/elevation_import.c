@@ -131,8 +131,8 @@ static void plan_levels(Import *m)
     while (m->level_count < elevation_max_levels) {
         const WorkLevel *in = &m->level[m->level_count - 1];
         const int i1 = in->z.i0 + in->z.nx - 1, j1 = in->z.j0 + in->z.ny - 1;
-        const double widest = fmax(fmax(-in->z.i0, i1), fmax(-in->z.j0, j1)) * s;
-        if (widest >= m->files->horizon_m) break;
+        const double narrowest = fmin(fmin(-in->z.i0, i1), fmin(-in->z.j0, j1)) * s; /* data may be one long strip */
+        if (narrowest >= m->files->horizon_m) break;
         s *= level_ratio;
         const bool ends = m->level_count == elevation_max_levels - 1 || outer_half_posts * s >= m->files->horizon_m;
         const int  wide = round_out(fmin(ends ? last_half_posts : outer_half_posts, m->files->horizon_m / s));

@@ -92,6 +92,21 @@ static void angles_wrap_and_lengths_do_not(void **state)
 }
 
 /* 255 different joints: 32 are kept, the rest counted, and those kept are right. */
+/* A double of 3.4e38 steps by 3.8e22: nothing is left of the angle, but it is still one. */
+static void no_float_leaves_the_circle(void **state)
+{
+    (void)state;
+    static const float value[] = {1e9f, -1e15f, 1e30f, 3.4028235e38f, -3.4028235e38f};
+    for (size_t v = 0; v < sizeof value / sizeof *value; v++) {
+        Articulation a = {0};
+        double       got;
+        const DisVariableParameter record = articulated(4096 + 11, value[v]);
+        articulation_report(&a, &record, 1, 10, 12);
+        CHECK(articulation_value(&got, &a, 4096, 11, 12, 12) && fabs(got) <= pi_rad);
+        CHECK_NEAR(got, remainder((double)value[v], 2 * pi_rad), 1e-6);
+    }
+}
+
 static void too_many_joints(void **state)
 {
     (void)state;
@@ -168,7 +183,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(order_does_not_matter), cmocka_unit_test(foreign_records_are_ignored_and_counted),
         cmocka_unit_test(rates_are_bounded),     cmocka_unit_test(angles_wrap_and_lengths_do_not),
-        cmocka_unit_test(too_many_joints),       cmocka_unit_test(signs_on_the_tank),
+        cmocka_unit_test(no_float_leaves_the_circle), cmocka_unit_test(too_many_joints), cmocka_unit_test(signs_on_the_tank),
         cmocka_unit_test(wheels_do_not_slip),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

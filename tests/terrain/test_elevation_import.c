@@ -259,6 +259,35 @@ static void levels_meet_to_the_bit_and_reach_the_horizon(void **state)
     elevation_destroy(&ground);
 }
 
+/* A strip of posts that reaches beyond the horizon to east and west and is 60 m wide: ground to the north all the same. */
+static void a_long_strip_has_a_horizon_all_around(void **state)
+{
+    (void)state;
+    enum { columns = 4000, rows = 2 };
+    char            path[text_file_size], prj[text_file_size + 8], *text = malloc(1000 + 4 * columns * rows);
+    Elevation       ground = {0};
+    ElevationReport report;
+    CHECK(text != NULL);
+    size_t at = (size_t)sprintf(text, "ncols %d\nnrows %d\nxllcorner 7\nyllcorner 45\ncellsize 0.0003\n", columns, rows);
+    for (int n = 0; n < columns * rows; n++) at += (size_t)sprintf(text + at, "%d%c", 250, n % columns < columns - 1 ? ' ' : '\n');
+    text_file(path, text);
+    snprintf(prj, sizeof prj, "%s.prj", path);
+    FILE *file = fopen(prj, "w");
+    CHECK(file && fputs("GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS 84\",6378137,298.257223563]],"
+                        "PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]]", file) > 0 && fclose(file) == 0);
+    const LocalFrame frame = frame_at(45.0003, 7.6);
+    ElevationFiles   files = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = 20000};
+    assert_int_equal(elevation_import(&ground, &report, &files, &frame, NULL, 0), STATUS_OK);
+    for (double r_m = 10; r_m < 20000; r_m *= 1.2)
+        for (int bearing = 0; bearing < 16; bearing++)
+            CHECK_NEAR(elevation_height(&ground, r_m * cos(bearing * 0.39), r_m * sin(bearing * 0.39), NULL) +
+                           r_m * r_m / 2 / 6.378e6, 250, 0.3); /* the Earth's bend, of two radii 0.7 % apart; quanta */
+    elevation_destroy(&ground);
+    remove(path);
+    remove(prj);
+    free(text);
+}
+
 /* One sheet within another: 30 m all around 30.9 m is the nearest to that in the samples. */
 static void grids_of_two_surveys_are_one_ground(void **state)
 {
@@ -382,6 +411,7 @@ int main(void)
         cmocka_unit_test(neighbour_sheets_are_seamless),
         cmocka_unit_test(voids_are_filled_without_a_spike),
         cmocka_unit_test(levels_meet_to_the_bit_and_reach_the_horizon),
+        cmocka_unit_test(a_long_strip_has_a_horizon_all_around),
         cmocka_unit_test(grids_of_two_surveys_are_one_ground),
         cmocka_unit_test(fixes_are_met_by_a_smooth_correction),
         cmocka_unit_test(what_is_wrong_is_said_with_the_next_step),
