@@ -235,5 +235,6 @@ static Status bench_table(Bench *bench)
 
 const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
+    {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
 };
 const int entities_bench_count = sizeof entities_benches / sizeof *entities_benches;

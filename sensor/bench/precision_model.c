@@ -246,7 +246,7 @@ static Status knob_radar_rays(Precision *p)
     static const char *const name[settings] = {"1 x 1", "1 x 1, edges 4 x 4", "2 x 2", "3 x 3", "4 x 4", "6 x 6", "8 x 8"};
     static const int         samples[settings] = {1, 1, 2, 3, 4, 6, 8};
     const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
-    Mirrors    set[settings], fine = {.p = p, .samples = 16, .eyes = eyes};
+    Mirrors    set[settings], fine = {.p = p, .samples = bench_quick(p->bench) ? 12 : 16, .eyes = eyes};
     BenchWork  work[settings];
     BenchPoint point[settings] = {0};
     render_mirrors(&fine);
@@ -257,7 +257,8 @@ static Status knob_radar_rays(Precision *p)
         point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = k == 1};
     }
     bench_turn(p->bench, &(BenchKnob){"rays a pixel, radar", "sensor.samples, sensor.edge_samples", "a radar picture of 96 x 64",
-                                      "%", "power of pictures, rms; 16 x 16 rays", 60}, work, point, settings);
+                                      "%", "power of pictures, rms; 12 x 12 rays or more", 30}, work, point,
+               bench_quick(p->bench) ? settings - 2 : settings);
     return p->status;
 }
 
