@@ -98,7 +98,8 @@ static void body_exactly(long double p[3], const Kinematics *k, double dt_s)
 static void knob_reckoning(Bench *bench)
 {
     enum { settings = 7 };
-    static const char *const name[settings] = {"Euler's steps of 10 ms", "closed forms alone", "series below 0.01 rad", "series below 0.1 rad",
+    static const char *const name[settings] =
+        {"Euler's steps of 10 ms", "closed forms alone", "series below 0.01 rad", "series below 0.1 rad",
                                                "series below 0.5 rad", "series below 1 rad", "series below 2 rad"};
     static const double below_rad[settings] = {NAN, 0, 0.01, 0.1, 0.5, 1, 2};
     static ReckonSet set[settings];
@@ -160,7 +161,8 @@ static void warm(void *user)
             const HeatDrive drive = s->state.drive[s->table->driver[role]];
             s->rise_k[i][role] = 0;
             if (heat_asked >> role & 1)
-                s->rise_k[i][role] = (float)(s->table->rise_k[role] * level_by_steps(s, role, drive.value, drive.until_s, moment_s(i)));
+                s->rise_k[i][role] = (float)(s->table->rise_k[role]
+                                             * level_by_steps(s, role, drive.value, drive.until_s, moment_s(i)));
         }
     }
     bench_keep(s->rise_k);
@@ -176,7 +178,8 @@ static long double approach(long double level, long double drive, long double dt
 static Status knob_heat(Bench *bench)
 {
     enum { settings = 4 };
-    static const char *const name[settings] = {"Euler's steps of 10 s", "Euler's steps of 1 s", "Euler's steps of 0.1 s", "closed form"};
+    static const char *const name[settings] =
+        {"Euler's steps of 10 s", "Euler's steps of 1 s", "Euler's steps of 0.1 s", "closed form"};
     static const double  step_s[settings] = {10, 1, 0.1, 0};
     static HeatSet       set[settings];
     const HeatEvidence   moving = {.type = {1, 1, 222, 1, 1, 1, 0}, .appearance = 1u << 22, .speed_mps = 10};
@@ -184,7 +187,8 @@ static Status knob_heat(Bench *bench)
     BenchPoint           point[settings] = {0};
     HeatTable            table;
     char                 path[512];
-    const Status         status = etc_path(path, sizeof path, "heat.csv") ? heat_table_open(&table, path) : STATUS_BAD_VALUE;
+    if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
+    const Status         status = heat_table_open(&table, path);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < settings; k++) {
         HeatSet *s = &set[k];
@@ -197,7 +201,8 @@ static Status knob_heat(Bench *bench)
                 if (!(heat_asked >> role & 1)) continue;
                 const HeatDrive   drive = s->state.drive[table.driver[role]];
                 const double      end_s = fmin(drive.until_s, moment_s(i));
-                const long double at_end = approach((long double)s->state.level[role], (long double)drive.value, (long double)(end_s - s->state.t_s), &table, role);
+                const long double at_end = approach((long double)s->state.level[role], (long double)drive.value,
+                                                    (long double)(end_s - s->state.t_s), &table, role);
                 const long double level = approach(at_end, 0, (long double)(moment_s(i) - end_s), &table, role);
                 bench_worst(&point[k].error, fabs((double)s->rise_k[i][role] - table.rise_k[role] * (double)level));
             }
