@@ -238,5 +238,6 @@ const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
     {.name = "stability", .help = "motion and attitude at their edges, every number from outside, models nobody would build",
      .run = entities_bench_stability},
+    {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
 };
 const int entities_bench_count = sizeof entities_benches / sizeof *entities_benches;

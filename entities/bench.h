@@ -7,4 +7,7 @@
 extern const BenchSuite entities_benches[];
 extern const int        entities_bench_count;
 
+/* Of the suite `precision`. */
+Status bench_precision_motion(Bench *bench);
+
 #endif

@@ -167,7 +167,9 @@ bool dead_reckoning_turns(int algorithm)
 
 bool dead_reckoning_in_body_axes(int algorithm) { return algorithm >= 6 && algorithm <= 9; }
 
-void dead_reckon(Motion *out, const Kinematics *k, double dt_s)
+void dead_reckon(Motion *out, const Kinematics *k, double dt_s) { dead_reckon_series(out, k, dt_s, series_below_x2); }
+
+void dead_reckon_series(Motion *out, const Kinematics *k, double dt_s, double below_rad2)
 {
     Body in, end;
     memcpy(in.p, k->p_ecef, sizeof in.p);
@@ -177,7 +179,7 @@ void dead_reckon(Motion *out, const Kinematics *k, double dt_s)
     memcpy(in.r, k->r_ecef_from_body, sizeof in.r);
 
     const double x2 = turn_angle_squared(in.w, dt_s);
-    const Turn turn = x2 < series_below_x2 ? turn_series(x2, dt_s) : turn_closed(x2, dt_s);
+    const Turn turn = x2 < below_rad2 ? turn_series(x2, dt_s) : turn_closed(x2, dt_s);
 
     reckon(&end, k->algorithm, &in, &turn, dt_s);
     memcpy(out->p_ecef, end.p, sizeof end.p);

@@ -26,6 +26,8 @@ void euler_from_r_ecef_from_body(double *psi_rad, double *theta_rad, double *phi
 /* One entity. v_ecef_mps is the derivative of p_ecef (static: 0); w_body_rps as given. dt_s: any finite value, either
  * sign; bounding it is the caller's (entity_table). */
 void dead_reckon(Motion *out, const Kinematics *k, double dt_s);
+/* The same with the series in place of closed forms below another square of the angle turned: for benchmarks. */
+void dead_reckon_series(Motion *out, const Kinematics *k, double dt_s, double below_rad2);
 /* Whether the attitude turns (3, 4, 7, 8), and whether velocity and acceleration are in body axes (6 .. 9). */
 bool dead_reckoning_turns(int algorithm);
 bool dead_reckoning_in_body_axes(int algorithm);

@@ -75,8 +75,10 @@ static Status knob_planck(Bench *bench)
     enum { settings = 8 };
     static const struct { const char *name; PlanckWay way; int cells; } setting[settings] = {
         {"straight lines, 1024 cells", PLANCK_LINEAR, 1024}, {"straight lines, 4096 cells", PLANCK_LINEAR, 4096},
-        {"cubics, 64 cells", PLANCK_CUBIC, 64}, {"cubics, 256 cells", PLANCK_CUBIC, 256}, {"cubics, 1024 cells", PLANCK_CUBIC, 1024},
-        {"its table, one at a time", PLANCK_TABLE, 0}, {"its table, eight at a time", PLANCK_EIGHT, 0}, {"closed form", PLANCK_CLOSED, 0}};
+        {"cubics, 64 cells", PLANCK_CUBIC, 64}, {"cubics, 256 cells", PLANCK_CUBIC, 256},
+        {"cubics, 1024 cells", PLANCK_CUBIC, 1024},
+        {"its table, one at a time", PLANCK_TABLE, 0}, {"its table, eight at a time", PLANCK_EIGHT, 0},
+        {"closed form", PLANCK_CLOSED, 0}};
     static PlanckSet set[settings];
     static double    own[settings][most_cells][4];
     static float     temp_k[temps];
@@ -85,10 +87,12 @@ static Status knob_planck(Bench *bench)
     PlanckTable     *table;
     const Status     status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
-    for (int i = 0; i < temps; i++) temp_k[i] = (float)(coldest_k + 1 + (hottest_k - coldest_k - 2) * random_uniform(1, 0, 0, (uint64_t)i));
+    for (int i = 0; i < temps; i++)
+        temp_k[i] = (float)(coldest_k + 1 + (hottest_k - coldest_k - 2) * random_uniform(1, 0, 0, (uint64_t)i));
     for (int k = 0; k < settings; k++) {
         double worst = 0;
-        set[k] = (PlanckSet){.way = setting[k].way, .cells = setting[k].cells, .table = table, .temp_k = temp_k, .c = own[k]};
+        set[k] = (PlanckSet){.way = setting[k].way, .cells = setting[k].cells, .table = table, .temp_k = temp_k,
+                             .c = own[k]};
         if (set[k].cells) own_table(&set[k]);
         ask_planck(&set[k]);
         for (int i = 0; i < temps; i++) {
@@ -138,7 +142,8 @@ static Status knob_inverse(Bench *bench)
     const Status      status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
     for (int i = 0; i < temps; i++)
-        radiance[i] = (float)planck_band(low_m, high_m, coldest_k + 1 + (hottest_k - coldest_k - 2) * (i + 0.5) / temps, NULL);
+        radiance[i] = (float)planck_band(low_m, high_m, coldest_k + 1 + (hottest_k - coldest_k - 2) * (i + 0.5) / temps,
+                                         NULL);
     for (int k = 0; k < settings; k++) {
         double worst = 0;
         set[k] = (InverseSet){.way = k, .table = table, .radiance = radiance};
@@ -219,11 +224,11 @@ static void shade(void *user)
         air_facing(&facing, s->air, s->materials, &s->hits, &s->rays, s->material);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < AIR_MWIR)
-                optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture, s->shadow, NULL,
-                              &s->veils[b], &facing);
+                optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture,
+                              s->shadow, NULL, &s->veils[b], &facing);
             else
-                thermal_shade(s->out[b], b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, s->air, s->materials, &s->hits, &s->rays,
-                              s->material, s->temp_k, s->shadow, NULL, &s->veils[b], &facing);
+                thermal_shade(s->out[b], b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, s->air, s->materials, &s->hits,
+                              &s->rays, s->material, s->temp_k, s->shadow, NULL, &s->veils[b], &facing);
         }
     }
     bench_keep(s->out);
@@ -233,7 +238,8 @@ static Status knob_shading(Bench *bench, const Air *air, const Materials *materi
 {
     static LightSet set[2];
     BenchWork       work[2];
-    BenchPoint      point[2] = {{.setting = "one at a time, in double"}, {.setting = "eight at a time, in float", .is_default = true}};
+    BenchPoint      point[2] = {{.setting = "one at a time, in double"},
+                                {.setting = "eight at a time, in float", .is_default = true}};
     for (int k = 0; k < 2; k++) {
         set[k].eight = k, set[k].air = air, set[k].materials = materials;
         make_hits(&set[k]);
@@ -263,12 +269,13 @@ typedef struct SmokeSet {
     VeilRays   out;
 } SmokeSet;
 
-/* Overlapping puffs 100 .. 160 m away, of different colours and temperatures; without a pattern, light from one side. */
+/* Overlapping puffs 100 .. 160 m away, of different brightness; without a pattern. */
 static void make_smoke(SmokeSet *s)
 {
     for (int v = 0; v < smoke_volumes; v++) {
         VeilVolume *to = &s->volume[v];
-        *to = (VeilVolume){.p_enu = {dice(20, v, 100, 160), dice(21, v, -8, 8), dice(22, v, -4, 4)}, .axis_enu = {0, 0.6, 0.8},
+        *to = (VeilVolume){.p_enu = {dice(20, v, 100, 160), dice(21, v, -8, 8), dice(22, v, -4, 4)},
+                           .axis_enu = {0, 0.6, 0.8},
                            .along_m = dice(23, v, 4, 12), .across_m = dice(24, v, 3, 9), .d_sun_enu = {0, 0, 1}};
         to->range_m = v3_length(to->p_enu);
         for (int b = 0; b < veil_bands; b++) {
@@ -300,7 +307,8 @@ static void march(void *user)
             double depth = 0, shown = 0;
             for (int v = 0; v < smoke_volumes; v++) {
                 const VeilVolume *at = &s->volume[v];
-                const double here = at->extinction_per_m[0] * veil_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
+                const double here = at->extinction_per_m[0]
+                    * veil_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
                 depth += here, shown += here * at->source[0];
             }
             if (!(depth > 0)) continue;
@@ -330,7 +338,8 @@ static void knob_smoke(Bench *bench)
         march(&set[k]);
         for (int r = 0; r < smoke_rays; r++)
             bench_worst(&point[k].error, fabs((double)(set[k].out.added[0][r] + 20 * set[k].out.transmittance[0][r]) /
-                                              (double)(fine.out.added[0][r] + 20 * fine.out.transmittance[0][r]) - 1) * 100);
+                                              (double)(fine.out.added[0][r] + 20 * fine.out.transmittance[0][r])
+                                                  - 1) * 100);
         work[k] = (BenchWork){march, &set[k], smoke_rays};
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
@@ -355,8 +364,10 @@ static Status light_with_air(Bench *bench)
     Status status = arena ? atmosphere_open(&atmosphere, "us1976") : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = planck_table_create(&mwir, 3.4e-6, 4.8e-6);
     if (status == STATUS_OK) status = planck_table_create(&lwir, 8e-6, 12e-6);
-    if (status == STATUS_OK) status = etc_path(path, sizeof path, "materials.csv") && etc_path(surfaces, sizeof surfaces, "surfaces.csv")
-                     ? materials_open(&materials, path, surfaces, NULL) : STATUS_BAD_VALUE;
+    if (status == STATUS_OK && (!etc_path(path, sizeof path, "materials.csv") ||
+                                !etc_path(surfaces, sizeof surfaces, "surfaces.csv")))
+        status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = materials_open(&materials, path, surfaces, NULL);
     const AirSource source = {atmosphere, mwir, lwir};
     if (status == STATUS_OK) status = air_at(&air, &source, &weather, &sun, &eye, NULL, arena);
     if (status == STATUS_OK) status = knob_shading(bench, &air, &materials, arena);

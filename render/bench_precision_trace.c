@@ -62,7 +62,8 @@ static void trace_ground(void *user)
 
 static long double height_over(const ElevationLevel *g, const long double p[3])
 {
-    const long double u = (p[0] - (long double)g->x0_m) / (long double)g->spacing_m, v = (p[1] - (long double)g->y0_m) / (long double)g->spacing_m;
+    const long double u = (p[0] - (long double)g->x0_m) / (long double)g->spacing_m,
+        v = (p[1] - (long double)g->y0_m) / (long double)g->spacing_m;
     if (!(u >= 0 && v >= 0 && u < g->nx - 1 && v < g->ny - 1)) return NAN;
     const int         i = (int)u, j = (int)v;
     const long double a = u - i, b = v - j;
@@ -76,7 +77,8 @@ static long double height_over(const ElevationLevel *g, const long double p[3])
 static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int i)
 {
     const long double s = (long double)g->spacing_m;
-    long double       u[3] = {((long double)r->o[0][i] - (long double)g->x0_m) / s, ((long double)r->o[1][i] - (long double)g->y0_m) / s, 0};
+    long double       u[3] = {((long double)r->o[0][i] - (long double)g->x0_m) / s,
+                              ((long double)r->o[1][i] - (long double)g->y0_m) / s, 0};
     long double       du[3] = {(long double)r->d[0][i] / s, (long double)r->d[1][i] / s, 0}, t = 0, above = 1;
     long long         line[3];
     u[2] = u[0] - u[1], du[2] = du[0] - du[1];
@@ -89,7 +91,8 @@ static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int
             if (du[k] != 0 && when < at) at = when, next = k;
         }
         line[next] += du[next] > 0 ? 1 : -1;
-        const long double p[3] = {(long double)r->o[0][i] + at * (long double)r->d[0][i], (long double)r->o[1][i] + at * (long double)r->d[1][i],
+        const long double p[3] = {(long double)r->o[0][i] + at * (long double)r->d[0][i],
+                                  (long double)r->o[1][i] + at * (long double)r->d[1][i],
                                   (long double)r->o[2][i] + at * (long double)r->d[2][i]};
         const long double here = height_over(g, p);
         if (isnan(here)) return INFINITY;
@@ -101,7 +104,8 @@ static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int
 static Status knob_ground(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"marched by 4 posts, halved", "marched by 1 post, halved", "marched by 1 / 4 post, halved",
+    static const char *const name[settings] =
+        {"marched by 4 posts, halved", "marched by 1 post, halved", "marched by 1 / 4 post, halved",
                                                "lines met in double, one ray", "lines met in double, a tile of rays"};
     static const double step[settings] = {4, 1, 0.25, 0, -1};
     static GroundRays rays;
@@ -151,7 +155,8 @@ static Status knob_ground(Bench *bench)
 enum { part_rays = 1024 };
 
 typedef struct PartSet {
-    int          way;          /* 0: Embree's triangles from the eye, 1: from the model's sphere, 2: boxes, judged in double */
+    /* 0: Embree's triangles from the eye, 1: from the model's sphere, 2: boxes, judged in double */
+    int          way;
     PosedEntity *posed;
     RTCScene     scene;
     double       o[3][part_rays], d[3][part_rays], far_m[part_rays], range_m[part_rays];
@@ -169,7 +174,8 @@ static void trace_parts(void *user)
         struct RTCIntersectContext context;
         struct RTCRayHit16         ray;
         double                     start_m[16];
-        static const int           valid[16] __attribute__((aligned(64))) = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
+        static const int           valid[16] __attribute__((aligned(64))) =
+            {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
         rtcInitIntersectContext(&context);
         for (int l = 0; l < 16; l++) {
             const int    i = first + l;
@@ -186,7 +192,8 @@ static void trace_parts(void *user)
         }
         rtcIntersect16(valid, s->scene, &context, &ray);
         for (int l = 0; l < 16; l++)
-            if (ray.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID) s->range_m[first + l] = start_m[l] + (double)ray.ray.tfar[l];
+            if (ray.hit.geomID[l] != RTC_INVALID_GEOMETRY_ID)
+                s->range_m[first + l] = start_m[l] + (double)ray.ray.tfar[l];
     }
     bench_keep(s->range_m);
 }
@@ -196,10 +203,10 @@ static RTCScene float_scene(RTCDevice device, const Model *model, const PosedEnt
 {
     RTCScene    scene = rtcNewScene(device);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    float      *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
-                                                 3 * (size_t)model->triangle_count);
-    uint32_t   *index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                                (size_t)model->triangle_count);
+    float      *vertex = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                 3 * sizeof(float), 3 * (size_t)model->triangle_count);
+    uint32_t   *index = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                                3 * sizeof(uint32_t), (size_t)model->triangle_count);
     for (int t = 0; vertex && index && t < model->triangle_count; t++)
         for (int k = 0; k < 3; k++) {
             const NodePose *node = &pose[model->part[model->triangle_part[t]].node];
@@ -225,7 +232,8 @@ static double plane_range(const Model *model, const PosedNode *node, uint32_t tr
     long double     o[3] = {0}, d[3] = {0}, n[3], a[3], b[3];
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 3; k++) { /* transpose(r) (o - p) */
-            o[c] += (long double)node->r_enu_from_node[3 * k + c] * ((long double)s->o[k][i] - (long double)node->p_enu[k]);
+            o[c] += (long double)node->r_enu_from_node[3 * k + c]
+                * ((long double)s->o[k][i] - (long double)node->p_enu[k]);
             d[c] += (long double)node->r_enu_from_node[3 * k + c] * (long double)s->d[k][i];
         }
     for (int c = 0; c < 3; c++) {
@@ -244,7 +252,8 @@ static double plane_range(const Model *model, const PosedNode *node, uint32_t tr
 static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, const NodePose *pose, RTCDevice device)
 {
     enum { settings = 3 };
-    static const char *const name[settings] = {"triangles in float, from the eye", "triangles in float, from the model's sphere",
+    static const char *const name[settings] =
+        {"triangles in float, from the eye", "triangles in float, from the model's sphere",
                                                "boxes in float, triangles in double"};
     static PartSet set[settings];
     static double  error[part_rays];
@@ -268,11 +277,13 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
         for (int i = 0; i < part_rays; i++) {
             const PartHit *hit = &set[settings - 1].hit[i];
             if (!(set[settings - 1].range_m[i] < INFINITY) || !(set[k].range_m[i] < INFINITY)) continue;
-            error[met++] = fabs(set[k].range_m[i] - plane_range(model, &posed->node[hit->node], hit->triangle, &set[k], i));
+            error[met++] = fabs(set[k].range_m[i]
+                                - plane_range(model, &posed->node[hit->node], hit->triangle, &set[k], i));
         }
         qsort(error, (size_t)met, sizeof *error, bench_by_value);
         work[k]  = (BenchWork){trace_parts, &set[k], part_rays};
-        point[k] = (BenchPoint){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN, .is_default = k == 2};
+        point[k] = (BenchPoint){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN,
+                                .is_default = k == 2};
     }
     bench_turn(bench, &(BenchKnob){"range to a part", "render/parts_trace.c", "a ray at a tank 3 km away", "m",
                                    "p99, the triangle's plane in long double", 1e-9}, work, point, settings);
@@ -291,13 +302,15 @@ static Status knob_parts(Bench *bench)
     Origin              origin;
     bench_progress(bench, "parts");
     RTCDevice device = rtcNewDevice("isa=avx2");
-    Status    status = arena && device && etc_path(path, sizeof path, "catalog.csv") ? catalog_open(&catalog, path, 0.01) : STATUS_NO_MEMORY;
+    Status    status = arena && device && etc_path(path, sizeof path, "catalog.csv")
+        ? catalog_open(&catalog, path, 0.01) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) {
         const int    which = catalog_find(catalog, (DisEntityType){1, 1, 222, 1, 1, 1, 0}, &origin, NULL);
         const Model *model = catalog_model(catalog, which);
         NodePose    *pose = arena_alloc(arena, (size_t)model->node_count, sizeof *pose);
         status = tracer_create_models(&tracer, &model, 1, "avx2");
-        if (status == STATUS_OK) posed.node = arena_alloc(arena, (size_t)parts_node_count(tracer, 0), sizeof *posed.node);
+        if (status == STATUS_OK)
+            posed.node = arena_alloc(arena, (size_t)parts_node_count(tracer, 0), sizeof *posed.node);
         if (status == STATUS_OK && (!pose || !posed.node)) status = STATUS_NO_MEMORY;
         if (status == STATUS_OK) {
             model_pose(pose, model, NULL);

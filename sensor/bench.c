@@ -15,6 +15,7 @@ const BenchSuite sensor_benches[] = {
     {.name = "skip", .help = "what each exact skip saves, in the scene where it saves most", .run = bench_skip,
      .reads = "The time is of a frame with the skip, the ratio says how much longer it takes without; the planes are the "
      "same to the bit, or the row fails."},
-    {.name = "precision", .help = "every approximation: its settings, what each costs and how wrong it is", .run = bench_precision},
+    {.name = "precision", .help = "frames, models and detectors: settings, what each costs and how wrong it is",
+     .run = bench_precision},
 };
 const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;

@@ -44,7 +44,8 @@ static void to_enu(void *user)
 static Status knob_frame(Bench *bench)
 {
     enum { settings = 4 };
-    static const char *const name[settings] = {"float", "difference in double, turned in float", "double", "long double"};
+    static const char *const name[settings] =
+        {"float", "difference in double, turned in float", "double", "long double"};
     static FrameSet set[settings];
     const Geodetic  origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
     BenchWork       work[settings];
@@ -56,7 +57,8 @@ static Status knob_frame(Bench *bench)
         set[k].frame = &frame, set[k].way = (FrameWay)k;
         for (int i = 0; i < places; i++) {
             double p_enu[3];
-            for (int c = 0; c < 3; c++) p_enu[c] = (c < 2 ? 4e4 : 4e3) * (random_uniform(31, (uint32_t)c, 0, (uint64_t)i) - 0.5);
+            for (int c = 0; c < 3; c++) p_enu[c] =
+                (c < 2 ? 4e4 : 4e3) * (random_uniform(31, (uint32_t)c, 0, (uint64_t)i) - 0.5);
             ecef_from_enu(set[k].p_ecef[i], &frame, p_enu);
         }
         to_enu(&set[k]);
@@ -85,7 +87,8 @@ static const double wgs84_a_m = 6378137, wgs84_f = 1 / 298.257223563;
 /* Bowring, Survey Review 23 (1976) 323. */
 static void bowring(Geodetic *out, const double p[3], int rounds)
 {
-    const double e2 = wgs84_f * (2 - wgs84_f), b_m = wgs84_a_m * (1 - wgs84_f), ep2 = e2 / (1 - e2), r = hypot(p[0], p[1]);
+    const double e2 = wgs84_f * (2 - wgs84_f), b_m = wgs84_a_m * (1 - wgs84_f), ep2 = e2 / (1 - e2),
+        r = hypot(p[0], p[1]);
     double       beta = atan2(p[2] * wgs84_a_m, r * b_m), lat = 0;
     for (int k = 0; k < rounds; k++) {
         const double s = sin(beta), c = cos(beta);
@@ -108,7 +111,8 @@ static void to_geodetic(void *user)
 
 static void ecef_by_hand(long double p[3], const Geodetic *g)
 {
-    const long double f = 1 / 298.257223563L, e2 = f * (2 - f), lat = (long double)g->lat_rad, lon = (long double)g->lon_rad,
+    const long double f = 1 / 298.257223563L, e2 = f * (2 - f), lat = (long double)g->lat_rad,
+        lon = (long double)g->lon_rad,
                       h = (long double)g->h_m, s = sinl(lat), n = 6378137 / sqrtl(1 - e2 * s * s);
     p[0] = (n + h) * cosl(lat) * cosl(lon), p[1] = (n + h) * cosl(lat) * sinl(lon), p[2] = (n * (1 - e2) + h) * s;
 }
@@ -124,7 +128,8 @@ static void knob_geodetic(Bench *bench)
     for (int k = 0; k < settings; k++) {
         set[k].rounds = rounds[k];
         for (int i = 0; i < places; i++) {
-            const Geodetic at = {3 * (random_uniform(32, 0, 0, (uint64_t)i) - 0.5), 6 * (random_uniform(32, 1, 0, (uint64_t)i) - 0.5),
+            const Geodetic at = {3 * (random_uniform(32, 0, 0, (uint64_t)i) - 0.5),
+                                 6 * (random_uniform(32, 1, 0, (uint64_t)i) - 0.5),
                                  5e5 * pow(random_uniform(32, 2, 0, (uint64_t)i), 4)};
             long double    p[3];
             ecef_by_hand(p, &at);
@@ -134,14 +139,16 @@ static void knob_geodetic(Bench *bench)
         for (int i = 0; i < places; i++) {
             long double back[3], square = 0;
             ecef_by_hand(back, &set[k].out[i]);
-            for (int c = 0; c < 3; c++) square += (back[c] - (long double)set[k].p_ecef[i][c]) * (back[c] - (long double)set[k].p_ecef[i][c]);
+            for (int c = 0; c < 3; c++) square += (back[c] - (long double)set[k].p_ecef[i][c])
+                * (back[c] - (long double)set[k].p_ecef[i][c]);
             bench_worst(&point[k].error, (double)sqrtl(square));
         }
         work[k] = (BenchWork){to_geodetic, &set[k], places};
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"latitude, longitude, height", "terrain/geodesy.cpp", "a place up to 500 km high", "m",
+    bench_turn(bench, &(BenchKnob){"latitude, longitude, height", "terrain/geodesy.cpp", "a place up to 500 km high",
+                                   "m",
                                    "largest, back again in long double", 1e-8}, work, point, settings);
 }
 
@@ -151,7 +158,8 @@ enum { geoid_places = 512, widest = 16 };
 
 typedef struct GeoidSet {
     const Geoid *geoid;
-    int          points, stride; /* of Lagrange's polynomial each way, of posts so many apart; points 0: geoid_height_m */
+    /* of Lagrange's polynomial each way, of posts so many apart; points 0: geoid_height_m */
+    int          points, stride;
     double       lat_rad[geoid_places], lon_rad[geoid_places], n_m[geoid_places];
 } GeoidSet;
 
@@ -188,7 +196,8 @@ static void ask_geoid(void *user)
         for (int b = 0; b < s->points; b++) {
             double row = 0;
             for (int a = 0; a < s->points; a++)
-                row += wx[a] * geoid_post(g, (j - s->points / 2 + 1 + b) * s->stride, (k - s->points / 2 + 1 + a) * s->stride);
+                row += wx[a] * geoid_post(g, (j - s->points / 2 + 1 + b) * s->stride,
+                                          (k - s->points / 2 + 1 + a) * s->stride);
             sum += wy[b] * row;
         }
         s->n_m[i] = sum;
@@ -196,11 +205,13 @@ static void ask_geoid(void *user)
     bench_keep(s->n_m);
 }
 
-/* EGM96 ends at degree 360, half the grid's own Nyquist degree of 720: a polynomial through enough posts is the series. */
+/* EGM96 ends at degree 360, half the grid's own Nyquist degree of 720: a polynomial through enough posts is the
+ * series. */
 static void knob_geoid(Bench *bench)
 {
     enum { settings = 6 };
-    static const char *const name[settings] = {"posts of 30', straight", "posts of 30', cubic", "posts of 15', straight", "posts of 15', cubic",
+    static const char *const name[settings] =
+        {"posts of 30', straight", "posts of 30', cubic", "posts of 15', straight", "posts of 15', cubic",
                                                "posts of 15', quintic", "posts of 15', of degree 7"};
     static const int points[settings] = {2, 4, 2, 0, 6, 8}, stride[settings] = {2, 2, 1, 1, 1, 1};
     static GeoidSet  set[settings], fine;
@@ -250,8 +261,10 @@ typedef struct SunSet {
 /* The Astronomical Almanac's (page C5): 0.01 degree until 2050; with the same refraction left out. */
 static void short_formula(double d_enu[3], double unix_s, const Geodetic *place)
 {
-    const double n = unix_s / 86400 - 10957.5, l = (280.460 + 0.9856474 * n) * rad_per_deg, g = (357.528 + 0.9856003 * n) * rad_per_deg;
-    const double lambda = l + (1.915 * sin(g) + 0.020 * sin(2 * g)) * rad_per_deg, e = (23.439 - 4e-7 * n) * rad_per_deg;
+    const double n = unix_s / 86400 - 10957.5, l = (280.460 + 0.9856474 * n) * rad_per_deg,
+        g = (357.528 + 0.9856003 * n) * rad_per_deg;
+    const double lambda = l + (1.915 * sin(g) + 0.020 * sin(2 * g)) * rad_per_deg,
+        e = (23.439 - 4e-7 * n) * rad_per_deg;
     const double ra = atan2(cos(e) * sin(lambda), cos(lambda)), dec = asin(sin(e) * sin(lambda));
     const double hour = (280.46061837 + 360.98564736629 * n) * rad_per_deg + place->lon_rad - ra;
     d_enu[0] = -cos(dec) * sin(hour);
@@ -264,15 +277,18 @@ static void ask_sun(void *user)
     SunSet *s = user;
     Sun     sun;
     if (s->hold_s < 0) short_formula(s->d_enu, spa_unix_s, &spa_place);
-    else if (sun_at(&sun, spa_unix_s - s->hold_s, &spa_place, 820, 11, 67) == STATUS_OK) memcpy(s->d_enu, sun.d_enu, sizeof s->d_enu);
+    else if (sun_at(&sun, spa_unix_s - s->hold_s, &spa_place, 820, 11, 67) == STATUS_OK) memcpy(s->d_enu, sun.d_enu,
+            sizeof s->d_enu);
     bench_keep(s->d_enu);
 }
 
 static void knob_sun(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"short formula, each frame", "once a minute", "once in 10 s", "once a second", "each frame"};
-    static SunSet set[settings] = {{.hold_s = -1, .frames = 1}, {60, 1800, {0}}, {10, 300, {0}}, {1, 30, {0}}, {0, 1, {0}}};
+    static const char *const name[settings] =
+        {"short formula, each frame", "once a minute", "once in 10 s", "once a second", "each frame"};
+    static SunSet set[settings] = {{.hold_s = -1, .frames = 1}, {60, 1800, {0}}, {10, 300, {0}}, {1, 30, {0}},
+                                   {0, 1, {0}}};
     BenchWork     work[settings];
     BenchPoint    point[settings] = {0};
     const double  up_rad = (90 - spa_zenith_deg) * rad_per_deg, az_rad = spa_azimuth_deg * rad_per_deg;
@@ -282,7 +298,8 @@ static void knob_sun(Bench *bench)
         ask_sun(&set[k]);
         v3_sub(off, set[k].d_enu, want);
         work[k]  = (BenchWork){ask_sun, &set[k], set[k].frames};
-        point[k] = (BenchPoint){.setting = name[k], .error = v3_length(off) / rad_per_deg, .is_default = k == settings - 1};
+        point[k] = (BenchPoint){.setting = name[k], .error = v3_length(off) / rad_per_deg,
+                                .is_default = k == settings - 1};
     }
     bench_turn(bench, &(BenchKnob){"the sun's place", "terrain/sun.c", "a frame of 30 a second", "deg",
                                    "NREL's published place, at the end of the time", 0.0005}, work, point, settings);
@@ -309,7 +326,8 @@ static void ask_powers(void *user)
 static void knob_powers(Bench *bench)
 {
     enum { settings = 3 };
-    static const char *const name[settings] = {"the library's in float", "the library's in double, narrowed", "eight at a time, degree 5"};
+    static const char *const name[settings] =
+        {"the library's in float", "the library's in double, narrowed", "eight at a time, degree 5"};
     static PowerSet set[settings];
     BenchWork       work[settings];
     BenchPoint      point[settings] = {0};
@@ -318,12 +336,14 @@ static void knob_powers(Bench *bench)
         for (int i = 0; i < powers; i++) set[k].in[i] = (float)(-100 + 200 * random_uniform(34, 0, 0, (uint64_t)i));
         ask_powers(&set[k]);
         for (int i = 0; i < powers; i++)
-            bench_worst(&point[k].error, (double)fabsl((long double)set[k].out[i] / exp2l((long double)set[k].in[i]) - 1) * 100);
+            bench_worst(&point[k].error, (double)fabsl((long double)set[k].out[i] / exp2l((long double)set[k].in[i])
+                                                       - 1) * 100);
         work[k] = (BenchWork){ask_powers, &set[k], powers};
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"powers of two", "terrain/eight.h", "a number of -100 .. 100", "%", "largest, long double", 2e-5},
+    bench_turn(bench, &(BenchKnob){"powers of two", "terrain/eight.h", "a number of -100 .. 100", "%",
+                                   "largest, long double", 2e-5},
                work, point, settings);
 }
 

@@ -29,8 +29,10 @@ static double rms_m(const Elevation *got, const Elevation *want, double from_m, 
     enum { places = 20000 };
     double square = 0;
     for (int i = 0; i < places; i++) {
-        const double r = from_m + (to_m - from_m) * random_uniform(41, 0, 0, (uint64_t)i), a = 2 * pi_rad * random_uniform(41, 1, 0, (uint64_t)i);
-        const double off = elevation_height(got, r * cos(a), r * sin(a), NULL) - elevation_height(want, r * cos(a), r * sin(a), NULL);
+        const double r = from_m + (to_m - from_m) * random_uniform(41, 0, 0, (uint64_t)i),
+            a = 2 * pi_rad * random_uniform(41, 1, 0, (uint64_t)i);
+        const double off = elevation_height(got, r * cos(a), r * sin(a), NULL)
+            - elevation_height(want, r * cos(a), r * sin(a), NULL);
         square += off * off;
     }
     return sqrt(square / places);
@@ -43,28 +45,45 @@ static double bytes_of(const Elevation *e)
     return (double)(posts + pyramids);
 }
 
+/* Every so-manieth post of a ground. */
+static Status thinned(Elevation *out, const ElevationLevel *from, int step)
+{
+    const int    nx = (from->nx - 1) / step + 1, ny = (from->ny - 1) / step + 1;
+    const Status status = elevation_level_create(out, 0, nx, ny, from->x0_m, from->y0_m, step * from->spacing_m,
+                                                 from->z0_m, from->step_m);
+    if (status != STATUS_OK) return status;
+    for (int j = 0; j < ny; j++)
+        for (int i = 0; i < nx; i++)
+            out->level[0].post[(size_t)j * (size_t)nx + (size_t)i] =
+                from->post[(size_t)j * step * (size_t)from->nx + (size_t)i * step];
+    elevation_build_pyramids(out);
+    return STATUS_OK;
+}
+
+/* A landscape of another spacing is another landscape, so one of 1 m is thinned. */
 static Status knob_spacing(Bench *bench, const LocalFrame *frame)
 {
     enum { settings = 4 };
     static const char *const name[settings] = {"8 m", "4 m", "2 m", "1 m"};
-    static const double      spacing_m[settings] = {8, 4, 2, 1};
+    static const int         step[settings] = {8, 4, 2, 1};
     const double             half_m = bench_quick(bench) ? 300 : 1000;
     MakeSet    set[settings];
     BenchWork  work[settings];
     BenchPoint point[settings] = {0};
-    Landscape  fine = {0}, land;
+    Landscape  fine = {0};
     LandscapeConfig config = landscape_default_config();
-    config.half_width_m = half_m, config.horizon_m = 4 * half_m, config.spacing_m = 1; /* no finer is made */
+    config.half_width_m = half_m, config.horizon_m = 4 * half_m, config.spacing_m = 1;
     Status status = landscape_create(&fine, &config, frame, NULL, 0, NULL, 0);
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        config.spacing_m = spacing_m[k];
-        set[k]   = (MakeSet){.config = config, .frame = frame};
-        work[k]  = (BenchWork){make_land, &set[k], 1};
-        status   = landscape_create(&land, &config, frame, NULL, 0, NULL, 0);
-        if (status != STATUS_OK) break;
-        point[k] = (BenchPoint){.setting = name[k], .error = rms_m(&land.elevation, &fine.elevation, 0, 0.9 * half_m),
-                                .is_default = spacing_m[k] == 4, .bytes = bytes_of(&land.elevation)};
-        landscape_destroy(&land);
+        Elevation thin = {0};
+        config.spacing_m = step[k];
+        set[k]  = (MakeSet){.config = config, .frame = frame};
+        work[k] = (BenchWork){make_land, &set[k], 1};
+        status  = thinned(&thin, &fine.elevation.level[0], step[k]);
+        point[k] = (BenchPoint){.setting = name[k], .error = status == STATUS_OK
+                                ? rms_m(&thin, &fine.elevation, 0, 0.9 * half_m) : NAN,
+                                .is_default = step[k] == 4, .bytes = bytes_of(&thin)};
+        elevation_destroy(&thin);
     }
     if (status == STATUS_OK)
         bench_turn(bench, &(BenchKnob){"spacing of invented ground", "terrain.spacing_m", "to make the ground", "m",
@@ -77,35 +96,36 @@ static Status knob_spacing(Bench *bench, const LocalFrame *frame)
 static Status knob_reach(Bench *bench, const LocalFrame *frame)
 {
     enum { settings = 4 };
-    static const char *const name[settings] = {"1.5 km", "3 km", "6 km", "12 km"};
-    static const double      half_m[settings] = {1500, 3000, 6000, 12000};
+    static const char *const name[settings] = {"1.5 km", "3 km", "4.5 km", "6 km"};
+    static const double      half_m[settings] = {1500, 3000, 4500, 6000};
     const bool               quick = bench_quick(bench);
-    const int                first = quick ? 0 : 0, count = quick ? 3 : settings;
     MakeSet    set[settings];
     BenchWork  work[settings];
     BenchPoint point[settings] = {0};
     LandscapeConfig config = landscape_default_config();
     Landscape  fine = {0}, land;
     if (quick) config.spacing_m = 16; /* a quarter as fine: the same levels from four times as far */
-    config.half_width_m = 12500;
+    config.half_width_m = 8000;
     Status status = landscape_create(&fine, &config, frame, NULL, 0, NULL, 0);
-    for (int k = first; k < count && status == STATUS_OK; k++) {
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
         config.half_width_m = half_m[k];
         set[k]  = (MakeSet){.config = config, .frame = frame};
         work[k] = (BenchWork){make_land, &set[k], 1};
         status  = landscape_create(&land, &config, frame, NULL, 0, NULL, 0);
         if (status != STATUS_OK) break;
         /* just outside the level, where it shows most: 1 / 989 rad is a pixel of 720 across 40 degrees */
-        const double near_m = 1.02 * half_m[k], far_m = fmin(1.5 * half_m[k], 12400);
-        point[k] = (BenchPoint){.setting = name[k], .error = rms_m(&land.elevation, &fine.elevation, near_m, far_m) / near_m * 989,
+        const double near_m = 1.02 * half_m[k], far_m = fmin(1.5 * half_m[k], 7900);
+        point[k] = (BenchPoint){.setting = name[k],
+                                .error = rms_m(&land.elevation, &fine.elevation, near_m, far_m) / near_m * 989,
                                 .is_default = half_m[k] == 6000, .bytes = bytes_of(&land.elevation)};
         landscape_destroy(&land);
     }
     if (status == STATUS_OK)
         bench_turn(bench, &(BenchKnob){"reach of the finest level", "terrain/landscape.c", "to make the ground", "px",
                                        quick ? "rms just outside it, the finest level; posts of 16 m"
-                                             : "rms just outside it, the finest level; 720 px across 40 degrees", quick ? 0.5 : 0.05},
-                   work, point, count);
+                                             : "rms just outside it, the finest level; 720 px across 40 degrees",
+                                                 quick ? 0.5 : 0.05},
+                   work, point, settings);
     landscape_destroy(&fine);
     return status;
 }
@@ -124,7 +144,8 @@ typedef struct PostSet {
 /* Hills of 60 m, as nobody can store them. */
 static double true_height(double x, double y)
 {
-    return 500 + 30 * sin(x / 97.3) * cos(y / 61.7) + 7 * sin(x / 13.1 + 1) * sin(y / 17.9) + 0.9 * cos(x / 3.3 - y / 4.1);
+    return 500 + 30 * sin(x / 97.3) * cos(y / 61.7) + 7 * sin(x / 13.1 + 1) * sin(y / 17.9)
+        + 0.9 * cos(x / 3.3 - y / 4.1);
 }
 
 static void ask_posts(void *user)
@@ -138,7 +159,8 @@ static void ask_posts(void *user)
             const int at = (y + k / 2) * side_posts + x + k % 2;
             z[k] = s->step_m > 0 ? s->z0_m + s->step_m * s->post[at] : (double)s->narrow[at];
         }
-        s->z_m[i] = u >= v ? z[0] + u * (z[1] - z[0]) + v * (z[3] - z[1]) : z[0] + u * (z[3] - z[2]) + v * (z[2] - z[0]);
+        s->z_m[i] = u >= v ? z[0] + u * (z[1] - z[0]) + v * (z[3] - z[1]) : z[0] + u * (z[3] - z[2])
+            + v * (z[2] - z[0]);
     }
     bench_keep(s->z_m);
 }
@@ -146,7 +168,8 @@ static void ask_posts(void *user)
 static void knob_posts(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"steps of 1 m", "steps of 1 / 8 m", "steps of 1 / 64 m", "steps of 1 / 256 m", "floats"};
+    static const char *const name[settings] =
+        {"steps of 1 m", "steps of 1 / 8 m", "steps of 1 / 64 m", "steps of 1 / 256 m", "floats"};
     static const double step_m[settings] = {1, 1 / 8.0, 1 / 64.0, 1 / 256.0, 0};
     static PostSet set[settings];
     BenchWork      work[settings];
@@ -162,7 +185,8 @@ static void knob_posts(Bench *bench)
             bench_worst(&point[k].error, fabs(held - z));
         }
         for (int i = 0; i < 1024; i++)
-            for (int c = 0; c < 2; c++) s->at[i][c] = (side_posts - 2) * random_uniform(42, (uint32_t)c, 0, (uint64_t)i);
+            for (int c = 0; c < 2; c++) s->at[i][c] =
+                (side_posts - 2) * random_uniform(42, (uint32_t)c, 0, (uint64_t)i);
         work[k] = (BenchWork){ask_posts, s, 1024};
         point[k].setting    = name[k];
         point[k].is_default = k == 3;
@@ -189,13 +213,10 @@ static void ask_textures(void *user)
     static float    none[most_side * most_side], fine[most_side * most_side];
     static uint8_t  class[most_side * most_side];
     TextureSet     *s = user;
-    if (s->side == 0) {
-        uint8_t grass[spots];
-        memset(grass, SURFACE_GRASS, sizeof grass);
-        landscape_textures(s->out, s->land, spots, grass, s->x_m, s->y_m, s->footprint_m);
-    }
     memset(class, SURFACE_GRASS, sizeof class);
-    for (int i = 0; s->side > 0 && i < spots; i++) {
+    if (s->side < 2)
+        landscape_textures(s->out, s->land, spots, class, s->x_m, s->y_m, s->side == 0 ? s->footprint_m : none);
+    for (int i = 0; s->side > 1 && i < spots; i++) {
         double sum = 0;
         for (int k = 0; k < s->side * s->side; k++) {
             x_m[k] = s->x_m[i] + (double)s->footprint_m[i] * ((k % s->side + 0.5) / s->side - 0.5);
@@ -211,7 +232,8 @@ static void ask_textures(void *user)
 static void knob_texture(Bench *bench, const Landscape *land)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"unfiltered", "2 x 2 places", "4 x 4 places", "8 x 8 places", "wavelengths faded out"};
+    static const char *const name[settings] =
+        {"unfiltered", "2 x 2 places", "4 x 4 places", "8 x 8 places", "wavelengths faded out"};
     static const int  side[settings] = {1, 2, 4, 8, 0};
     static TextureSet set[settings], fine;
     BenchWork         work[settings];
@@ -227,12 +249,16 @@ static void knob_texture(Bench *bench, const Landscape *land)
         ask_textures(s);
         if (k < 0) continue;
         double square = 0;
-        for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i]) * ((double)s->out[i] - (double)fine.out[i]);
+        for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i])
+            * ((double)s->out[i] - (double)fine.out[i]);
         work[k]  = (BenchWork){ask_textures, s, spots};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / spots), .is_default = k == settings - 1};
+        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / spots),
+                                .is_default = k == settings - 1};
     }
-    bench_turn(bench, &(BenchKnob){"texture under a pixel", "terrain/landscape_texture.c", "a pixel of 0.1 .. 4 m on grass", "%",
-                                   bench_quick(bench) ? "rms of brightness, 24 x 24 places" : "rms of brightness, 48 x 48 places", 4},
+    bench_turn(bench, &(BenchKnob){"texture under a pixel", "terrain/landscape_texture.c",
+                                   "a pixel of 0.1 .. 4 m on grass", "%",
+                                   bench_quick(bench) ? "rms of brightness, 24 x 24 places"
+                                       : "rms of brightness, 48 x 48 places", 4},
                work, point, settings);
 }
 

@@ -5,7 +5,8 @@
 #include "sensor/node/seeker.h"
 #include "terrain/bench_ground.h"
 
-const char *const precision_shot_name[SHOT_COUNT] = {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
+const char *const precision_shot_name[SHOT_COUNT] =
+    {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
 
 enum { vehicles = 5 }; /* a row; the third stands where views aim */
 
@@ -80,7 +81,8 @@ double precision_rms_k(const Picture *got, const Picture *want, const PlanckTabl
     const size_t count = (size_t)got->width * (size_t)got->height;
     double       square = 0;
     for (size_t i = 0; i < count; i++) {
-        const double off_k = planck_table_temp(lwir, (double)got->lwir[i]) - planck_table_temp(lwir, (double)want->lwir[i]);
+        const double off_k = planck_table_temp(lwir, (double)got->lwir[i])
+            - planck_table_temp(lwir, (double)want->lwir[i]);
         square += off_k * off_k;
     }
     return sqrt(square / (double)count);
@@ -107,7 +109,8 @@ Status precision_open(Precision *out, Bench *bench)
     for (int k = 0; k < SHOT_COUNT && status == STATUS_OK; k++) {
         if (!(out->keep[k] = arena_create())) return STATUS_NO_MEMORY;
         out->shot[k] = (BenchFrame){.scene = &out->scene, .pool = out->pool, .arena = out->keep[k],
-                                    .request = precision_request(out, (PrecisionShot)k, out->shot_px[0], out->shot_px[1])};
+                                    .request = precision_request(out, (PrecisionShot)k, out->shot_px[0],
+                                                                 out->shot_px[1])};
         bench_frame(&out->shot[k]);
         status = out->shot[k].status;
     }

@@ -76,7 +76,8 @@ static void make_kernel(Blurring *b, const MtfChain *chain)
             double value = 0;
             for (int j = 0; j < n; j++)
                 for (int k = 0; k < n; k++)
-                    value += pass[j][k] * cos(2 * pi_rad * x * (k - n / 2 + 0.5) / n) * cos(2 * pi_rad * y * (j - n / 2 + 0.5) / n);
+                    value += pass[j][k] * cos(2 * pi_rad * x * (k - n / 2 + 0.5) / n)
+                        * cos(2 * pi_rad * y * (j - n / 2 + 0.5) / n);
             const int r = b->radius;
             b->kernel[r + y][r + x] = b->kernel[r - y][r + x] = b->kernel[r + y][r - x] = b->kernel[r - y][r - x] =
                 (float)(value / (n * n));
@@ -98,7 +99,8 @@ static void run_blur(void *user)
     }
     for (int y = -margin; y < high + margin; y++)
         for (int x = -margin; x < wide + margin; x++) {
-            const int u = x < 0 ? -1 - x : x >= wide ? 2 * wide - 1 - x : x, v = y < 0 ? -1 - y : y >= high ? 2 * high - 1 - y : y;
+            const int u = x < 0 ? -1 - x : x >= wide ? 2 * wide - 1 - x : x;
+            const int v = y < 0 ? -1 - y : y >= high ? 2 * high - 1 - y : y;
             padded[(y + margin) * row + x + margin] = b->in[v * wide + u];
         }
     for (int y = 0; y < high; y++) {
@@ -117,7 +119,8 @@ static void run_blur(void *user)
 static Status knob_blur(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"kernel of 5 x 5", "kernel of 9 x 9", "kernel of 17 x 17", "kernel of 33 x 33",
+    static const char *const name[settings] =
+        {"kernel of 5 x 5", "kernel of 9 x 9", "kernel of 17 x 17", "kernel of 33 x 33",
                                                "cosine transform"};
     static const int         radius[settings - 1] = {2, 4, 8, 16};
     /* f/2, 10 um, pitch 15 um; central obscuration, jitter */
@@ -143,7 +146,8 @@ static Status knob_blur(Bench *bench)
         run_blur(&set[k]);
         for (int i = 0; i < blur_px; i++) square += ((double)out[i] - want[i]) * ((double)out[i] - want[i]);
         work[k]  = (BenchWork){run_blur, &set[k], blur_px};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / blur_px) / 20, .is_default = k == settings - 1};
+        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / blur_px) / 20,
+                                .is_default = k == settings - 1};
     }
     bench_turn(bench, &(BenchKnob){"optics' blur", "sensor/detector/blur.c", "a pixel", "%",
                                    "rms over contrast, the chain to Nyquist by sums", 0.2}, work, point, settings);
@@ -166,7 +170,8 @@ typedef struct Photons {
 
 static double photons_exactly(const PhotonDetector *d, double radiance)
 {
-    return photon_etendue(d) * photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance), NULL);
+    return photon_etendue(d) * photon_band(d->low_m, d->high_m, planck_band_inverse(d->low_m, d->high_m, radiance),
+                                           NULL);
 }
 
 static void count_photons(void *user)
@@ -190,7 +195,8 @@ static void count_photons(void *user)
 static Status knob_photons(Bench *bench)
 {
     enum { settings = 5 };
-    static const char *const name[settings] = {"64 knots", "256 knots", "1024 knots", "4096 knots", "integrated each time"};
+    static const char *const name[settings] =
+        {"64 knots", "256 knots", "1024 knots", "4096 knots", "integrated each time"};
     static const int         knots[settings - 2] = {64, 256, 1024};
     const PhotonDetector     d = {.low_m = 3.4e-6, .high_m = 4.8e-6, .f_number = 2.5, .transmission = 0.8, .qe = 0.7,
                                   .pitch_m = 15e-6, .integration_s = 2e-3};
@@ -199,7 +205,8 @@ static Status knob_photons(Bench *bench)
     BenchWork      work[settings];
     BenchPoint     point[settings] = {0};
     PhotonTable   *table;
-    const double   low = log(planck_band(d.low_m, d.high_m, 180, NULL)), high_log = log(planck_band(d.low_m, d.high_m, 1500, NULL));
+    const double   low = log(planck_band(d.low_m, d.high_m, 180, NULL));
+    const double   high_log = log(planck_band(d.low_m, d.high_m, 1500, NULL));
     const Status   status = photon_table_create(&table, &d, true);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < settings; k++) {
@@ -248,7 +255,8 @@ static void convert(void *user)
         config.bits = c->bits;
         detector_display(c->out, c->in, blur_px, &config, (DetectorLevel){c->low, c->high});
     } else {
-        quantise_counts(c->out, c->in, blur_px, (c->high - c->low) / ((1 << c->bits) - 1), (uint16_t)((1 << c->bits) - 1));
+        quantise_counts(c->out, c->in, blur_px, (c->high - c->low) / ((1 << c->bits) - 1),
+                        (uint16_t)((1 << c->bits) - 1));
     }
     bench_keep(c->out);
 }
@@ -279,18 +287,22 @@ static void knob_counts(Bench *bench, bool display)
     make_plane(in, display ? 280 : 0, 40);
     for (int k = 0; k < count; k++) {
         const int bits = display ? display_bits[k] : converter_bits[k];
-        set[k] = (Converter){.in = in, .bits = bits, .display = display, .low = display ? 280 : 0, .high = display ? 320 : 40};
+        set[k] = (Converter){.in = in, .bits = bits, .display = display, .low = display ? 280 : 0,
+                             .high = display ? 320 : 40};
         snprintf(name[k], sizeof name[k], "%d bits", bits);
         convert(&set[k]);
         work[k]  = (BenchWork){convert, &set[k], blur_px};
-        point[k] = (BenchPoint){.setting = name[k], .is_default = bits == (display ? 8 : 14), .error = convert_rms(&set[k]),
+        point[k] = (BenchPoint){.setting = name[k], .is_default = bits == (display ? 8 : 14),
+                                .error = convert_rms(&set[k]),
                                 .bytes = (display ? bits : 8 * ((bits + 7) / 8)) / 8.0 * blur_px};
     }
     if (display)
-        bench_turn(bench, &(BenchKnob){"display", "detector.bits", "a pixel", "K", "rms, a plane of 280 .. 320 K before it", 0.05},
+        bench_turn(bench, &(BenchKnob){"display", "detector.bits", "a pixel", "K",
+                                       "rms, a plane of 280 .. 320 K before it", 0.05},
                    work, point, count);
     else
-        bench_turn(bench, &(BenchKnob){"converter", "etc/sensors.csv", "a pixel", "K", "rms, a span of 40 K before it", 0.001},
+        bench_turn(bench, &(BenchKnob){"converter", "etc/sensors.csv", "a pixel", "K", "rms, a span of 40 K before it",
+                                       0.001},
                    work, point, count);
 }
 
@@ -306,7 +318,10 @@ typedef struct CurveSet {
 } CurveSet;
 
 /* IEC 61966-2-1 */
-static double srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055; }
+static double srgb(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
 
 static void run_curve(void *user)
 {
@@ -344,7 +359,8 @@ static void knob_curve(Bench *bench)
         set[k] = (CurveSet){.intervals = intervals[k], .in = in};
         for (int i = 0; i <= intervals[k]; i++) set[k].table[i] = (float)srgb((double)i / intervals[k]);
         run_curve(&set[k]);
-        for (int i = 0; i < curve_px; i++) bench_worst(&worst, 255 * fabs(set[k].out[i] / 65535.0 - srgb((double)in[i])));
+        for (int i = 0; i < curve_px; i++)
+            bench_worst(&worst, 255 * fabs(set[k].out[i] / 65535.0 - srgb((double)in[i])));
         work[k]  = (BenchWork){run_curve, &set[k], curve_px};
         point[k] = (BenchPoint){.setting = name[k], .error = worst, .is_default = k == 2,
                                 .bytes = k == 2 ? 4098 * 4 : intervals[k] > 0 ? intervals[k] * 4.0 : 0};

@@ -104,7 +104,8 @@ static void facet_errors(double *range_m, double *area, const Faceted *got, cons
         const bool a = got->range_m[i] < INFINITY, b = want->range_m[i] < INFINITY;
         met += b;
         other += a != b;
-        if (a && b && got->model.triangle_part[got->hit[i].triangle] == want->model.triangle_part[want->hit[i].triangle])
+        if (!a || !b) continue;
+        if (got->model.triangle_part[got->hit[i].triangle] == want->model.triangle_part[want->hit[i].triangle])
             off_m[count++] = fabs(got->range_m[i] - want->range_m[i]);
     }
     qsort(off_m, (size_t)count, sizeof *off_m, bench_by_value);
@@ -150,18 +151,20 @@ static Status knob_facets(Bench *bench)
     }
     for (int k = 0; k < sag_settings && status == STATUS_OK; k++) {
         snprintf(name[k], sizeof name[k], "%g mm, %d triangles", 1e3 * sag_m[k], set[k].model.triangle_count);
-        by_range[k] = (BenchPoint){.setting = name[k], .bytes = bytes_of(&set[k].model), .is_default = sag_m[k] == 0.002};
+        by_range[k] = (BenchPoint){.setting = name[k], .bytes = bytes_of(&set[k].model),
+                                   .is_default = sag_m[k] == 0.002};
         by_area[k]  = by_range[k];
         facet_errors(&by_range[k].error, &by_area[k].error, &set[k], &fine);
         work[k] = (BenchWork){trace_facets, &set[k], (double)rays};
     }
     if (status == STATUS_OK) {
         snprintf(against, sizeof against, "p99 of range, a tank of %g mm", 1e3 * finest_m);
-        bench_turn(bench, &(BenchKnob){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006}, work, by_range,
-                   sag_settings);
+        bench_turn(bench, &(BenchKnob){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006},
+                   work, by_range, sag_settings);
         for (int k = 0; k < sag_settings; k++) by_area[k].time = by_range[k].time;
         snprintf(against, sizeof against, "share of its silhouettes, a tank of %g mm", 1e3 * finest_m);
-        bench_knob(bench, &(BenchKnob){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5}, by_area,
+        bench_knob(bench, &(BenchKnob){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5},
+                   by_area,
                    sag_settings);
     }
     for (int k = 0; k < sag_settings; k++) faceted_close(&set[k]);
@@ -205,7 +208,8 @@ static void render_mirrors(void *user)
             m->p->status = status;
             return;
         }
-        for (size_t i = 0; i < (size_t)picture.width * (size_t)picture.height; i++) m->total[eye] += (double)picture.radar[i];
+        for (size_t i = 0; i < (size_t)picture.width
+             * (size_t)picture.height; i++) m->total[eye] += (double)picture.radar[i];
     }
     bench_keep(m);
 }
@@ -235,18 +239,20 @@ static Status knob_bounces(Precision *p)
         render_mirrors(&set[k]);
         point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
     }
-    bench_turn(p->bench, &(BenchKnob){"mirrors of a radar path", "render/radar_image.h", "a radar picture of 96 x 64, 2 x 2 rays",
-                                      "%", "power of pictures, rms; 12 mirrors", 2}, work, point, settings);
+    bench_turn(p->bench, &(BenchKnob){"mirrors of a radar path", "render/radar_image.h",
+                                      "a radar picture of 96 x 64, 2 x 2 rays",
+                                      "%", "power of pictures, rms; 12 mirrors", 25}, work, point, settings);
     return p->status;
 }
 
 static Status knob_radar_rays(Precision *p)
 {
     enum { settings = 7 };
-    static const char *const name[settings] = {"1 x 1", "1 x 1, edges 4 x 4", "2 x 2", "3 x 3", "4 x 4", "6 x 6", "8 x 8"};
+    static const char *const name[settings] =
+        {"1 x 1", "1 x 1, edges 4 x 4", "2 x 2", "3 x 3", "4 x 4", "6 x 6", "8 x 8"};
     static const int         samples[settings] = {1, 1, 2, 3, 4, 6, 8};
     const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
-    Mirrors    set[settings], fine = {.p = p, .samples = 16, .eyes = eyes};
+    Mirrors    set[settings], fine = {.p = p, .samples = bench_quick(p->bench) ? 12 : 16, .eyes = eyes};
     BenchWork  work[settings];
     BenchPoint point[settings] = {0};
     render_mirrors(&fine);
@@ -256,8 +262,10 @@ static Status knob_radar_rays(Precision *p)
         render_mirrors(&set[k]);
         point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = k == 1};
     }
-    bench_turn(p->bench, &(BenchKnob){"rays a pixel, radar", "sensor.samples, sensor.edge_samples", "a radar picture of 96 x 64",
-                                      "%", "power of pictures, rms; 16 x 16 rays", 60}, work, point, settings);
+    bench_turn(p->bench, &(BenchKnob){"rays a pixel, radar", "sensor.samples, sensor.edge_samples",
+                                      "a radar picture of 96 x 64",
+                                      "%", "power of pictures, rms; 12 x 12 rays or more", 20}, work, point,
+               bench_quick(p->bench) ? settings - 2 : settings);
     return p->status;
 }
 

@@ -47,6 +47,23 @@ for what in "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: mo
     has network "$what"
 done
 
+# every approximation has its knob, with one default each, whose error is what is stated
+table precision
+for knob in "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" "powers of two" \
+            "spacing of invented ground" "reach of the finest level" "height of a post" "texture under a pixel" \
+            "dead reckoning" "heat of parts between reports" "radiance of a black body" "temperature of a radiance" \
+            "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
+            "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
+            "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
+            "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "electrons of a radiance" "display" "converter" \
+            "display's curve"; do
+    check "precision has one default of: $knob" \
+        [ "$(grep -cE "^precision,\"?$knob: .* default\"?,.*,yes," "$tmp/precision.csv")" = 1 ]
+    check "precision has other settings of: $knob" \
+        [ "$(grep -E "^precision,\"?$knob: " "$tmp/precision.csv" | grep -vc " default")" -ge 1 ]
+done
+for absent in trees "heat conduction" "shooting and bouncing"; do has precision "$absent.*none in this version"; done
+
 # ---- the page, and two runs side by side
 if command -v python3 >/dev/null; then
     check "the page is HTML: every element that is opened is closed" python3 - "$tmp/all.html" <<'END'
