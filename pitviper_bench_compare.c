@@ -261,18 +261,22 @@ static void show_line(FILE *page, const Line *l)
         fputs("</td><td class=\"n\">", page);
         html_text(page, "%s", cells[k]);
     }
-    fprintf(page, "</td><td class=\"%s\">", l->bad ? "bad" : strcmp(l->verdict, "within noise") == 0 ? "dim" : "");
+    fprintf(page, "</td><td style=\"white-space:nowrap\" class=\"%s\">", l->bad ? "bad" : strcmp(l->verdict, "within noise") == 0 ? "dim" : "");
     html_text(page, "%s", l->verdict);
     fputs("</td></tr>\n", page);
+}
+
+static void show_text(FILE *page, const char *text)
+{
+    fputs("<p>", page);
+    html_text(page, "%s", text);
+    fputs("</p>\n", page);
 }
 
 static void remark(FILE *page, const char *text)
 {
     puts(text);
-    if (!page) return;
-    fputs("<p>", page);
-    html_text(page, "%s", text);
-    fputs("</p>\n", page);
+    if (page) show_text(page, text);
 }
 
 /* What makes two runs hard to compare. */
@@ -289,9 +293,19 @@ static void show_heads(FILE *page, const Run *a, const Run *b)
     if (!a->quartiles || !b->quartiles) remark(page, "Without quartiles in both, the best rounds say what noise is.");
 }
 
-static void compare_rows(FILE *page, Run *a, Run *b, const Limits *limits, Tally *tally)
+static void count_rows(Tally *tally, const Run *a, const Run *b, const Limits *limits)
 {
     Line line;
+    for (int i = 0; i < b->count; i++)
+        line_of(&line, b->other[i] < 0 ? NULL : &a->entry[b->other[i]], &b->entry[i], limits, tally);
+    for (int i = 0; i < a->count; i++)
+        if (a->other[i] < 0) line_of(&line, &a->entry[i], NULL, limits, tally);
+}
+
+static void show_rows(FILE *page, const Run *a, const Run *b, const Limits *limits)
+{
+    Line  line;
+    Tally again = {0}, *tally = &again;
     printf("\n%-70s %10s %10s  %-20s %12s %12s\n", "", "first", "second", "ratio", "error", "error");
     if (page)
         fputs("<table><tr><th>row</th><th class=\"n\">first</th><th class=\"n\">second</th><th class=\"n\">ratio</th>"
@@ -375,12 +389,14 @@ int bench_compare(int argc, char **argv)
         show_heads(page, &a, &b);
         const bool   quick = strcmp(a.rounds, "quick") == 0 || strcmp(b.rounds, "quick") == 0;
         const Limits limits = {quick ? 1.3 : 1.1, slower};
-        compare_rows(page, &a, &b, &limits, &tally);
         show_drift(page, &a, &b);
+        count_rows(&tally, &a, &b, &limits);
         snprintf(text, sizeof text, "%d rows in both: %d within noise, %d faster, %d slower; errors: %d beyond their limit, %d worse, "
                  "%d better; only in the first %d, only in the second %d", tally.both, tally.noise, tally.faster, tally.slower,
                  tally.broken, tally.worse, tally.better, tally.gone, tally.new);
-        remark(page, text);
+        if (page) show_text(page, text);
+        show_rows(page, &a, &b, &limits);
+        puts(text);
         if (page) status = html_end(page, report);
     }
     if (tally.broken) log_error("bench: %d errors became worse, beyond their limit", tally.broken);
