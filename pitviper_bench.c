@@ -215,7 +215,7 @@ void bench_add(Bench *bench, const BenchRow *row)
     bench_show(best, row->best, row->unit);
     bench_show(rate, row->rate, row->rate_unit);
     bench_show(error, row->error, row->error_unit);
-    if (!isnan(row->ratio)) snprintf(ratio, sizeof ratio, "%.2f x %.80s", row->ratio, or_empty(row->to));
+    if (!isnan(row->ratio)) snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio, or_empty(row->to));
     if (bench->terminal) fputs("\r\x1b[K", stderr);
     printf("%-*s %10s %10s  %-18s %-22s %s%s%s%s\n", what_width, what, median_text, best, rate, ratio, error,
            row->against ? ": " : "", or_empty(row->against), holds ? "" : "  ** beyond its limit **");

@@ -1,8 +1,9 @@
 /* pitviper_bench_compare.c: two runs side by side, row by row.
  *
  * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians differ
- * by a tenth and the middle halves of the rounds do not meet; where a row has no quartiles, its best must say so, too;
- * and a time that was measured once must differ by half. An error is the same on the same inputs: a tenth is a change. */
+ * by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no quartiles, its
+ * best must say so, too; and a time that was measured once must differ by half. When most rows moved alike it was the
+ * machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a change. */
 #include "pitviper_bench.h"
 
 #include <stdlib.h>
@@ -155,15 +156,15 @@ static void match(Run *a, Run *b)
 /* ---- judging ---------------------------------------------------------------------------------- */
 
 /* Beyond noise: see the top. */
-static bool apart(const Entry *a, const Entry *b, double ratio)
+static bool apart(const Entry *a, const Entry *b, double ratio, double least)
 {
     const double by = ratio > 1 ? ratio : 1 / ratio;
-    if (a->high >= a->low && b->high >= b->low) return by > 1.1 && (ratio > 1 ? b->low > a->high : b->high < a->low);
-    if (a->best > 0 && b->best > 0) return by > 1.1 && (ratio > 1 ? b->best > 1.1 * a->best : 1.1 * b->best < a->best);
+    if (a->high >= a->low && b->high >= b->low) return by > least && (ratio > 1 ? b->low > a->high : b->high < a->low);
+    if (a->best > 0 && b->best > 0) return by > least && (ratio > 1 ? b->best > least * a->best : least * b->best < a->best);
     return by > 1.5;
 }
 
-static Verdict judge(const Entry *a, const Entry *b)
+static Verdict judge(const Entry *a, const Entry *b, double least)
 {
     Verdict    v = {.ratio = NAN};
     const bool time = strcmp(b->unit, "s") == 0, same_unit = strcmp(a->unit, b->unit) == 0;
@@ -171,7 +172,7 @@ static Verdict judge(const Entry *a, const Entry *b)
         v.change = OTHER_UNIT;
     } else if (a->median > 0 && b->median > 0 && a->median < INFINITY && b->median < INFINITY) {
         v.ratio = b->median / a->median;
-        if (time && apart(a, b, v.ratio)) v.change = v.ratio > 1 ? SLOWER : FASTER;
+        if (time && apart(a, b, v.ratio, least)) v.change = v.ratio > 1 ? SLOWER : FASTER;
         if (!time && (v.ratio > 1.1 || v.ratio < 1 / 1.1)) v.change = v.ratio > 1 ? MORE : LESS;
     }
     const bool same_error_unit = strcmp(a->error_unit, b->error_unit) == 0;
@@ -205,12 +206,17 @@ typedef struct Tally {
     int both, noise, faster, slower, too_slow, broken, worse, better, gone, new;
 } Tally;
 
+typedef struct Limits {
+    double least;              /* factor below which a time is noise */
+    double slower;             /* factor beyond which a row fails */
+} Limits;
+
 typedef struct Line { /* a row of both, or of one */
     char what[192], a[32], b[32], ratio[32], error_a[32], error_b[32], verdict[128];
     bool bad;
 } Line;
 
-static void line_of(Line *out, const Entry *a, const Entry *b, double slower, Tally *tally)
+static void line_of(Line *out, const Entry *a, const Entry *b, const Limits *limits, Tally *tally)
 {
     const Entry *one = b ? b : a;
     char         what[128], bench[32];
@@ -225,14 +231,14 @@ static void line_of(Line *out, const Entry *a, const Entry *b, double slower, Ta
         *(a ? &tally->gone : &tally->new) += 1;
         return;
     }
-    const Verdict v = judge(a, b);
+    const Verdict v = judge(a, b, limits->least);
     verdict_text(out->verdict, &v);
     if (!isnan(v.ratio)) {
         snprintf(out->ratio, sizeof out->ratio, "%.2f", v.ratio);
         if (a->low > 0 && b->low > 0 && a->high > 0 && b->high > 0 && strcmp(b->unit, "s") == 0)
             snprintf(out->ratio, sizeof out->ratio, "%.2f (%.2f .. %.2f)", v.ratio, b->low / a->high, b->high / a->low);
     }
-    const bool too_slow = v.change == SLOWER && v.ratio > slower;
+    const bool too_slow = v.change == SLOWER && v.ratio > limits->slower;
     out->bad = v.broken || too_slow;
     tally->both++;
     tally->noise += strcmp(out->verdict, "within noise") == 0;
@@ -255,18 +261,22 @@ static void show_line(FILE *page, const Line *l)
         fputs("</td><td class=\"n\">", page);
         html_text(page, "%s", cells[k]);
     }
-    fprintf(page, "</td><td class=\"%s\">", l->bad ? "bad" : strcmp(l->verdict, "within noise") == 0 ? "dim" : "");
+    fprintf(page, "</td><td style=\"white-space:nowrap\" class=\"%s\">", l->bad ? "bad" : strcmp(l->verdict, "within noise") == 0 ? "dim" : "");
     html_text(page, "%s", l->verdict);
     fputs("</td></tr>\n", page);
+}
+
+static void show_text(FILE *page, const char *text)
+{
+    fputs("<p>", page);
+    html_text(page, "%s", text);
+    fputs("</p>\n", page);
 }
 
 static void remark(FILE *page, const char *text)
 {
     puts(text);
-    if (!page) return;
-    fputs("<p>", page);
-    html_text(page, "%s", text);
-    fputs("</p>\n", page);
+    if (page) show_text(page, text);
 }
 
 /* What makes two runs hard to compare. */
@@ -283,24 +293,59 @@ static void show_heads(FILE *page, const Run *a, const Run *b)
     if (!a->quartiles || !b->quartiles) remark(page, "Without quartiles in both, the best rounds say what noise is.");
 }
 
-static void compare_rows(FILE *page, Run *a, Run *b, double slower, Tally *tally)
+static void count_rows(Tally *tally, const Run *a, const Run *b, const Limits *limits)
 {
     Line line;
+    for (int i = 0; i < b->count; i++)
+        line_of(&line, b->other[i] < 0 ? NULL : &a->entry[b->other[i]], &b->entry[i], limits, tally);
+    for (int i = 0; i < a->count; i++)
+        if (a->other[i] < 0) line_of(&line, &a->entry[i], NULL, limits, tally);
+}
+
+static void show_rows(FILE *page, const Run *a, const Run *b, const Limits *limits)
+{
+    Line  line;
+    Tally again = {0}, *tally = &again;
     printf("\n%-70s %10s %10s  %-20s %12s %12s\n", "", "first", "second", "ratio", "error", "error");
     if (page)
         fputs("<table><tr><th>row</th><th class=\"n\">first</th><th class=\"n\">second</th><th class=\"n\">ratio</th>"
               "<th class=\"n\">error, first</th><th class=\"n\">error, second</th><th>verdict</th></tr>\n", page);
     for (int i = 0; i < b->count; i++) {
-        line_of(&line, b->other[i] < 0 ? NULL : &a->entry[b->other[i]], &b->entry[i], slower, tally);
+        line_of(&line, b->other[i] < 0 ? NULL : &a->entry[b->other[i]], &b->entry[i], limits, tally);
         show_line(page, &line);
     }
     for (int i = 0; i < a->count; i++) {
         if (a->other[i] >= 0) continue;
-        line_of(&line, &a->entry[i], NULL, slower, tally);
+        line_of(&line, &a->entry[i], NULL, limits, tally);
         show_line(page, &line);
     }
     if (page) fputs("</table>\n", page);
     putchar('\n');
+}
+
+static int by_value(const void *pa, const void *pb)
+{
+    const double a = *(const double *)pa, b = *(const double *)pb;
+    return (a > b) - (a < b);
+}
+
+/* The median of all ratios of times: what moved every row. */
+static void show_drift(FILE *page, const Run *a, const Run *b)
+{
+    double *ratio = calloc((size_t)b->count + 1, sizeof *ratio);
+    char    text[160];
+    int     n = 0;
+    for (int i = 0; ratio && i < b->count; i++) {
+        const Entry *x = b->other[i] < 0 ? NULL : &a->entry[b->other[i]], *y = &b->entry[i];
+        if (x && strcmp(x->unit, "s") == 0 && strcmp(y->unit, "s") == 0 && x->median > 0 && y->median > 0)
+            ratio[n++] = y->median / x->median;
+    }
+    if (n > 0) {
+        qsort(ratio, (size_t)n, sizeof *ratio, by_value);
+        snprintf(text, sizeof text, "median ratio of %d times: %.2f; what moves all rows alike is the machine", n, ratio[n / 2]);
+        remark(page, text);
+    }
+    free(ratio);
 }
 
 static void usage(FILE *to)
@@ -342,11 +387,16 @@ int bench_compare(int argc, char **argv)
     if (status == STATUS_OK) {
         match(&a, &b);
         show_heads(page, &a, &b);
-        compare_rows(page, &a, &b, slower, &tally);
+        const bool   quick = strcmp(a.rounds, "quick") == 0 || strcmp(b.rounds, "quick") == 0;
+        const Limits limits = {quick ? 1.3 : 1.1, slower};
+        show_drift(page, &a, &b);
+        count_rows(&tally, &a, &b, &limits);
         snprintf(text, sizeof text, "%d rows in both: %d within noise, %d faster, %d slower; errors: %d beyond their limit, %d worse, "
                  "%d better; only in the first %d, only in the second %d", tally.both, tally.noise, tally.faster, tally.slower,
                  tally.broken, tally.worse, tally.better, tally.gone, tally.new);
-        remark(page, text);
+        if (page) show_text(page, text);
+        show_rows(page, &a, &b, &limits);
+        puts(text);
         if (page) status = html_end(page, report);
     }
     if (tally.broken) log_error("bench: %d errors became worse, beyond their limit", tally.broken);

@@ -125,8 +125,8 @@ static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *p
     snprintf(against, sizeof against, "none is better in time, error or memory alone");
     if (best) {
         char   with[96] = "";
-        if (best->bytes > 0 && held->bytes > 0) snprintf(with, sizeof with, ", %.2f x the memory", best->bytes / held->bytes);
-        snprintf(against, sizeof against, "'%.60s': %.2f x the time, %.2f x the error%s%s", best->setting,
+        if (best->bytes > 0 && held->bytes > 0) snprintf(with, sizeof with, ", %.2g x the memory", best->bytes / held->bytes);
+        snprintf(against, sizeof against, "'%.60s': %.2g x the time, %.2g x the error%s%s", best->setting,
                  bench_ratio(&best->time, &held->time), held->error > 0 ? best->error / held->error : 1, with,
                  bench->quick ? "; quick rounds, not judged" : "");
     }

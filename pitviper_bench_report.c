@@ -4,7 +4,7 @@
 
 static const char table_style[] =
     "<style>.bar{display:inline-block;height:.7em;background:#1f6fb2;opacity:.6;margin-left:.5em;vertical-align:baseline}"
-    "svg.pvp{max-width:100%;height:auto}nav a{margin-right:1rem}td.w{max-width:34rem}td.w+td{white-space:nowrap}"
+    "svg.pvp{max-width:100%;height:auto}nav a{margin-right:1rem}td.w{min-width:16rem}"
     ".scroll{overflow-x:auto}</style>\n";
 
 static const struct {
@@ -127,12 +127,12 @@ static void show_limit(FILE *page, const Bench *bench)
         if (!row->to || strcmp(row->to, "rays alone") != 0) continue;
         if (!begun) {
             fputs("<h2>Against the tracer alone</h2>\n<p>A frame's time over that of its eye and sun rays alone, in turn: 1 would be "
-                  "the limit.</p>\n<table><tr><th>frame</th><th class=\"n\">x its rays</th></tr>\n", page);
+                  "the limit.</p>\n<table><tr><th>frame</th><th class=\"n\">x its rays</th><th></th></tr>\n", page);
             begun = true;
         }
         fputs("<tr><td>", page);
         html_text(page, "%s", row->what);
-        fprintf(page, "</td><td class=\"n\">%.2f<span class=\"bar\" style=\"width:%.1frem\"></span></td></tr>\n", row->ratio,
+        fprintf(page, "</td><td class=\"n\">%.2f</td><td><span class=\"bar\" style=\"width:%.1frem\"></span></td></tr>\n", row->ratio,
                 clamp(row->ratio, 0, 20));
     }
     if (begun) fputs("</table>\n", page);

@@ -142,14 +142,14 @@ static double cost_of(const Plot *p, const Box *b)
 }
 
 /* About a point: nearest first, right before left before above. */
-static Box place_label(const Plot *p, int k, double wide_px, double *leader)
+static Box place_label(const Plot *p, int k, double near_px, double wide_px, double *leader)
 {
     static const double turn[8][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
     Box    best = {0};
     double least = INFINITY;
     for (int ring = 0; ring < 5; ring++)
         for (int t = 0; t < 8; t++) {
-            const double away = 9 + 14 * ring, slant = turn[t][0] != 0 && turn[t][1] != 0 ? 0.75 : 1;
+            const double away = near_px + 14 * ring, slant = turn[t][0] != 0 && turn[t][1] != 0 ? 0.75 : 1;
             const double x = p->x_px[k] + slant * away * turn[t][0], y = p->y_px[k] + slant * away * turn[t][1];
             const double x0 = turn[t][0] > 0 ? x : turn[t][0] < 0 ? x - wide_px : x - 0.5 * wide_px;
             const double y0 = turn[t][1] > 0 ? y : turn[t][1] < 0 ? y - line_px : y - 0.5 * line_px;
@@ -169,7 +169,7 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
         if (point->bytes < 1e4) snprintf(memory, sizeof memory, "%.3g", 1e-6 * point->bytes);
     }
     snprintf(text, sizeof text, "%.60s%s%.20s%s", point->setting, *memory ? " (" : "", memory, *memory ? " MB)" : "");
-    const Box box = place_label(p, k, letter_px * letters(text), &leader);
+    const Box box = place_label(p, k, point->is_default ? 13 : 9, letter_px * letters(text), &leader);
     p->box[p->boxes++] = box;
     if (leader > 0)
         fprintf(to, "<line class=\"ld\" x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\"/>", p->x_px[k], p->y_px[k],

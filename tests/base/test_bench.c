@@ -197,7 +197,7 @@ static void a_default_off_the_front_fails_and_is_told_why(void **state)
     CHECK(COMMAND("bench", "knob", "--csv", path) == 1);
     CHECK(table_open(&table, path) == STATUS_OK);
     CHECK(strcmp(table_text(&table, 1, mark), "default") == 0 && strcmp(table_text(&table, 3, error), "1") == 0);
-    CHECK(strstr(table_text(&table, 3, table_column(&table, "against")), "'fine': 0.90 x the time, 0.20 x the error"));
+    CHECK(strstr(table_text(&table, 3, table_column(&table, "against")), "'fine': 0.9 x the time, 0.2 x the error"));
     table_close(&table);
 
     settings[2] = point_of("fine", 2e-3, 0.02, 0.2, 0);
