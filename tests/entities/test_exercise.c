@@ -235,6 +235,10 @@ static void promise_by_settings(void **state)
     keeps_its_promise("dis.threshold_m=5 dis.heartbeat_s=9 dis.rate_hz=20 dis.threshold_deg=6");
     keeps_its_promise("dis.updates=true dis.bundle=true dis.version=6");
     keeps_its_promise("dis.updates=true dis.dead_reckoning=8");
+    /* where longitudes jump: east and west of the antimeridian, about the poles and on top of one */
+    keeps_its_promise("place.lat_deg=-16.8 place.lon_deg=180");
+    keeps_its_promise("place.lat_deg=89.99 place.lon_deg=35 dis.dead_reckoning=8");
+    keeps_its_promise("place.lat_deg=-90 place.lon_deg=-180 dis.dead_reckoning=3");
 }
 
 /* ---- what goes on the wire -------------------------------------------------------------------------- */

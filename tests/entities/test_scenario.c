@@ -96,6 +96,8 @@ static void set_from_outside(void **state)
     CHECK(s.seed == 3 && s.dis.version == 7 && s.group_count == 0);
     CHECK(scenario_set(&s, "dis.version", "6", "--set") == STATUS_OK && s.dis.version == 6);
     CHECK(scenario_set(&s, "dis.version", "8", "--set") == STATUS_BAD_VALUE && s.dis.version == 6);
+    CHECK(scenario_set(&s, "place.lat_deg", "-90", "--set") == STATUS_OK && s.place.lat_deg == -90);
+    CHECK(scenario_set(&s, "place.lat_deg", "90.001", "--set") == STATUS_BAD_VALUE && s.place.lat_deg == -90);
     CHECK(scenario_set(&s, "dis.versoin", "6", "--set") == STATUS_BAD_VALUE && strstr(check_said, "dis.versoin"));
     scenario_destroy(&s);
 }
