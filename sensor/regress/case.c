@@ -87,6 +87,15 @@ static void name_of(char out[128], const char *folder)
     free(whole);
 }
 
+Status case_read_file(Case *out, const char *path)
+{
+    Case   read   = *out;
+    Status status = settings_read(&read, NULL, &table, path);
+    if (status == STATUS_OK) status = check(&read, path);
+    if (status == STATUS_OK) *out = read;
+    return status;
+}
+
 Status case_read(Case *out, const char *folder)
 {
     char path[case_path_size];
@@ -101,8 +110,7 @@ Status case_read(Case *out, const char *folder)
         log_error("regress: there is no %s; a case is a folder that holds one (`pitviper regress --help`)", path);
         return STATUS_BAD_VALUE;
     }
-    Status status = settings_read(&read, NULL, &table, path);
-    if (status == STATUS_OK) status = check(&read, path);
+    const Status status = case_read_file(&read, path);
     if (status == STATUS_OK) *out = read;
     return status;
 }

@@ -61,6 +61,8 @@ typedef struct Case {
 Case   case_default(void);
 /* case.yaml of this folder. Any bytes; on failure logs file, line, key, value, range and what to do. */
 Status case_read(Case *out, const char *folder);
+/* The same of a file by itself, which is in no folder yet. On failure *out is untouched. */
+Status case_read_file(Case *out, const char *path);
 /* Where a file that the case names is: ${NAME} from the environment, else relative to the folder. False, and why in
  * reason, when that variable is not set or the path too long. */
 bool   case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);

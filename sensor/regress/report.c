@@ -60,7 +60,7 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     } else {
         const Scale change = scale_of_difference(p.difference, count, found->limit);
         put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, "got - expected");
-        fputs("<p class=\"dim\">both: ", page);
+        fputs("<p>both: ", page);
         legend_put(page, colours, scale, found->unit, scratch);
         fputs(" &nbsp; difference: ", page);
         legend_put(page, COLOURS_SIGNED, change, found->unit, scratch);
@@ -110,7 +110,11 @@ static void put_channel(FILE *page, const CaseResult *r, int channel)
     const ChannelResult *found = &r->verdict.channel[channel];
     RecordFrame          expected = {0}, got = {0};
     fputs("<h3>", page);
-    html_text(page, "%s%s", channel_name((Channel)channel), channel == r->verdict.first ? ": the probable cause" : "");
+    html_text(page, "%s%s%s", channel_name((Channel)channel),
+              channel == CHANNEL_MWIR || channel == CHANNEL_LWIR ? ", apparent temperature"
+              : channel == CHANNEL_RADAR                         ? ", below the brightest expected"
+                                                                 : "",
+              channel == r->verdict.first ? ": the probable cause" : "");
     fputs("</h3>\n<p>", page);
     html_text(page, "%s", found->line);
     fputs("</p>\n", page);
@@ -137,8 +141,8 @@ static void put_numbers(FILE *page, const CaseResult *r)
         if (c->picture || k == CHANNEL_PROFILE) {
             fprintf(page, "<td class=\"n\">%.3g %%</td><td class=\"n\">%.3g %s</td><td class=\"n\">%.3g %s</td>",
                     100 * v->share, v->max, c->unit ? c->unit : "", v->rms, c->unit ? c->unit : "");
-            if (v->column >= 0 && c->picture) fprintf(page, "<td>frame %d (%d, %d)</td>", c->frame, v->column, v->row);
-            else if (v->column >= 0) fprintf(page, "<td>frame %d, bin %d</td>", c->frame, v->column);
+            if (v->column >= 0 && c->picture) fprintf(page, "<td style=\"white-space:nowrap\">frame %d (%d, %d)</td>", c->frame, v->column, v->row);
+            else if (v->column >= 0) fprintf(page, "<td style=\"white-space:nowrap\">frame %d, bin %d</td>", c->frame, v->column);
             else fputs("<td></td>", page);
         } else {
             fprintf(page, "<td class=\"n\">%d field%s</td><td></td><td></td><td></td>", c->diffs, c->diffs == 1 ? "" : "s");

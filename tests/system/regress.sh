@@ -1,0 +1,33 @@
+# What tests of `pitviper regress` share; source it after common.sh.
+# new_case NAME [SIZE RATE FRAMES]: frames in all bands of the demo's missile, 2 of 64x48 unless said
+new_case() {
+    local name=$1 size=${2:-64x48} rate=${3:-5} frames=${4:-5, 24}
+    mkdir -p "$tmp/$name"
+    cat >"$tmp/$name/case.yaml" <<YAML
+purpose: a missile nears a truck & its <column>
+scenario: demo
+config: |
+  sensor:
+    width_px: ${size%x*}
+    height_px: ${size#*x}
+    rate_hz: $rate
+  exercise:
+    listen_s: 14
+    utc: 2026-06-21T17:00:00Z
+  seed: 1
+frames: [$frames]
+timeout_s: 300
+YAML
+}
+# changed NAME SED: the case good with its record, and a line changed
+changed() {
+    rm -rf "${tmp:?}/$1"
+    cp -r "$tmp/good" "$tmp/$1"
+    sed -i "$2" "$tmp/$1/case.yaml"
+}
+# fails NAME WHAT: the case ends with 1, and this is its line
+fails() {
+    run regress "$tmp/$1"
+    check "$1: exit code" [ $code = 1 ]
+    check "$1: $2" grep -qE "^$1 +FAILED: $2" "$tmp/stdout" || tail -n 3 "$tmp/stdout"
+}

@@ -1,0 +1,136 @@
+#!/usr/bin/env bash
+# A case is recorded, passes, and fails in the channel that was spoilt and in no earlier one; whatever is wrong with case
+# or record is said, and breaks no other case.
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/regress.sh"
+
+# ---- a record is made, and passes -------------------------------------------------------------
+new_case good
+echo "mine" >"$tmp/good/notes.txt"
+fails good 'no record yet: .*--update'
+run regress --update "$tmp/good"
+check "--update without --why: exit code" [ $code = 2 ]
+check "--update without --why: what to do" complained 'why TEXT'
+check "--update without --why: no record" [ ! -e "$tmp/good/record" ]
+run regress --update "$tmp/good" --why 'seen: two <tanks> and a truck'
+check "--update: exit code" [ $code = 0 ]
+check "--update: the record" [ -s "$tmp/good/record/000005.exr" ] && [ -s "$tmp/good/record/000024.profile.exr" ]
+check "--update: a small one" [ "$(cat "$tmp"/good/record/* | wc -c)" -le 75000 ]
+check "--update: the card says why" grep -q '^- why: seen: two <tanks> and a truck$' "$tmp/good/card.md"
+check "--update: the date of the exercise" grep -qE '^## pitviper .*exercise of 2026-06-21 17:0[0-9]:[0-9]{2} UTC$' "$tmp/good/card.md"
+check "--update: nothing is left over" [ ! -e "$tmp/good/record.part" ]
+run regress "$tmp/good" --junit "$tmp/junit.xml" --report "$tmp/report.html" --work "$tmp/work"
+check "passes: exit code" [ $code = 0 ]
+check "passes: its line" grep -qE '^good +ok' "$tmp/stdout"
+check "passes: to the bit" test -z "$(grep 'bits differ' "$tmp/stdout")"
+check "other files are left alone" grep -qx mine "$tmp/good/notes.txt"
+touch "$tmp/good/record/notes.txt"
+before=$(cat "$tmp"/good/record/*.exr | cksum)
+run regress --update "$tmp/good" --why again
+check "the same again: same octets" [ "$before" = "$(cat "$tmp"/good/record/*.exr | cksum)" ]
+check "the same again: newest first" [ "$(grep '^- why' "$tmp/good/card.md" | head -n 1)" = '- why: again' ]
+check "the same again: the old reason stays" [ "$(grep -c '^- why' "$tmp/good/card.md")" = 2 ]
+check "the same again: what is not ours stays" [ -e "$tmp/good/record/notes.txt" ]
+
+# ---- the channel that was spoilt is named -------------------------------------------------------
+changed another_hour 's/T17:00/T18:30/';                fails another_hour 'sun: sun\.'
+changed another_seed 's/^  seed: 1/  seed: 2/';         fails another_seed '(entity|part|range): '
+changed another_rate 's/rate_hz: 5/rate_hz: 4/';        fails another_rate 'time: time_s is '
+changed another_exercise 's/^config/scenario_set: seed=5\nconfig/'; fails another_exercise '(counters|pose): '
+changed heavy_rain 's/^  seed: 1/  seed: 1\n  weather: {visibility_m: 5000}/'; fails heavy_rain '(temperature|optical): '
+changed other_lobe 's/^  seed: 1/  seed: 1\n  radar: {lobe_deg: 4}/'; fails other_lobe '(radar|radar profile): '
+changed noisy 's/^  seed: 1/  seed: 1\n  detector: {noise: 50}/'; fails noisy 'target signals: '
+changed bent "s/^    width_px/    hfov_deg: 6.2\n    width_px/"; fails bent '(pose|entity|part): '
+
+# other tables: each column by a factor, in every material
+spoil_table() { # spoil_table COLUMN FACTOR
+    rm -rf "$tmp/etc"
+    cp -r etc "$tmp/etc"
+    awk -F, -v OFS=, -v name="$1" -v factor="$2" '
+        /^#/ || NF < 2 { print; next }
+        !head { for (i = 1; i <= NF; i++) if ($i == name) at = i; head = 1; print; next }
+        at { $at = $at * factor } { print }' etc/materials.csv >"$tmp/etc/materials.csv"
+}
+while read -r column factor named; do
+    spoil_table "$column" "$factor"
+    PITVIPER_ETC=$tmp/etc run regress "$tmp/good"
+    check "materials, $column: names $named" grep -qE "^good +FAILED: $named: " "$tmp/stdout" || cat "$tmp/stdout"
+done <<'COLUMNS'
+solar_absorptance 0.9 temperature
+rho_g 0.9 optical
+rho_mwir 0.9 mwir
+radar_gamma 1.1 radar
+COLUMNS
+
+# ---- a case that is wrong, absent, hanging, crashing; beside a good one ----------------------------
+changed absent 's|^scenario: demo|log: ${PITVIPER_NOWHERE}/a.pcap|'
+changed absent_file 's|^scenario: demo|log: a.pcap|'
+changed bad_config 's/width_px: 64/width_px: 7/'
+changed bad_set 's/^config/scenario_set: nobodys=5\nconfig/'
+changed beyond 's/frames: .*/frames: [5, 24, 5000]/'
+cp "$tmp/good/record/000005.exr" "$tmp/beyond/record/005000.exr"
+changed slow 's/timeout_s: 300/timeout_s: 0.1/; s/seed: 1/seed: 1\n  models: {sag_m: 0.0001}/'
+run regress "$tmp"/{good,absent,absent_file,bad_config,bad_set,beyond,slow} --junit "$tmp/junit.xml" --report "$tmp/report.html" \
+    --work "$tmp/work" --jobs 3
+check "among others: exit code" [ $code = 1 ]
+check "among others: the good one" grep -qE '^good +ok' "$tmp/stdout"
+check "a variable that is not set" grep -qE '^absent +skipped: log absent: PITVIPER_NOWHERE is not set' "$tmp/stdout"
+check "a log that is not there" grep -qE '^absent_file +skipped: log absent: .*a.pcap' "$tmp/stdout"
+check "settings that are bad" grep -qE '^bad_config +FAILED: .*config.yaml:2: sensor.width_px' "$tmp/stdout"
+check "a scenario's setting" grep -qE '^bad_set +FAILED: .*nobodys' "$tmp/stdout"
+check "a frame that is not there" grep -qE '^beyond +FAILED: .*there is no frame 5000' "$tmp/stdout"
+check "one that hangs" grep -qE '^slow +FAILED: .*ended after 0.1 s \(timeout_s\)' "$tmp/stdout"
+check "in the order given" [ "$(awk '/ (ok|FAILED:|skipped:) / { printf "%s ", $1 }' "$tmp/stdout")" = "good absent absent_file bad_config bad_set beyond slow " ]
+
+# a crash: the child gets a signal that it would give itself
+changed crash 's/64/720/; s/48/486/; s/seed: 1/seed: 1\n  models: {sag_m: 0.0001}/; s/rate_hz: 5/rate_hz: 5\n    samples: 8/'
+"$pitviper" regress "$tmp/crash" --work "$tmp/work" >"$tmp/stdout" 2>"$tmp/stderr" &
+parent=$!
+for ((i = 0; i < 400; i++)); do
+    child=$(cat /proc/$parent/task/*/children 2>/dev/null | tr -d '\n')
+    [ -n "$child" ] && grep -qz replay "/proc/${child%% *}/cmdline" 2>/dev/null && break
+    sleep 0.05
+done
+sleep 0.2
+kill -SEGV ${child%% *} 2>/dev/null
+wait $parent
+check "one that crashes: exit code" [ $? = 1 ]
+check "one that crashes: said" grep -qE '^crash +FAILED: `pitviper replay` crashed: Segmentation fault' "$tmp/stdout" || cat "$tmp/stdout"
+
+# ---- what is written for others ------------------------------------------------------------------
+if command -v python3 >/dev/null; then
+    python3 - "$tmp/junit.xml" "$tmp/report.html" <<'PYTHON' || fail "junit.xml and report.html"
+import base64, re, sys
+import xml.etree.ElementTree as tree
+from html.parser import HTMLParser
+suite = tree.parse(sys.argv[1]).getroot()
+assert suite.tag == "testsuite" and suite.get("tests") == "7", suite.attrib
+assert (suite.get("errors"), suite.get("skipped"), suite.get("failures")) == ("4", "2", "0"), suite.attrib
+cases = {c.get("name"): [k.tag for k in c if not k.tag.startswith("system")] for c in suite}
+assert cases["good"] == [] and cases["absent"] == ["skipped"] and cases["slow"] == ["error"], cases
+page = open(sys.argv[2]).read()
+class Nesting(HTMLParser):
+    open_tags = []
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "img", "br"): self.open_tags.append(tag)
+    def handle_startendtag(self, tag, attrs): pass
+    def handle_endtag(self, tag): assert self.open_tags.pop() == tag, (tag, self.getpos())
+nesting = Nesting()
+nesting.feed(page)
+assert not nesting.open_tags, nesting.open_tags
+assert "a missile nears a truck &amp; its &lt;column&gt;" in page
+pictures = re.findall(r'data:image/png;base64,([^"]+)"', page)
+assert len(pictures) >= 4 and all(base64.b64decode(p)[:8] == b"\x89PNG\r\n\x1a\n" for p in pictures), len(pictures)
+assert "http" not in re.sub(r'base64,[^"]+', "", page), "needs another file"
+PYTHON
+else
+    echo "skipped in part: no python3"
+fi
+run regress "$tmp/another_hour" --report "$tmp/report.html" --work "$tmp/work"
+for what in 'the probable cause' 'got - expected' 'By hand' 'pitviper replay' 'temperature' 'scale of colours'; do
+    check "the report holds: $what" grep -q -- "$what" "$tmp/report.html"
+done
+bash -c "$(awk '/By hand/ { on = 1; next } on' "$tmp/report.html" | sed -n 's/^<pre[^>]*><code>//; /pitviper/p' | tail -n 1)" >"$tmp/stdout" 2>&1
+check "the command by hand does it" grep -q '2 frames in' "$tmp/stdout" || cat "$tmp/stdout"
+
+finish
