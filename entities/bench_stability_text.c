@@ -210,7 +210,7 @@ static Status table_cells(Bench *bench, double *bad, const char *name, bool (*is
         snprintf(cell, sizeof cell, "%.*s", length < sizeof cell ? (int)length : 0, at);
         if (!text_to_double(&value, cell)) continue;
         for (int t = 0; t < text_count; t++) {
-            if (number++ % (bench_quick(bench) ? 37 : 3) != 0) continue;
+            if (number++ % (bench_quick(bench) ? 37 : 7) != 0) continue;
             FILE *to = fopen(path, "w");
             if (!to) *bad = INFINITY;
             else fprintf(to, "%.*s%s%s", (int)(at - whole), whole, texts[t], at + length);

@@ -114,7 +114,7 @@ static const Setting keys[] = {
     {"dis.announce_per_s", SETTING_DOUBLE, AT(dis.announce_per_s), 1, 1e6, NULL, "1/s",
      "entities are first heard of at this rate, so that a crowd is no burst"},
     {"faults.bad_every_s", SETTING_DOUBLE, AT(faults.bad_every_s), 0, 1e6, NULL, "s",
-     "a malformed PDU, of 14 kinds in turn; 0: none"},
+     "a malformed PDU, of 14 kinds in turn, 0.001 s apart at least; 0: none"},
     {"faults.loss", SETTING_DOUBLE, AT(faults.loss), 0, 1, NULL, "", "share of datagrams lost"},
     {"faults.duplicate", SETTING_DOUBLE, AT(faults.duplicate), 0, 1, NULL, "", "share sent twice"},
     {"faults.reorder", SETTING_DOUBLE, AT(faults.reorder), 0, 1, NULL, "", "share overtaken by the next one"},
@@ -378,11 +378,18 @@ static bool counts_fit(const Scenario *s)
     return false;
 }
 
+static const double least_bad_s = 1e-3; /* as many as ticks at the highest rate: with 1e-20 a tick would not end */
+
 Status scenario_check(const Scenario *s)
 {
     if (!date_fits(s, "dis.date", s->dis.date) || !date_fits(s, "dis.clock", s->dis.clock)) return STATUS_BAD_VALUE;
     if (s->dis.updates && s->dis.version == 5) {
         log_error("scenario: %s: dis.updates: version 5 has no Entity State Update; say dis.version 6 or 7", s->path);
+        return STATUS_BAD_VALUE;
+    }
+    if (s->faults.bad_every_s > 0 && s->faults.bad_every_s < least_bad_s) {
+        log_error("scenario: %s: faults.bad_every_s: %g is neither 0 nor in %g .. 1e6 s", s->path, s->faults.bad_every_s,
+                  least_bad_s);
         return STATUS_BAD_VALUE;
     }
     for (int i = 0; i < s->group_count; i++)

@@ -61,6 +61,7 @@ static void what_is_wrong_is_said(void **state)
     refused("dis: {version: 4}\n", ":1: dis.version: '4'~5 .. 7");
     refused("dis: {updates: true, version: 5}\n", "dis.updates: version 5 has no Entity State Update");
     refused("dis: {clock: yesterday}\n", "dis.clock: 'yesterday'~2024-06-21T18:00:00Z");
+    refused("faults: {bad_every_s: 1e-20}\nvehicles:\n" TANK, "faults.bad_every_s: 1e-20~0.001 .. 1e6 s");
     refused("faults: {loss: 1.5}\n", ":1: faults.loss: '1.5'~0 .. 1");
     refused("vehicles:\n  - {name: A, route_m: [0, 0], count: 50000}\n  - {name: B, route_m: [0, 0], count: 2}\n",
             "50002 entities~at most 50000");
