@@ -119,7 +119,7 @@ static double path_values(void *user, bool quick)
     const Light *light = user;
     Dice         dice = {.stream = 31};
     double       wrong = 0;
-    for (int n = quick ? 20000 : 500000; n > 0; n--) {
+    for (int n = quick ? 10000 : 300000; n > 0; n--) {
         const AirPath path = {.observer_m = n % 7 ? dice_uniform(&dice, -100, 25000) : dice_log(&dice, 1e-3, 1e9),
                               .target_m = n % 5 ? dice_uniform(&dice, -100, 25000) : dice_log(&dice, 1e-3, 1e9),
                               .range_m = n % 3 ? dice_log(&dice, 1e-300, 1e12) : n % 2 ? 0 : dice_log(&dice, 1, 2e5),

@@ -246,7 +246,7 @@ static const HeapCount *heap(void *user, bool quick)
     Body       b;
     Dice       dice = {.stream = 4};
     HeapCount *count = user;
-    const int  heaps = quick ? 3 : 25, rays = quick ? 1000 : 4000;
+    const int  heaps = quick ? 3 : 12, rays = quick ? 1000 : 4000;
     if (count->done) return count;
     *count = (HeapCount){.done = true};
     for (int h = 0; h < heaps; h++) {

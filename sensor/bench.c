@@ -4,6 +4,7 @@
 #include "sensor/bench/precision.h"
 #include "sensor/bench/skip.h"
 #include "sensor/bench/speed.h"
+#include "sensor/bench/stability.h"
 
 const BenchSuite sensor_benches[] = {
     {.name = "speed", .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: the target that fills "
@@ -17,5 +18,7 @@ const BenchSuite sensor_benches[] = {
      "same to the bit, or the row fails."},
     {.name = "precision", .help = "frames, models and detectors: settings, what each costs and how wrong it is",
      .run = bench_precision},
+    {.name = "stability", .help = "detectors of 1 to 16 bits, displays without contrast, threads that agree",
+     .run = sensor_bench_stability},
 };
 const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;

@@ -100,6 +100,12 @@ head -c 3000 /dev/urandom >"$tmp/noise.csv"
 run bench compare "$tmp/all.csv" "$tmp/noise.csv"
 check "noise is refused" [ $code = 1 ]
 
+table stability
+for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "picture: a block" \
+            "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " "threads: "; do
+    has stability "$what"
+done
+
 run bench speed --quick --size 17
 check "a size that is none is refused" [ $code = 1 ]
 check "and said" complained "size: '17' is not"

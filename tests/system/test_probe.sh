@@ -37,11 +37,12 @@ for name in $names; do
 done
 
 # Planck: the reference's 25 digits, rounded
-probe planck < <(printf 'lo_um,hi_um,temp_k,note\n8,12,300,a\n3.4,4.8,300,b\n8,12,1,c\n8,12,-1,d\n12,8,300,e\n')
+probe planck < <(printf 'lo_um,hi_um,temp_k,note\n8,12,300,a\n3.4,4.8,300,b\n8,12,1,c\n8,12,-1,d\n12,8,300,e\n8,12,1.68,f\n')
 near "8-12 um at 300 K" "$(cell 1 radiance_w_m2_sr)" 38.50042393334787 1e-12
 near "its derivative" "$(cell 1 dldt)" 0.62970434672218919 1e-14
 near "3.4-4.8 um at 300 K" "$(cell 2 radiance_w_m2_sr)" 1.3460717111444343 1e-13
 check "at 1 K nothing is left" test "$(cell 3 radiance_w_m2_sr)" = 0
+check "what a frame flushes to 0 is 0 here" test "$(cell 6 radiance_w_m2_sr)" = 0
 check "a temperature below 0 has no answer" test -z "$(cell 4 radiance_w_m2_sr)" -a -n "$(cell 4 error)"
 check "nor has a band upside down" test -n "$(cell 5 error)"
 check "foreign columns pass" test "$(cell 5 note)" = e

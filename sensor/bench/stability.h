@@ -1,0 +1,9 @@
+/* sensor/bench/stability.h: `pitviper bench stability`: detectors and displays at their ends, and threads that agree. */
+#ifndef SENSOR_BENCH_STABILITY_H
+#define SENSOR_BENCH_STABILITY_H
+
+#include "pitviper.h"
+
+Status sensor_bench_stability(Bench *bench);
+
+#endif
