@@ -60,6 +60,8 @@ typedef struct Config {
     struct {
         char   dis[8];             /* off, sensor or truth */
         bool   files, png;
+        char   pairs[8];           /* off, target or all */
+        bool   coco;
     } publish;
     struct {
         char   path[1024];         /* empty: nothing is recorded */
@@ -100,6 +102,8 @@ Status config_set(Config *config, const char *key, const char *value, const char
 bool   config_given(const Config *config, const char *key);
 /* What sensor.optical says. */
 OpticalChannels config_optical(const Config *config);
+/* What sensor.antialias says. */
+bool   config_adaptive(const Config *config);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
 /* A file to begin with: every key with its value, commented out, and what it means. */
