@@ -229,6 +229,15 @@ bool config_adaptive(const Config *config) { return strcmp(config->sensor.antial
 
 bool config_given(const Config *config, const char *name) { return config->given[settings_find(&table, name)]; }
 
+ConfigKind config_kind(const char *name)
+{
+    const int row = settings_find(&table, name);
+    if (row < 0) return CONFIG_NONE;
+    return keys[row].type == SETTING_DOUBLE                                          ? CONFIG_NUMBER
+           : keys[row].type == SETTING_INT || keys[row].type == SETTING_LONG ? CONFIG_WHOLE
+                                                                                     : CONFIG_WORD;
+}
+
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
     return settings_set(config, config->given, &table, name, value, source);
@@ -323,6 +332,8 @@ void config_write(FILE *to, const Config *config)
           "# says whether a file is good.\n", to);
     settings_write(to, &table, config, none);
 }
+
+void config_write_settings(FILE *to, const Config *config) { settings_write(to, &table, config, config->given); }
 
 void config_write_given(FILE *to, const Config *config)
 {

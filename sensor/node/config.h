@@ -100,6 +100,9 @@ Status config_read(Config *config, const char *path);
 Status config_set(Config *config, const char *key, const char *value, const char *source);
 /* Whether a file or the command line has set it; the key must exist. */
 bool   config_given(const Config *config, const char *key);
+/* What a key takes. */
+typedef enum ConfigKind { CONFIG_NONE /* there is no such key */, CONFIG_WORD, CONFIG_NUMBER, CONFIG_WHOLE } ConfigKind;
+ConfigKind config_kind(const char *key);
 /* What sensor.optical says. */
 OpticalChannels config_optical(const Config *config);
 /* What sensor.antialias says. */
@@ -108,6 +111,8 @@ bool   config_adaptive(const Config *config);
 Status config_check(const Config *config);
 /* A file to begin with: every key with its value, commented out, and what it means. */
 void   config_write(FILE *to, const Config *config);
+/* A file that reads back as *config: what was given stands there, all else commented out. */
+void   config_write_settings(FILE *to, const Config *config);
 /* `key = value` of those that were given, a line each, indented. */
 void   config_write_given(FILE *to, const Config *config);
 /* The canonical text: every key and value, in table order; those that change no picture (network, publish, record, the
