@@ -42,9 +42,10 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
 static bool shadow_box(double box[4], const Job *job, int index)
 {
     const SnapshotEntity *entity = &job->snapshot->entity[index];
-    const Model          *model  = catalog_model(job->world->catalog, entity->model);
     const double         *sun    = job->air->sun_d_enu;
     double                foot_enu[3], tip_enu[3], foot[4], tip[4];
+    if (entity->model < 0) return false;
+    const Model          *model  = catalog_model(job->world->catalog, entity->model);
     if (!job->world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
     enu_from_ecef(foot_enu, &job->world->frame, entity->p_ecef);
     /* a flying one's shadow is elsewhere, and as faint as it is far */

@@ -90,6 +90,7 @@ int render_places(int samples, int edge_samples);
 /* 1 << AirBand of all that a request of these bands needs of the air. */
 unsigned render_air_bands(unsigned bands, OpticalChannels optical);
 
+/* An entity whose model is -1 keeps its place in the snapshot and is not drawn: no pixel, no shadow, no echo. */
 Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
               const Air *air, Pool *pool, Arena *arena);
 

@@ -15,7 +15,7 @@ void project_target(void *user, int worker, int index)
     const View           *view   = &job->request->view;
     const SnapshotEntity *entity = &job->snapshot->entity[index];
     double                p_enu[3], offset_enu[3], p_cam[3];
-    if (index == job->request->hidden_entity) return;
+    if (index == job->request->hidden_entity || entity->model < 0) return;
     enu_from_ecef(p_enu, &job->world->frame, entity->p_ecef);
     v3_sub(offset_enu, p_enu, view->p_enu);
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);

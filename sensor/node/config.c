@@ -96,6 +96,9 @@ static const Setting keys[] = {
     {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "",
      "pictures into files; truth.jsonl and run.json are written in any case"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "display pictures beside the EXR ones"},
+    {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
+     "replay: each frame also without what it looks at, or without any entity, and both without noise"},
+    {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "", "replay: coco.json, boxes and masks of what is seen"},
     {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "pcapng file for all that `run` hears; empty: none"},
     {"weather.atmosphere", SETTING_TEXT, AT(weather.atmosphere), 0, 0, NULL, "",
      "us1976, midlat_summer, or another of etc/atmosphere"},
@@ -191,6 +194,7 @@ Config config_default(void)
     c.node.site                     = 4711;
     c.node.application              = 1;
     strcpy(c.publish.dis, "off");
+    strcpy(c.publish.pairs, "off");
     c.publish.files                 = true;
     c.publish.png                   = true;
     strcpy(c.weather.atmosphere, "us1976");
@@ -221,7 +225,18 @@ OpticalChannels config_optical(const Config *config)
                                                         : OPTICAL_PAN;
 }
 
+bool config_adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }
+
 bool config_given(const Config *config, const char *name) { return config->given[settings_find(&table, name)]; }
+
+ConfigKind config_kind(const char *name)
+{
+    const int row = settings_find(&table, name);
+    if (row < 0) return CONFIG_NONE;
+    return keys[row].type == SETTING_DOUBLE                                          ? CONFIG_NUMBER
+           : keys[row].type == SETTING_INT || keys[row].type == SETTING_LONG ? CONFIG_WHOLE
+                                                                                     : CONFIG_WORD;
+}
 
 Status config_set(Config *config, const char *name, const char *value, const char *source)
 {
@@ -263,6 +278,11 @@ Status config_check(const Config *config)
     if (!*config->terrain.elevation && (*config->terrain.cover || *config->terrain.orthophoto)) {
         log_error("config: terrain.%s needs terrain.elevation: on invented ground it would lie on other country's hills",
                   *config->terrain.cover ? "cover" : "orthophoto");
+        return STATUS_BAD_VALUE;
+    }
+    const bool pairs = strcmp(config->publish.pairs, "off") != 0;
+    if ((pairs || config->publish.coco) && !config->publish.files) {
+        log_error("config: publish.%s: needs pictures in files; set publish.files: true", pairs ? "pairs" : "coco");
         return STATUS_BAD_VALUE;
     }
     DisEntityId id;
@@ -312,6 +332,8 @@ void config_write(FILE *to, const Config *config)
           "# says whether a file is good.\n", to);
     settings_write(to, &table, config, none);
 }
+
+void config_write_settings(FILE *to, const Config *config) { settings_write(to, &table, config, config->given); }
 
 void config_write_given(FILE *to, const Config *config)
 {

@@ -60,6 +60,8 @@ typedef struct Config {
     struct {
         char   dis[8];             /* off, sensor or truth */
         bool   files, png;
+        char   pairs[8];           /* off, target or all */
+        bool   coco;
     } publish;
     struct {
         char   path[1024];         /* empty: nothing is recorded */
@@ -98,12 +100,19 @@ Status config_read(Config *config, const char *path);
 Status config_set(Config *config, const char *key, const char *value, const char *source);
 /* Whether a file or the command line has set it; the key must exist. */
 bool   config_given(const Config *config, const char *key);
+/* What a key takes. */
+typedef enum ConfigKind { CONFIG_NONE /* there is no such key */, CONFIG_WORD, CONFIG_NUMBER, CONFIG_WHOLE } ConfigKind;
+ConfigKind config_kind(const char *key);
 /* What sensor.optical says. */
 OpticalChannels config_optical(const Config *config);
+/* What sensor.antialias says. */
+bool   config_adaptive(const Config *config);
 /* Ranges that involve several keys. */
 Status config_check(const Config *config);
 /* A file to begin with: every key with its value, commented out, and what it means. */
 void   config_write(FILE *to, const Config *config);
+/* A file that reads back as *config: what was given stands there, all else commented out. */
+void   config_write_settings(FILE *to, const Config *config);
 /* `key = value` of those that were given, a line each, indented. */
 void   config_write_given(FILE *to, const Config *config);
 /* The canonical text: every key and value, in table order; those that change no picture (network, publish, record, the

@@ -80,17 +80,12 @@ static void product_folder(char path[path_size], const char *out, int b)
              b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
 }
 
-void frame_files_clear(const char *out)
+const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};
+
+static void clear_products(const char *out)
 {
-    /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const parents[] = {"frames", "profiles", "raw"};
+    static const char *const parents[] = {"frames", "profiles", "raw"};
     char path[path_size];
-    bool earlier = false;
-    for (int i = 0; i < 2; i++) {
-        snprintf(path, sizeof path, "%s/%s", out, marks[i]);
-        earlier = unlink(path) == 0 || earlier;
-    }
-    if (!earlier) return;
     for (int b = 0; b < folder_count; b++) {
         product_folder(path, out, b);
         clear_folder(path);
@@ -99,6 +94,29 @@ void frame_files_clear(const char *out)
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", out, parents[i]);
         rmdir(path);
+    }
+}
+
+void frame_files_clear(const char *out)
+{
+    /* a run leaves truth.jsonl from its first moment, run.json at its end */
+    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {"pairs", "pairs.jsonl", "coco.json"};
+    char path[path_size];
+    bool earlier = false;
+    for (int i = 0; i < 2; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, marks[i]);
+        earlier = unlink(path) == 0 || earlier;
+    }
+    if (!earlier) return;
+    clear_products(out);
+    for (int i = 0; i < pair_folders; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, pair_folder[i]);
+        clear_products(path);
+        rmdir(path);
+    }
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/%s", out, beside[i]);
+        remove(path); /* a folder: when nothing else is in it */
     }
 }
 
@@ -111,6 +129,21 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
         if (bands == 0) break;
         if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
             b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
+        product_folder(path, out, b);
+        status = frame_files_folder(path);
+    }
+    return status;
+}
+
+/* Bands whose pictures come from a detector. */
+static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
+
+Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw)
+{
+    char   path[path_size];
+    Status status = frame_files_folder(out);
+    for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
+        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) : b >= BAND_COUNT || !(bands & detector_bands & 1u << b)) continue;
         product_folder(path, out, b);
         status = frame_files_folder(path);
     }
@@ -319,7 +352,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
         if (!chain) d.min_span = 1e-3; /* W/(m2 sr): grey things under some 4 lux; a night shows as one */
-        d.noise_sigma   = optical_sigma(frame->picture, c);
+        d.noise_sigma   = optical_sigma(frame->noise_of ? frame->noise_of : frame->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;
     } else {
@@ -403,6 +436,7 @@ static Status write_png(const FrameFiles *frame, int band)
                                (uint64_t)frame->config->seed, (uint32_t)(3 * band + c), (uint32_t)frame->frame);
         }
         const DetectorLevel level = follow_level(frame, band, &detector, detector_level(&detector, out, planes, count));
+        frame->level[band].shown  = level;
         if (rgb)
             detector_display_rgb(shown, out, count, &detector, level);
         else
@@ -470,7 +504,7 @@ static void run_job(void *user, int worker, int task)
     FileJobs *jobs = user;
     (void)worker;
     if (task == 0) {
-        jobs->hash_status = hash_planes(jobs->hash, jobs->frame);
+        jobs->hash_status = jobs->hash ? hash_planes(jobs->hash, jobs->frame) : STATUS_OK;
         return;
     }
     FileJob *job = &jobs->job[task - 1];
@@ -480,6 +514,22 @@ static void run_job(void *user, int worker, int task)
 static void add_job(FileJobs *jobs, Status (*write)(const FrameFiles *, int), int band)
 {
     jobs->job[jobs->count++] = (FileJob){write, band, STATUS_OK};
+}
+
+static Status run_jobs(FileJobs *jobs, Pool *pool)
+{
+    pool_run(pool, jobs->count + 1, run_job, jobs);
+    for (int i = 0; i < jobs->count; i++)
+        if (jobs->job[i].status != STATUS_OK) return jobs->job[i].status;
+    return jobs->hash_status;
+}
+
+Status frame_files_write_displays(const FrameFiles *frame, Pool *pool)
+{
+    FileJobs jobs = {.frame = frame};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (frame->request->bands & detector_bands & 1u << b) add_job(&jobs, write_png, b);
+    return run_jobs(&jobs, pool);
 }
 
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool)
@@ -494,10 +544,7 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
         if ((frame->png || raw) && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
     }
     if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
-    pool_run(pool, jobs.count + 1, run_job, &jobs);
-    for (int i = 0; i < jobs.count; i++)
-        if (jobs.job[i].status != STATUS_OK) return jobs.job[i].status;
-    return jobs.hash_status;
+    return run_jobs(&jobs, pool);
 }
 
 Status frame_files_hash(char hash[sha256_text_size], const FrameFiles *frame) { return hash_planes(hash, frame); }

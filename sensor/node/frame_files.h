@@ -16,6 +16,7 @@ typedef struct FrameLevel {
     bool          known;
     double        time_s;
     DetectorLevel level;
+    DetectorLevel shown;            /* of the last display made: what its black and white stand for */
 } FrameLevel;
 
 typedef struct FrameFiles {
@@ -23,6 +24,7 @@ typedef struct FrameFiles {
     const Config   *config;
     const World    *world;
     const Picture  *picture;
+    const Picture  *noise_of;       /* whose mean white noise is a share of; NULL: picture */
     const Snapshot *snapshot;
     const RenderRequest *request;
     const char     *host, *config_sha256;
@@ -37,14 +39,21 @@ typedef struct FrameFiles {
 /* folder: makes OUT, or says why not; what is in it stays.
  * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
  * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
- * raw; a clear message when the place cannot be written. No bands: OUT alone. */
+ * raw; a clear message when the place cannot be written. No bands: OUT alone.
+ * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
 Status frame_files_folder(const char *out);
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
+Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);
+/* Folders below OUT for each frame's other pictures (sensor/node/pairs.h). */
+enum { pair_folders = 3 };
+extern const char *const pair_folder[pair_folders];
 /* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
 void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
+/* What lies behind a detector alone: display pictures and raw counts of its bands. */
+Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
 /* The same hash, and no file. */
 Status frame_files_hash(char hash[sha256_text_size], const FrameFiles *frame);
 

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, ONLY, HELP,
-      KEY };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, ONLY, COCO, SWEEP,
+      HELP, KEY };
 
 static const char *const names[] = {"replay", "run"};
 
@@ -49,6 +49,11 @@ static const struct Row {
     {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
     {"no-png", NO_PNG, IN_BOTH, NULL, NULL, "no display pictures, only EXR"},
     {"no-files", NO_FILES, IN_BOTH, NULL, NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
+     "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
+    {"coco", COCO, IN_REPLAY, NULL, NULL, "DIR/coco.json: boxes and masks in COCO's format"},
+    {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
+     "one run for each combination of the settings in a YAML file, in folders\nof DIR, with manifest.jsonl and manifest.html; again: goes on"},
     {"help", HELP, IN_BOTH, NULL, NULL, "this"},
 };
 enum { row_count = sizeof rows / sizeof rows[0] };
@@ -203,6 +208,8 @@ static bool take(Options *o, const struct Row *row, const char *text)
         return ok;
     case NO_PNG: o->config.publish.png = false; return true;
     case ONLY: return parse_only(o, text);
+    case COCO: o->config.publish.coco = true; return true;
+    case SWEEP: o->sweep = text; return true;
     case NO_FILES: o->config.publish.files = false; return true;
     default: return true; /* CONFIG was read before */
     }
@@ -276,5 +283,10 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
     if (o->host_count == 1) o->host_count = 0; /* one host is a setting like any other */
+    if (command == COMMAND_RUN && (strcmp(o->config.publish.pairs, "off") != 0 || o->config.publish.coco)) {
+        log_error("options: publish.%s: is made by `replay`; --record what is heard, and replay it --causal",
+                  o->config.publish.coco ? "coco" : "pairs");
+        return 1 + 2;
+    }
     return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
 }

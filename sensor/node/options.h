@@ -11,6 +11,7 @@ typedef enum CommandName { COMMAND_REPLAY, COMMAND_RUN } CommandName;
 typedef struct Options {
     CommandName command;
     const char *log, *out, *isa;
+    const char *sweep;          /* a file of sensor/node/sweep_file.h; NULL: one run */
     int         threads, host_count, frames; /* frames: stop after so many; 0: never */
     double      speed, for_s;   /* exercise seconds a second, INFINITY: as fast as it goes; stop after so long */
     bool        no_skip;

@@ -3,6 +3,7 @@
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/sweep.h"
 
 #include <errno.h>
 #include <libgen.h>
@@ -163,6 +164,7 @@ int replay_command(int argc, char **argv)
     char        name[4096];
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
+    if (run.options.sweep) return sweep_replay(&run.options);
 
     snprintf(name, sizeof name, "%s", run.options.log);
     run.log_name = basename(name);

@@ -16,4 +16,8 @@ typedef struct Sensors {
  * given beside a sensor's own. */
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands);
 
+/* The detectors of the bands that have one, at their beginning; others stay NULL. On failure those made are in chain,
+ * for the caller to destroy. */
+Status sensors_chains(Chain *chain[BAND_COUNT], const Sensors *sensors, const Config *config);
+
 #endif

@@ -54,8 +54,7 @@ static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Sess
     return air_at(air, &source, &weather, &local, &air_eye, shared->pool, arena);
 }
 
-/* Products give normals in the host's own ENU. */
-static void turn_normals(Picture *picture, const double r_host_from_enu[9])
+void turn_normals(Picture *picture, const double r_host_from_enu[9])
 {
     const size_t count = (size_t)picture->width * (size_t)picture->height;
     for (size_t i = 0; i < count; i++) {
@@ -66,8 +65,6 @@ static void turn_normals(Picture *picture, const double r_host_from_enu[9])
     }
 }
 
-static bool adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }
-
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
     const Config *config = s->shared->config;
@@ -75,7 +72,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
-    if (adaptive(config)) {
+    if (config_adaptive(config)) {
         request->edge_samples   = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;
     }
@@ -168,6 +165,9 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     memcpy(record.r_ecef_from_cam, eye.state.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     if (shared->publish) shared->publish(shared->user, &record); /* before the disk has its turn */
     status = write_files(done->hash, s, &files, &record);
+    if (status == STATUS_OK && s->coco) status = coco_frame(s->coco, &record, picture.entity);
+    if (status == STATUS_OK && s->pairs)
+        status = pairs_frame(s->pairs, &files, done->hash, &air, r_host_from_enu, s->plan.aim, eye.hidden, arena);
     if (status != STATUS_OK) return status;
 
     const double end_s = wall_clock_s();
@@ -188,23 +188,11 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
 
 /* ---- the loop ------------------------------------------------------------------------------- */
 
-static Status open_detectors(Chain *chain[BAND_COUNT], const SessionShared *shared)
-{
-    const Config *config = shared->config;
-    const int     places = render_places(config->sensor.samples, adaptive(config) ? config->sensor.edge_samples : 0);
-    Status        status = STATUS_OK;
-    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++)
-        if (shared->sensors->has[b])
-            status = chain_create(&chain[b], &shared->sensors->preset[b], config->sensor.width_px,
-                                  config->sensor.height_px, places, (uint64_t)config->seed);
-    return status;
-}
-
 /* After the folders are there. */
 static Status open_writer(Session *s)
 {
     Chain *chain[BAND_COUNT] = {NULL};
-    Status status = open_detectors(chain, s->shared);
+    Status status = sensors_chains(chain, s->shared->sensors, s->shared->config);
     if (status == STATUS_OK) return frame_writer_create(&s->writer, chain, s->shared->config);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
     return status;
@@ -243,7 +231,7 @@ static Status open_session(Session *s)
     Status        status = entity_table_create(&s->table, &table, shared->catalog, path);
     const Config *config = shared->config;
     unsigned      raw = 0;
-    if (status == STATUS_OK) status = open_detectors(s->chain, shared);
+    if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, config);
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? shared->bands : 0, raw);
@@ -255,7 +243,12 @@ static Status open_session(Session *s)
         return STATUS_IO;
     }
     s->truth_patience = (Patience){.what = "lines in truth.jsonl"};
-    return shared->live && config->publish.files ? open_writer(s) : STATUS_OK;
+    if (shared->live) return config->publish.files ? open_writer(s) : STATUS_OK;
+    if (config->publish.coco)
+        status = coco_open(&s->coco, s->out, config->publish.png ? "png" : "exr", shared->config_sha256, config->seed);
+    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0)
+        status = pairs_open(&s->pairs, shared, s->out, raw);
+    return status;
 }
 
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
@@ -327,6 +320,8 @@ Status session_close(Session *s, SessionResult *result)
         log_error("session: cannot write truth.jsonl: %s", strerror(errno));
         status = STATUS_IO;
     }
+    const Status coco = coco_close(s->coco), pairs = pairs_close(s->pairs);
+    if (status == STATUS_OK) status = coco != STATUS_OK ? coco : pairs;
     if (result) *result = s->result;
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);

@@ -4,10 +4,12 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/node/frame_writer.h"
+#include "sensor/node/pairs.h"
 #include "sensor/node/patience.h"
 #include "sensor/node/player.h"
 #include "sensor/node/seeker.h"
 #include "sensor/node/session.h"
+#include "sensor/publish/coco.h"
 
 struct Session {
     const SessionShared *shared;
@@ -28,6 +30,8 @@ struct Session {
     FrameLevel           level[BAND_COUNT];
     FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
     Patience             truth_patience; /* live: with truth.jsonl */
+    Pairs               *pairs;         /* NULL: not asked for */
+    Coco                *coco;
     SessionResult        result;
     int                  capacity;      /* of the result's lists */
 };
@@ -47,5 +51,7 @@ void session_advance(Session *s, double t_s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
  * host is not there. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
+/* Products give normals in the host's own ENU. */
+void turn_normals(Picture *picture, const double r_host_from_enu[9]);
 
 #endif

@@ -1,0 +1,399 @@
+#include "sensor/node/sweep.h"
+
+#include "sensor/node/contact_sheet.h"
+#include "sensor/node/frame_files.h"
+#include "sensor/node/host_run.h"
+#include "sensor/node/sweep_file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <jansson.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { path_size = 4200, name_size = 16, words_size = 4096 };
+
+typedef struct Variant {
+    int  number;               /* of the file, 0 is the first */
+    char name[name_size];
+    char config_sha256[sha256_text_size];
+} Variant;
+
+typedef struct SweepRun {
+    const Options *options;
+    Sweep          sweep;
+    Variant       *variant;
+    int            count, repeated;
+    char           log_sha256[sha256_text_size];
+    FILE          *manifest;
+    ContactSheet   sheet;
+    int            made, kept, failed;
+} SweepRun;
+
+/* How one variant ended. */
+typedef struct Outcome {
+    const char *status;
+    json_t     *run;           /* run.json; NULL: there is none */
+    char        why[400];      /* of a failure */
+    double      seconds;
+} Outcome;
+
+/* ---- before the first ------------------------------------------------------------------------- */
+
+/* key=value of the axes, separated; as much as there is room for. */
+static void settings_words(char out[words_size], const Sweep *sweep, int number, const char *between)
+{
+    char   value[sweep_value_size];
+    size_t n = 0;
+    *out = 0;
+    for (int i = 0; i < sweep->axis_count && n < words_size; i++) {
+        sweep_value(value, sweep, number, i);
+        n += (size_t)snprintf(out + n, words_size - n, "%s%s=%s", i ? between : "", sweep->axis[i].key, value);
+    }
+}
+
+static int by_key(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
+
+/* By what its axes say, in the order of the keys: not by its number, nor by the order of the file. */
+static Status name_variant(char name[name_size], const Sweep *sweep, int number)
+{
+    char  *line[sweep_axes_max], value[sweep_value_size], sha256[sha256_text_size], *text = NULL;
+    size_t octets;
+    int    lines  = 0;
+    Status status = STATUS_OK;
+    for (; lines < sweep->axis_count && status == STATUS_OK; lines++) {
+        sweep_value(value, sweep, number, lines);
+        if (asprintf(&line[lines], "%s=%s\n", sweep->axis[lines].key, value) < 0) line[lines] = NULL;
+        if (!line[lines]) status = STATUS_NO_MEMORY;
+    }
+    FILE *all = status == STATUS_OK ? open_memstream(&text, &octets) : NULL;
+    if (all) {
+        qsort(line, (size_t)lines, sizeof *line, by_key);
+        for (int i = 0; i < lines; i++) fputs(line[i], all);
+        status = fclose(all) == 0 ? sha256_bytes(sha256, text, octets) : STATUS_NO_MEMORY;
+        if (status == STATUS_OK) snprintf(name, name_size, "v%.10s", sha256);
+    } else {
+        status = STATUS_NO_MEMORY;
+    }
+    free(text);
+    for (int i = 0; i < lines; i++) free(line[i]);
+    return status;
+}
+
+static Status try_variant(Variant *variant, const SweepRun *s)
+{
+    char   words[words_size];
+    Run   *run = calloc(1, sizeof *run); /* too large for a stack */
+    if (!run) return STATUS_NO_MEMORY;
+    run->options  = *s->options;
+    Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
+    if (status == STATUS_OK) status = config_check(&run->options.config);
+    if (status == STATUS_OK) status = run_prepare(run);
+    if (status == STATUS_OK) {
+        strcpy(variant->config_sha256, run->config_sha256);
+        status = name_variant(variant->name, &s->sweep, variant->number);
+    } else {
+        settings_words(words, &s->sweep, variant->number, ", ");
+        log_error("sweep: that is of variant %d, %s; nothing has been run", variant->number + 1, words);
+    }
+    free(run);
+    return status;
+}
+
+static int by_name(const void *a, const void *b)
+{
+    const Variant *x = a, *y = b;
+    const int      names = strcmp(x->name, y->name);
+    return names ? names : (x->number > y->number) - (x->number < y->number);
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const Variant *x = a, *y = b;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+/* Random draws from short lists meet again: the first of them is run. */
+static void drop_repeated(SweepRun *s)
+{
+    int kept = 0;
+    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_name);
+    for (int i = 0; i < s->count; i++)
+        if (i == 0 || strcmp(s->variant[i].name, s->variant[kept - 1].name) != 0) s->variant[kept++] = s->variant[i];
+    s->repeated = s->count - kept;
+    s->count    = kept;
+    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_number);
+}
+
+static Status prepare(SweepRun *s)
+{
+    const Options *o = s->options;
+    if (o->host_count > 1) {
+        log_error("sweep: --host is given several times; a sweep has one a variant: make exercise.host an axis");
+        return STATUS_BAD_VALUE;
+    }
+    Status status = sweep_read(&s->sweep, o->sweep, &o->config);
+    if (status != STATUS_OK) return status;
+    s->variant = calloc((size_t)s->sweep.count, sizeof *s->variant);
+    if (!s->variant) return STATUS_NO_MEMORY;
+    for (s->count = 0; s->count < s->sweep.count && status == STATUS_OK; s->count++) {
+        s->variant[s->count].number = s->count;
+        status = try_variant(&s->variant[s->count], s);
+    }
+    if (status == STATUS_OK) drop_repeated(s);
+    return status;
+}
+
+static Status open_products(SweepRun *s)
+{
+    const Options *o = s->options;
+    char           path[path_size], title[256];
+    Status         status = sha256_file(s->log_sha256, o->log);
+    if (status == STATUS_OK) status = frame_files_folder(o->out);
+    if (status != STATUS_OK) return status;
+    const char *slash = strrchr(o->log, '/');
+    snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
+    status = sheet_begin(&s->sheet, o->out, title);
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
+    s->manifest = fopen(path, "w");
+    if (s->manifest) return STATUS_OK;
+    log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* ---- one variant ------------------------------------------------------------------------------ */
+
+static const char *text_at(const json_t *object, const char *key)
+{
+    const char *text = json_string_value(json_object_get(object, key));
+    return text ? text : "";
+}
+
+static bool is_run(const json_t *run, const SweepRun *s, const Variant *v)
+{
+    return strcmp(text_at(run, "pitviper"), PITVIPER_VERSION) == 0 &&
+           strcmp(text_at(run, "config_sha256"), v->config_sha256) == 0 &&
+           strcmp(text_at(run, "log_sha256"), s->log_sha256) == 0;
+}
+
+static json_t *read_json(const char *folder, const char *name)
+{
+    char path[path_size + 32];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return json_load_file(path, 0, NULL);
+}
+
+/* A whole run of these settings; its run.json is then the outcome's. */
+static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings_sha256)
+{
+    json_t *variant = read_json(folder, "variant.json"), *run = read_json(folder, "run.json");
+    const bool kept = is_run(variant, s, v) && strcmp(text_at(variant, "settings_sha256"), settings_sha256) == 0 &&
+                      is_run(run, s, v);
+    json_decref(variant);
+    if (kept) *outcome = (Outcome){.status = "kept", .run = run};
+    else json_decref(run);
+    return kept;
+}
+
+/* All settings, as the file that the run reads. */
+static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const SweepRun *s,
+                               const Variant *v)
+{
+    Config *config = malloc(sizeof *config);
+    *text          = NULL;
+    FILE  *file    = config ? open_memstream(text, octets) : NULL;
+    Status status  = file ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n");
+        config_write_settings(file, config);
+    }
+    if (file && fclose(file) != 0) status = STATUS_NO_MEMORY;
+    free(config);
+    return status == STATUS_OK ? sha256_bytes(sha256, *text, *octets) : status;
+}
+
+static Status write_file(const char *path, const char *text, size_t octets)
+{
+    FILE      *file = fopen(path, "w");
+    const bool whole = file && fwrite(text, 1, octets, file) == octets;
+    if (file && fclose(file) == 0 && whole) return STATUS_OK;
+    log_error("sweep: cannot write %s: %s", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* This program again, in a process of its own. Its exit code; -1: it ended otherwise. */
+static int run_child(const Options *o, const char *folder)
+{
+    char settings[path_size + 32], said[path_size + 32], threads[16], speed[40];
+    snprintf(settings, sizeof settings, "%s/settings.yaml", folder);
+    snprintf(said, sizeof said, "%s/log.txt", folder);
+    snprintf(threads, sizeof threads, "%d", o->threads);
+    snprintf(speed, sizeof speed, "%.17g", o->speed);
+    const char *argv[] = {"pitviper", "replay", "--config", settings, "--out", folder, "--threads", threads, "--isa", o->isa,
+                          "--speed", isfinite(o->speed) ? speed : "max", "--", o->log, NULL, NULL};
+    if (o->no_skip) argv[12] = "--no-skip", argv[13] = "--", argv[14] = o->log;
+    posix_spawn_file_actions_t files;
+    pid_t                      child;
+    int                        state = -1;
+    if (posix_spawn_file_actions_init(&files) != 0) return -1;
+    const bool ready = posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0) == 0 &&
+                       posix_spawn_file_actions_addopen(&files, 1, said, O_WRONLY | O_CREAT | O_TRUNC, 0666) == 0 &&
+                       posix_spawn_file_actions_adddup2(&files, 1, 2) == 0;
+    if (ready && posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)argv, environ) == 0)
+        while (waitpid(child, &state, 0) < 0 && errno == EINTR) {}
+    posix_spawn_file_actions_destroy(&files);
+    return state != -1 && WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+}
+
+/* The last error that the run logged. */
+static void find_reason(char *why, size_t size, const char *folder, int code)
+{
+    char   path[path_size + 32], *text = NULL;
+    size_t octets;
+    if (code >= 0) snprintf(why, size, "exit code %d", code);
+    else snprintf(why, size, "it ended by a signal, or could not be started");
+    snprintf(path, sizeof path, "%s/log.txt", folder);
+    if (access(path, R_OK) != 0 || text_read_file(&text, &octets, "sweep", path, 1 << 24) != STATUS_OK) return;
+    for (char *line = text, *end; *line; line = end) {
+        end = line + strcspn(line, "\n");
+        if (strncmp(line, "error: ", 7) == 0) text_escape(why, size, line + 7, (size_t)(end - line - 7));
+        end += *end == '\n';
+    }
+    free(text);
+}
+
+static json_t *variant_json(const SweepRun *s, const Variant *v, const Outcome *outcome, const char *settings_sha256)
+{
+    char    value[sweep_value_size];
+    json_t *settings = json_object(), *hashes = json_object_get(outcome->run, "frame_sha256");
+    for (int i = 0; i < s->sweep.axis_count; i++) {
+        sweep_value(value, &s->sweep, v->number, i);
+        json_object_set_new(settings, s->sweep.axis[i].key, json_string(value));
+    }
+    json_t *line = json_pack("{s:s,s:s,s:i,s:s,s:o,s:s,s:s,s:s,s:s}", "variant", v->name, "folder", v->name, "number",
+                             v->number + 1, "status", outcome->status, "settings", settings, "config_sha256",
+                             v->config_sha256, "settings_sha256", settings_sha256, "log_sha256", s->log_sha256,
+                             "pitviper", PITVIPER_VERSION);
+    if (!line) return NULL;
+    if (*outcome->why) json_object_set_new(line, "error", json_string(outcome->why));
+    if (outcome->seconds > 0) json_object_set_new(line, "seconds", json_real(outcome->seconds));
+    if (outcome->run) {
+        json_object_set(line, "frames", json_object_get(outcome->run, "frames"));
+        json_object_set(line, "frame_sha256", hashes);
+    }
+    return line;
+}
+
+static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings,
+                         size_t octets)
+{
+    char path[path_size + 32];
+    *outcome = (Outcome){.status = "failed"};
+    if (frame_files_folder(folder) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its folder cannot be written");
+        return;
+    }
+    snprintf(path, sizeof path, "%s/variant.json", folder);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/settings.yaml", folder);
+    if (write_file(path, settings, octets) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written");
+        return;
+    }
+    const double begun_s = wall_clock_s();
+    const int    code    = run_child(s->options, folder);
+    outcome->seconds     = wall_clock_s() - begun_s;
+    outcome->run         = code == 0 ? read_json(folder, "run.json") : NULL;
+    if (code == 0 && is_run(outcome->run, s, v)) outcome->status = "made";
+    else if (code == 0) snprintf(outcome->why, sizeof outcome->why, "run.json is not of these settings and this log");
+    else find_reason(outcome->why, sizeof outcome->why, folder, code);
+}
+
+/* The frame in the middle of the run: mid-course, its target in view. */
+static int middle_frame(const json_t *run)
+{
+    const json_t *number = json_object_get(run, "frame_number");
+    return (int)json_integer_value(json_array_get(number, json_array_size(number) / 2));
+}
+
+static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
+{
+    char words[words_size], text[words_size + 600];
+    settings_words(words, &s->sweep, v->number, "\n");
+    snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
+    sheet_add(&s->sheet, s->options->out, v->name, outcome->run ? middle_frame(outcome->run) : -1, text, *outcome->why);
+    settings_words(words, &s->sweep, v->number, ", ");
+    if (*outcome->why)
+        log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
+                  s->options->out, v->name);
+    else
+        printf("%d of %d: %s %s, %s: %lld frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+               (long long)json_integer_value(json_object_get(outcome->run, "frames")), outcome->seconds);
+    fflush(stdout);
+}
+
+static Status one_variant(SweepRun *s, int place)
+{
+    const Variant *v = &s->variant[place];
+    char           folder[path_size], path[path_size + 32], part[path_size + 48], settings_sha256[sha256_text_size], *settings;
+    size_t         octets;
+    Outcome        outcome;
+    if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder) return STATUS_BAD_VALUE;
+    Status status = settings_text_of(&settings, &octets, settings_sha256, s, v);
+    if (status == STATUS_OK && !is_kept(&outcome, s, v, folder, settings_sha256))
+        make_variant(&outcome, s, v, folder, settings, octets);
+    free(settings);
+    if (status != STATUS_OK) return status;
+    s->made += strcmp(outcome.status, "made") == 0;
+    s->kept += strcmp(outcome.status, "kept") == 0;
+    s->failed += strcmp(outcome.status, "failed") == 0;
+    tell(s, v, &outcome, place);
+
+    json_t *line = variant_json(s, v, &outcome, settings_sha256);
+    char   *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    if (!text) status = STATUS_NO_MEMORY;
+    if (text && (fprintf(s->manifest, "%s\n", text) < 0 || fflush(s->manifest) != 0)) {
+        log_error("sweep: cannot write %s/manifest.jsonl: %s", s->options->out, strerror(errno));
+        status = STATUS_IO;
+    }
+    if (status == STATUS_OK && strcmp(outcome.status, "made") == 0) {
+        snprintf(path, sizeof path, "%s/variant.json", folder);
+        snprintf(part, sizeof part, "%s.part", path);
+        status = write_file(part, text, strlen(text));
+        if (status == STATUS_OK && rename(part, path) != 0) status = STATUS_IO;
+    }
+    free(text);
+    json_decref(line);
+    json_decref(outcome.run);
+    return status;
+}
+
+static Status run_all(SweepRun *s)
+{
+    Status status = open_products(s);
+    if (status == STATUS_OK && s->repeated > 0) printf("%d variants repeat others and are left out\n", s->repeated);
+    for (int i = 0; i < s->count && status == STATUS_OK; i++) status = one_variant(s, i);
+    if (s->sheet.page) {
+        const Status ended = sheet_end(&s->sheet);
+        if (status == STATUS_OK) status = ended;
+    }
+    if (s->manifest && fclose(s->manifest) != 0 && status == STATUS_OK) status = STATUS_IO;
+    if (status == STATUS_OK)
+        printf("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+               s->kept, s->failed);
+    return status;
+}
+
+int sweep_replay(const Options *options)
+{
+    SweepRun     s      = {.options = options};
+    const Status tried  = prepare(&s);
+    const Status status = tried == STATUS_OK ? run_all(&s) : tried;
+    if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");
+    free(s.variant);
+    sweep_close(&s.sweep);
+    return tried == STATUS_BAD_VALUE ? 2 : status != STATUS_OK || s.failed > 0;
+}

@@ -1,0 +1,47 @@
+/* sensor/node/sweep_file.h: which settings a sweep turns, from a YAML file:
+ *
+ *     mode: grid            # every combination, the last axis fastest (default); zip: one of each, side by side;
+ *     count: 100            # random: so many draws,
+ *     draw: 1               # of this seed (default 1): draw n is the same for any count
+ *     axes:
+ *       weather.visibility_m: [5000, 23000]
+ *       sensor:
+ *         hfov_deg: {from: 2, to: 6}      # random: evenly between; whole numbers where the key wants them
+ *       exercise.utc: [2026-06-21T10:00:00Z, 2026-12-21T17:00:00Z]
+ *       seed: 7                           # one value: the same for all
+ *
+ * Any key of `pitviper check --default`. Every value is tried before the first run; what is wrong is one logged line with
+ * file, line, key, value and range. */
+#ifndef SENSOR_NODE_SWEEP_FILE_H
+#define SENSOR_NODE_SWEEP_FILE_H
+
+#include "sensor/node/config.h"
+
+enum { sweep_variants_max = 10000, sweep_axes_max = 64, sweep_value_size = 1024 };
+
+typedef enum SweepMode { SWEEP_GRID, SWEEP_ZIP, SWEEP_RANDOM } SweepMode;
+
+typedef struct SweepAxis {
+    char   key[96];
+    int    line, count;     /* count: of values; 0: between low and high */
+    char **value;
+    double low, high;
+    bool   whole;
+} SweepAxis;
+
+typedef struct Sweep {
+    SweepMode mode;
+    int       count, axis_count; /* count: of variants */
+    long long draw;
+    SweepAxis axis[sweep_axes_max];
+} Sweep;
+
+/* base: what values are tried on. On failure *out holds nothing. */
+Status sweep_read(Sweep *out, const char *path, const Config *base);
+void   sweep_close(Sweep *sweep);
+/* As a command line would give it. */
+void   sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);
+/* All axes over base; checked but for what involves several keys. */
+Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int variant);
+
+#endif
