@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { thumbnail_px = 240, path_size = 4300 };
+enum { thumbnail_px = 160, path_size = 4300 };
 
 Status sheet_begin(ContactSheet *sheet, const char *out, const char *title)
 {

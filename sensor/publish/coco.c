@@ -83,7 +83,9 @@ static void put_runs(FILE *file, const uint32_t *entity, int width, int height, 
             on  = here;
             any = true;
         }
-    fprintf(file, "%s%lld]}}", any ? "," : "", (long long)width * height - end);
+    const long long rest = (long long)width * height - end; /* 0: the target has the last pixel */
+    if (rest > 0) fprintf(file, "%s%lld", any ? "," : "", rest);
+    fputs("]}}", file);
 }
 
 static json_t *annotation_json(const FrameRecord *r, const Target *t, long long image, long long id)

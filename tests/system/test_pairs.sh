@@ -1,0 +1,106 @@
+#!/usr/bin/env bash
+# replay --pairs: each frame with and without its target, with and without noise. What can differ between with and without
+# is bounded so: at night (no sun, no shadow) with one ray a pixel (none that also asks its neighbour's edge), radiance
+# outside the box of all the target's vertices must be the same to the bit. labels: small
+. "$(dirname "$0")/common.sh"
+
+exercise demo "$tmp/demo.pcap"
+few=(--from 1366 --to 1368 --bands optical,lwir,mwir)
+night=(--set exercise.utc=2026-06-22T08:00:00Z --set sensor.antialias=off)
+manual=(--set detector.level=manual)
+pngs() { (cd "$1" && find . -name '*.png' | sort | xargs sha256sum); }
+same_pngs() { pngs "$1" >"$tmp/a"; pngs "$2" >"$tmp/b"; [ -s "$tmp/a" ] && cmp -s "$tmp/a" "$tmp/b"; }
+
+replay "$tmp/demo.pcap" "$tmp/p" "${few[@]}" "${night[@]}" "${manual[@]}" --pairs target
+check "a replay with pairs" [ "$code" = 0 ]
+replay "$tmp/demo.pcap" "$tmp/plain" "${few[@]}" "${night[@]}" "${manual[@]}"
+check "with its target: the planes of a plain replay" same_hashes "$tmp/p" "$tmp/plain"
+check "and its pictures" same_pngs "$tmp/p/frames" "$tmp/plain/frames"
+check "plain: no pairs" [ ! -e "$tmp/plain/pairs" ]
+replay "$tmp/demo.pcap" "$tmp/quiet" "${few[@]}" "${night[@]}" "${manual[@]}" --set detector.noise=0
+for band in optical lwir mwir; do
+    check "clean: $band of a replay without noise" same_pngs "$tmp/p/pairs/clean/frames/$band" "$tmp/quiet/frames/$band"
+done
+check "a line a frame" [ "$(wc -l <"$tmp/p/pairs.jsonl")" = 3 ]
+check "the seed in each" [ "$(grep -c '"seed":1,' "$tmp/p/pairs.jsonl")" = 3 ]
+check "who was taken away" [ "$(grep -c '"removed":\["[0-9:]*"\]' "$tmp/p/pairs.jsonl")" = 3 ]
+grep -oE '"(pairs|frames|raw)/[^"]*"' "$tmp/p/pairs.jsonl" | tr -d '"' | sort -u >"$tmp/named"
+check "every file named is there" bash -c "cd '$tmp/p' && xargs ls <'$tmp/named' >/dev/null"
+check "every picture there is named" [ "$(cd "$tmp/p" && find pairs frames \( -name '*.exr' -o -name '*.png' \) ! -path '*/truth/*.png' | wc -l)" = "$(wc -l <"$tmp/named")" ]
+
+replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" "${night[@]}" "${manual[@]}" --pairs target --threads 1
+check "one thread or two: the same pairs" cmp -s "$tmp/one/pairs.jsonl" "$tmp/p/pairs.jsonl"
+check "and pictures" same_pngs "$tmp/one" "$tmp/p"
+
+# automatic level, which follows: each member's from its own pictures, begun where the run begins
+auto=(--set detector.agc_s=3 --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.hfov_deg=6)
+replay "$tmp/demo.pcap" "$tmp/auto" "${few[@]}" "${auto[@]}" --pairs target
+replay "$tmp/demo.pcap" "$tmp/auto_plain" "${few[@]}" "${auto[@]}"
+replay "$tmp/demo.pcap" "$tmp/auto_quiet" "${few[@]}" "${auto[@]}" --set detector.noise=0
+check "sensors: with, noisy is a plain replay" same_pngs "$tmp/auto/raw" "$tmp/auto_plain/raw"
+check "sensors: and its displays" same_pngs "$tmp/auto/frames" "$tmp/auto_plain/frames"
+check "sensors: clean counts are those without noise" same_pngs "$tmp/auto/pairs/clean/raw" "$tmp/auto_quiet/raw"
+check "sensors: and their displays" same_pngs "$tmp/auto/pairs/clean/frames/lwir" "$tmp/auto_quiet/frames/lwir"
+differ() { ! same_pngs "$@"; }
+check "sensors: the background has counts of its own" differ "$tmp/auto/pairs/background/raw" "$tmp/auto/raw"
+
+replay "$tmp/demo.pcap" "$tmp/all" "${few[@]}" "${night[@]}" "${manual[@]}" --pairs all
+check "all: several are taken away" grep -q '"removed":\["[0-9:]*","[0-9:]*"' "$tmp/all/pairs.jsonl"
+
+if python3 -c 'import numpy, PIL' 2>/dev/null && command -v oiiotool >/dev/null; then
+    cat >"$tmp/compare.py" <<'PY'
+import json, math, subprocess, sys
+import numpy as np
+from PIL import Image
+out, kind = sys.argv[1:]
+def exr(path, channel, type):
+    subprocess.run(["oiiotool", f"{out}/{path}", "--ch", channel, "-d", type, "-o", f"{out}/x.tif"], check=True)
+    return np.array(Image.open(f"{out}/x.tif"))
+def png(path): return np.array(Image.open(f"{out}/{path}")).astype(int)
+truths = [json.loads(line) for line in open(f"{out}/truth.jsonl")]
+changed = 0
+for truth, pair in zip(truths, (json.loads(line) for line in open(f"{out}/pairs.jsonl"))):
+    assert truth["frame_sha256"] == pair["frame_sha256"] != pair["background_sha256"], "hashes"
+    member = {(m["target"], m["noise"]): m for m in pair["members"]}
+    assert len(member) == 4
+    here = exr(member[True, True]["truth"], "entity", "uint32")
+    gone = exr(member[False, True]["truth"], "entity", "uint32")
+    outside = np.ones(here.shape, bool)
+    for t in truth["targets"]:
+        if t["entity"] in pair["removed"]:
+            x0, y0, x1, y1 = t["amodal_box_px"]
+            outside[max(0, math.floor(y0)):math.ceil(y1), max(0, math.floor(x0)):math.ceil(x1)] = False
+    assert outside.any() and (gone[outside] == here[outside]).all(), "truth outside"
+    if kind == "all": assert (gone == 0).all(), "somebody is left"
+    for band in ("optical", "mwir", "lwir"):
+        files = {k: m["bands"][band] for k, m in member.items()}
+        assert files[True, True]["radiance"] == files[True, False]["radiance"]
+        for channel in "RGB" if band == "optical" else "Y":
+            d = (exr(files[True, True]["radiance"], channel, "float") != exr(files[False, True]["radiance"], channel, "float"))
+            assert not (d & outside).any(), (pair["frame"], band, "radiance outside", int((d & outside).sum()))
+            if band == "lwir": changed += int(d.sum())
+        for noise in (True, False):  # one noise field: under a fixed level the displays differ nowhere else
+            d = png(files[True, noise]["display"]) != png(files[False, noise]["display"])
+            d = d.any(axis=2) if d.ndim == 3 else d
+            assert not (d & outside).any(), (pair["frame"], band, "display outside", int((d & outside).sum()))
+        noisy = png(files[False, True]["display"]) != png(files[False, False]["display"])
+        if band == "lwir": assert noisy.any(), "no noise at all"
+assert changed > 0, "the target was never seen"
+print(changed)
+PY
+    check "outside the target's box nothing differs" python3 "$tmp/compare.py" "$tmp/p" target
+    check "outside of all boxes nothing differs" python3 "$tmp/compare.py" "$tmp/all" all
+else
+    echo "skipped in part: no python3 with numpy and PIL, or no oiiotool"
+fi
+
+replay "$tmp/demo.pcap" "$tmp/p" "${few[@]}"
+check "an earlier run's pairs go" [ ! -e "$tmp/p/pairs" -a ! -e "$tmp/p/pairs.jsonl" ]
+replay "$tmp/demo.pcap" "$tmp/bad" --pairs some
+check "some: refused" [ "$code" != 0 ]
+check "some: what there is" complained "publish.pairs: 'some' is not one of off.target.all"
+replay "$tmp/demo.pcap" "$tmp/bad" --pairs all --no-files
+check "without files: refused" complained "publish.pairs: needs pictures in files"
+run run --out "$tmp/bad" --for 1 --set publish.pairs=all
+check "live: refused" complained "publish.pairs: is made by .replay."
+finish
