@@ -216,7 +216,6 @@ static Status obj_imports(Bench *bench)
         log_hush(true);
         const Status status = written ? model_import(&m, &report, path) : STATUS_IO;
         log_hush(false);
-        if (getenv("DBG")) fprintf(stderr, "%s %d area %g radius %g\n", obj_files[k].what, status, m.triangle_count ? model_area(&m): 0, m.radius_m);
         judged += (status == STATUS_OK) == isnan(obj_files[k].area_m2);
         if (status == STATUS_OK) {
             look_at_model(&errors, &m, 2);
