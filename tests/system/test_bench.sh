@@ -101,6 +101,11 @@ run bench compare "$tmp/all.csv" "$tmp/noise.csv"
 check "noise is refused" [ $code = 1 ]
 
 table stability
+for what in "time stamp to seconds" "exercise clock unwrapped" "denormals, infinities" "latitude, longitude, height to ECEF" "ENU axes: jump" \
+            "1000 km away" "origins anywhere" "sun over leap seconds" "geoid: a pole" "ground: cliffs" "ground of files: voids" \
+            "dead reckoning, nine algorithms" "turn to turn" "psi, theta, phi" "turrets at any angle" "Entity State: each float" \
+            "Detonation: each float" "scenario: each key" "effects.csv" "probes: each column" "built-in models" "1e6 to 1" \
+            "model files: needles"; do has stability "$what"; done
 for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "picture: a block" \
             "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " "threads: "; do
     has stability "$what"
