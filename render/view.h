@@ -42,6 +42,7 @@ typedef struct RenderRequest {
     int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
     int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as all */
     int      hidden_entity;  /* snapshot index whose parts the eye does not see (they cast shadows); -1: none */
+    bool     budget;         /* estimate how wrong the planes are: Picture.budget */
     bool     no_skip;        /* compute everything that is skipped; must give the same bits */
     double   profile_near_m, profile_bin_m; /* radar range profile */
     int      profile_bins;
