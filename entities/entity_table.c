@@ -209,6 +209,12 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     slot->spin_s = entity_slot_spin(slot, t_s);
     slot->spin_from_s = t_s;
     dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
+    double missed_m[3], turn[9];
+    v3_sub(missed_m, p_next_ecef, motion.p_ecef);
+    m3_tmul(turn, motion.r_ecef_from_body, r_next);
+    slot->missed_m   = v3_length(missed_m);
+    slot->missed_rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
+    slot->missed_s   = fmax(t_s - slot->report_s, 0);
     if (slot->reported.algorithm == 1) slot->distance_m += entity_slot_forward(slot, p_next_ecef, r_next);
     else slot->distance_m += entity_slot_forward(slot, motion.p_ecef, motion.r_ecef_from_body);
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
@@ -220,7 +226,7 @@ static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef
 {
     double r[9];
     r_ecef_from_body_euler(r, euler_rad[0], euler_rad[1], euler_rad[2]);
-    if (is_first) slot->spin_s = slot->spin_from_s = t_s;
+    if (is_first) slot->spin_s = slot->spin_from_s = t_s, slot->missed_s = 0;
     else close_interval(slot, p_ecef, r, t_s);
 
     memcpy(slot->reported.p_ecef, p_ecef, sizeof slot->reported.p_ecef);

@@ -30,6 +30,8 @@ typedef struct EntitySlot {
     double        paused_s;   /* spent stopped since the report */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
     double        distance_m; /* gone forward, at the report */
+    double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
+                               * right, and after how long; missed_s 0: there was none */
     Kinematics    reported;   /* as believed: entity_table.c */
     HeatState     heat;
     Articulation  articulation;

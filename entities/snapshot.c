@@ -17,6 +17,18 @@ double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s
            speed_mps * fmax(age - hold_s, 0);
 }
 
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
+                    double otherwise_m, double heartbeat_s)
+{
+    static const double threshold_rad = 3 * (3.14159265358979323846 / 180);
+    *drift_m   = otherwise_m;
+    *drift_rad = threshold_rad * fmin(fmax(age_s, 0) / heartbeat_s, 1);
+    if (!(missed_s > 0)) return;
+    const double share = clamp(age_s / missed_s, 0, 1);
+    *drift_m   = missed_m * share * share;
+    *drift_rad = missed_rad * share;
+}
+
 int snapshot_find(const Snapshot *snapshot, DisEntityId id)
 {
     int low = 0, high = snapshot->count;
@@ -185,6 +197,9 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
     e->age_s = fmax(t_s - slot->report_s, 0);
     e->position_error_m = stands ? 0 : snapshot_position_error_m(e->age_s, slot->timeout_s / timeout_per_heartbeat,
                                                                  slot->hold_s, v3_length(e->v_ecef_mps));
+    snapshot_drift(&e->drift_m, &e->drift_rad, e->age_s, slot->missed_m, slot->missed_rad, slot->missed_s,
+                   e->position_error_m, slot->timeout_s / timeout_per_heartbeat);
+    if (stands) e->drift_m = e->drift_rad = 0;
     heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
 
     const double forward_m = dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;

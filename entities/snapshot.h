@@ -20,6 +20,7 @@ typedef struct SnapshotEntity {
     double        r_ecef_from_body[9];
     double        age_s;           /* since the report it was extrapolated from */
     double        position_error_m;/* estimate: snapshot_position_error_m */
+    double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
     int           first_node;      /* into Snapshot.node */
     float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks, unless
                                     * it is a warm wreck */
@@ -48,6 +49,14 @@ bool snapshot_is_wreck(const SnapshotEntity *entity);
  * it. Beyond hold_s the entity is held while it moves on at speed_mps. An estimate for error budgets, not a bound:
  * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
 double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps);
+
+/* How far an extrapolation is expected to have gone wrong, from how far the one before had when its next report came:
+ * missed_m and missed_rad after missed_s; 0: unknown, then `otherwise` for the place and nothing but the standard's 3
+ * degrees a heartbeat for the attitude. A place goes wrong as an unreported acceleration carries it, an attitude as an
+ * unreported rate, up to what was missed: a sender that is silent for longer has not gone on as it did, or it would have
+ * spoken. tests/sensor/test_frame_error.c. */
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
+                    double otherwise_m, double heartbeat_s);
 
 /* Index of an id, or -1. */
 int snapshot_find(const Snapshot *snapshot, DisEntityId id);

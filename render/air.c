@@ -500,6 +500,9 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     temp_k[air_temps] = out->weather.air_temp_k;
     Status status = air_day_at(&job->day, atmosphere, weather->visibility_m, job->day_zenith_rad, eye->bands, temp_k, air_temps + 1,
                                arena);
+    out->day = job->day;
+    memcpy(out->day_thermal_scale, job->thermal_scale, sizeof out->day_thermal_scale);
+    out->day_scattered_scale = job->scattered_scale;
     TableInput input = {.day = job->day,
                         .bands = eye->bands,
                         .thermal_scale = {job->thermal_scale[0], job->thermal_scale[1]},

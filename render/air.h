@@ -51,6 +51,8 @@ typedef struct Air {
 
     double    eye_height_m;
     AirTable *table;                       /* in the arena of air_at; NULL: even air, see air_even */
+    const struct AirDay *day;              /* what the tables were drawn from, and its scales; likewise */
+    double    day_thermal_scale[2], day_scattered_scale;
     double    even_per_m;                  /* extinction of even air, whose radiance is that of its sky */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
     double    solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
@@ -142,6 +144,10 @@ typedef struct Veils {
  * bits. temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
 void air_veils_of(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
                   const float *temp_k);
+/* The same answers asked of the atmosphere path by path, no table between: air_direct.c. A microsecond or two a ray.
+ * tables: what air_veils_of said of these rays. Even air: the tables' own. */
+void air_veils_directly(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+                        const float *temp_k, const Veils tables[AIR_BAND_COUNT]);
 /* One band. */
 void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 

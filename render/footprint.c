@@ -34,6 +34,8 @@ struct Footprint {
     double  veiled[BAND_COUNT];          /* area x what the veil takes */
     double  square[picture_plane_count]; /* area x radiance^2 */
     double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
+    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget */
+    bool   *met;                       /* cells that show the target */
     int     amodal_box[4];
 };
 
@@ -66,6 +68,12 @@ static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
     if (job->picture->entity) {
         ok = (f->truth = arena_alloc(arena, pixels, sizeof *f->truth)) && ok;
         for (size_t i = 0; ok && i < pixels; i++) f->truth[i].square_px = INFINITY;
+    }
+    const size_t cells = (size_t)f->columns * (size_t)f->rows;
+    if (job->request->budget) {
+        ok = (f->met = arena_alloc(arena, cells, sizeof *f->met)) && ok;
+        for (int k = 0; k < picture_plane_count; k++)
+            if (picture_plane(job->picture, k)) ok = (f->cell[k] = arena_alloc(arena, cells, sizeof(float))) && ok;
     }
     if (job->picture->target)
         ok = (f->hidden_by = arena_alloc(arena, (size_t)job->snapshot->count, sizeof(double))) && ok;
@@ -173,6 +181,7 @@ void footprint_splat(Scratch *s, int plane)
     for (int i = 0; i < s->hits.count; i++) {
         Splat splat = {f->sum[plane], s->out[i]};
         over_pixels(f, s->block.cell[i], splat_pixel, &splat);
+        if (f->met) f->cell[plane][s->block.cell[i]] = s->out[i], f->met[s->block.cell[i]] = true;
         f->square[plane] += footprint_area(f, s->block.cell[i]) * s->out[i] * s->out[i];
     }
 }
@@ -356,6 +365,67 @@ void footprints_cover(Job *job)
                 job->picture->covered[px] = fminf(job->picture->covered[px] + (float)f->area[k], 1);
                 if (f->area[k] > 0.5 * job->picture->covered[px]) job->coverer[px] = f->entity;
             }
+    }
+}
+
+/* ---- how wrong -------------------------------------------------------------------------------- */
+
+/* Squared differences of neighbouring cells: as the picture shows them, beside the pixels behind them, and of the
+ * target's own radiance. */
+static void cell_pairs(double sums[2], const Footprint *f, const Job *job, int plane)
+{
+    const float *value = picture_plane(job->picture, plane);
+    const int    beside[2] = {1, f->columns};
+    sums[0] = sums[1] = 0;
+    for (int cell = 0; cell < f->columns * f->rows; cell++)
+        for (int k = 0; k < 2; k++) {
+            if (k == 0 ? cell % f->columns == f->columns - 1 : cell / f->columns == f->rows - 1) continue;
+            const int other = cell + beside[k], here = f->met[cell] ? cell : other;
+            if (!f->met[cell] && !f->met[other]) continue;
+            double own = f->cell[plane][here], shown = own;
+            if (f->met[cell] && f->met[other]) {
+                shown = own -= f->cell[plane][other];
+            } else {
+                const int column = (int)(f->box[0] + (here % f->columns + 0.5) * (f->box[2] - f->box[0]) / f->columns);
+                const int row = (int)(f->box[1] + (here / f->columns + 0.5) * (f->box[3] - f->box[1]) / f->rows);
+                if (column >= f->x0 && column < f->x1 && row >= f->y0 && row < f->y1)
+                    shown -= (double)value[pixel_index(job, column, row)];
+            }
+            sums[0] += shown * shown;
+            sums[1] += own * own;
+        }
+}
+
+/* Behind a target the pixel's mean stands for what is hidden: wrong by (1 - covered) covered of what the ground there
+ * differs by, and that is taken to be what neighbours do. */
+static double hidden_ground(const Footprint *f, const Job *job, const float *value)
+{
+    double sum = 0;
+    for (int y = f->y0; y < f->y1; y++)
+        for (int x = f->x0; x < f->x1; x++) {
+            const size_t px = pixel_index(job, x, y);
+            const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
+            if (job->coverer[px] == f->entity && share > 0) sum += share * share * plane_contrast(job->picture, value, x, y);
+        }
+    return sum;
+}
+
+void footprints_error(Job *job)
+{
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        const int        cells = f->columns * f->rows;
+        if (cells == 0) continue;
+        const double cell_px = (f->box[2] - f->box[0]) * (f->box[3] - f->box[1]) / cells;
+        for (int plane = 0; plane < picture_plane_count; plane++) {
+            double sums[2];
+            if (!f->cell[plane]) continue;
+            cell_pairs(sums, f, job, plane);
+            job->footprint_law[plane] += mean_law * cell_px * cell_px * sums[0] +
+                                         hidden_ground(f, job, picture_plane(job->picture, plane));
+            if (job->picture->target)
+                job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_law * sums[1]);
+        }
     }
 }
 

@@ -200,6 +200,11 @@ static void deliver(Scratch *s, const Job *job, int plane)
         footprint_splat(s, plane);
         return;
     }
+    if (s->block.probe) {
+        probe_take(s, job, plane);
+        return;
+    }
+    if (s->law && s->block.writes) law_take(s, job, plane);
     if (s->block.writes) average(picture_plane(job->picture, plane), s, job);
     if (job->picture->target) add_radiance(s, job, plane);
 }
@@ -313,7 +318,7 @@ static void shade_radar(Scratch *s, const Job *job)
         s->out[i] = (float)sum;
     }
     deliver(s, job, picture_radar);
-    if (job->request->profile_bins > 0) add_to_profile(s, job);
+    if (job->request->profile_bins > 0 && !s->block.probe) add_to_profile(s, job);
 }
 
 void trace_shadows(Scratch *s, const Job *job)
@@ -407,8 +412,7 @@ static int list_entities(Scratch *s, const Job *job, const Tile *tile)
     return listed;
 }
 
-/* From the block's pixels to planes and sums. pairs NULL: areas of targets are not counted. */
-static void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
 {
     const RenderRequest *request = job->request;
     const double         t0 = wall_clock_s();
@@ -545,6 +549,7 @@ static void refine_tile(void *user, int worker, int task)
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
+        s->law = job->law && !(how->has & (refine_step | refine_ground)) ? job->law[task] : NULL;
         s->block = (Block){0};
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {
@@ -558,6 +563,7 @@ static void refine_tile(void *user, int worker, int task)
             }
         if (s->block.pixels > 0) refine_block(s, job, how, listed, pairs);
     }
+    s->law = NULL;
 }
 
 /* ---- the frame's memory --------------------------------------------------------------------- */
@@ -605,6 +611,9 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
         job->refine     = arena_alloc(arena, px, sizeof *job->refine);
         job->shadow     = arena_alloc(arena, px, sizeof *job->shadow);
         if (!job->refine || !job->shadow) return STATUS_NO_MEMORY;
+        if (job->request->budget)
+            job->law = arena_alloc(arena, (size_t)job->tiles_x * (size_t)job->tiles_y, sizeof *job->law);
+        if (job->request->budget && !job->law) return STATUS_NO_MEMORY;
     }
     for (int w = 0; w < workers; w++) {
         Scratch *s = job->scratch[w] = arena_alloc(arena, 1, sizeof *s);
@@ -703,7 +712,10 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     picture.times.base_ms       = 1e3 * (base_s - small_s);
     picture.times.edges_ms      = 1e3 * (wall_clock_s() - base_s);
     gather(&job, workers);
+    if (request->budget) footprints_error(&job);
     footprints_put_on(&job);
+    if (request->budget) status = error_budget(&job, pool, arena);
+    if (status != STATUS_OK) return status;
     if (!request->truth) forget_truth(&picture);
     *out = picture;
     return STATUS_OK;

@@ -22,6 +22,18 @@ typedef struct World {
 /* Planes that carry radiance. */
 enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, picture_radar, picture_plane_count };
 
+/* How wrong a frame's planes are by its own account: root of the mean squared error over the picture, in the plane's
+ * unit, by source. The planes are the same with and without. Where each comes from, and what it leaves out:
+ * render/error_budget.h; how right it is: tests/sensor/test_error_budget.c. */
+typedef struct ErrorBudget {
+    double mean[picture_plane_count];            /* of the plane, from the pixels that were looked at */
+    double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
+    double level_of_detail[picture_plane_count]; /* posts of the ground. Facets of models: sensor/node/frame_error.h */
+    double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
+    int    probes;                               /* pixels looked at again */
+    double ms;                                   /* wall time */
+} ErrorBudget;
+
 /* What a target gave in this view, in units of pixels: areas, which may be fractions. */
 typedef struct TargetPixels {
     double visible, amodal;
@@ -30,6 +42,7 @@ typedef struct TargetPixels {
     double radiance[picture_plane_count];
     bool   small;                 /* sampled over its own box: what follows is of its samples, too */
     double mean[picture_plane_count], variance[picture_plane_count]; /* of radiance over its visible area */
+    double radiance_error[picture_plane_count]; /* rms, of `radiance`; with a budget, else 0 */
     double peak_area;             /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
@@ -72,6 +85,7 @@ typedef struct Picture {
     float    *normal[3];            /* ENU of the terrain origin */
     float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels *target;           /* [snapshot count]; NULL without truth */
+    ErrorBudget  *budget;           /* NULL: not asked for */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;

@@ -21,6 +21,7 @@ enum { tile_side_samples = 32, pairs_per_tile = 16 };
 /* ---- a block of samples ---------------------------------------------------------------------- */
 
 typedef struct Footprint Footprint;
+typedef struct ProbeTask ProbeTask;
 
 /* Pixels of n x n samples, all samples of a pixel together; or the cells of a footprint that met their target. */
 typedef struct Block {
@@ -31,6 +32,7 @@ typedef struct Block {
     unsigned bands;                            /* 1 << Band: those to shade */
     uint16_t x[hits_capacity], y[hits_capacity]; /* of each pixel */
     Footprint *footprint;                      /* NULL: pixels */
+    ProbeTask *probe;                          /* not NULL: pixels looked at again, for the budget; into no plane */
     int      cell[hits_capacity];              /* of each sample of a footprint: row * columns + column */
 } Block;
 
@@ -81,7 +83,13 @@ typedef struct Scratch {
     int64_t       *profile; /* [profile_bins][radar_bounces] */
     RenderCounters counters;
     double         visibility_s, shadow_s, shade_s, radar_s;
+    double        *law;     /* [picture_plane_count]: squared errors of the block's pixels go there; NULL: not wanted */
 } Scratch;
+
+/* Error of a mean over n x n samples, squared, by the squared differences d of neighbours among them: mean_law sum d^2 /
+ * n^4. 0.09: of our turned grid against half planes at all angles and places it is 0.115 for n = 2, 0.093, 0.087, 0.085
+ * for 3, 4, 6 and 0.106 for 16 (tests/render/test_error_law.c). */
+static const double mean_law = 0.09;
 
 typedef struct Job {
     const World         *world;
@@ -104,6 +112,8 @@ typedef struct Job {
     int32_t             *coverer;   /* snapshot index of the small target that covers most; where any does */
     uint8_t             *refine;    /* RefineFlag */
     uint8_t             *shadow;    /* of the sample that truth is of */
+    double             (*law)[picture_plane_count];          /* [tiles]: Scratch.law; NULL: no budget */
+    double               footprint_law[picture_plane_count]; /* squared errors over the pixels, summed */
     int64_t              steps_per_px;
     /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
      * limit stay below 2^62 quanta */
@@ -122,6 +132,8 @@ double pixel_cosine3(const View *view, int x, int y);
 
 /* ---- render.c -------------------------------------------------------------------------------- */
 
+/* Eye rays of the block's pixels, what they meet, and shade_block. pairs NULL: areas of targets are not counted. */
+void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs);
 /* Rays to the sun from the block's hits, where one of its bands shows shadows. */
 void trace_shadows(Scratch *s, const Job *job);
 /* Shades the block's hits in its bands, and gives each result to its pixels or its footprint. */
@@ -174,8 +186,22 @@ void   footprint_box(double box_px[4], const Footprint *f);
 uint64_t footprint_key(const Footprint *f, int cell);
 /* Area of a sample within the image, px. */
 double footprint_area(const Footprint *f, int cell);
+/* Of every footprint, by the law, before they are put on: into Job.footprint_law and the targets. */
+void   footprints_error(Job *job);
 /* Over the finished pixels, in order of entity. */
 void   footprints_put_on(Job *job);
 void   footprints_gather(const Job *job);
+
+/* ---- error_budget.c -------------------------------------------------------------------------- */
+
+/* Mean squared difference of a pixel to its neighbours, left, right, above and below. */
+double plane_contrast(const Picture *picture, const float *value, int x, int y);
+
+/* Where one block's probes give a plane (s->out). */
+void   probe_take(Scratch *s, const Job *job, int plane);
+/* A plane of the block's pixels, n x n samples each, to Scratch.law. */
+void   law_take(Scratch *s, const Job *job, int plane);
+/* After everything else: fills picture->budget. STATUS_NO_MEMORY. */
+Status error_budget(Job *job, Pool *pool, Arena *arena);
 
 #endif

@@ -43,6 +43,7 @@ typedef struct RenderRequest {
     int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as all */
     int      hidden_entity;  /* snapshot index whose parts the eye does not see (they cast shadows); -1: none */
     unsigned skips_off;      /* 1 << Skip (render/skip.h): not left out but computed; must give the same bits */
+    bool     budget;         /* estimate how wrong the planes are: Picture.budget */
     double   profile_near_m, profile_bin_m; /* radar range profile */
     int      profile_bins;
 } RenderRequest;

@@ -142,6 +142,8 @@ static const Setting keys[] = {
     {"entities.extrapolation_limit_s", SETTING_DOUBLE, AT(entities.extrapolation_limit_s), 0.01, 1e4, NULL, "s",
      "longest dead reckoning"},
     {"entities.capacity", SETTING_INT, AT(entities.capacity), 1, 1000000, NULL, "", "most entities at once"},
+    {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
+     "each frame's estimate of its own error, in truth.jsonl; changes no picture"},
     {"seed", SETTING_LONG, AT(seed), 0, 2147483647, NULL, "", "of everything random"},
 };
 enum { key_count = sizeof keys / sizeof keys[0] };
@@ -214,6 +216,7 @@ Config config_default(void)
     c.entities.timeout_land_v7_s    = 132;
     c.entities.extrapolation_limit_s = 12;
     c.entities.capacity             = 100000;
+    strcpy(c.quality.budget, "on");
     c.seed                          = 1;
     return c;
 }
@@ -321,6 +324,7 @@ void config_text(char *out, size_t out_size, const Config *config)
     hashed.exercise.port   = plain.exercise.port;
     hashed.exercise.from_s = plain.exercise.from_s;
     hashed.exercise.to_s   = plain.exercise.to_s;
+    hashed.quality         = plain.quality; /* of the settings that it picks each is hashed */
     settings_text(out, out_size, &table, &hashed);
 }
 

@@ -88,6 +88,9 @@ typedef struct Config {
         double timeout_s, timeout_land_v7_s, extrapolation_limit_s;
         int    capacity;
     } entities;
+    struct {
+        char   budget[8];          /* off or on */
+    } quality;
     long long seed;
     bool      causal;
     bool      given[config_keys_max]; /* by a file or the command line: what a preset leaves alone */

@@ -71,6 +71,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
                                .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
+                               .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
     if (config_adaptive(config)) {
         request->edge_samples   = config->sensor.edge_samples;
@@ -159,6 +160,10 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
                                 .host = eye.hidden >= 0 ? &snapshot.entity[eye.hidden] : NULL, .request = &request,
                                 .hfov_rad = shared->config->sensor.hfov_deg * rad_per_deg,
                                 .gimbal_at_limit = eye.at_limit, .sun = &sun, .target = target, .target_count = targets};
+    FrameError error;
+    if (frame_error(&error, &picture, shared->world, &snapshot, &request, target, targets,
+                    shared->config->models.sag_m, shared->clamp))
+        record.error = &error;
     memcpy(record.p_eye_ecef, eye.state.p_ecef, sizeof record.p_eye_ecef);
     memcpy(record.v_eye_mps, eye.state.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, eye.r_ecef_from_body, sizeof record.r_ecef_from_body);

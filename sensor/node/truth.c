@@ -148,6 +148,24 @@ static void luminance(double *value, const void *user, size_t px, int count)
 }
 
 /* Of the target's own radiance over the area it fills, whole pixels or parts of them. */
+static double per_intensity(const Target *t, const View *view)
+{
+    return 1 / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
+}
+
+/* Sampling's share of it; channels are sampled together, so that their errors add up. */
+static void intensity_error(Target *t, const TargetPixels *px, const Picture *picture, const View *view)
+{
+    static const int first[BAND_RADAR + 1] = {picture_optical, picture_mwir, picture_lwir, picture_radar};
+    if (!picture->budget || !px->small) return;
+    for (int b = BAND_OPTICAL; b <= BAND_LWIR; b++) {
+        double sum = 0;
+        for (int k = first[b]; k < first[b + 1]; k++)
+            if (picture_plane(picture, k)) sum += px->radiance_error[k];
+        if (isfinite(t->band[b].intensity_w_sr)) t->band[b].intensity_error_w_sr = sum * per_intensity(t, view);
+    }
+}
+
 static double intensity(const Target *t, const TargetPixels *px, const View *view, int plane)
 {
     return px->radiance[plane] / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
@@ -234,6 +252,7 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
         thermal_band(&t->band[BAND_LWIR], t, px, picture, picture_lwir, world->planck_lwir, noise->netd_lwir_k);
         t->band[BAND_LWIR].intensity_w_sr = intensity(t, px, view, picture_lwir);
     }
+    intensity_error(t, px, picture, view);
     if (picture->radar)
         plain_band(&t->band[BAND_RADAR], t, px, picture, plain_value, picture->radar, picture_radar, 1, 0);
 }
@@ -248,7 +267,7 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         Target t = {.index = i, .pixels = px->visible, .visible_fraction = NAN, .occluder_index = -1};
         t.range_m = t.closing_mps = t.aspect_rad = t.depression_rad = t.los_az_rad = t.los_el_rad = NAN;
         for (int b = 0; b < BAND_COUNT; b++)
-            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN};
+            t.band[b] = (TargetBand){NAN, NAN, NAN, NAN, NAN, NAN, NAN};
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);

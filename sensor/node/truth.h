@@ -15,6 +15,7 @@ typedef struct TargetBand {
     double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
                              * times the share it has of the pixel it fills most */
     double intensity_w_sr;  /* in-band, at the aperture: its own radiance by the area it fills, at its range */
+    double intensity_error_w_sr; /* rms of the sampling; of a small target, in a frame with a budget */
     double veil_transmittance; /* of smoke and dust before it, mean over its visible pixels; 1: none */
 } TargetBand;
 

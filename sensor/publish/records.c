@@ -92,6 +92,7 @@ static json_t *bands_json(const Target *t)
         set_number(band, "snr", v->snr);
         set_number(band, "veil_transmittance", v->veil_transmittance);
         set_number(band, "intensity_w_sr", v->intensity_w_sr);
+        set_number(band, "intensity_error_w_sr", v->intensity_error_w_sr);
         if (json_object_size(band) > 0)
             json_object_set_new(bands, band_name((Band)b), band);
         else
@@ -137,6 +138,25 @@ static json_t *target_json(const FrameRecord *r, const Target *t)
     return target;
 }
 
+/* rms over the picture as a share of the band's mean, by source; _k: the same in kelvin about that mean. */
+static json_t *error_json(const FrameRecord *r)
+{
+    static const char *const name[error_sources] = {"sampling", "level_of_detail", "tables", "dead_reckoning", "total"};
+    json_t *error = json_object();
+    for (int b = 0; b < BAND_COUNT; b++) {
+        char    kelvin[32];
+        json_t *band = json_object();
+        for (int s = 0; s < error_sources; s++) {
+            snprintf(kelvin, sizeof kelvin, "%s_k", name[s]);
+            set_number(band, name[s], r->error->share[b][s]);
+            set_number(band, kelvin, r->error->kelvin[b][s]);
+        }
+        if (json_object_size(band) > 0) json_object_set_new(error, band_name((Band)b), band);
+        else json_decref(band);
+    }
+    return error;
+}
+
 Status record_write_frame(FILE *file, const FrameRecord *r)
 {
     json_t *line = json_object(), *sun = json_object(), *sensors = json_array(), *targets = json_array();
@@ -151,6 +171,7 @@ Status record_write_frame(FILE *file, const FrameRecord *r)
     json_object_set_new(line, "sensors", sensors);
     for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(r, &r->target[i]));
     json_object_set_new(line, "targets", targets);
+    if (r->error) json_object_set_new(line, "error", error_json(r));
 
     char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
     json_decref(line);

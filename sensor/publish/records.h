@@ -4,6 +4,7 @@
 
 #include "entities/dead_reckoning.h"
 #include "entities/effects_history.h"
+#include "sensor/node/frame_error.h"
 #include "sensor/node/truth.h"
 #include "terrain/sun.h"
 
@@ -25,6 +26,7 @@ typedef struct FrameRecord {
     const Target         *target;
     int                   target_count;
     const char           *frame_sha256; /* NULL: not said */
+    const FrameError     *error;        /* NULL: not said */
 } FrameRecord;
 
 /* One line, flushed. STATUS_IO when the file does not take it. */

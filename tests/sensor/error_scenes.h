@@ -1,0 +1,263 @@
+/* tests/sensor/error_scenes.h: frames and what they say of their own error, held against frames that are better by far:
+ * for each scene, band and source the estimate over the truth. */
+#ifndef TESTS_SENSOR_ERROR_SCENES_H
+#define TESTS_SENSOR_ERROR_SCENES_H
+
+#include "entities/dead_reckoning.h"
+#include "sensor/bench/scene.h"
+#include "sensor/node/frame_error.h"
+#include "tests/check.h"
+
+typedef struct ErrorScene {
+    const char *name;
+    double      back_m, above_m, hfov_deg;
+    int         vehicles;
+    bool        smoke;
+    double      pitch_deg;     /* the camera is turned up by so much */
+} ErrorScene;
+
+enum { width_px = 96, height_px = 64, radiance_bands = 3 };
+
+static struct {
+    Pool      *pool;
+    Arena     *arena[3];
+    LocalFrame frame;
+    Landscape  ground, fine;
+} lab;
+
+static inline Landscape ground_of(double spacing_m)
+{
+    LandscapeConfig config = landscape_default_config();
+    Landscape       made;
+    config.spacing_m    = spacing_m;
+    config.half_width_m = 1000;
+    assert_int_equal(landscape_create(&made, &config, &lab.frame, NULL, 0, NULL, 0), STATUS_OK);
+    return made;
+}
+
+/* The same country with every fourth post of its innermost level; the cover stays the other's. */
+static inline Landscape every_fourth(const Landscape *of)
+{
+    Landscape             made = *of;
+    const ElevationLevel *from = &of->elevation.level[0];
+    memset(&made.elevation, 0, sizeof made.elevation);
+    CHECK((from->nx - 1) % 4 == 0 && (from->ny - 1) % 4 == 0);
+    for (int n = 0; n < of->elevation.level_count; n++) {
+        const ElevationLevel *l = &of->elevation.level[n];
+        const int             stride = n == 0 ? 4 : 1, nx = (l->nx - 1) / stride + 1, ny = (l->ny - 1) / stride + 1;
+        assert_int_equal(elevation_level_create(&made.elevation, n, nx, ny, l->x0_m, l->y0_m, stride * l->spacing_m, l->z0_m,
+                                                l->step_m), STATUS_OK);
+        uint16_t *post = made.elevation.level[n].post;
+        for (int j = 0; j < ny; j++)
+            for (int i = 0; i < nx; i++) post[(size_t)j * (size_t)nx + (size_t)i] = l->post[(size_t)(j * stride) * (size_t)l->nx + (size_t)(i * stride)];
+    }
+    elevation_build_pyramids(&made.elevation);
+    return made;
+}
+
+static inline int lab_open(void **state)
+{
+    (void)state;
+    const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 0}; /* noon, by the benches' clock */
+    if (local_frame_at(&lab.frame, &origin) != STATUS_OK || pool_create(&lab.pool, 2) != STATUS_OK) return -1;
+    for (int k = 0; k < 3; k++)
+        if (!(lab.arena[k] = arena_create())) return -1;
+    lab.fine   = ground_of(1);
+    lab.ground = every_fourth(&lab.fine);
+    return 0;
+}
+
+static inline int lab_close(void **state)
+{
+    (void)state;
+    elevation_destroy(&lab.ground.elevation);
+    landscape_destroy(&lab.fine);
+    for (int k = 0; k < 3; k++) arena_destroy(lab.arena[k]);
+    pool_destroy(lab.pool);
+    return 0;
+}
+
+static void open_scene(BenchScene *scene, const Landscape *ground, const ErrorScene *of)
+{
+    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}};
+    char catalog[512];
+    CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
+    assert_int_equal(bench_scene_open(scene, ground, catalog, types, 3, of->vehicles), STATUS_OK);
+    for (int k = 0; of->smoke && k < 20; k++) { /* one that smokes, for twenty seconds */
+        const double   p_enu[3] = {8, -10, elevation_height(&ground->elevation, 8, -10, NULL)};
+        DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .type = types[0], .id = {1, 1, 99},
+                              .appearance = 1u << 5, .dead_reckoning = 2};
+        double euler[3];
+        ecef_from_enu(pdu.p_ecef, &lab.frame, p_enu);
+        const double r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
+        double       r[9];
+        m3_mul(r, lab.frame.r_ecef_from_enu, r_enu_from_body);
+        euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r);
+        pdu.psi_rad = (float)euler[0], pdu.theta_rad = (float)euler[1], pdu.phi_rad = (float)euler[2];
+        scene->sun_now_s += k > 0;
+        assert_int_equal(entity_table_entity_state(scene->table, &pdu, scene->sun_now_s), STATUS_OK);
+    }
+}
+
+static RenderRequest request_of(const BenchScene *scene, const ErrorScene *of)
+{
+    RenderRequest request = {.bands = 7, .truth = true, .optical = OPTICAL_RGB, .samples = 1, .edge_samples = 4,
+                             .target_samples = 48, .hidden_entity = -1, .budget = true};
+    request.view = bench_view(scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width_px, height_px);
+    const double c = cos(of->pitch_deg * rad_per_deg), s = sin(of->pitch_deg * rad_per_deg), *m = request.view.r_enu_from_cam;
+    double       turned[9];
+    for (int k = 0; k < 3; k++) {
+        turned[3 * k]     = m[3 * k];
+        turned[3 * k + 1] = c * m[3 * k + 1] + s * m[3 * k + 2];
+        turned[3 * k + 2] = c * m[3 * k + 2] - s * m[3 * k + 1];
+    }
+    memcpy(request.view.r_enu_from_cam, turned, sizeof turned);
+    return request;
+}
+
+static BenchFrame frame_of(const BenchScene *scene, const RenderRequest *request, int arena)
+{
+    BenchFrame f = {.scene = scene, .request = *request, .pool = lab.pool, .arena = lab.arena[arena]};
+    bench_frame(&f);
+    assert_int_equal(f.status, STATUS_OK);
+    return f;
+}
+
+/* Of a band: rms difference over the reference's mean, channels together. */
+static double apart(const Picture *a, const Picture *b, Band band)
+{
+    const int    first = band == BAND_OPTICAL ? picture_optical : band == BAND_MWIR ? picture_mwir : picture_lwir;
+    const int    planes = band == BAND_OPTICAL ? 3 : 1;
+    const size_t count = (size_t)a->width * (size_t)a->height;
+    double       shares = 0;
+    for (int k = first; k < first + planes; k++) {
+        const float *p = picture_plane(a, k), *q = picture_plane(b, k);
+        double       square = 0, sum = 0;
+        for (size_t i = 0; i < count; i++) square += ((double)p[i] - q[i]) * ((double)p[i] - q[i]), sum += q[i];
+        shares += square * (double)count / (sum * sum) / planes;
+    }
+    return sqrt(shares);
+}
+
+static FrameError error_of(BenchFrame *f)
+{
+    FrameError error;
+    Target    *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
+    EyeState   eye = {.host_index = -1};
+    const TruthNoise noise = {0.1, 0.03, 0.03};
+    ecef_from_enu(eye.p_ecef, &lab.frame, f->request.view.p_enu);
+    m3_mul(eye.r_ecef_from_cam, lab.frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
+    const int targets = truth_targets(target, &f->picture, &f->scene->world, &f->snapshot, &f->request, &eye, &noise);
+    CHECK(frame_error(&error, &f->picture, &f->scene->world, &f->snapshot, &f->request, target, targets, 0.002, true));
+    return error;
+}
+
+typedef struct Tally {
+    int cases, held;
+} Tally;
+
+/* Below this an error is none: a hundredth of a percent of the mean. */
+static const double nothing = 1e-4;
+
+static void judge(Tally *tally, const char *scene, const char *source, Band band, double estimate, double truth)
+{
+    const bool held = (truth < nothing && estimate < 2 * nothing) || (estimate < 2 * truth && estimate > 0.5 * truth);
+    tally->cases++, tally->held += held;
+    print_message("%-22s %-8s %-16s estimate %8.4f %%  truth %8.4f %%  ratio %5.2f%s\n", scene, band_name(band), source,
+                  100 * estimate, 100 * truth, estimate / truth, held ? "" : "  *");
+}
+
+/* Rays: against 16 x 16 in every pixel. */
+static inline void judge_sampling(Tally *tally, const ErrorScene *of)
+{
+    BenchScene scene;
+    open_scene(&scene, &lab.ground, of);
+    RenderRequest    request = request_of(&scene, of);
+    BenchFrame       frame = frame_of(&scene, &request, 0);
+    const FrameError error = error_of(&frame);
+    request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
+    const BenchFrame better = frame_of(&scene, &request, 1);
+    for (int b = 0; b < radiance_bands; b++)
+        judge(tally, of->name, "sampling", (Band)b, error.share[b][ERROR_SAMPLING], apart(&frame.picture, &better.picture, (Band)b));
+    bench_scene_close(&scene);
+}
+
+/* Posts: 4 m apart against 1 m, both of 4 x 4 rays, so that rays are not what differs. */
+static inline void judge_ground(Tally *tally, const ErrorScene *of)
+{
+    BenchScene coarse, fine;
+    open_scene(&coarse, &lab.ground, of);
+    open_scene(&fine, &lab.fine, of);
+    RenderRequest request = request_of(&coarse, of);
+    BenchFrame    plain = frame_of(&coarse, &request, 0);
+    const FrameError error = error_of(&plain);
+    request.samples = 4, request.edge_samples = 0, request.budget = false;
+    const BenchFrame a = frame_of(&coarse, &request, 0), b = frame_of(&fine, &request, 1);
+    for (int band = 0; band < radiance_bands; band++)
+        judge(tally, of->name, "level_of_detail", (Band)band, error.share[band][ERROR_LEVEL_OF_DETAIL],
+              apart(&a.picture, &b.picture, (Band)band));
+    bench_scene_close(&coarse);
+    bench_scene_close(&fine);
+}
+
+/* Air: every pixel with the atmosphere asked for its path alone (atmosphere_path, which makes no tables of a frame). What
+ * leaves the surface is what the picture shows less its veil. */
+static inline void judge_tables(Tally *tally, const ErrorScene *of)
+{
+    static Veils veils;
+    static Hits  hits;
+    static Rays  rays;
+    static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
+    BenchScene scene;
+    open_scene(&scene, &lab.ground, of);
+    RenderRequest request = request_of(&scene, of);
+    request.edge_samples = request.target_samples = 0; /* one ray: what a pixel shows is its truth's */
+    BenchFrame       frame = frame_of(&scene, &request, 0);
+    const FrameError error = error_of(&frame);
+    const Picture   *p = &frame.picture;
+    const Air       *air = &frame.air;
+    const View      *view = &request.view;
+    double           shares[radiance_bands] = {0};
+    for (int plane = 0; plane < 5; plane++) {
+        const AirBand b = air_of[plane];
+        const bool    thermal = b >= AIR_MWIR;
+        const float  *value = picture_plane(p, plane < 3 ? picture_optical + plane : plane == 3 ? picture_mwir : picture_lwir);
+        double        square = 0, sum = 0;
+        hits.count = rays.count = 1;
+        for (int i = 0; i < width_px * height_px; i++) {
+            double d[3];
+            view_ray(d, view, i % width_px + 0.5, i / width_px + 0.5);
+            for (int k = 0; k < 3; k++) rays.o_enu[k][0] = view->p_enu[k], rays.d_enu[k][0] = d[k];
+            hits.range_m[0] = (double)p->range_m[i];
+            float temp_k[8] = {p->temp_k[i]};
+            air_veils(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
+            const double *s = air->sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
+            const double  azimuth = acos(clamp((d[0] * s[0] + d[1] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
+            const double  sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad, au2 = 1 / (frame.sun.distance_au * frame.sun.distance_au);
+            double        seen = (double)value[i];
+            sum += seen;
+            if (range_m < INFINITY) {
+                const double climb = d[2] + (view->p_enu[0] * d[0] + view->p_enu[1] * d[1]) / 6371e3;
+                const AirPath path = {.observer_m = air->eye_height_m, .range_m = range_m, .sun_zenith_rad = sun_zenith,
+                                      .rel_azimuth_rad = azimuth,
+                                      .target_m = fmax(air->eye_height_m + range_m * climb + range_m * range_m * level * level / (2 * 6371e3), 0)};
+                PathAir want;
+                atmosphere_path(&want, scene.world.atmosphere, air->weather.visibility_m, b, &path, thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
+                const double tau = thermal ? want.transmittance : want.sun_transmittance;
+                const double added = want.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
+                seen = (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
+            } else {
+                SkyAir sky;
+                atmosphere_sky(&sky, scene.world.atmosphere, air->weather.visibility_m, b, air->eye_height_m, acos(fmax(d[2], 0)), sun_zenith, azimuth);
+                seen = sky.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
+            }
+            square += (seen - (double)value[i]) * (seen - (double)value[i]);
+        }
+        shares[plane < 3 ? 0 : plane - 2] += square * width_px * height_px / (sum * sum) / (plane < 3 ? 3 : 1);
+    }
+    for (int band = 0; band < radiance_bands; band++)
+        judge(tally, of->name, "tables", (Band)band, error.share[band][ERROR_TABLES], sqrt(shares[band]));
+    bench_scene_close(&scene);
+}
+
+#endif
