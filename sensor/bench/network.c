@@ -28,8 +28,8 @@ static const double patience_s = 30, publish_s = 0.010; /* DESIGN: frame time to
 typedef struct Live {
     Bench  *bench;
     char    folder[64], recording[path_size], said[path_size], run_json[path_size];
-    int     port, for_s;
-    double  ready_s, resident_mb;
+    int     port;
+    double  ready_s, sent_for_s, resident_mb;
     double  sent, heard, own, lost, frames, late;       /* datagrams; frames */
     double  frame_median_s, frame_p95_s;
     double *sampled_s, *published_s;                    /* sorted */
@@ -82,7 +82,7 @@ static bool hears(int from, const char *text, double within_s)
         if (strstr(said, text)) return true;
     }
     said[n] = 0;
-    log_error("bench: the live node does not listen: %s", n ? said : "it says nothing");
+    log_error("bench: the live node did not come to say '%s': %s", text, n ? said : "it says nothing");
     return false;
 }
 
@@ -93,7 +93,7 @@ static Status run_both(Live *l)
     int        ears[2];
     snprintf(port, sizeof port, "%d", l->port);
     snprintf(to, sizeof to, "127.0.0.1:%d", l->port);
-    snprintf(length, sizeof length, "%d", l->for_s);
+    snprintf(length, sizeof length, "%.0f", 3 * patience_s); /* if all else fails */
     snprintf(threads, sizeof threads, "%d", bench_threads(l->bench));
     snprintf(rate, sizeof rate, "%d", rate_hz);
     const char *const node[] = {"pitviper", "run", "--address", "127.0.0.1", "--port", port, "--size", quick ? "96x64" : "320x216",
@@ -105,17 +105,24 @@ static Status run_both(Live *l)
     const int     out = open(l->said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const double  begun_s = wall_clock_s();
     struct rusage usage = {0}, unused;
-    pid_t         listener = out < 0 ? -1 : start(node, out, ears[1]), sender = -1;
+    pid_t         listener = out < 0 ? -1 : start(node, ears[1], ears[1]), sender = -1;
     close(ears[1]);
     bool ok = listener > 0 && hears(ears[0], "listening on", patience_s);
     l->ready_s = wall_clock_s() - begun_s;
+    const double sending_s = wall_clock_s();
     if (ok) sender = start(exercise, out, out);
     if (sender > 0) {
-        usleep((useconds_t)(1e6 * (l->for_s - 1.5)));
+        ok = hears(ears[0], "ground:", patience_s); /* its choices are made: frames begin */
+        if (ok) usleep((useconds_t)(1e6 * (quick ? 3 : 12)));
         kill(sender, SIGTERM);
-        ok = finish(sender, 5, &unused) >= 0;
+        ok = finish(sender, 5, &unused) >= 0 && ok;
+        l->sent_for_s = wall_clock_s() - sending_s;
+        if (ok) usleep(300000); /* the last of it is on its way */
     }
-    if (listener > 0) ok = finish(listener, ok ? patience_s : 0, &usage) == 0 && ok && sender > 0;
+    if (listener > 0) {
+        kill(listener, SIGINT);
+        ok = finish(listener, patience_s, &usage) == 0 && ok && sender > 0;
+    }
     l->resident_mb = 1024e-6 * (double)usage.ru_maxrss;
     close(ears[0]);
     if (out >= 0) close(out);
@@ -246,7 +253,7 @@ static void add_rows(Live *l)
     char against[128];
     add_figure(l, "live node: ready to listen after", l->ready_s, "s");
     BenchRow row   = bench_row("live node: reports heard");
-    row.rate       = l->heard / (l->for_s - 1.5);
+    row.rate       = l->heard / l->sent_for_s;
     row.rate_unit  = "datagrams/s";
     row.error      = fmax(l->sent - l->heard, l->lost);
     row.error_unit = "datagrams";
@@ -272,8 +279,7 @@ static void add_rows(Live *l)
 Status bench_live(Bench *bench)
 {
     static const char *const files[] = {"node.pcapng", "said.txt", "run.json", "truth.jsonl"};
-    Live l = {.bench = bench, .folder = "/tmp/pitviper-bench-XXXXXX", .port = 20000 + (int)(getpid() * 7L % 12000),
-              .for_s = bench_quick(bench) ? 5 : 15};
+    Live l = {.bench = bench, .folder = "/tmp/pitviper-bench-XXXXXX", .port = 20000 + (int)(getpid() * 7L % 12000)};
     char path[path_size];
     bench_progress(bench, "live node");
     if (!mkdtemp(l.folder)) return STATUS_IO;
@@ -283,6 +289,10 @@ Status bench_live(Bench *bench)
     Status status = run_both(&l);
     if (status == STATUS_OK) status = read_result(&l);
     if (status == STATUS_OK) status = read_latency(&l);
+    if (status == STATUS_OK && (l.publications < 2 || l.samples < 1)) {
+        log_error("bench: the live node made no frames in its time; is this machine so busy?");
+        status = STATUS_IO;
+    }
     if (status == STATUS_OK) add_rows(&l);
     else log_error("bench: network: live node: %s", status_name(status));
     free(l.sampled_s);
