@@ -12,17 +12,19 @@ static const Setting keys[] = {
      "of `pitviper exercise`: a name, or a YAML file in the case's folder"},
     {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
      "its --set, KEY=VALUE separated by blanks or lines"},
-    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "",
-     "or a recording: in the case's folder, or ${PITVIPER_DATA}/..."},
+    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "", "or a recording: in the case's folder, or ${PITVIPER_DATA}/..."},
     {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "", "settings of `pitviper replay`, indented below `config: |`"},
     {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "or a file of them in the case's folder"},
-    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "", "numbers of the frames to look at, as replay gives them"},
+    {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "",
+     "numbers of the frames to look at, as replay gives them"},
     {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
-    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s", "for each child; one that takes longer is ended"},
+    {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s",
+     "for each child; one that takes longer is ended"},
     {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, of itself"},
     {"tolerance.normal", SETTING_DOUBLE, AT(tolerance.normal), 0, 2, NULL, "", "each component of a normal"},
     {"tolerance.temp_k", SETTING_DOUBLE, AT(tolerance.temp_k), 0, 1000, NULL, "K", "surface temperature"},
-    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "", "optical radiance, of itself"},
+    {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "",
+     "optical radiance, of itself"},
     {"tolerance.optical_w_m2_sr", SETTING_DOUBLE, AT(tolerance.optical_w_m2_sr), 0, 1e4, NULL, "W/(m2 sr)",
      "and this much more"},
     {"tolerance.mwir_k", SETTING_DOUBLE, AT(tolerance.mwir_k), 0, 1000, NULL, "K", "apparent temperature"},
@@ -45,17 +47,22 @@ static const SettingTable table = {.module = "regress", .row = keys, .count = si
  * crosses from one step to the next is still within. */
 Case case_default(void)
 {
-    return (Case){.causal = true, .timeout_s = 300,
-                  .tolerance = {.range_rel = 3e-5,   /* 6 cm in 2 km: two steps of the record */
-                                .normal = 0.004,     /* 0.2 degree: two steps of the record */
-                                .temp_k = 0.05,      /* a tenth of the scatter of good thermometry of surfaces */
-                                .optical_rel = 0.01, .optical_w_m2_sr = 1e-3, /* half a step of 8 bits; a dark night */
-                                .mwir_k = 0.05, .lwir_k = 0.05, /* NETD of the sensors that look at it */
-                                .radar_db = 0.1, .profile_db = 0.1, /* what the radar models promise: Mie, trihedral */
-                                .radar_span_db = 60, /* the display shows 40 */
-                                .share = 0.001,      /* 6 pixels of 96 x 64 */
-                                .edge_share = 0.02,  /* ISAs of the tracer differ in t for 5 % of the rays, in ids for none */
-                                .truth = 1}};
+    return (Case){
+        .causal = true,
+        .timeout_s = 300,
+        .tolerance = {.range_rel = 3e-5, /* 6 cm in 2 km: two steps of the record */
+                      .normal = 0.004,   /* 0.2 degree: two steps of the record */
+                      .temp_k = 0.05,    /* of a surface: no more than that in the bands below */
+                      .optical_rel = 0.01,
+                      .optical_w_m2_sr = 1e-3, /* half a step of 8 bits on a screen; a dark night */
+                      .mwir_k = 0.05,
+                      .lwir_k = 0.05, /* NETD of the sensors that look at it */
+                      .radar_db = 0.1,
+                      .profile_db = 0.1,   /* what the radar models promise: Mie, trihedral */
+                      .radar_span_db = 60, /* what the display shows */
+                      .share = 0.001,      /* 6 pixels of 96 x 64 */
+                      .edge_share = 0.02,  /* ISAs of the tracer differ in t for 5 % of the rays, in ids for none */
+                      .truth = 1}};
 }
 
 /* Whether what was read can be run. */
@@ -63,14 +70,16 @@ static Status check(const Case *c, const char *path)
 {
     const char *wrong = NULL;
     if (!*c->purpose) wrong = "purpose: is missing; say in one sentence what the case is for";
-    else if (!*c->log && !*c->scenario) wrong = "log: or scenario: is missing; name a recording, or a scenario such as demo";
+    else if (!*c->log && !*c->scenario)
+        wrong = "log: or scenario: is missing; name a recording, or a scenario such as demo";
     else if (*c->log && *c->scenario) wrong = "log: and scenario: are both given; leave one out";
     else if (*c->log && *c->scenario_set) wrong = "scenario_set: is of a scenario, and a log is given; leave it out";
     else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
     else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to look at, such as [3, 7, 12]";
     else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a record is to be small";
     for (int i = 0; !wrong && i < c->frames.count; i++) {
-        if (c->frames.number[i] != floor(c->frames.number[i])) wrong = "frames: these are whole numbers, such as [3, 7, 12]";
+        if (c->frames.number[i] != floor(c->frames.number[i]))
+            wrong = "frames: these are whole numbers, such as [3, 7, 12]";
         if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i])) wrong = "frames: are to ascend, each once";
     }
     if (!wrong) return STATUS_OK;
@@ -145,7 +154,7 @@ void case_write_keys(FILE *to)
 {
     const Case plain = case_default();
     static const bool none[sizeof keys / sizeof *keys] = {false};
-    fputs("# case.yaml of `pitviper regress`: every key with its default, behind a #. purpose, frames, and one of scenario\n"
-          "# and log must be given.\n", to);
+    fputs("# case.yaml of `pitviper regress`: every key with its default, behind a #. purpose, frames, and one of\n"
+          "# scenario and log must be given.\n", to);
     settings_write(to, &table, &plain, none);
 }

@@ -30,7 +30,8 @@ static char **environment(void)
     while (environ[count]) count++;
     char **out = calloc(count + 3, sizeof *out);
     for (size_t i = 0; out && i < count; i++)
-        if (strncmp(environ[i], "LC_", 3) != 0 && strncmp(environ[i], "LANG", 4) != 0 && strncmp(environ[i], "TZ=", 3) != 0)
+        if (strncmp(environ[i], "LC_", 3) != 0 && strncmp(environ[i], "LANG", 4) != 0 &&
+            strncmp(environ[i], "TZ=", 3) != 0)
             out[n++] = environ[i];
     if (out) {
         out[n++] = locale;
@@ -99,7 +100,8 @@ Status child_run(ChildEnd *end, const ChildLine *line, const char *out_path, con
 
 static bool plain(const char *text)
 {
-    return *text && strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == strlen(text);
+    return *text &&
+           strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%") == strlen(text);
 }
 
 void child_text(char *out, size_t out_size, const ChildLine *line)

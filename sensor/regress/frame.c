@@ -199,7 +199,8 @@ Status frame_from_run(RecordFrame *out, const char *folder, int number)
     const char *opened = "";
     for (int p = 0; p < FRAME_PLANES && status == STATUS_OK; p++) {
         snprintf(path, sizeof path, "%s/frames/%s/%06d.exr", folder, rows[p].folder, number);
-        if (p > 0 && strcmp(rows[p].folder, "truth") != 0 && access(path, F_OK) != 0) continue; /* a band not asked for */
+        if (p > 0 && strcmp(rows[p].folder, "truth") != 0 && access(path, F_OK) != 0)
+            continue; /* a band not asked for */
         if (strcmp(opened, rows[p].folder) != 0) {
             status = image_info(&info, path);
             if (status == STATUS_OK) status = take_size(&f, &info, path);
@@ -252,7 +253,8 @@ Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame
                                                 &rows[p].rounding);
     if (status == STATUS_OK && !image_read_string(f.date, sizeof f.date, path, "DateTime")) *f.date = 0;
     snprintf(path, sizeof path, "%s/%06d.profile.exr", folder, like->number);
-    if (status == STATUS_OK && like->bins > 0 && access(path, F_OK) == 0) status = read_profile_exr(&f, path, like->bins);
+    if (status == STATUS_OK && like->bins > 0 && access(path, F_OK) == 0)
+        status = read_profile_exr(&f, path, like->bins);
     if (status == STATUS_OK) *out = f;
     else frame_free(&f);
     return status;

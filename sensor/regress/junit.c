@@ -69,9 +69,11 @@ Status junit_write(const char *path, const CaseResult *const *result, int count)
         log_error("regress: --junit: cannot write %s: %s; choose another place", path, strerror(errno));
         return STATUS_IO;
     }
-    fprintf(file, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"pitviper regress\" tests=\"%d\" failures=\"%d\" "
-            "errors=\"%d\" skipped=\"%d\" time=\"%.3f\">\n", count, of[CASE_FAILED] + of[CASE_NO_RECORD], of[CASE_BROKEN],
-            of[CASE_SKIPPED], seconds);
+    fprintf(
+        file,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"pitviper regress\" tests=\"%d\" failures=\"%d\" "
+        "errors=\"%d\" skipped=\"%d\" time=\"%.3f\">\n",
+        count, of[CASE_FAILED] + of[CASE_NO_RECORD], of[CASE_BROKEN], of[CASE_SKIPPED], seconds);
     for (int i = 0; i < count; i++) put_case(file, result[i]);
     fputs("</testsuite>\n", file);
     const bool spoilt = ferror(file);

@@ -63,7 +63,8 @@ static void colour_of(uint8_t out[3], float value, Colours colours, Scale scale)
 {
     /* dark blue, purple, orange, pale yellow: brightness rises evenly, also for those who see no red */
     static const uint8_t heat[5][3] = {{8, 8, 40}, {84, 24, 110}, {182, 54, 84}, {246, 140, 40}, {252, 250, 190}};
-    static const uint8_t sides[5][3] = {{10, 60, 160}, {120, 170, 225}, {250, 250, 250}, {235, 150, 110}, {165, 15, 30}};
+    static const uint8_t sides[5][3] = {
+        {10, 60, 160}, {120, 170, 225}, {250, 250, 250}, {235, 150, 110}, {165, 15, 30}};
     static const uint8_t not_finite[3] = {150, 60, 200};
     if (!isfinite(value)) {
         memcpy(out, not_finite, 3);

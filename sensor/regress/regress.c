@@ -103,10 +103,12 @@ static int parse(Options *o, int argc, char **argv)
         return 1 + 2;
     }
     if (o->update && (!o->why || strspn(o->why, " \t\r\n") == strlen(o->why)))
-        return refuse("regress: --update needs --why TEXT: %s", "say in a sentence why the record changes; card.md keeps it");
+        return refuse("regress: --update needs --why TEXT: %s",
+                      "say in a sentence why the record changes; card.md keeps it");
     if (o->why && !o->update) return refuse("regress: --why is of --update; %s", "give both, or neither");
     if (o->update && (o->junit || o->report))
-        return refuse("regress: --update compares nothing, so it has no --junit and no --report; %s", "run again without --update");
+        return refuse("regress: --update compares nothing, so it has no --junit and no --report; %s",
+                      "run again without --update");
     if (o->work && !*o->work) return refuse("regress: --work: the folder has no name%s", "");
     return 0;
 }
@@ -193,7 +195,8 @@ const char *case_state_name(CaseState state)
 
 static void print_line(const CaseResult *r)
 {
-    printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "", r->line);
+    printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
+           r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
     putchar('\n');
 }
@@ -202,7 +205,8 @@ static void show_progress(const Suite *s)
 {
     if (!isatty(STDERR_FILENO)) return;
     const double spent_s = wall_clock_s() - s->begun_s;
-    fprintf(stderr, "\r\x1b[K  %d of %d cases, %.0f s%s", s->done, s->count, spent_s, s->done == s->count ? "\r\x1b[K" : "");
+    fprintf(stderr, "\r\x1b[K  %d of %d cases, %.0f s%s", s->done, s->count, spent_s,
+            s->done == s->count ? "\r\x1b[K" : "");
 }
 
 /* In the order in which they were given, each as soon as those before it are done. */
@@ -242,8 +246,8 @@ static bool open_work(Suite *s, char own[case_path_size])
     const char *tmp = getenv("TMPDIR");
     snprintf(own, case_path_size, "%.3000s/pitviper-regress-XXXXXX", tmp && *tmp ? tmp : "/tmp");
     if (!mkdtemp(own)) {
-        log_error("regress: cannot make a folder in %s: %s; name one with --work, or set TMPDIR", tmp && *tmp ? tmp : "/tmp",
-                  strerror(errno));
+        log_error("regress: cannot make a folder in %s: %s; name one with --work, or set TMPDIR",
+                  tmp && *tmp ? tmp : "/tmp", strerror(errno));
         *own = 0;
         return false;
     }
@@ -259,7 +263,8 @@ static bool run_all(Suite *s)
     const int processors = thread_processors();
     int       jobs       = s->o.jobs ? s->o.jobs : processors;
     if (jobs > s->count) jobs = s->count;
-    s->how = (CaseHow){.threads = processors / jobs > 1 ? processors / jobs : 1, .update = s->o.update, .why = s->o.why};
+    s->how =
+        (CaseHow){.threads = processors / jobs > 1 ? processors / jobs : 1, .update = s->o.update, .why = s->o.why};
     s->begun_s = wall_clock_s();
     if (pool_create(&pool, jobs) != STATUS_OK) {
         log_error("regress: cannot start %d threads; fewer --jobs", jobs);

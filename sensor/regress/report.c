@@ -6,9 +6,15 @@
 
 enum { path_size = case_path_size + 64, shown_width = 384, thumbnail_width = 192, plot_width = 760, plot_height = 220 };
 
-static void record_folder(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/record", r->c.folder); }
+static void record_folder(char out[path_size], const CaseResult *r)
+{
+    snprintf(out, path_size, "%.4080s/record", r->c.folder);
+}
 static void out_folder(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/out", r->work); }
-static void scratch_file(char out[path_size], const CaseResult *r) { snprintf(out, path_size, "%.4080s/report.png", r->work); }
+static void scratch_file(char out[path_size], const CaseResult *r)
+{
+    snprintf(out, path_size, "%.4080s/report.png", r->work);
+}
 
 static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResult *r, int number)
 {
@@ -88,19 +94,23 @@ static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *fo
     double       full = 0;
     if (!db) return;
     for (int k = 0; k < frame_bounces; k++)
-        for (int i = 0; i < bins; i++) full = fmax(full, isfinite(expected->profile[k][i]) ? (double)expected->profile[k][i] : 0);
+        for (int i = 0; i < bins; i++)
+            full = fmax(full, isfinite(expected->profile[k][i]) ? (double)expected->profile[k][i] : 0);
     plane_to_db(db, expected->profile[b], (size_t)bins, full, span_db);
     plane_to_db(db + bins, got->profile[b], (size_t)bins, full, span_db);
     for (int i = 0; i < 2 * bins; i++)
         if (!isfinite(db[i])) db[i] = (float)-span_db;
-    fprintf(page, "<figure><svg width=\"%d\" height=\"%d\" viewBox=\"0 -5 %d %d\" role=\"img\"><title>range profile</title>"
-            "<rect x=\"0\" y=\"0\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"gray\"/>", plot_width, plot_height + 10,
-            plot_width, plot_height + 10, plot_width, plot_height);
+    fprintf(page,
+            "<figure><svg width=\"%d\" height=\"%d\" viewBox=\"0 -5 %d %d\" role=\"img\"><title>range profile</title>"
+            "<rect x=\"0\" y=\"0\" width=\"%d\" height=\"%d\" fill=\"none\" stroke=\"gray\"/>",
+            plot_width, plot_height + 10, plot_width, plot_height + 10, plot_width, plot_height);
     put_line(page, db, bins, span_db, "stroke=\"#2a7d3f\" stroke-width=\"3\"");
     put_line(page, db + bins, bins, span_db, "stroke=\"#c0392b\" stroke-width=\"1\"");
     fputs("</svg><figcaption>", page);
-    html_text(page, "bounce %d: expected green and thick, got red and thin; %.1f .. %.1f m from left to right, 0 dB at the "
-              "top, -%.0f dB below", b + 1, got->near_m, got->near_m + (bins - 1) * got->bin_m, span_db);
+    html_text(page,
+              "bounce %d: expected green and thick, got red and thin; %.1f .. %.1f m from left to right, 0 dB at the "
+              "top, -%.0f dB below",
+              b + 1, got->near_m, got->near_m + (bins - 1) * got->bin_m, span_db);
     fputs("</figcaption></figure>\n", page);
     free(db);
 }
@@ -141,11 +151,14 @@ static void put_numbers(FILE *page, const CaseResult *r)
         if (c->picture || k == CHANNEL_PROFILE) {
             fprintf(page, "<td class=\"n\">%.3g %%</td><td class=\"n\">%.3g %s</td><td class=\"n\">%.3g %s</td>",
                     100 * v->share, v->max, c->unit ? c->unit : "", v->rms, c->unit ? c->unit : "");
-            if (v->column >= 0 && c->picture) fprintf(page, "<td style=\"white-space:nowrap\">frame %d (%d, %d)</td>", c->frame, v->column, v->row);
-            else if (v->column >= 0) fprintf(page, "<td style=\"white-space:nowrap\">frame %d, bin %d</td>", c->frame, v->column);
+            if (v->column >= 0 && c->picture)
+                fprintf(page, "<td style=\"white-space:nowrap\">frame %d (%d, %d)</td>", c->frame, v->column, v->row);
+            else if (v->column >= 0)
+                fprintf(page, "<td style=\"white-space:nowrap\">frame %d, bin %d</td>", c->frame, v->column);
             else fputs("<td></td>", page);
         } else {
-            fprintf(page, "<td class=\"n\">%d field%s</td><td></td><td></td><td></td>", c->diffs, c->diffs == 1 ? "" : "s");
+            fprintf(page, "<td class=\"n\">%d field%s</td><td></td><td></td><td></td>", c->diffs,
+                    c->diffs == 1 ? "" : "s");
         }
         fputs("<td>", page);
         html_text(page, "%s", c->line);
@@ -192,7 +205,8 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
     const size_t count = (size_t)f.width * (size_t)f.height;
     float       *db    = malloc(count * sizeof *db);
     for (size_t i = 0; i < sizeof band / sizeof *band && db; i++) {
-        const float *plane[3] = {f.number_plane[band[i]], f.number_plane[FRAME_OPTICAL_G], f.number_plane[FRAME_OPTICAL_B]};
+        const float *plane[3] = {f.number_plane[band[i]], f.number_plane[FRAME_OPTICAL_G],
+                                 f.number_plane[FRAME_OPTICAL_B]};
         const bool   rgb      = band[i] == FRAME_OPTICAL_R && plane[1] && plane[2];
         if (!plane[0]) continue;
         if (band[i] == FRAME_RADAR) {
@@ -204,7 +218,8 @@ static void put_thumbnails(FILE *page, const CaseResult *r)
         Scale scale = scale_of(plane[0], NULL, count);
         if (rgb) scale.low = 0;
         fputs("<figure>", page);
-        picture_put(page, plane, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT, scale, thumbnail_width, scratch, name[i]);
+        picture_put(page, plane, rgb ? 3 : 1, f.width, f.height, COLOURS_HEAT, scale, thumbnail_width, scratch,
+                    name[i]);
         fputs("<figcaption>", page);
         if (rgb || band[i] == FRAME_OPTICAL_Y) html_text(page, "%s", name[i]);
         else html_text(page, "%s: %.4g .. %.4g", name[i], scale.low, scale.high);
@@ -218,7 +233,8 @@ static void put_passed(FILE *page, const CaseResult *r, int number)
 {
     fprintf(page, "<details id=\"case%d\"><summary><b>", number);
     html_text(page, "%s", r->c.name);
-    fprintf(page, "</b> <span class=\"%s\">%s</span> ", r->state == CASE_OK ? "good" : "dim", case_state_name(r->state));
+    fprintf(page, "</b> <span class=\"%s\">%s</span> ", r->state == CASE_OK ? "good" : "dim",
+            case_state_name(r->state));
     html_text(page, "%s%s", r->c.purpose, "");
     fputs("</summary>\n", page);
     if (*r->line) {
@@ -244,16 +260,22 @@ static void put_summary(FILE *page, const CaseResult *const *result, int count)
         failed += has_failed(result[i]);
         skipped += result[i]->state == CASE_SKIPPED;
     }
-    fprintf(page, "<p>pitviper " PITVIPER_VERSION ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each shows a "
-            "recorded exercise again and is held against what it showed when it was found right. Of what failed, the channel "
-            "nearest to the source of the data is named: it is the probable cause of those after it.</p>\n", count,
-            count == 1 ? "" : "s", failed ? "bad" : "good", failed, skipped);
+    fprintf(page,
+            "<p>pitviper " PITVIPER_VERSION
+            ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each shows a "
+            "recorded exercise again and is held against what it showed when it was found right. Of what failed, the "
+            "channel "
+            "nearest to the source of the data is named: it is the probable cause of those after it.</p>\n",
+            count, count == 1 ? "" : "s", failed ? "bad" : "good", failed, skipped);
     fputs("<table><tr><th>case</th><th>result</th><th>what</th><th class=\"n\">s</th></tr>\n", page);
     for (int i = 0; i < count; i++) {
         const CaseResult *r = result[i];
         fprintf(page, "<tr><td><a href=\"#case%d\">", i);
         html_text(page, "%s", r->c.name);
-        fprintf(page, "</a></td><td class=\"%s\">%s</td><td>", has_failed(r) ? "bad" : r->state == CASE_OK ? "good" : "dim",
+        fprintf(page, "</a></td><td class=\"%s\">%s</td><td>",
+                has_failed(r)         ? "bad"
+                : r->state == CASE_OK ? "good"
+                                      : "dim",
                 case_state_name(r->state));
         html_text(page, "%s", *r->line ? r->line : r->c.purpose);
         fprintf(page, "</td><td class=\"n\">%.1f</td></tr>\n", r->seconds);

@@ -76,8 +76,9 @@ static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
     say(r, tail);
     if (end.stopped) return end_case(r, CASE_BROKEN, "stopped");
     if (end.timed_out)
-        return end_case(r, CASE_BROKEN, "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs longer",
-                        name, r->c.timeout_s);
+        return end_case(r, CASE_BROKEN,
+                        "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs longer", name,
+                        r->c.timeout_s);
     if (end.signal)
         return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
     if (end.code) {
@@ -95,7 +96,8 @@ static bool make_log(char log[path_size], CaseResult *r)
     struct stat there;
     if (!case_path(scenario, reason, &r->c, r->c.scenario)) return end_case(r, CASE_BROKEN, "scenario: %s", reason);
     const bool is_file = stat(scenario, &there) == 0 && S_ISREG(there.st_mode);
-    if (!is_file && strpbrk(r->c.scenario, "/.")) return end_case(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
+    if (!is_file && strpbrk(r->c.scenario, "/."))
+        return end_case(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
     snprintf(log, path_size, "%.4080s/log.pcapng", r->work);
     bool fits = child_add(&line, "pitviper") && child_add(&line, "exercise") &&
                 child_add(&line, is_file ? scenario : r->c.scenario) && child_add(&line, "-o") && child_add(&line, log);
@@ -122,14 +124,17 @@ static bool find_config(char config[path_size], CaseResult *r)
     char path[case_path_size], reason[256];
     *config = 0;
     if (*r->c.config_file) {
-        if (!case_path(path, reason, &r->c, r->c.config_file)) return end_case(r, CASE_BROKEN, "config_file: %s", reason);
+        if (!case_path(path, reason, &r->c, r->c.config_file))
+            return end_case(r, CASE_BROKEN, "config_file: %s", reason);
         snprintf(config, path_size, "%s", path);
     } else if (*r->c.config) {
         snprintf(config, path_size, "%.4080s/config.yaml", r->work);
         FILE *file = fopen(config, "w");
         bool  ok   = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
-        if (!ok) return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config, strerror(errno));
+        if (!ok)
+            return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
+                            strerror(errno));
     }
     return true;
 }
@@ -143,8 +148,8 @@ static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const
         n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
     snprintf(out, sizeof out, "%.4080s/out", r->work);
     snprintf(threads, sizeof threads, "%d", how->threads);
-    const char *const fixed[] = {"pitviper", "replay", log, "--out", out, "--only", only, "--threads", threads, "--no-png",
-                                 "--set", "publish.files=true"};
+    const char *const fixed[] = {"pitviper", "replay",    log,     "--out",    out,     "--only",
+                                 only,       "--threads", threads, "--no-png", "--set", "publish.files=true"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) child_add(&line, fixed[i]);
     if (*config) {
         child_add(&line, "--config");
@@ -162,13 +167,17 @@ static bool has_record(CaseResult *r)
     char path[path_size];
     snprintf(path, sizeof path, "%.4080s/record/run.json", r->c.folder);
     if (access(path, F_OK) != 0)
-        return end_case(r, CASE_NO_RECORD, "no record yet: look at what it shows, then `pitviper regress --update %.300s --why "
-                        "TEXT`", r->c.folder);
+        return end_case(r, CASE_NO_RECORD,
+                        "no record yet: look at what it shows, then `pitviper regress --update %.300s --why "
+                        "TEXT`",
+                        r->c.folder);
     for (int i = 0; i < r->c.frames.count; i++) {
         snprintf(path, sizeof path, "%.4000s/record/%06.0f.exr", r->c.folder, r->c.frames.number[i]);
         if (access(path, F_OK) != 0)
-            return end_case(r, CASE_BROKEN, "the record has no frame %.0f: `pitviper regress --update %.300s --why TEXT` makes "
-                            "it anew", r->c.frames.number[i], r->c.folder);
+            return end_case(r, CASE_BROKEN,
+                            "the record has no frame %.0f: `pitviper regress --update %.300s --why TEXT` makes "
+                            "it anew",
+                            r->c.frames.number[i], r->c.folder);
     }
     return true;
 }

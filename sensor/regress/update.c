@@ -120,7 +120,8 @@ static Status write_card(const CaseResult *r, const char *why, const JsonValues 
     fprintf(card, "# %s\n\n", r->c.name);
     put_line(card, r->c.purpose);
     fprintf(card, "\n\n## pitviper %s, exercise of %.4s-%.2s-%.2s %s UTC\n\n- why: ",
-            version && version->text ? version->text : "?", date, date + 5, date + 8, strlen(date) > 11 ? date + 11 : "");
+            version && version->text ? version->text : "?", date, date + 5, date + 8,
+            strlen(date) > 11 ? date + 11 : "");
     put_line(card, why);
     fputc('\n', card);
     put_changes(card, r);

@@ -23,7 +23,10 @@ static const struct ChannelRow {
     [CHANNEL_MATERIAL] = {"material", "", {FRAME_MATERIAL}, 1},
     [CHANNEL_SUN] = {.name = "sun"},
     [CHANNEL_TEMP] = {"temperature", "K", {FRAME_TEMP}, 1},
-    [CHANNEL_OPTICAL] = {"optical", "W/(m2 sr)", {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y}, 4},
+    [CHANNEL_OPTICAL] = {"optical",
+                         "W/(m2 sr)",
+                         {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y},
+                         4},
     [CHANNEL_MWIR] = {"mwir", "K", {FRAME_MWIR}, 1},
     [CHANNEL_LWIR] = {"lwir", "K", {FRAME_LWIR}, 1},
     [CHANNEL_RADAR] = {"radar", "dB", {FRAME_RADAR}, 1},
@@ -168,8 +171,10 @@ static void hold_ids(ChannelResult *result, const Held *h, Channel channel, Fram
     const PlaneVerdict *v = &found.verdict;
     found.failed = v->beyond > 0 || (double)at_edges > h->tolerance->edge_share * (double)h->edges;
     if (v->beyond > 0)
-        snprintf(found.line, sizeof found.line, "%.3g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
-                 "%.0f", 100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
+        snprintf(found.line, sizeof found.line,
+                 "%.3g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
+                 "%.0f",
+                 100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
     else if (at_edges > 0)
         snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels show another %s in frame %d, allowed %.3g %%",
                  at_edges, h->edges, rows[channel].name, found.frame, 100 * h->tolerance->edge_share);
@@ -198,8 +203,10 @@ static void hold_profile(ChannelResult *result, const Held *h)
         compare_numbers(v, NULL, db, db + was->bins, was->bins, 1, found.limit, 0, NULL);
         found.failed = v->share > h->tolerance->share;
         if (v->column >= 0)
-            snprintf(found.line, sizeof found.line, "bounce %d: %.3g %% of bins beyond %.3g dB, worst %.3g dB at frame %d, "
-                     "%.1f m", b + 1, 100 * v->share, found.limit, v->max, is->number, was->near_m + v->column * was->bin_m);
+            snprintf(found.line, sizeof found.line,
+                     "bounce %d: %.3g %% of bins beyond %.3g dB, worst %.3g dB at frame %d, "
+                     "%.1f m",
+                     b + 1, 100 * v->share, found.limit, v->max, is->number, was->near_m + v->column * was->bin_m);
         if (b == 0 && fabs(was->near_m - is->near_m) > 0.01 * was->bin_m) {
             found.failed = true;
             snprintf(found.line, sizeof found.line, "begins at %.3f m, was %.3f m in frame %d", is->near_m, was->near_m,
@@ -329,7 +336,8 @@ static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is
         remark(v, "the log is not that of the record (log_sha256)");
     for (int i = 0; i < is->count; i++) {
         const char *path = is->value[i].path;
-        if (strncmp(path, "choices[", 8) == 0 && is->value[i].text && strcmp(text_of(was, path), is->value[i].text) != 0)
+        if (strncmp(path, "choices[", 8) == 0 && is->value[i].text &&
+            strcmp(text_of(was, path), is->value[i].text) != 0)
             remark(v, "chosen: %s; was: %s", is->value[i].text, text_of(was, path));
     }
 }
@@ -343,8 +351,8 @@ static void look_at_hashes(Verdict *v, const JsonValues *was, const JsonValues *
         differ += strcmp(text_of(was, is->value[i].path), is->value[i].text) != 0;
     }
     if (differ == 0 || !v->same_build) return;
-    remark(v, v->first < 0 ? "bits differ in %d of %d frames, within tolerance" : "bits differ in %d of %d frames", differ,
-           count);
+    remark(v, v->first < 0 ? "bits differ in %d of %d frames, within tolerance" : "bits differ in %d of %d frames",
+           differ, count);
 }
 
 /* Line of this frame, flattened. STATUS_IO when there is none. */

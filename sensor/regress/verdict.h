@@ -51,8 +51,8 @@ typedef struct ChannelPlanes {
     float *expected, *got, *difference;
 } ChannelPlanes;
 /* The plane that the result names. False when memory is out. */
-bool channel_planes(ChannelPlanes *out, const ChannelResult *result, const RecordFrame *expected, const RecordFrame *got,
-                    const Tolerance *tolerance);
+bool channel_planes(ChannelPlanes *out, const ChannelResult *result, const RecordFrame *expected,
+                    const RecordFrame *got, const Tolerance *tolerance);
 
 /* Reads both folders. STATUS_BAD_VALUE or STATUS_IO, logged: a file of either cannot be read. */
 Status verdict_of(Verdict *out, const Case *c, const char *record, const char *run);

@@ -10,9 +10,11 @@ const int fuzz_rounds = 20000;
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const seed[2] = {
-        "purpose: a missile flies at a truck\nscenario: demo\nscenario_set: seed=7 dis.version=6\nconfig: |\n  sensor:\n"
+        "purpose: a missile flies at a truck\nscenario: demo\nscenario_set: seed=7 dis.version=6\nconfig: |\n  "
+        "sensor:\n"
         "    width_px: 96\nframes: [3, 7, 12]\ncausal: true\ntimeout_s: 20\ntolerance:\n  lwir_k: 0.1\n  share: 0\n",
-        "{purpose: p, log: \"${PITVIPER_DATA}/dis/singles.pcap\", config_file: node.yaml, frames: [0], tolerance: {truth: 2}}\n",
+        "{purpose: p, log: \"${PITVIPER_DATA}/dis/singles.pcap\", config_file: node.yaml, frames: [0], tolerance: "
+        "{truth: 2}}\n",
     };
     return fuzz_seed_text(out, seed[index % 2]);
 }

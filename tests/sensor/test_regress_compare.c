@@ -244,7 +244,8 @@ static void each_field_has_its_own_tolerance(void **state)
                          TARGET("\"bands\":{\"lwir\":{\"contrast_k\":2.08}}"), 1, said) == CHANNEL_SIGNALS);
     CHECK(first_of_truth(TARGET("\"box_px\":[1,2,3,4]"), TARGET("\"box_px\":[1,2,3,5]"), 1, said) == CHANNEL_TARGETS);
     CHECK(first_of_truth("{\"time_s\":5.0}", "{\"time_s\":5.1}", 1, said) == CHANNEL_TIME);
-    CHECK(first_of_truth("{\"sun\":{\"elevation_deg\":10}}", "{\"sun\":{\"elevation_deg\":11}}", 1, said) == CHANNEL_SUN);
+    CHECK(first_of_truth("{\"sun\":{\"elevation_deg\":10}}", "{\"sun\":{\"elevation_deg\":11}}", 1, said) ==
+          CHANNEL_SUN);
     CHECK(first_of_truth("{\"host\":{\"lat_deg\":10}}", "{\"host\":{\"lat_deg\":10.1}}", 1, said) == CHANNEL_POSE);
 }
 
@@ -255,9 +256,11 @@ static void fields_may_come_but_not_go(void **state)
     CHECK(first_of_truth(TARGET("\"pixels\":3,\"box_px\":[1]"), TARGET("\"pixels\":3"), 1, said) == CHANNEL_TARGETS);
     assert_string_equal(said, "targets[1:2:3].box_px[0] is absent, was 1 in frame 3");
     CHECK(first_of_truth(TARGET("\"pixels\":3"), TARGET("\"pixels\":3,\"box_px\":[1]"), 1, said) == CHANNEL_TARGETS);
-    CHECK(first_of_truth(TARGET("\"pixels\":3"), TARGET("\"pixels\":3,\"colour\":\"red\""), 1, said) == -1); /* unknown */
+    CHECK(first_of_truth(TARGET("\"pixels\":3"), TARGET("\"pixels\":3,\"colour\":\"red\""), 1, said) ==
+          -1); /* unknown */
     CHECK(first_of_truth(TARGET("\"colour\":\"red\""), TARGET("\"pixels\":3"), 1, said) == CHANNEL_TARGETS);
-    CHECK(first_of_truth(TARGET("\"occluded_by\":\"ground\""), TARGET("\"occluded_by\":\"1:1:1\""), 1, said) == CHANNEL_TARGETS);
+    CHECK(first_of_truth(TARGET("\"occluded_by\":\"ground\""), TARGET("\"occluded_by\":\"1:1:1\""), 1, said) ==
+          CHANNEL_TARGETS);
     CHECK(first_of_truth("{\"frame\":3,\"targets\":[]}", TARGET("\"pixels\":3"), 1, said) == CHANNEL_TARGETS);
     CHECK(first_of_truth("{\"frame_sha256\":\"a\"}", "{\"frame_sha256\":\"b\"}", 1, said) == -1);
 }
