@@ -47,6 +47,7 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
 {
     const char *form = "needs a list of values, or {from: LOW, to: HIGH}";
     bool        from = false, to = false;
+    if (config_kind(axis->key) == CONFIG_WORD) return refuse(r, node, axis->key, "is no number to draw");
     for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
@@ -61,7 +62,6 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
     }
     if (!from || !to) return refuse(r, node, axis->key, form);
     if (r->sweep->mode != SWEEP_RANDOM) return refuse(r, node, axis->key, "only `mode: random` draws between from and to");
-    if (config_kind(axis->key) == CONFIG_WORD) return refuse(r, node, axis->key, "is no number to draw");
     if (!(axis->low <= axis->high)) return refuse(r, node, axis->key, "from is above to");
     axis->whole = config_kind(axis->key) == CONFIG_WHOLE;
     return STATUS_OK;
