@@ -121,7 +121,8 @@ void stress_sphere(Model *m, double radius_m, int bands)
     add_vertex(m, 0, 0, radius_m);
     for (int b = 1; b < bands; b++)
         for (int a = 0; a < around; a++) {
-            const double polar = pi_rad * b / bands, azimuth = 2 * pi_rad * a / around, across_m = radius_m * sin(polar);
+            const double polar = pi_rad * b / bands, azimuth = 2 * pi_rad * a / around,
+                across_m = radius_m * sin(polar);
             add_vertex(m, across_m * cos(azimuth), across_m * sin(azimuth), -radius_m * cos(polar));
         }
     for (int a = 0; a < around; a++) {

@@ -1,8 +1,8 @@
 /* render/bench_stability.h: `pitviper bench stability`: stress cases with a measured figure each.
  *
  * A case's figure is held against what the code under test did not produce: a closed form, brute force in long double,
- * symmetry, energy. Cases that ask only whether something breaks count what is not finite or below 0, and their limit is
- * 0. A time beside a figure is that of the whole case. */
+ * symmetry, energy. Cases that ask only whether something breaks count what is not finite or below 0, and their limit
+ * is 0. A time beside a figure is that of the whole case. */
 #ifndef RENDER_BENCH_STABILITY_H
 #define RENDER_BENCH_STABILITY_H
 

@@ -1,5 +1,5 @@
-/* render/bench_stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should be, and a radar
- * of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
+/* render/bench_stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should be, and a
+ * radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
 #include "render/bench_stability_world.h"
 
 static void level_attitude(double r[9], double turn_rad)
@@ -23,12 +23,14 @@ static double crowd(StressWorld *w, int count)
     stress_no_air(w, sun_enu);
     stress_clear(w);
     for (int k = 0; k < count; k++) { /* a pixel is 20 m there */
-        const double p[3] = {dice_uniform(&dice, -6, 6), 20000 + dice_uniform(&dice, -6, 6), 50 + dice_uniform(&dice, -6, 6)};
+        const double p[3] = {dice_uniform(&dice, -6, 6), 20000 + dice_uniform(&dice, -6, 6),
+            50 + dice_uniform(&dice, -6, 6)};
         level_attitude(r, dice_uniform(&dice, 0, 6));
         stress_add(w, p, r);
     }
     request.bands = all_bands;
-    if (count > 1000) request.target_samples = 8, request.bands = 1 << BAND_LWIR; /* time goes with the square of a crowd */
+    /* time goes with the square of a crowd */
+    if (count > 1000) request.target_samples = 8, request.bands = 1 << BAND_LWIR;
     if (!stress_render(w, &request)) return INFINITY;
     for (int k = 0; k < count; k++) visible += w->picture.target[k].visible;
     return stress_bad_values(&w->picture) + !(visible <= 1.001);
@@ -105,11 +107,12 @@ static double two_in_one_place(void *user, bool quick)
 
 /* ---- where the eye is ------------------------------------------------------------------------------ */
 
-/* Inside a block, on its side and edge-on to it, under the ground, on it, at 1000 km; level, straight up and straight down,
- * by day, night and with the sun on the horizon, overhead and underfoot; wide and narrow. */
+/* Inside a block, on its side and edge-on to it, under the ground, on it, at 1000 km; level, straight up and straight
+ * down, by day, night and with the sun on the horizon, overhead and underfoot; wide and narrow. */
 static double eyes(void *user, bool quick)
 {
-    static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40}, {0, 0, 0}, {30, 0, 1e6}, {1.9e4, 1.9e4, 30}, {2e5, 0, 2000}};
+    static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40}, {0, 0, 0},
+        {30, 0, 1e6}, {1.9e4, 1.9e4, 30}, {2e5, 0, 2000}};
     static const double towards[][3] = {{0, 1, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, 0}, {0.3, 0.5, -0.7}, {0, -1e-17, -1}};
     static const double sun_rad[] = {0, 0.5, 1.5707963267948966, -0.01, -1.5707963267948966};
     StressWorld *w = user;
@@ -121,22 +124,24 @@ static double eyes(void *user, bool quick)
         for (int t = 0; t < 6; t++)
             for (int s = 0; s < 5; s++, n++) {
                 if (quick && n % 7) continue;
-                const View    view = stress_view(place[e], towards[t], 0.2 * s, 40, 24, n % 3 ? 30 : n % 2 ? 0.35 : 3e5);
+                const View    view = stress_view(place[e], towards[t], 0.2 * s, 40, 24,
+                    n % 3 ? 30 : n % 2 ? 0.35 : 3e5);
                 RenderRequest request = stress_request(&view);
                 request.bands   = all_bands;
                 request.optical = n % 2 ? OPTICAL_RGB : OPTICAL_NIR;
                 request.sky_samples = n % 5 == 0 ? 4 : 0;
                 stress_clear(w);
                 stress_add(w, p, r);
-                if (stress_real_air(w, sun_rad[s], place[e][2]) != STATUS_OK || !stress_render(w, &request)) wrong = INFINITY;
+                if (stress_real_air(w, sun_rad[s], place[e][2]) != STATUS_OK || !stress_render(w, &request))
+                    wrong = INFINITY;
                 else wrong += stress_bad_values(&w->picture);
             }
     w->world.landscape = NULL;
     return wrong;
 }
 
-/* Straight down and straight up, turned by quarters about the axis: the same picture, turned. In one air of one radiance
- * and from over a block; worst change of a pixel's radiance. */
+/* Straight down and straight up, turned by quarters about the axis: the same picture, turned. In one air of one
+ * radiance and from over a block; worst change of a pixel's radiance. */
 static double turned(void *user, bool quick)
 {
     enum { side = 64 };
@@ -186,7 +191,8 @@ static double lobe_energy(void *user, bool quick)
         for (int i = 0; i <= steps; i++) {
             const double a = end * i / steps, half = sin(0.5 * a);
             /* the function takes a cosine: 1 - 2 sin^2 (a / 2) */
-            sum += 2 * pi_rad * sin(a) * radar_lobe(lobe_rad, 1 - 2 * half * half) * (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2);
+            sum += 2 * pi_rad * sin(a) * radar_lobe(lobe_rad, 1 - 2 * half * half) *
+                (i == 0 || i == steps ? 1 : i % 2 ? 4 : 2);
         }
         const double error = fabs(sum * end / steps / 3 - 1);
         if (!(error <= worst)) worst = error;
@@ -197,7 +203,8 @@ static double lobe_energy(void *user, bool quick)
 /* Values that are none, of any lobe and cosine, 0 and beyond included. */
 static double lobe_values(void *user, bool quick)
 {
-    static const double lobe[] = {0, 1e-300, 1e-12, 1e-9, 1e-3, 1, 100, 1e300}, cosine[] = {-1, 0, 5e-324, 1e-9, 0.5, 0.999999, 1, 1.0000000000000002};
+    static const double lobe[] = {0, 1e-300, 1e-12, 1e-9, 1e-3, 1, 100, 1e300},
+        cosine[] = {-1, 0, 5e-324, 1e-9, 0.5, 0.999999, 1, 1.0000000000000002};
     double bad = 0;
     (void)user, (void)quick;
     for (int k = 0; k < 8; k++)
@@ -208,8 +215,8 @@ static double lobe_values(void *user, bool quick)
     return bad;
 }
 
-/* Two plates that face each other, eye between, and a corner: bounces that go to and fro. Range bins whose edges are where
- * the returns are; what the profile holds is what the picture holds. */
+/* Two plates that face each other, eye between, and a corner: bounces that go to and fro. Range bins whose edges are
+ * where the returns are; what the profile holds is what the picture holds. */
 static double radar_bins(void *user, bool quick)
 {
     enum { side = 40 };
@@ -241,7 +248,8 @@ static double radar_bins(void *user, bool quick)
         for (int i = 0; i < side * side; i++) picture += (double)w->picture.radar[i];
         for (int i = 0; i < 4096 * radar_bounces; i++) profile += w->picture.profile[i];
         if (stress_bad_values(&w->picture) > 0) return INFINITY;
-        if (n % 2) worst = fmax(worst, picture > 0 ? fabs(profile / picture - 1) : INFINITY); /* those before profile_near_m are left out */
+        /* those before profile_near_m are left out */
+        if (n % 2) worst = fmax(worst, picture > 0 ? fabs(profile / picture - 1) : INFINITY);
     }
     return worst;
 }
@@ -249,7 +257,8 @@ static double radar_bins(void *user, bool quick)
 Status stability_crowd(Bench *bench)
 {
     static const StabilityCase cases[] = {
-        {"crowd: 100 (400) in one pixel at 20 km", crowd_some, 0, "values", "finite, not below 0; areas within a pixel"},
+        {"crowd: 100 (400) in one pixel at 20 km", crowd_some, 0, "values",
+            "finite, not below 0; areas within a pixel"},
         {"crowd: nobody, and six that are nowhere", nobody, 0, "values", "the picture of nobody, to the bit"},
         {"crowd: two in one place", two_in_one_place, 0, "values", "the picture of one, to the bit"},
         {"eye: in a block, edge-on, under ground, 1000 km up; up and down", eyes, 0, "values", "finite, not below 0"},

@@ -1,5 +1,5 @@
-/* render/bench_stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly along its posts,
- * lines and diagonals, from on it and under it.
+/* render/bench_stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly along its
+ * posts, lines and diagonals, from on it and under it.
  *
  * The judge follows a ray over every line of posts and every diagonal that there is, in long double: over each triangle
  * its height above the surface is a straight line, so a sign at each crossing says all. It skips nothing and orders the
@@ -113,7 +113,8 @@ static int by_size(const void *a, const void *b)
 static long double clearance(const Field *f, const double o[3], const double d[3], long double t)
 {
     const ElevationLevel *e = &f->elevation.level[0];
-    const long double u = (o[0] - (long double)e->x0_m + t * d[0]) / 4, v = (o[1] - (long double)e->y0_m + t * d[1]) / 4;
+    const long double u = (o[0] - (long double)e->x0_m + t * d[0]) / 4,
+        v = (o[1] - (long double)e->y0_m + t * d[1]) / 4;
     int i = (int)floorl(u), j = (int)floorl(v);
     i = i < 0 ? 0 : i > side - 2 ? side - 2 : i;
     j = j < 0 ? 0 : j > side - 2 ? side - 2 : j;
@@ -149,7 +150,8 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
     if (!(in < out)) return judged;
     t[n++] = in, t[n++] = out;
     for (int k = -side; k <= side; k++) {
-        const long double at[3] = {(e->x0_m + 4 * k - (long double)o[0]) / d[0], (e->y0_m + 4 * k - (long double)o[1]) / d[1],
+        const long double at[3] = {(e->x0_m + 4 * k - (long double)o[0]) / d[0],
+            (e->y0_m + 4 * k - (long double)o[1]) / d[1],
                                    (4 * k - ((o[0] - (long double)e->x0_m) - (o[1] - (long double)e->y0_m))) /
                                        ((long double)d[0] - d[1])};
         for (int c = 0; c < 3; c++)
@@ -158,12 +160,15 @@ static Judged judge(const Field *f, const double o[3], const double d[3])
     qsort(t, (size_t)n, sizeof *t, by_size);
     for (int k = 0; k < n; k++) {
         /* a cliff of a line's width is on both of its sides */
-        const long double off = 1e-12L, c = fminl(clearance(f, o, d, fmaxl(in, t[k] - off)), clearance(f, o, d, t[k] + off));
+        const long double off = 1e-12L,
+            c = fminl(clearance(f, o, d, fmaxl(in, t[k] - off)), clearance(f, o, d, t[k] + off));
         const long double before = k > 0 ? clearance(f, o, d, t[k - 1]) : c;
         if (c <= hair_m && judged.may_m == INFINITY)
-            judged.may_m = k > 0 && before > hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before - hair_m) / (before - c)) : t[k];
+            judged.may_m = k > 0 && before > hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before - hair_m) / (before - c))
+                : t[k];
         if (c < -hair_m) {
-            judged.must_m = k > 0 && before > -hair_m ? t[k - 1] + (t[k] - t[k - 1]) * ((before + hair_m) / (before - c)) : t[k];
+            judged.must_m = k > 0 && before > -hair_m
+                ? t[k - 1] + (t[k] - t[k - 1]) * ((before + hair_m) / (before - c)) : t[k];
             break;
         }
     }
@@ -235,8 +240,8 @@ static double field_company(void *user, bool quick)
     return wrong;
 }
 
-/* The field 200 km from the terrain's origin, which is a whole number of its lines: the same rays, moved with it. An eye
- * there is rounded to 3e-11 m, which a face a thousandth of a radian from edge-on makes 3e-8 m of range. */
+/* The field 200 km from the terrain's origin, which is a whole number of its lines: the same rays, moved with it. An
+ * eye there is rounded to 3e-11 m, which a face a thousandth of a radian from edge-on makes 3e-8 m of range. */
 static double far_fields(void *user, bool quick)
 {
     static const double away_m[2] = {131072, -163840};
@@ -294,7 +299,8 @@ static double seams(void *user, bool quick)
 Status stability_ground(Bench *bench)
 {
     static const StabilityCase cases[] = {
-        {"ground: rough, flat, spikes, cliffs, on posts and lines: missed", field_missed, 0, "rays", "every post line in long double"},
+        {"ground: rough, flat, spikes, cliffs, on posts and lines: missed", field_missed, 0, "rays",
+            "every post line in long double"},
         {"ground: the same: invented", field_invented, 0, "rays", "every post line in long double"},
         {"ground: the same: by eights and by tiles", field_company, 0, "rays", "one by one, to the bit"},
         {"ground: 200 km from the origin", far_fields, 1e-7, "m", "the same about the origin"},

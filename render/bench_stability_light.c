@@ -1,6 +1,6 @@
-/* render/bench_stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as thick as a wall,
- * surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy, and the cavity in which
- * everything looks alike. */
+/* render/bench_stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as thick as a
+ * wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy, and the cavity
+ * in which everything looks alike. */
 #include "render/bench_stability.h"
 #include "render/planck.h"
 #include "render/surface_light.h"
@@ -47,9 +47,11 @@ static double planck_wide(void *user, bool quick)
     (void)user;
     for (int i = 0; i <= temps; i++)
         for (int b = 0; b < 2; b++) {
-            const double      t = pow(10, 4.0 * i / temps), got = planck_band(band_m[b].low_m, band_m[b].high_m, t, NULL);
+            const double      t = pow(10, 4.0 * i / temps),
+                got = planck_band(band_m[b].low_m, band_m[b].high_m, t, NULL);
             const long double want = ln_planck(band_m[b].low_m, band_m[b].high_m, t);
-            if (want < -700) worse(&worst, got >= 0 && got < 1e-303 ? 0 : INFINITY); /* gone: 0, or what little is left */
+            /* gone: 0, or what little is left */
+            if (want < -700) worse(&worst, got >= 0 && got < 1e-303 ? 0 : INFINITY);
             else worse(&worst, fabs((double)expm1l(logl(got) - want)));
         }
     return worst;
@@ -90,18 +92,20 @@ static double table_round_trip(void *user, bool quick)
     return worst_k;
 }
 
-/* Eight temperatures at a time, good, bad and none, in every lane: what differs from one at a time by more than a float,
- * or is a number where there is none. */
+/* Eight temperatures at a time, good, bad and none, in every lane: what differs from one at a time by more than a
+ * float, or is a number where there is none. */
 static double table_by_eights(void *user, bool quick)
 {
-    static const float odd[] = {0, -0.0f, -300, 1e-40f, 1e-30f, 1, 3, 179.99f, 180, 1500, 1500.01f, 1e4f, 1e30f, INFINITY, -INFINITY, NAN};
+    static const float odd[] = {0, -0.0f, -300, 1e-40f, 1e-30f, 1, 3, 179.99f, 180, 1500, 1500.01f, 1e4f, 1e30f,
+        INFINITY, -INFINITY, NAN};
     const Light *light = user;
     Dice         dice = {.stream = 30};
     double       wrong = 0;
     for (int n = quick ? 2000 : 50000; n > 0; n--) {
         float temp_k[8], l[8];
         for (int k = 0; k < 8; k++)
-            temp_k[k] = n % 2 ? odd[(int)dice_uniform(&dice, 0, sizeof odd / sizeof *odd)] : (float)dice_log(&dice, 1, 1e4);
+            temp_k[k] = n % 2 ? odd[(int)dice_uniform(&dice, 0, sizeof odd / sizeof *odd)]
+                : (float)dice_log(&dice, 1, 1e4);
         planck_table_radiance8(l, light->lwir, temp_k);
         for (int k = 0; k < 8; k++) {
             const double want = planck_table_radiance(light->lwir, (double)temp_k[k]);
@@ -129,7 +133,8 @@ static double path_values(void *user, bool quick)
         PathAir       p;
         SkyAir        sky;
         atmosphere_path(&p, light->atmosphere, dice_log(&dice, 1, 1e7), band, &path, dice_log(&dice, 1, 1e4));
-        wrong += !(p.transmittance >= 0 && p.transmittance <= 1) + !(p.sun_transmittance >= 0 && p.sun_transmittance <= 1) +
+        wrong += !(p.transmittance >= 0 && p.transmittance <= 1) +
+            !(p.sun_transmittance >= 0 && p.sun_transmittance <= 1) +
                  !(p.thermal_w_m2_sr >= 0 && isfinite(p.thermal_w_m2_sr)) +
                  !(p.scattered_w_m2_sr >= 0 && isfinite(p.scattered_w_m2_sr));
         atmosphere_sky(&sky, light->atmosphere, dice_log(&dice, 1, 1e7), band, path.observer_m,
@@ -140,11 +145,12 @@ static double path_values(void *user, bool quick)
     return wrong;
 }
 
-/* What a frame asks: eyes from under the ground to space, suns from nadir to zenith, rays of no length, of 1000 km and to
- * the sky, straight up and down. */
+/* What a frame asks: eyes from under the ground to space, suns from nadir to zenith, rays of no length, of 1000 km and
+ * to the sky, straight up and down. */
 static double veil_values(void *user, bool quick)
 {
-    static const double eye_m[] = {-50, 0, 2, 300, 19999, 20000, 1e6}, sun_rad[] = {-1.5707963267948966, -0.01, 0, 0.01, 1.5707963267948966};
+    static const double eye_m[] = {-50, 0, 2, 300, 19999, 20000, 1e6},
+        sun_rad[] = {-1.5707963267948966, -0.01, 0, 0.01, 1.5707963267948966};
     static Air   air;
     static Veils veils[AIR_BAND_COUNT];
     static Hits  hits;
@@ -156,7 +162,8 @@ static double veil_values(void *user, bool quick)
     for (int e = 0; e < 7; e++)
         for (int s = 0; s < 5; s++) {
             const double    east = s % 2 ? 0 : cos(sun_rad[s]);
-            const Sun       sun = {.elevation_rad = sun_rad[s], .distance_au = 1, .d_enu = {east, cos(sun_rad[s]) - east, sin(sun_rad[s])}};
+            const Sun       sun = {.elevation_rad = sun_rad[s], .distance_au = 1,
+                .d_enu = {east, cos(sun_rad[s]) - east, sin(sun_rad[s])}};
             const AirSource source = {light->atmosphere, light->mwir, light->lwir};
             const AirEye    eye = {.height_m = eye_m[e], .bands = (1 << AIR_BAND_COUNT) - 1};
             Weather         weather = weather_default();
@@ -180,7 +187,8 @@ static double veil_values(void *user, bool quick)
             air_veils_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
             for (int b = 0; b < AIR_BAND_COUNT; b++)
                 for (int i = 0; i < hits_capacity; i++) {
-                    const float *const share[3] = {veils[b].transmittance, veils[b].sun_transmittance, veils[b].air_transmittance};
+                    const float *const share[3] = {veils[b].transmittance, veils[b].sun_transmittance,
+                        veils[b].air_transmittance};
                     for (int k = 0; k < 3; k++) wrong += !(share[k][i] >= 0 && share[k][i] <= 1);
                     wrong += !(veils[b].added_w_m2_sr[i] >= 0 && isfinite(veils[b].added_w_m2_sr[i]));
                     const double d[3] = {rays.d_enu[0][i], rays.d_enu[1][i], rays.d_enu[2][i]};
@@ -193,8 +201,8 @@ static double veil_values(void *user, bool quick)
 
 /* ---- smoke --------------------------------------------------------------------------------------- */
 
-/* Spheroids from nothing to a wall, needles of 1e6:1 too, of one radiance all over before a background of the same: nothing
- * is to be seen of them, and no transmittance leaves 0 .. 1. */
+/* Spheroids from nothing to a wall, needles of 1e6:1 too, of one radiance all over before a background of the same:
+ * nothing is to be seen of them, and no transmittance leaves 0 .. 1. */
 static double smoke(void *user, bool quick)
 {
     enum { volumes = 40 };
@@ -215,7 +223,9 @@ static double smoke(void *user, bool quick)
             v3_scale(v[k].p_enu, dice_log(&dice, 1, 1000), v[k].p_enu);
             dice_direction(v[k].axis_enu, &dice);
             v[k].range_m = v3_length(v[k].p_enu);
-            for (int b = 0; b < veil_bands; b++) v[k].extinction_per_m[b] = b == 0 ? 0 : dice_log(&dice, 1e-300, b == 1 ? 1e-290 : 1e12), v[k].source[b] = 7;
+            for (int b = 0; b < veil_bands; b++)
+                v[k].extinction_per_m[b] = b == 0 ? 0 : dice_log(&dice, 1e-300, b == 1 ? 1e-290 : 1e12),
+                    v[k].source[b] = 7;
             list[k] = k;
         }
         rays.count = hits_capacity;
@@ -239,8 +249,8 @@ static double smoke(void *user, bool quick)
 
 /* ---- surfaces -------------------------------------------------------------------------------------- */
 
-/* Surfaces black, white and mirrors, smooth and rough, face-on to edge-on, in a cavity of one temperature: every one reads
- * Planck(T). The quick form that frames take. */
+/* Surfaces black, white and mirrors, smooth and rough, face-on to edge-on, in a cavity of one temperature: every one
+ * reads Planck(T). The quick form that frames take. */
 static double cavity(void *user, bool quick)
 {
     static const float rho[4] = {0, 1e-30f, 0.5f, 1}, gloss[3] = {0, 0.5f, 1}, roughness[4] = {0, 0.001f, 0.2f, 1};
@@ -259,7 +269,8 @@ static double cavity(void *user, bool quick)
     double       worst = 0;
     memset(row, 0, sizeof row);
     for (int m = 0; m < 48; m++)
-        row[m].rho_mwir = row[m].rho_lwir = rho[m % 4], row[m].gloss = gloss[m / 4 % 3], row[m].roughness = roughness[m / 12];
+        row[m].rho_mwir = row[m].rho_lwir = rho[m % 4], row[m].gloss = gloss[m / 4 % 3],
+            row[m].roughness = roughness[m / 12];
     for (int step = 0; step <= (quick ? 6 : 40); step++) {
         const double t_k = pow(10, 1.5 + 2.5 * step / (quick ? 6 : 40)), up[3] = {0, 0, 1};
         double       of_band[AIR_BAND_COUNT] = {0};
@@ -283,7 +294,8 @@ static double cavity(void *user, bool quick)
         }
         air_veils_of(veils, &air, 1 << AIR_MWIR | 1 << AIR_LWIR, &hits, &rays, temp_k);
         float *const       out[AIR_BAND_COUNT] = {[AIR_MWIR] = out_mwir, [AIR_LWIR] = out_lwir};
-        const SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .shadow = shadow, .veils = veils};
+        const SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k,
+            .shadow = shadow, .veils = veils};
         surface_light_shade(out, &surface, &block);
         for (int i = 0; i < hits_capacity; i++)
             for (int b = AIR_MWIR; b <= AIR_LWIR; b++)
@@ -298,11 +310,16 @@ Status stability_light(Bench *bench)
         {"light: Planck in band, 1 .. 10,000 K", planck_wide, 1e-12, "relative", "Simpson's rule in long double"},
         {"light: and back, to where it underflows", planck_round_trip, 1e-6, "K", "the temperature put in"},
         {"light: the table, a float of it, and back", table_round_trip, 2e-3, "K", "the temperature put in"},
-        {"light: eight temperatures, some none", table_by_eights, 0, "values", "one at a time; NaN where there is none"},
-        {"light: paths and skies, 0 m .. 1e9 km, 1 m .. 10,000 km of sight", path_values, 0, "values", "finite, not below 0; shares 0 .. 1"},
-        {"light: a frame's air, eyes -50 m .. 1000 km, sun all round", veil_values, 0, "values", "finite, not below 0; shares 0 .. 1"},
-        {"light: smoke, nothing to a wall, in its own radiance", smoke, 1e-6, "relative", "nothing shows; transmittance in 0 .. 1"},
-        {"light: surfaces 0 .. 1 in an isothermal cavity, 30 .. 10,000 K", cavity, 1e-4, "relative", "Planck(T), everywhere"},
+        {"light: eight temperatures, some none", table_by_eights, 0, "values",
+            "one at a time; NaN where there is none"},
+        {"light: paths and skies, 0 m .. 1e9 km, 1 m .. 10,000 km of sight", path_values, 0, "values",
+            "finite, not below 0; shares 0 .. 1"},
+        {"light: a frame's air, eyes -50 m .. 1000 km, sun all round", veil_values, 0, "values",
+            "finite, not below 0; shares 0 .. 1"},
+        {"light: smoke, nothing to a wall, in its own radiance", smoke, 1e-6, "relative",
+            "nothing shows; transmittance in 0 .. 1"},
+        {"light: surfaces 0 .. 1 in an isothermal cavity, 30 .. 10,000 K", cavity, 1e-4, "relative",
+            "Planck(T), everywhere"},
     };
     Light  light = {.arena = arena_create()};
     Status status = light.arena ? atmosphere_open(&light.atmosphere, "us1976") : STATUS_NO_MEMORY;

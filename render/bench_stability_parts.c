@@ -93,7 +93,8 @@ static double plate_edges(void *user, bool quick)
         const int    side = n % 4;
         for (int inside = 0; inside < 2; inside++) {
             const double step_m = inside ? -off_m : off_m, along = dice_uniform(&dice, -0.99, 0.99);
-            double       to[3] = {0, 2 * along, 1.5 * along}, o[3], d[3] = {1, dice_uniform(&dice, -0.3, 0.3), dice_uniform(&dice, -0.3, 0.3)};
+            double       to[3] = {0, 2 * along, 1.5 * along}, o[3],
+                d[3] = {1, dice_uniform(&dice, -0.3, 0.3), dice_uniform(&dice, -0.3, 0.3)};
             PartHit      hit;
             to[1 + side % 2] = (side < 2 ? -1 : 1) * ((side % 2 ? 1.5 : 2) + step_m);
             v3_normalize(d, d);
@@ -173,8 +174,8 @@ static bool heap_open(Body *b, Dice *dice)
     return body_open(b);
 }
 
-/* How a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area as the ray sees it.
- * -INFINITY: never. */
+/* How a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area as the ray sees
+ * it. -INFINITY: never. */
 static long double passes(long double *range_m, long double *seen_m2, const Model *m, int triangle, const double o[3],
                           const double d[3])
 {
@@ -211,9 +212,9 @@ typedef struct HeapCount {
 } HeapCount;
 
 /* The tracer gives a triangle 1 nm beyond its edges, so that neighbours leave no gap, and of those within 0.1 mm of the
- * nearest the lowest, also where the ray passes it by 20 um: what lies within that is right either way. So is a triangle
- * so nearly edge-on that it shows the ray less than this: 0.01 x 0.01 mm, as roundings of 1e-15 of 8 x 8 m leave of a
- * per cent. */
+ * nearest the lowest, also where the ray passes it by 20 um: what lies within that is right either way. So is a
+ * triangle so nearly edge-on that it shows the ray less than this: 0.01 x 0.01 mm, as roundings of 1e-15 of 8 x 8 m
+ * leave of a per cent. */
 static const long double least_seen_m2 = 1e-10L;
 
 static void judge_ray(HeapCount *count, const Body *b, const double o[3], const double d[3])
@@ -322,7 +323,8 @@ static double coincident(void *user, bool quick)
     double wrong = 0;
     (void)user;
     if (stress_model(&b.model, 36, 12) != STATUS_OK) return INFINITY;
-    for (int k = 0; k < 12; k++) stress_triangle(&b.model, corner[k % 3], corner[(k + 1 + k % 2) % 3], corner[(k + 2 - k % 2) % 3]);
+    for (int k = 0; k < 12; k++)
+        stress_triangle(&b.model, corner[k % 3], corner[(k + 1 + k % 2) % 3], corner[(k + 2 - k % 2) % 3]);
     if (!body_open(&b)) return INFINITY;
     for (int n = rays_of(quick, 50000); n > 0; n--) {
         double  o[3], d[3], to[3] = {0, dice_uniform(&dice, -1, 1), dice_uniform(&dice, -2.5, 0)};
@@ -406,10 +408,13 @@ static double odd_rays(void *user, bool quick)
     for (int n = rays_of(quick, 200000); n > 0; n--) {
         double o[3], d[3], n_geo[3], n_enu[3];
         for (int c = 0; c < 3; c++) {
-            o[c] = dice_uniform(&dice, 0, 1) < 0.5 ? odd[(int)dice_uniform(&dice, 0, odds)] : dice_uniform(&dice, -3, 3);
-            d[c] = dice_uniform(&dice, 0, 1) < 0.5 ? odd[(int)dice_uniform(&dice, 0, odds)] : dice_uniform(&dice, -1, 1);
+            o[c] = dice_uniform(&dice, 0, 1) < 0.5 ? odd[(int)dice_uniform(&dice, 0, odds)]
+                : dice_uniform(&dice, -3, 3);
+            d[c] = dice_uniform(&dice, 0, 1) < 0.5 ? odd[(int)dice_uniform(&dice, 0, odds)]
+                : dice_uniform(&dice, -1, 1);
         }
-        if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue; /* too long or short to be turned into one */
+        /* too long or short to be turned into one */
+        if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue;
         PartHit      hit;
         const double range_m = parts_first_hit(&hit, &b.entity, o, d, INFINITY, n % 3 == 0);
         const bool   real = v3_is_finite(o) && v3_is_finite(d);
@@ -428,7 +433,8 @@ Status stability_parts(Bench *bench)
         {"parts: a plate at 0.1 m .. 200 km: range", plate_ranges, 1e-12, "relative", "the plane's equation"},
         {"parts: its edges, 1 nm a metre within and without", plate_edges, 0, "rays", "which side of the edge"},
         {"parts: scene and eye carried off to 200 km", plate_far_origins, 2e-9, "m", "the plane's equation at 0"},
-        {"parts: needles, slivers, no area, twice, fans: missed", heap_missed, 0, "rays", "every triangle in long double"},
+        {"parts: needles, slivers, no area, twice, fans: missed", heap_missed, 0, "rays",
+            "every triangle in long double"},
         {"parts: the same: invented", heap_invented, 0, "rays", "every triangle in long double"},
         {"parts: the same: range", heap_range, 1e-4, "m", "the triangle's plane in long double"},
         {"parts: the same: 16 at a time, culled or not", company, 0, "rays", "one by one, to the bit"},

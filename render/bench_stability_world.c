@@ -152,7 +152,8 @@ static double plane_differences(const void *a, int a_width, const void *b, int b
     for (int y = 0; y < at[5]; y++)
         for (int x = 0; x < at[4]; x++)
             different += memcmp((const char *)a + 4 * ((size_t)(at[1] + y) * (size_t)a_width + (size_t)(at[0] + x)),
-                                (const char *)b + 4 * ((size_t)(at[3] + y) * (size_t)b_width + (size_t)(at[2] + x)), 4) != 0;
+                                (const char *)b + 4 * ((size_t)(at[3] + y) * (size_t)b_width + (size_t)(at[2] + x)),
+                                    4) != 0;
     return different;
 }
 

@@ -1,4 +1,5 @@
-/* render/bench_stability_world.h: blocks of 4 x 2 x 1.5 m in no air, or on flat ground: pictures with answers on paper. */
+/* render/bench_stability_world.h: blocks of 4 x 2 x 1.5 m in no air, or on flat ground: pictures with answers on
+ * paper. */
 #ifndef RENDER_BENCH_STABILITY_WORLD_H
 #define RENDER_BENCH_STABILITY_WORLD_H
 
@@ -34,11 +35,13 @@ void   stress_no_air(StressWorld *w, const double sun_enu[3]);
 /* The air of the tables. */
 Status stress_real_air(StressWorld *w, double sun_elevation_rad, double eye_m);
 /* Looking from p_enu along d_enu, columns turned about it. */
-View   stress_view(const double p_enu[3], const double d_enu[3], double turn_rad, int width, int height, double focal_px);
+View   stress_view(const double p_enu[3], const double d_enu[3], double turn_rad, int width, int height,
+    double focal_px);
 RenderRequest stress_request(const View *view);
 /* Into w->picture. */
 bool   stress_render(StressWorld *w, const RenderRequest *request);
-/* Of all its planes: values that are not finite (range and temperature of the sky apart) or below 0 where none may be. */
+/* Of all its planes: values that are not finite (range and temperature of the sky apart) or below 0 where none may
+ * be. */
 double stress_bad_values(const Picture *picture);
 /* Values of all planes in which two pictures differ, over a window of both. */
 double stress_differences(const Picture *a, int ax, int ay, const Picture *b, int bx, int by, int width, int height);

@@ -1,5 +1,5 @@
-/* sensor/bench/stability.c: detectors of 1 to 16 bits in the dark, in the sun and among values that are none; displays of
- * pictures without contrast; and whether every thread treats the smallest numbers alike. */
+/* sensor/bench/stability.c: detectors of 1 to 16 bits in the dark, in the sun and among values that are none; displays
+ * of pictures without contrast; and whether every thread treats the smallest numbers alike. */
 #include "sensor/bench/stability.h"
 
 #include "render/bench_stability.h"
@@ -32,8 +32,8 @@ static void fill_plane(float *plane, int kind, Dice *dice)
     }
 }
 
-/* Every preset, 1 to 16 bits, no noise to a million times it: counts within the converter's scale, values that are those
- * counts. */
+/* Every preset, 1 to 16 bits, no noise to a million times it: counts within the converter's scale, values that are
+ * those counts. */
 static double counts_in_scale(void *user, bool quick)
 {
     static float plane[3][pixels];
@@ -70,8 +70,9 @@ static double counts_in_scale(void *user, bool quick)
     return wrong;
 }
 
-/* No noise, an even plane: the converter's own formula, (electrons + dark) / step, rounded, held at full scale. Electrons by
- * Planck's photons; from the dark to well beyond the well. Without lines, whose start is charged to the mean. */
+/* No noise, an even plane: the converter's own formula, (electrons + dark) / step, rounded, held at full scale.
+ * Electrons by Planck's photons; from the dark to well beyond the well. Without lines, whose start is charged to the
+ * mean. */
 static double even_planes(void *user, bool quick)
 {
     static float plane[pixels];
@@ -103,7 +104,8 @@ static double even_planes(void *user, bool quick)
     return worst;
 }
 
-/* One pixel that is no number: what else changes, against the same picture with a 0 there. Still, no noise, no patches. */
+/* One pixel that is no number: what else changes, against the same picture with a 0 there. Still, no noise, no
+ * patches. */
 static double one_bad_pixel(void *user, bool quick)
 {
     static float    plane[pixels];
@@ -138,7 +140,8 @@ static double one_bad_pixel(void *user, bool quick)
 
 /* ---- displays -------------------------------------------------------------------------------------- */
 
-/* A picture of one value, from nothing to the most a float holds, is the middle of the scale: never black by a division. */
+/* A picture of one value, from nothing to the most a float holds, is the middle of the scale: never black by a
+ * division. */
 static double no_contrast(void *user, bool quick)
 {
     static float   plane[pixels];
@@ -161,8 +164,8 @@ static double no_contrast(void *user, bool quick)
 
 static double clamped(double x) { return fmin(fmax(x, 0), 1); }
 
-/* Gains of 1e-6 to 1e6, values of all sizes and none: levels in order, the code its own formula's within a step; NaN and
- * -infinity are black, infinity white. */
+/* Gains of 1e-6 to 1e6, values of all sizes and none: levels in order, the code its own formula's within a step; NaN
+ * and -infinity are black, infinity white. */
 static double display_ends(void *user, bool quick)
 {
     static float    plane[pixels];
@@ -193,11 +196,13 @@ static double display_ends(void *user, bool quick)
             else wrong += !(fabs(shown[i] - 65535 * clamped(x)) <= room);
         }
         detector_display_rgb(shown, in, pixels, &config, level);
-        for (int i = 0; i < pixels; i++) wrong += isnan(plane[i]) && (shown[3 * i] | shown[3 * i + 1] | shown[3 * i + 2]) != 0;
+        for (int i = 0; i < pixels; i++)
+            wrong += isnan(plane[i]) && (shown[3 * i] | shown[3 * i + 1] | shown[3 * i + 2]) != 0;
         config.bits = 8;
         config.display_gamma = true;
         detector_display_rgb(shown8, in, pixels, &config, level);
-        for (int i = 0; i < pixels; i++) wrong += isnan(plane[i]) && (shown8[3 * i] | shown8[3 * i + 1] | shown8[3 * i + 2]) != 0;
+        for (int i = 0; i < pixels; i++)
+            wrong += isnan(plane[i]) && (shown8[3 * i] | shown8[3 * i + 1] | shown8[3 * i + 2]) != 0;
         detector_display_db(shown, plane, pixels, 60, 16);
         for (int i = 0; i < pixels; i++) {
             wrong += !(plane[i] > 0) && shown[i] != 0;
@@ -232,8 +237,8 @@ static void multiply(void *user, int worker, int task)
     d->modes[task]     = _mm_getcsr() & 0xffc0; /* all but what has happened */
 }
 
-/* The smallest normal numbers, halved, by the main thread and the pool's: threads that find another number, or keep what is
- * too small, or round otherwise. */
+/* The smallest normal numbers, halved, by the main thread and the pool's: threads that find another number, or keep
+ * what is too small, or round otherwise. */
 static double threads_agree(void *user, bool quick)
 {
     Denormals d = {.tiny = 2.2250738585072014e-308, .tiny_f = 1.17549435e-38f};
@@ -252,7 +257,8 @@ Status sensor_bench_stability(Bench *bench)
 {
     static const StabilityCase cases[] = {
         {"detector: 1 .. 16 bits, any noise, any plane", counts_in_scale, 0, "counts", "0 .. full scale"},
-        {"detector: even planes, 180 .. 820 K, to beyond the well", even_planes, 0.51, "counts", "photons by Planck, dark current, rounding"},
+        {"detector: even planes, 180 .. 820 K, to beyond the well", even_planes, 0.51, "counts",
+            "photons by Planck, dark current, rounding"},
         {"detector: one pixel not a number", one_bad_pixel, 0, "counts", "the same with a 0 there"},
         {"display: one value all over, 1e-45 .. 1e38", no_contrast, 1, "of 65535", "the middle"},
         {"display: gains of 1e-6 .. 1e6, values that are none", display_ends, 0, "values", "its formula; NaN is black"},
