@@ -286,6 +286,14 @@ static void euler(Bench *bench)
                 for (int b = 0; b < 3; b++) want += z[3 * (i / 3) + a] * y[3 * a + b] * x[3 * b + i % 3];
             stress_worse(&want_off, (double)(r[i] - want));
         }
+        /* turned about some axis and back: what roundings leave, straight up too, where psi alone is noise */
+        Kinematics turn = {.algorithm = 3, .w_body_rps = {0.3 + n % 7, -0.4, 0.5}};
+        Motion     turned, home;
+        memcpy(turn.r_ecef_from_body, r, sizeof r);
+        dead_reckon(&turned, &turn, 1);
+        memcpy(turn.r_ecef_from_body, turned.r_ecef_from_body, sizeof r);
+        dead_reckon(&home, &turn, -1);
+        memcpy(r, home.r_ecef_from_body, sizeof r);
         euler_from_r_ecef_from_body(&back[0], &back[1], &back[2], r);
         range += !(back[0] > -pi_rad && back[0] <= pi_rad && fabs(back[1]) <= 0.5 * pi_rad && back[2] > -pi_rad &&
                    back[2] <= pi_rad);

@@ -323,7 +323,7 @@ static void sun_over_steps(Bench *bench)
 static Status geoid(Bench *bench)
 {
     Geoid        grid;
-    double       pole_m = 0, seam_m = 0, jump_m = 0;
+    double       pole_m = 0, seam_m = 0, jump_m = 0, kink = 0;
     const Status status = geoid_open(&grid, NULL);
     if (status != STATUS_OK) return status;
     for (int n = 0; n < (bench_quick(bench) ? 2000 : 200000); n++) {
@@ -333,6 +333,16 @@ static Status geoid(Bench *bench)
         for (int south = 0; south < 2; south++)
             bench_worse(&pole_m, geoid_height_m(&grid, (south ? -0.5 : 0.5) * pi_rad, lon_rad) -
                                      geoid_height_m(&grid, (south ? -0.5 : 0.5) * pi_rad, 0));
+        /* the slope at a pole, by the last metres and by the rows on both sides of it; posts every 1/4 degree */
+        const double row_off = 0.25 * rad_per_deg, m_rad = 6.4e6, last = 1e-5, hand = n & 1 ? -1 : 1,
+                     top_rad = 0.5 * pi_rad;
+        const double post_rad = rint(lon_rad / row_off) * row_off;
+        const double over = (geoid_height_m(&grid, hand * (top_rad - row_off), post_rad) -
+                             geoid_height_m(&grid, hand * (top_rad - row_off), post_rad + pi_rad)) /
+                            (2 * row_off * m_rad);
+        const double near = (geoid_height_m(&grid, hand * (top_rad - last), post_rad) -
+                             geoid_height_m(&grid, hand * top_rad, post_rad)) / (last * m_rad);
+        bench_worse(&kink, near - over);
         bench_worse(&seam_m, geoid_height_m(&grid, lat_rad, pi_rad) - geoid_height_m(&grid, lat_rad, -pi_rad));
         bench_worse(&seam_m,
                     geoid_height_m(&grid, lat_rad, lon_rad) - geoid_height_m(&grid, lat_rad, lon_rad + 2 * pi_rad));
@@ -348,6 +358,8 @@ static Status geoid(Bench *bench)
     geoid_close(&grid);
     bench_stress(bench, "geoid: a pole at any longitude", pole_m, 1e-12, "m", "the same pole at 0 E");
     bench_stress(bench, "geoid: east and west of the date line, a turn apart", seam_m, 1e-9, "m", "the same place");
+    /* what a cubic leaves of the curvature between posts 28 km apart */
+    bench_stress(bench, "geoid: slope at a pole", kink, 6e-6, "", "the posts on both sides of it");
     /* its slope is below 1e-3 */
     bench_stress(bench, "geoid: step over poles, date line and rows, in 12 mm", jump_m, 1.2e-5, "m", "continuity");
     return STATUS_OK;
