@@ -67,7 +67,8 @@ static void stamps_and_back(Bench *bench)
             const double at_s = 3600 * hours[h];
             const double t_s[5] = {at_s, nextafter(at_s, INFINITY), nextafter(fmax(at_s, 1e-300), 0), at_s + tick_s,
                                    fabs(at_s - tick_s)};
-            long double  off = (long double)dis_timestamp_seconds(dis_timestamp(t_s[side], true)) - fmodl(t_s[side], 3600);
+            long double off =
+                (long double)dis_timestamp_seconds(dis_timestamp(t_s[side], true)) - fmodl(t_s[side], 3600);
             off -= 3600 * rintl(off / 3600);
             worse(&late, (double)(off / tick_s));
         }
@@ -149,7 +150,7 @@ static void second_sender(Bench *bench)
         const double t_s = 3500 + 5.0 * n, own_s = 0.25 * tick_s + 1700 + 5.0 * n;
         exercise_clock_time(clock, 1, 1, dis_timestamp(t_s, false), 1e9 + t_s + uniform(3, (uint64_t)n, -1, 1));
         const uint32_t stamp = dis_timestamp(own_s, false);
-        const double   off_s = exercise_clock_time(clock, 2, 1, stamp, 1e9 + t_s + uniform(4, (uint64_t)n, -1, 1)) - t_s;
+        const double off_s = exercise_clock_time(clock, 2, 1, stamp, 1e9 + t_s + uniform(4, (uint64_t)n, -1, 1)) - t_s;
         if (stamp == 0) continue;
         if (!(off_s >= low)) low = off_s;
         if (!(off_s <= high)) high = off_s;
@@ -160,8 +161,8 @@ static void second_sender(Bench *bench)
 
 static void hostile_clock(Bench *bench)
 {
-    const double captures[] = {0, -0.0, 1e-310, 5e-324, -1, 1e11, 1.0000001e11, 1e18, -1e18, 1e300, -1e308, INFINITY, -INFINITY,
-                               NAN, 1.7e9};
+    const double captures[] = {0,     -0.0,  1e-310, 5e-324,   -1,        1e11, 1.0000001e11, 1e18,
+                               -1e18, 1e300, -1e308, INFINITY, -INFINITY, NAN,  1.7e9};
     ExerciseClock *clock = NULL;
     double         bad = 0;
     const int      packets = bench_quick(bench) ? 20000 : 1000000;
@@ -224,8 +225,9 @@ static void unix_times(Bench *bench)
 
 /* ---- octets --------------------------------------------------------------------------------- */
 
-static const uint32_t special_f32[] = {0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF, 0x00800000, 0x7F7FFFFF,
-                                       0xFF7FFFFF, 0x7F800000, 0xFF800000, 0x7FC00000, 0xFFC00000, 0x7F800001, 0x7FBFFFFF};
+static const uint32_t special_f32[] = {0x00000000, 0x80000000, 0x00000001, 0x80000001, 0x007FFFFF,
+                                       0x00800000, 0x7F7FFFFF, 0xFF7FFFFF, 0x7F800000, 0xFF800000,
+                                       0x7FC00000, 0xFFC00000, 0x7F800001, 0x7FBFFFFF};
 static const uint64_t special_f64[] = {0, UINT64_C(1) << 63, 1, (UINT64_C(1) << 63) | 1, 0x000FFFFFFFFFFFFF,
                                        0x0010000000000000, 0x7FEFFFFFFFFFFFFF, 0xFFEFFFFFFFFFFFFF, 0x7FF0000000000000,
                                        0xFFF0000000000000, 0x7FF8000000000000, 0x7FF0000000000001, 0x7FF7FFFFFFFFFFFF};
@@ -272,7 +274,8 @@ static void fields(Bench *bench)
     for (size_t kind = 0; kind < 4; kind++) {
         const size_t octets = kinds[kind].fixed + (kinds[kind].count_at ? 32 : 0);
         for (size_t at = dis_header_octets; at + 4 <= octets; at += 4)
-            for (size_t s = 0; s < sizeof special_f32 / sizeof *special_f32 + sizeof special_f64 / sizeof *special_f64; s++) {
+            for (size_t s = 0; s < sizeof special_f32 / sizeof *special_f32 + sizeof special_f64 / sizeof *special_f64;
+                 s++) {
                 uint8_t pdu[512] = {7, 1, kinds[kind].type, 1};
                 const size_t singles = sizeof special_f32 / sizeof *special_f32;
                 if (s < singles) {
@@ -286,7 +289,8 @@ static void fields(Bench *bench)
                 lost += lost_octets(pdu, octets);
             }
     }
-    add(bench, "denormals, infinities, NaNs at every field: decode, encode", lost, 0, "octets", "of those, encoded again");
+    add(bench, "denormals, infinities, NaNs at every field: decode, encode", lost, 0, "octets",
+        "of those, encoded again");
 }
 
 Status dis_bench_stability(Bench *bench)

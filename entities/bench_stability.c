@@ -28,7 +28,8 @@ typedef struct Exponential {
 static void wide_mul(Wide out[9], const Wide a[9], const Wide b[9])
 {
     for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
+        for (int j = 0; j < 3; j++)
+            out[3 * i + j] = a[3 * i] * b[j] + a[3 * i + 1] * b[3 + j] + a[3 * i + 2] * b[6 + j];
 }
 
 /* Taylor's series over t / 2^n, where |w| t / 2^n < 1/2; then n times twice the time:
@@ -80,7 +81,8 @@ static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *
     const bool   body = dead_reckoning_in_body_axes(a), accelerates = a == 4 || a == 5 || a >= 8, moves = a > 1;
     const Wide   t = t_s;
     const double half_ulp = 0x1p-53, angle = v3_length(k->w_body_rps) * fabs(t_s), grain = half_ulp * (1 + angle);
-    const double speed = v3_length(k->v_mps) + v3_length(k->a_mps2) * fabs(t_s), reach = v3_length(k->p_ecef) + speed * fabs(t_s);
+    const double speed = v3_length(k->v_mps) + v3_length(k->a_mps2) * fabs(t_s),
+                 reach = v3_length(k->p_ecef) + speed * fabs(t_s);
     Wide         r[9], turned[9], way[3], end[3];
     Motion       got;
     dead_reckon(&got, k, t_s);
@@ -92,7 +94,8 @@ static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *
         end[i] = moves ? k->v_mps[i] + (accelerates ? t * k->a_mps2[i] : 0) : 0;
     }
     for (int i = 0; i < 3; i++) {
-        const Wide p = k->p_ecef[i] + (body ? r[3 * i] * way[0] + r[3 * i + 1] * way[1] + r[3 * i + 2] * way[2] : way[i]);
+        const Wide p =
+            k->p_ecef[i] + (body ? r[3 * i] * way[0] + r[3 * i + 1] * way[1] + r[3 * i + 2] * way[2] : way[i]);
         const Wide v = body ? turned[3 * i] * end[0] + turned[3 * i + 1] * end[1] + turned[3 * i + 2] * end[2] : end[i];
         const double off_m = (double)(got.p_ecef[i] - p);
         stress_worse(&errors->place_m, off_m);
@@ -101,7 +104,8 @@ static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *
         if (off_mps != 0) stress_worse(&errors->speed, off_mps / (speed * grain));
     }
     for (int i = 0; i < 9; i++)
-        stress_worse(&errors->turn, (double)(got.r_ecef_from_body[i] - (dead_reckoning_turns(a) ? turned[i] : r[i])) / grain);
+        stress_worse(&errors->turn,
+                     (double)(got.r_ecef_from_body[i] - (dead_reckoning_turns(a) ? turned[i] : r[i])) / grain);
     stress_rotation(&errors->crooked, got.r_ecef_from_body);
 }
 
@@ -123,9 +127,10 @@ static Kinematics random_motion(uint64_t at, const Reach *reach)
         axis[c]     = at % 4 == s ? 1 : at % 4 < 3 ? 0 : uniform(10 + s, at, -1, 1); /* about one axis, or any */
     }
     if (v3_normalize(axis, axis))
-        v3_scale(k.w_body_rps, at % 97 == 5 ? 0 : pow(10, uniform(13, at, log10(reach->least_rps), log10(reach->most_rps))), axis);
-    r_ecef_from_body_euler(k.r_ecef_from_body, uniform(14, at, -3.2, 3.2), at % 9 == 1 ? 0.5 * pi_rad : uniform(15, at, -1.6, 1.6),
-                           uniform(16, at, -3.2, 3.2));
+        v3_scale(k.w_body_rps,
+                 at % 97 == 5 ? 0 : pow(10, uniform(13, at, log10(reach->least_rps), log10(reach->most_rps))), axis);
+    r_ecef_from_body_euler(k.r_ecef_from_body, uniform(14, at, -3.2, 3.2),
+                           at % 9 == 1 ? 0.5 * pi_rad : uniform(15, at, -1.6, 1.6), uniform(16, at, -3.2, 3.2));
     return k;
 }
 
@@ -151,16 +156,20 @@ static MotionErrors motions(const Reach *reach, int count)
 static void dead_reckoning(Bench *bench)
 {
     /* what the table lets through, and what the formulas are asked for at most */
-    static const Reach table = {1e-12, 20, 1e-6, 132, 2e4, 1e4}, real = {1e-12, 20, 1e-3, 12, 1000, 100}, all = {1e-12, 60, 1e-6, 1e4, 2e4, 1e4};
+    static const Reach table = {1e-12, 20, 1e-6, 132, 2e4, 1e4}, real = {1e-12, 20, 1e-3, 12, 1000, 100},
+                       all = {1e-12, 60, 1e-6, 1e4, 2e4, 1e4};
     const int count = bench_quick(bench) ? 400 : 5000;
-    const char *judge = sizeof(Wide) == 16 && (Wide)1 + (Wide)0x1p-100 != (Wide)1 ? "exponential of the turn by doubling, 113 bits"
-                                                                                   : "exponential of the turn by doubling, 64 bits";
+    const char *judge = sizeof(Wide) == 16 && (Wide)1 + (Wide)0x1p-100 != (Wide)1
+                            ? "exponential of the turn by doubling, 113 bits"
+                            : "exponential of the turn by doubling, 64 bits";
     const MotionErrors whole = motions(&all, count), believed = motions(&table, count), common = motions(&real, count);
     /* some roundings: products, sums, and the closed form's cancellation at 1/2 rad */
-    stress_row(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8, "roundings", judge);
+    stress_row(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8,
+               "roundings", judge);
     stress_row(bench, "the same: velocity", whole.speed, 8, "roundings", judge);
     stress_row(bench, "the same: attitude", whole.turn, 8, "roundings", judge);
-    stress_row(bench, "the same: attitude not square, unit, right-handed", fmax(whole.crooked, believed.crooked), 4e-15, "", "R'R = I");
+    stress_row(bench, "the same: attitude not square, unit, right-handed", fmax(whole.crooked, believed.crooked), 4e-15,
+               "", "R'R = I");
     stress_row(bench, "dead reckoning of 1 km/s, 100 m/s2, 12 s: place", common.place_m, 4e-9, "m", judge);
     /* 8.7e7 m in 132 s, of which a double steps by 1.5e-8 m */
     stress_row(bench, "dead reckoning of all that a report may say: place", believed.place_m, 5e-8, "m", judge);
@@ -189,7 +198,8 @@ static void extremes(Bench *bench)
             if (s == 0) bad += m.p_ecef[0] != 6378137 || m.p_ecef[1] != 0 || m.p_ecef[2] != 0;
         }
     }
-    stress_row(bench, "dead reckoning of denormals and 1e20 m/s: not finite, or moved in no time", bad, 0, "motions", "its start");
+    stress_row(bench, "dead reckoning of denormals and 1e20 m/s: not finite, or moved in no time", bad, 0, "motions",
+               "its start");
 }
 
 /* A body turned a little again and again, each turn from where the last one left it. */
@@ -212,8 +222,10 @@ static void drift(Bench *bench)
     stress_rotation(&crooked, k.r_ecef_from_body);
     for (int i = 0; i < 9; i++) stress_worse(&off, (double)(k.r_ecef_from_body[i] - want[i]));
     /* half a rounding a step if all were of one sign */
-    stress_row(bench, "attitude handed from turn to turn, 64 a second: not square or unit by", crooked, steps * 0x1p-53, "", "R'R = I");
-    stress_row(bench, "the same: from where one long turn leads", off, 2 * steps * 0x1p-53, "rad", "one turn, 113 bits");
+    stress_row(bench, "attitude handed from turn to turn, 64 a second: not square or unit by", crooked, steps * 0x1p-53,
+               "", "R'R = I");
+    stress_row(bench, "the same: from where one long turn leads", off, 2 * steps * 0x1p-53, "rad",
+               "one turn, 113 bits");
 }
 
 /* ---- Euler angles --------------------------------------------------------------------------- */
@@ -228,9 +240,24 @@ static double apart_rad(const double a[9], const double b[9])
 
 static void euler(Bench *bench)
 {
-    static const double angle[] = {0, -0.0, 1e-310, 1e-20, 1e-8, 0.5, 1.5707963267948966, -1.5707963267948966, 1.5707, -1.5707,
-                                   1.57079637050628662109375 /* of float: past it */, 1.57079625129699707, 3.1415926535897931,
-                                   -3.1415926535897931, 3.14159274101257324, 6.2831853071795862, -6.2831853071795862, 100};
+    static const double angle[] = {0,
+                                   -0.0,
+                                   1e-310,
+                                   1e-20,
+                                   1e-8,
+                                   0.5,
+                                   1.5707963267948966,
+                                   -1.5707963267948966,
+                                   1.5707,
+                                   -1.5707,
+                                   1.57079637050628662109375 /* of float: past it */,
+                                   1.57079625129699707,
+                                   3.1415926535897931,
+                                   -3.1415926535897931,
+                                   3.14159274101257324,
+                                   6.2831853071795862,
+                                   -6.2831853071795862,
+                                   100};
     enum { angles = sizeof angle / sizeof *angle, specials = angles * angles * angles };
     double    off_rad = 0, wire_rad = 0, crooked = 0, range = 0, want_off = 0;
     const int count = specials * 3 + (bench_quick(bench) ? 20000 : 1000000);
@@ -242,7 +269,8 @@ static void euler(Bench *bench)
             e[c] = n >= 3 * specials ? uniform(20 + (uint32_t)c, (uint64_t)n, -7, 7)
                    : n < specials ? special : nextafter(special, n < 2 * specials ? 10 : -10);
             /* and close to straight up from either side */
-            if (n >= 3 * specials && c == 1 && n % 2) e[c] = copysign(0.5 * pi_rad, e[c]) + pow(10, uniform(23, (uint64_t)n, -17, -1)) * (n % 4 - 2);
+            if (n >= 3 * specials && c == 1 && n % 2)
+                e[c] = copysign(0.5 * pi_rad, e[c]) + pow(10, uniform(23, (uint64_t)n, -17, -1)) * (n % 4 - 2);
         }
         r_ecef_from_body_euler(r, e[0], e[1], e[2]);
         stress_rotation(&crooked, r);
@@ -258,17 +286,28 @@ static void euler(Bench *bench)
                 for (int b = 0; b < 3; b++) want += z[3 * (i / 3) + a] * y[3 * a + b] * x[3 * b + i % 3];
             stress_worse(&want_off, (double)(r[i] - want));
         }
+        /* turned about some axis and back: what roundings leave, straight up too, where psi alone is noise */
+        Kinematics turn = {.algorithm = 3, .w_body_rps = {0.3 + n % 7, -0.4, 0.5}};
+        Motion     turned, home;
+        memcpy(turn.r_ecef_from_body, r, sizeof r);
+        dead_reckon(&turned, &turn, 1);
+        memcpy(turn.r_ecef_from_body, turned.r_ecef_from_body, sizeof r);
+        dead_reckon(&home, &turn, -1);
+        memcpy(r, home.r_ecef_from_body, sizeof r);
         euler_from_r_ecef_from_body(&back[0], &back[1], &back[2], r);
-        range += !(back[0] > -pi_rad && back[0] <= pi_rad && fabs(back[1]) <= 0.5 * pi_rad && back[2] > -pi_rad && back[2] <= pi_rad);
+        range += !(back[0] > -pi_rad && back[0] <= pi_rad && fabs(back[1]) <= 0.5 * pi_rad && back[2] > -pi_rad &&
+                   back[2] <= pi_rad);
         r_ecef_from_body_euler(again, back[0], back[1], back[2]);
         stress_worse(&off_rad, apart_rad(r, again));
         r_ecef_from_body_euler(again, (float)back[0], (float)back[1], (float)back[2]);
         stress_worse(&wire_rad, apart_rad(r, again));
     }
-    stress_row(bench, "psi, theta, phi to a rotation, at +-90 degrees and about", want_off, 1e-15, "", "three turns, long double");
+    stress_row(bench, "psi, theta, phi to a rotation, at +-90 degrees and about", want_off, 1e-15, "",
+               "three turns, long double");
     stress_row(bench, "the same: not square, unit, right-handed", crooked, 1e-15, "", "R'R = I");
     stress_row(bench, "a rotation to psi, theta, phi and back", off_rad, 2e-15, "rad", "itself");
-    stress_row(bench, "the same through the floats of a PDU", wire_rad, 3e-7, "rad", "itself; half an ulp of pi is 1.2e-7, twice");
+    stress_row(bench, "the same through the floats of a PDU", wire_rad, 3e-7, "rad",
+               "itself; half an ulp of pi is 1.2e-7, twice");
     stress_row(bench, "angles out of their range", range, 0, "angles", "(-pi, pi], theta within pi / 2");
 }
 
@@ -281,7 +320,9 @@ static void tracks(Bench *bench)
     double    crooked = 0, half_rad = 0, place = 0;
     for (int n = 0; n < count; n++) {
         const uint64_t at = (uint64_t)n;
-        const double   turn_rad = n % 5 == 0 ? pi_rad - pow(10, uniform(30, at, -16, -2)) : n % 5 == 1 ? pow(10, uniform(30, at, -18, -1)) : uniform(30, at, 0, pi_rad - 0.01);
+        const double turn_rad = n % 5 == 0   ? pi_rad - pow(10, uniform(30, at, -16, -2))
+                                : n % 5 == 1 ? pow(10, uniform(30, at, -18, -1))
+                                             : uniform(30, at, 0, pi_rad - 0.01);
         const double   h_s = pow(10, uniform(31, at, -9, 4));
         Kinematics     k = {.algorithm = 3, .p_ecef = {6378137, 0, 0}};
         Motion         whole, half;
@@ -290,13 +331,15 @@ static void tracks(Bench *bench)
         Track          track = {.count = 2, .point = point};
         TrackPose      pose;
         if (!v3_normalize(axis, axis) || !(point[1].t_s > point[0].t_s)) continue;
-        r_ecef_from_body_euler(k.r_ecef_from_body, uniform(35, at, -3, 3), uniform(36, at, -1.5, 1.5), uniform(37, at, -3, 3));
+        r_ecef_from_body_euler(k.r_ecef_from_body, uniform(35, at, -3, 3), uniform(36, at, -1.5, 1.5),
+                               uniform(37, at, -3, 3));
         v3_scale(k.w_body_rps, turn_rad, axis);
         dead_reckon(&whole, &k, 1);
         dead_reckon(&half, &k, 0.5);
         for (int p = 0; p < 2; p++) {
             memcpy(point[p].p_ecef, p ? whole.p_ecef : k.p_ecef, sizeof k.p_ecef);
-            memcpy(point[p].r_ecef_from_body, p ? whole.r_ecef_from_body : k.r_ecef_from_body, sizeof k.r_ecef_from_body);
+            memcpy(point[p].r_ecef_from_body, p ? whole.r_ecef_from_body : k.r_ecef_from_body,
+                   sizeof k.r_ecef_from_body);
         }
         track_at(&pose, &track, 0.5 * (point[0].t_s + point[1].t_s));
         stress_rotation(&crooked, pose.r_ecef_from_body);
@@ -304,7 +347,9 @@ static void tracks(Bench *bench)
         stress_worse(&place, v3_length(pose.v_ecef_mps));
         /* the instant itself is a double: half a step of 1000 s of h_s; and at pi either way round is short */
         const double instant = 1.2e-13 / h_s * turn_rad, to_pi = pi_rad - turn_rad;
-        if (to_pi > 1e-14) stress_worse(&half_rad, fmax(apart_rad(pose.r_ecef_from_body, half.r_ecef_from_body) - instant, 0) * fmin(1, to_pi));
+        if (to_pi > 1e-14)
+            stress_worse(&half_rad,
+                         fmax(apart_rad(pose.r_ecef_from_body, half.r_ecef_from_body) - instant, 0) * fmin(1, to_pi));
     }
     stress_row(bench, "a track between reports, turns of 0 .. pi: not square or unit", crooked, 4e-15, "", "R'R = I");
     stress_row(bench, "the same: half way, times the rest to pi", half_rad, 1e-14, "rad", "half of the turn");
@@ -316,14 +361,16 @@ static void tracks(Bench *bench)
 /* Angles of any size that a float has: brought to -pi .. pi. */
 static void joints(Bench *bench)
 {
-    static const float value[] = {0, -0.0f, 1e-45f, -1e-45f, 1, 3.14159274f, -3.14159274f, 9.42477f, 350, -1e4f, 1e7f, 1e9f, -1e15f, 1e30f, 3.4028235e38f, -3.4028235e38f};
+    static const float value[] = {0,   -0.0f, 1e-45f, -1e-45f, 1,      3.14159274f, -3.14159274f,  9.42477f,
+                                  350, -1e4f, 1e7f,   1e9f,    -1e15f, 1e30f,       3.4028235e38f, -3.4028235e38f};
     static const float rate[] = {0, 1e-45f, -100, 100, 12.5f};
     double beyond = 0, off_rad = 0;
     for (size_t v = 0; v < sizeof value / sizeof *value; v++)
         for (size_t r = 0; r < sizeof rate / sizeof *rate; r++)
             for (int t = 0; t < 4; t++) {
                 const double later_s = (double[4]){0, 1e-9, 12, 132}[t];
-                const DisVariableParameter record[2] = {{.parameter = 4096 + 12, .value = rate[r]}, {.parameter = 4096 + 11, .value = value[v]}};
+                const DisVariableParameter record[2] = {{.parameter = 4096 + 12, .value = rate[r]},
+                                                        {.parameter = 4096 + 11, .value = value[v]}};
                 Articulation joint = {0};
                 double       got = NAN;
                 articulation_report(&joint, record, 2, 100, 132);
@@ -335,7 +382,8 @@ static void joints(Bench *bench)
                 const double off = (double)remainderl(got - angle, 6.283185307179586476925286766559L);
                 stress_worse(&off_rad, off);
             }
-    stress_row(bench, "turrets at any angle that a float has: beyond -pi .. pi by", beyond, 1e-9, "rad", "the half turn");
+    stress_row(bench, "turrets at any angle that a float has: beyond -pi .. pi by", beyond, 1e-9, "rad",
+               "the half turn");
     stress_row(bench, "the same up to 1e6 rad: off the angle", off_rad, 1e-9, "rad", "remainder, long double");
 }
 

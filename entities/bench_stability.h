@@ -16,7 +16,8 @@ static inline void stress_worse(double *worst, double error)
     if (!(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
 }
 
-static inline void stress_row(Bench *bench, const char *what, double error, double limit, const char *unit, const char *against)
+static inline void stress_row(Bench *bench, const char *what, double error, double limit, const char *unit,
+                              const char *against)
 {
     BenchRow row    = bench_row(what);
     row.error       = error;

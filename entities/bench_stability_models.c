@@ -23,7 +23,8 @@ static double area_of(const Model *m, int t)
         ab[i] = (long double)m->vertex[m->triangle[t][1]][i] - m->vertex[m->triangle[t][0]][i];
         ac[i] = (long double)m->vertex[m->triangle[t][2]][i] - m->vertex[m->triangle[t][0]][i];
     }
-    const long double x = ab[1] * ac[2] - ab[2] * ac[1], y = ab[2] * ac[0] - ab[0] * ac[2], z = ab[0] * ac[1] - ab[1] * ac[0];
+    const long double x = ab[1] * ac[2] - ab[2] * ac[1], y = ab[2] * ac[0] - ab[0] * ac[2],
+                      z = ab[0] * ac[1] - ab[1] * ac[0];
     return (double)(0.5L * sqrtl(x * x + y * y + z * z));
 }
 
@@ -38,8 +39,10 @@ static double model_volume(const Model *m)
 {
     long double sum = 0;
     for (int t = 0; t < m->triangle_count; t++) {
-        const double *a = m->vertex[m->triangle[t][0]], *b = m->vertex[m->triangle[t][1]], *c = m->vertex[m->triangle[t][2]];
-        sum += a[0] * ((long double)b[1] * c[2] - (long double)b[2] * c[1]) + a[1] * ((long double)b[2] * c[0] - (long double)b[0] * c[2]) +
+        const double *a = m->vertex[m->triangle[t][0]], *b = m->vertex[m->triangle[t][1]],
+                     *c = m->vertex[m->triangle[t][2]];
+        sum += a[0] * ((long double)b[1] * c[2] - (long double)b[2] * c[1]) +
+               a[1] * ((long double)b[2] * c[0] - (long double)b[0] * c[2]) +
                a[2] * ((long double)b[0] * c[1] - (long double)b[1] * c[0]);
     }
     return (double)(sum / 6);
@@ -63,8 +66,9 @@ static void look_at_model(ModelErrors *errors, const Model *m, int poses)
                 m3_mul_v3(p, at->r_body_from_node, m->vertex[m->triangle[t][c]]);
                 v3_add(p, p, at->p_body);
                 stress_worse(&errors->outside_m, fmax(v3_length(p) - m->radius_m, 0));
-                errors->unsound += k == 0 && !(p[0] >= m->box_low[0] - 1e-9 && p[1] >= m->box_low[1] - 1e-9 && p[2] >= m->box_low[2] - 1e-9 &&
-                                               p[0] <= m->box_high[0] + 1e-9 && p[1] <= m->box_high[1] + 1e-9 && p[2] <= m->box_high[2] + 1e-9);
+                errors->unsound += k == 0 && !(p[0] >= m->box_low[0] - 1e-9 && p[1] >= m->box_low[1] - 1e-9 &&
+                                               p[2] >= m->box_low[2] - 1e-9 && p[0] <= m->box_high[0] + 1e-9 &&
+                                               p[1] <= m->box_high[1] + 1e-9 && p[2] <= m->box_high[2] + 1e-9);
             }
         }
     }
@@ -83,9 +87,10 @@ static void look_at_model(ModelErrors *errors, const Model *m, int poses)
 
 static void built_in(Bench *bench)
 {
-    static const char *const names[] = {"tank", "truck", "helicopter", "missile", "carrier", "launcher", "aircraft", "ship", "person",
-                                        "building", "decoy", "flare", "unknown"};
-    static const double sags_m[] = {0.1, 0.0317, 0.005}, none[] = {0, -0.0, -1, 9.9e-6, 0.1000001, 1e300, 1e-310, INFINITY, -INFINITY, NAN};
+    static const char *const names[] = {"tank", "truck",  "helicopter", "missile", "carrier", "launcher", "aircraft",
+                                        "ship", "person", "building",   "decoy",   "flare",   "unknown"};
+    static const double sags_m[] = {0.1, 0.0317, 0.005},
+                        none[] = {0, -0.0, -1, 9.9e-6, 0.1000001, 1e300, 1e-310, INFINITY, -INFINITY, NAN};
     ModelErrors errors = {0};
     double      taken = 0;
     for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
@@ -104,9 +109,11 @@ static void built_in(Bench *bench)
             model_destroy(&m);
         }
     }
-    stress_row(bench, "built-in models, joints anywhere: not valid, or numbers that are none", errors.unsound, 0, "", "model_validate, finite");
+    stress_row(bench, "built-in models, joints anywhere: not valid, or numbers that are none", errors.unsound, 0, "",
+               "model_validate, finite");
     stress_row(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
-    stress_row(bench, "the same: vertices outside the sphere about every pose", errors.outside_m, 0, "m", "every vertex of every pose");
+    stress_row(bench, "the same: vertices outside the sphere about every pose", errors.outside_m, 0, "m",
+               "every vertex of every pose");
     stress_row(bench, "the same: sags that are none, accepted", taken, 0, "models", "refusal");
 }
 
@@ -117,8 +124,9 @@ typedef struct Shape {
     double      long_m, thin_m;
 } Shape;
 
-static const Shape shapes[] = {{"box", 1000, 1e-3}, {"box", 1e-3, 1e-9}, {"box", 1e4, 1e-2}, {"cylinder", 1000, 1e-3}, {"cylinder", 1e-3, 1000},
-                               {"cylinder", 1e-2, 1e-8}, {"bar", 1000, 1e-3}, {"bar", 1e4, 1e-2}, {"scaled", 1000, 1e-3}};
+static const Shape shapes[] = {{"box", 1000, 1e-3},      {"box", 1e-3, 1e-9},      {"box", 1e4, 1e-2},
+                               {"cylinder", 1000, 1e-3}, {"cylinder", 1e-3, 1000}, {"cylinder", 1e-2, 1e-8},
+                               {"bar", 1000, 1e-3},      {"bar", 1e4, 1e-2},       {"scaled", 1000, 1e-3}};
 
 /* Area and volume of what was built, against a prism with as many sides. */
 static void shape_off(double *off, ModelErrors *errors, const Shape *shape)
@@ -160,8 +168,10 @@ static void million_to_one(Bench *bench)
     ModelErrors errors = {0};
     double      off = 0;
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) shape_off(&off, &errors, &shapes[k]);
-    stress_row(bench, "boxes, cylinders, bars of 1e6 to 1: not valid", errors.unsound, 0, "models", "model_validate, finite");
-    stress_row(bench, "the same: normals, and vertices outside their sphere", fmax(errors.normal, errors.outside_m), 1e-6, "", "1; floats");
+    stress_row(bench, "boxes, cylinders, bars of 1e6 to 1: not valid", errors.unsound, 0, "models",
+               "model_validate, finite");
+    stress_row(bench, "the same: normals, and vertices outside their sphere", fmax(errors.normal, errors.outside_m),
+               1e-6, "", "1; floats");
     /* the place of an end, 1e-16 of 1 km, over 1 mm of thickness */
     stress_row(bench, "the same: area and volume", off, 1e-9, "", "prisms with as many sides");
 }
@@ -179,7 +189,8 @@ static const ObjFile obj_files[] = {
     {"no area, twice, five at an edge",
      SQUARE "v 0 0 1\nv 0 -1 0\nv 0 0 -1\nf 1 2 3\nf 1 2 3\nf 1 1 2\nf 2 2 2\nf 1 2 4\nf 1 2 5\nf 1 2 6\nf 1 2 7\n", 3},
     {"numbers that are none", SQUARE "v nan 0 0\nf 1 2 5\n", NAN},
-    {"normals that are none", SQUARE "vn 0 0 0\nvn nan nan nan\nvn 1e30 0 0\nvn 1e-40 1e-40 0\nf 1//1 2//2 3//3\nf 1//4 3//2 4//1\n", 1},
+    {"normals that are none",
+     SQUARE "vn 0 0 0\nvn nan nan nan\nvn 1e30 0 0\nvn 1e-40 1e-40 0\nf 1//1 2//2 3//3\nf 1//4 3//2 4//1\n", 1},
     /* the rest in full */
     {"all on a line", "v 0 0 0\nv 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\nf 2 3 4\n", NAN},
     {"all at one place", "v 5 5 5\nv 5 5 5\nv 5 5 5\nf 1 2 3\n", NAN},
@@ -187,7 +198,8 @@ static const ObjFile obj_files[] = {
     {"beyond a float", "v 0 0 0\nv 1e300 0 0\nv 0 1e300 0\nf 1 2 3\n", NAN},
     {"infinite", "v 0 0 0\nv inf 0 0\nv 0 -inf 0\nf 1 2 3\n", NAN},
     {"slivers", "v 0 0 0\nv 1024 0 0\nv 512 0.0009765625 0\nv 512 -0.0009765625 0\nf 1 2 3\nf 1 4 2\n", 1},
-    {"a micrometre, and 8 km off", "v 8192 0 0\nv 8193 0 0\nv 8192 1 0\nf 1 2 3\nv 8192 0 0.0009765625\nf 1 2 4\n", 0.50048828125},
+    {"a micrometre, and 8 km off", "v 8192 0 0\nv 8193 0 0\nv 8192 1 0\nf 1 2 3\nv 8192 0 0.0009765625\nf 1 2 4\n",
+     0.50048828125},
     {"a tiny one", "v 0 0 0\nv 0.0000152587890625 0 0\nv 0 0.0000152587890625 0\nf 1 2 3\n", 0.5 * 0x1p-32},
     {"denormals", "v 0 0 0\nv 1e-40 0 0\nv 0 1e-40 0\nf 1 2 3\n", NAN},
     {"no such corner", SQUARE "f 1 2 9\n", NAN},
@@ -224,7 +236,8 @@ static Status obj_imports(Bench *bench)
         model_destroy(&m);
     }
     remove(path);
-    stress_row(bench, "model files: needles, slivers, no area: wrongly taken or refused", judged, 0, "files", "what they hold");
+    stress_row(bench, "model files: needles, slivers, no area: wrongly taken or refused", judged, 0, "files",
+               "what they hold");
     stress_row(bench, "the same: numbers that are none", errors.unsound, 0, "", "finite, area above 0, in the box");
     stress_row(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
     stress_row(bench, "the same: vertices outside the sphere", errors.outside_m, 0, "m", "every vertex");

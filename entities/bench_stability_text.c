@@ -1,5 +1,5 @@
-/* entities/bench_stability_text.c: every number that somebody writes down, at the ends of floating point and beyond: keys of
- * scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be finite. */
+/* entities/bench_stability_text.c: every number that somebody writes down, at the ends of floating point and beyond:
+ * keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be finite. */
 #include "entities/bench_stability.h"
 
 #include "dis/entity_state.h"
@@ -12,9 +12,28 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-static const char *const texts[] = {"inf", "-inf", "nan", "1e999", "-1e999", "1.7976931348623157e308", "-1.7976931348623157e308", "3.4028235e38",
-                                    "-3.4028235e38", "5e-324", "-5e-324", "1e-310", "1e-400", "0", "-0", "0x1p3", "99999999999999999999", ".inf", ".nan",
-                                    "2147483648", "-1", "1e-20"};
+static const char *const texts[] = {"inf",
+                                    "-inf",
+                                    "nan",
+                                    "1e999",
+                                    "-1e999",
+                                    "1.7976931348623157e308",
+                                    "-1.7976931348623157e308",
+                                    "3.4028235e38",
+                                    "-3.4028235e38",
+                                    "5e-324",
+                                    "-5e-324",
+                                    "1e-310",
+                                    "1e-400",
+                                    "0",
+                                    "-0",
+                                    "0x1p3",
+                                    "99999999999999999999",
+                                    ".inf",
+                                    ".nan",
+                                    "2147483648",
+                                    "-1",
+                                    "1e-20"};
 enum { text_count = sizeof texts / sizeof *texts };
 
 static char heard[512];
@@ -42,7 +61,8 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
     static DisEntityState s;
     h->wrong += !isfinite(t_s);
     while (dis_next_pdu(&header, &pdu, &at, bytes + octets, &counters) && ++h->pdus < 200) {
-        if (header.type != dis_pdu_entity_state || dis_decode_entity_state(&s, pdu, header.length) != STATUS_OK) continue;
+        if (header.type != dis_pdu_entity_state || dis_decode_entity_state(&s, pdu, header.length) != STATUS_OK)
+            continue;
         const float euler_rad[3] = {s.psi_rad, s.theta_rad, s.phi_rad};
         h->wrong += !dis_entity_is_usable(&why, s.id, s.p_ecef, s.velocity_mps, euler_rad);
         for (int c = 0; c < 3; c++) h->wrong += !isfinite(s.acceleration_mps2[c]) || !isfinite(s.angular_rate_rps[c]);
@@ -68,7 +88,8 @@ static bool scenario_is_sound(const Scenario *scenario)
 /* What a line of vehicles and one of shots need; [0] the key, [1] its value. */
 static const char *const vehicle_keys[][2] = {{"name", "A"}, {"id", "1"}, {"type", "1.1.222.1.1.1.0"},
                                               {"route_m", "[[0, 0], [200, 50], [300, 300]]"}, {"speed_mps", "10"}};
-static const char *const shot_keys[][2] = {{"from", "A 1"}, {"at", "B 2"}, {"entity", "true"}, {"type", "2.2.225.1.1.3.0"}, {"time_s", "0.1"}};
+static const char *const shot_keys[][2] = {
+    {"from", "A 1"}, {"at", "B 2"}, {"entity", "true"}, {"type", "2.2.225.1.1.3.0"}, {"time_s", "0.1"}};
 
 /* One item with this key at this value, whether it was there or not. */
 static void write_item(FILE *to, const char *const (*keys)[2], int count, const char *key, const char *value)
@@ -122,10 +143,16 @@ static Status scenarios(Bench *bench, const char *path)
             continue;
         }
         if (strcmp(key, "elevation") == 0 || strcmp(key, "geoid") == 0) continue; /* names of files */
-        const bool places = strcmp(key, "route_m") == 0, place = strcmp(key, "at_m") == 0, offset = strcmp(key, "launch_m") == 0;
+        const bool places = strcmp(key, "route_m") == 0, place = strcmp(key, "at_m") == 0,
+                   offset = strcmp(key, "launch_m") == 0;
         for (int t = 0; t < text_count; t++) {
             if (bench_quick(bench) && number++ % 5 != 0) continue;
-            snprintf(value, sizeof value, places ? "[[0, 0], [%s, 50]]" : place ? "[%s, 50]" : offset ? "[1, %s, 0]" : "%s", texts[t]);
+            snprintf(value, sizeof value,
+                     places   ? "[[0, 0], [%s, 50]]"
+                     : place  ? "[%s, 50]"
+                     : offset ? "[1, %s, 0]"
+                              : "%s",
+                     texts[t]);
             Scenario s;
             heard[0] = 0;
             if (!write_scenario(path, section, key, value)) bad = INFINITY;
@@ -139,8 +166,10 @@ static Status scenarios(Bench *bench, const char *path)
     }
     log_set_sink(NULL, NULL);
     free(keys);
-    if (!(refused > 0.3 * cases && refused < 0.9 * cases)) bad = INFINITY; /* some of these texts are good, most are none */
-    stress_row(bench, "scenario: each key at extremes: silent, or an exercise not finite", bad, 0, "files", "an error line, or finite PDUs");
+    if (!(refused > 0.3 * cases && refused < 0.9 * cases))
+        bad = INFINITY; /* some of these texts are good, most are none */
+    stress_row(bench, "scenario: each key at extremes: silent, or an exercise not finite", bad, 0, "files",
+               "an error line, or finite PDUs");
     return STATUS_OK;
 }
 
@@ -157,13 +186,22 @@ static bool effects_are_sound(const char *path)
     if (local_frame_at(&frame, &origin) != STATUS_OK) return false;
     for (int kind = 0; kind < EFFECT_KIND_COUNT; kind++)
         for (size_t a = 0; a < sizeof age / sizeof *age; a++) {
-            const EffectPuff puff = {.kind = (EffectKind)kind, .age_s = age[a], .p_ecef = {6378137, 0, 0}, .up_ecef = {1, 0, 0}, .axis_ecef = {0, 1, 0},
-                                     .throw_mps = {3, 2, 1}, .throw_s = 0.3, .scale = 2, .mass_kg = 1};
+            const EffectPuff puff = {.kind = (EffectKind)kind,
+                                     .age_s = age[a],
+                                     .p_ecef = {6378137, 0, 0},
+                                     .up_ecef = {1, 0, 0},
+                                     .axis_ecef = {0, 1, 0},
+                                     .throw_mps = {3, 2, 1},
+                                     .throw_s = 0.3,
+                                     .scale = 2,
+                                     .mass_kg = 1};
             EffectVolume v;
             if (!isfinite(effect_life_s(&table, puff.kind, puff.scale))) return false;
             if (!effect_volume(&v, &table, &puff, &weather, &frame)) continue;
-            bool sound = v3_is_finite(v.p_enu) && isfinite(v.along_m) && v.across_m > 0 && isfinite(v.across_m) && isfinite(v.temp_k);
-            for (int b = 0; b < effect_band_count; b++) sound = sound && isfinite(v.extinction_per_m[b]) && v.extinction_per_m[b] >= 0;
+            bool sound = v3_is_finite(v.p_enu) && isfinite(v.along_m) && v.across_m > 0 && isfinite(v.across_m) &&
+                         isfinite(v.temp_k);
+            for (int b = 0; b < effect_band_count; b++)
+                sound = sound && isfinite(v.extinction_per_m[b]) && v.extinction_per_m[b] >= 0;
             if (!sound) return false;
         }
     return true;
@@ -175,7 +213,8 @@ static bool heat_is_sound(const char *path)
     HeatState state = {0};
     float     rise_k[HEAT_ROLE_COUNT];
     if (heat_table_open(&table, path) != STATUS_OK) return heard[0] != 0;
-    const HeatEvidence evidence[2] = {{{1, 1, 222, 1, 1, 1, 0}, 0x0040FFF8, 12}, {{1, 2, 225, 20, 1, 0, 0}, 0x00400000, 300}};
+    const HeatEvidence evidence[2] = {{{1, 1, 222, 1, 1, 1, 0}, 0x0040FFF8, 12},
+                                      {{1, 2, 225, 20, 1, 0, 0}, 0x00400000, 300}};
     for (int e = 0; e < 2; e++) {
         heat_begin(&state, &table, &evidence[e], 100, 3600);
         heat_fire(&state, &table, 101);
@@ -190,7 +229,8 @@ static bool heat_is_sound(const char *path)
 }
 
 /* Each cell of a table of etc/ in turn: every one that is a number. */
-static Status table_cells(Bench *bench, double *bad, const char *name, bool (*is_sound)(const char *path), const char *path)
+static Status table_cells(Bench *bench, double *bad, const char *name, bool (*is_sound)(const char *path),
+                          const char *path)
 {
     enum { most = 1 << 20 };
     char   from[512], *whole = NULL;
@@ -231,7 +271,8 @@ static Status tables(Bench *bench, const char *path)
     if (status == STATUS_OK) status = table_cells(bench, &bad, "heat.csv", heat_is_sound, path);
     log_set_sink(NULL, NULL);
     if (status == STATUS_OK)
-        stress_row(bench, "effects.csv, heat.csv: each cell at extremes: silent, or not finite", bad, 0, "files", "an error line, or finite puffs");
+        stress_row(bench, "effects.csv, heat.csv: each cell at extremes: silent, or not finite", bad, 0, "files",
+                   "an error line, or finite puffs");
     return status;
 }
 
@@ -244,7 +285,9 @@ static const struct {
     {"geoid", "lat_deg,lon_deg", "36,-123"},
     {"geodesy", "lat_deg,lon_deg,h_m,origin_lat_deg,origin_lon_deg,origin_h_m", "36,-123,100,35,-122,0"},
     {"geodesy", "x_m,y_m,z_m,origin_lat_deg,origin_lon_deg,origin_h_m", "6378137,10,20,35,-122,0"},
-    {"deadreckon", "algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2,ay_mps2,az_mps2,wx_rps,wy_rps,wz_rps,dt_s",
+    {"deadreckon",
+     "algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2,ay_mps2,az_mps2,wx_rps,wy_rps,wz_"
+     "rps,dt_s",
      "8,6378137,0,0,0.1,0.2,0.3,5,6,7,0.1,0.2,0.3,0.1,0.2,0.3,5"},
 };
 
@@ -297,14 +340,17 @@ static Status probes(Bench *bench)
             for (int skip = 0; skip < c; skip++) at += strcspn(at, ",") + 1;
             const char *behind = at + strcspn(at, ",");
             /* one column, and all from it on */
-            for (int t = 0; t < text_count; t++, rows++) fprintf(to, "%.*s%s%s\n", (int)(at - probe_rows[k].row), probe_rows[k].row, texts[t], behind);
+            for (int t = 0; t < text_count; t++, rows++)
+                fprintf(to, "%.*s%s%s\n", (int)(at - probe_rows[k].row), probe_rows[k].row, texts[t], behind);
             for (int t = 0; t < text_count; t++, rows++) {
                 fprintf(to, "%.*s", (int)(at - probe_rows[k].row), probe_rows[k].row);
-                for (int rest = c; rest < columns; rest++) fprintf(to, "%s%c", texts[t], rest + 1 < columns ? ',' : '\n');
+                for (int rest = c; rest < columns; rest++)
+                    fprintf(to, "%s%c", texts[t], rest + 1 < columns ? ',' : '\n');
             }
         }
         if (fclose(to) != 0) status = STATUS_NO_MEMORY;
-        FILE *in = status == STATUS_OK ? fmemopen(question, asked, "r") : NULL, *out = open_memstream(&answer, &answered);
+        FILE *in = status == STATUS_OK ? fmemopen(question, asked, "r") : NULL,
+             *out = open_memstream(&answer, &answered);
         if (!in || !out) status = STATUS_NO_MEMORY;
         else status = probe_run(probe, 1, argv, in, out);
         if (in) fclose(in);
@@ -314,7 +360,8 @@ static Status probes(Bench *bench)
         free(answer);
     }
     if (status == STATUS_OK)
-        stress_row(bench, "probes: each column at extremes: neither a reason nor finite", bad, 0, "rows", "an error, or finite results");
+        stress_row(bench, "probes: each column at extremes: neither a reason nor finite", bad, 0, "rows",
+                   "an error, or finite results");
     return status;
 }
 

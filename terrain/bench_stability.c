@@ -36,7 +36,8 @@ static double distance_l(const double p[3], const long double q[3])
 
 /* ---- places --------------------------------------------------------------------------------- */
 
-static const double lat_deg[] = {0, -0.0, 1e-310, 1e-12, -1e-12, 45, -45, 89.9999, -89.9999, 89.99999999, -89.99999999, 90, -90};
+static const double lat_deg[] = {0,       -0.0,     1e-310,      1e-12,        -1e-12, 45, -45,
+                                 89.9999, -89.9999, 89.99999999, -89.99999999, 90,     -90};
 static const double lon_deg[] = {0, -0.0, 1e-310, -1e-12, 90, -90, 179.9999, -179.9999, 180, -180, 359.9, -270};
 static const double high_m[] = {-11000, -1e-310, 0, 8848, 1e5, 1e6};
 enum { lats = 3 * sizeof lat_deg / sizeof *lat_deg, lons = 3 * sizeof lon_deg / sizeof *lon_deg,
@@ -55,7 +56,8 @@ static Geodetic place_at(int n)
         return (Geodetic){uniform(1, (uint64_t)n, -0.5, 0.5) * pi_rad, uniform(2, (uint64_t)n, -1, 1) * pi_rad,
                           uniform(3, (uint64_t)n, -11e3, 1e6)};
     const double lat_rad = neighbour_rad(lat_deg, n % lats);
-    return (Geodetic){clamp(lat_rad, -0.5 * pi_rad, 0.5 * pi_rad), neighbour_rad(lon_deg, n / lats % lons), high_m[n / lats / lons]};
+    return (Geodetic){clamp(lat_rad, -0.5 * pi_rad, 0.5 * pi_rad), neighbour_rad(lon_deg, n / lats % lons),
+                      high_m[n / lats / lons]};
 }
 
 static void off_rotation(double *worst, const double r[9])
@@ -93,7 +95,8 @@ static void places(Bench *bench)
     bench_stress(bench, "latitude, longitude, height to ECEF, -11 .. 1000 km", forward_m, 7e-9, "m", l);
     bench_stress(bench, "ECEF to latitude, longitude, height, and back", back_m, 7e-9, "m", l);
     bench_stress(bench, "the same: angles beyond a pole or the date line", beyond, 0, "places", "range of the angles");
-    bench_stress(bench, "ENU axes: not square, not unit or left-handed by", crooked, 1e-15, "", "R'R = I, cross products");
+    bench_stress(bench, "ENU axes: not square, not unit or left-handed by", crooked, 1e-15, "",
+                 "R'R = I, cross products");
     bench_stress(bench, "ENU axes: off their directions", turned, 1e-15, "", l);
     bench_stress(bench, "ENU axes: jump to the next longitude there is", jump, 1e-15, "", "continuity");
 }
@@ -101,8 +104,8 @@ static void places(Bench *bench)
 /* Points given as ECEF: on the axis, in the equator's plane, with zeroes of both signs. */
 static void awkward_points(Bench *bench)
 {
-    static const double value[] = {0, -0.0, 1e-310, 1e-9, -1e-9, 6356752.3142451793, -6356752.3142451793, 6378137, -6378137,
-                                   7.4e6, -4e6};
+    static const double value[] = {0,       -0.0,     1e-310, 1e-9, -1e-9, 6356752.3142451793, -6356752.3142451793,
+                                   6378137, -6378137, 7.4e6,  -4e6};
     enum { values = sizeof value / sizeof *value };
     double off_m = 0;
     for (int n = 0; n < values * values * values; n++) {
@@ -117,7 +120,8 @@ static void awkward_points(Bench *bench)
         bench_worse(&off_m, distance_l(p_ecef, back.origin));
     }
     /* beyond 12 000 km out the angles' last bits alone are worth 2 nm each */
-    bench_stress(bench, "ECEF on the axis, in the equator's plane, zeroes of both signs", off_m, 1e-8, "m", "WGS 84 in long double");
+    bench_stress(bench, "ECEF on the axis, in the equator's plane, zeroes of both signs", off_m, 1e-8, "m",
+                 "WGS 84 in long double");
 }
 
 /* ---- local frames --------------------------------------------------------------------------- */
@@ -194,8 +198,10 @@ static void any_origin(Bench *bench)
         }
     }
     /* 100 km times 2^-53, three products and two sums; and 14 000 km for the far side of the Earth */
-    bench_stress(bench, "two points 0 .. 50 m apart, seen from origins within 170 km", near_m, 1e-10, "m", "their difference in ECEF");
-    bench_stress(bench, "the same from origins anywhere, the far side of the Earth too", far_m, 2e-8, "m", "their difference in ECEF");
+    bench_stress(bench, "two points 0 .. 50 m apart, seen from origins within 170 km", near_m, 1e-10, "m",
+                 "their difference in ECEF");
+    bench_stress(bench, "the same from origins anywhere, the far side of the Earth too", far_m, 2e-8, "m",
+                 "their difference in ECEF");
 }
 
 /* ---- sun ------------------------------------------------------------------------------------ */
@@ -205,13 +211,16 @@ static void any_origin(Bench *bench)
 static void sun_another_way(double d_enu[3], double unix_s, const Geodetic *place, double delta_t_s)
 {
     const double au_m = 149597870700.0, c_au_day = 173.144632674, day = floor(unix_s / 86400), jd = 2440587.5 + day;
-    const double ut = (unix_s - 86400 * day) / 86400, tt = ut + delta_t_s / 86400, turn_per_day = 2 * pi_rad * 1.00273781191135448;
+    const double ut = (unix_s - 86400 * day) / 86400, tt = ut + delta_t_s / 86400,
+                 turn_per_day = 2 * pi_rad * 1.00273781191135448;
     const FrameL site = frame_l(place);
-    double       helio[2][3], bary[2][3], later_helio[2][3], later_bary[2][3], r[3][3], eye[3], spin[3], v[3], seen[3], way[3];
+    double helio[2][3], bary[2][3], later_helio[2][3], later_bary[2][3], r[3][3], eye[3], spin[3], v[3], seen[3],
+        way[3];
     double       natural[3], apparent[3], distance = 1;
     eraEpv00(jd, tt, helio, bary);
     eraC2t06a(jd, tt, jd, ut, 0, 0, r);
-    const double p_au[3] = {(double)site.origin[0] / au_m, (double)site.origin[1] / au_m, (double)site.origin[2] / au_m};
+    const double p_au[3] = {(double)site.origin[0] / au_m, (double)site.origin[1] / au_m,
+                            (double)site.origin[2] / au_m};
     const double v_itrs[3] = {-turn_per_day * p_au[1], turn_per_day * p_au[0], 0};
     eraTrxp(r, (double *)p_au, eye);
     eraTrxp(r, (double *)v_itrs, spin);
@@ -260,7 +269,8 @@ static void sun(Bench *bench)
         const double   unix_s = instant(n), delta_t_s = uniform(31, (uint64_t)n, 20, 100);
         double         want[3];
         Sun            bare, air;
-        if (sun_at(&bare, unix_s, &place, 0, 10, delta_t_s) != STATUS_OK || sun_at(&air, unix_s, &place, 1010, 10, delta_t_s) != STATUS_OK) {
+        if (sun_at(&bare, unix_s, &place, 0, 10, delta_t_s) != STATUS_OK ||
+            sun_at(&air, unix_s, &place, 1010, 10, delta_t_s) != STATUS_OK) {
             off_rad = INFINITY;
             continue;
         }
@@ -277,7 +287,8 @@ static void sun(Bench *bench)
     }
     const char *another = "ERFA another way: CIO, own light time, eraAb";
     /* the diurnal aberration, 0.32 arcsecond at the equator, is what sun_at leaves out */
-    bench_stress(bench, "sun 1950 .. 2100, poles, date line, horizon, nadir", off_rad / arcsec_rad, 0.4, "arcsec", another);
+    bench_stress(bench, "sun 1950 .. 2100, poles, date line, horizon, nadir", off_rad / arcsec_rad, 0.4, "arcsec",
+                 another);
     bench_stress(bench, "the same: length of its direction, with and without air", unit, 4e-16, "", "1");
     bench_stress(bench, "the same: refraction", bent_rad / arcsec_rad, 0.01, "arcsec", "NREL SPA (42), long double");
 }
@@ -303,7 +314,8 @@ static void sun_over_steps(Bench *bench)
         bench_worse(&jump_rad, angle_between(before.d_enu, after.d_enu));
     }
     /* 0.015 arcsec of the sky's turn in 1 ms, and 0.04 of the sun's way in the second by which TT - UT1 may step */
-    bench_stress(bench, "sun over leap seconds, leap days, new years: step in 1 ms", jump_rad / arcsec_rad, 0.06, "arcsec", "continuity");
+    bench_stress(bench, "sun over leap seconds, leap days, new years: step in 1 ms", jump_rad / arcsec_rad, 0.06,
+                 "arcsec", "continuity");
 }
 
 /* ---- geoid ---------------------------------------------------------------------------------- */
@@ -311,28 +323,43 @@ static void sun_over_steps(Bench *bench)
 static Status geoid(Bench *bench)
 {
     Geoid        grid;
-    double       pole_m = 0, seam_m = 0, jump_m = 0;
+    double       pole_m = 0, seam_m = 0, jump_m = 0, kink = 0;
     const Status status = geoid_open(&grid, NULL);
     if (status != STATUS_OK) return status;
     for (int n = 0; n < (bench_quick(bench) ? 2000 : 200000); n++) {
         const double lon_rad = n < lons ? neighbour_rad(lon_deg, n) : uniform(40, (uint64_t)n, -1, 1) * pi_rad;
-        const double lat_rad = n < lats ? clamp(neighbour_rad(lat_deg, n), -0.5 * pi_rad, 0.5 * pi_rad) : uniform(41, (uint64_t)n, -0.5, 0.5) * pi_rad;
+        const double lat_rad = n < lats ? clamp(neighbour_rad(lat_deg, n), -0.5 * pi_rad, 0.5 * pi_rad)
+                                        : uniform(41, (uint64_t)n, -0.5, 0.5) * pi_rad;
         for (int south = 0; south < 2; south++)
             bench_worse(&pole_m, geoid_height_m(&grid, (south ? -0.5 : 0.5) * pi_rad, lon_rad) -
                                      geoid_height_m(&grid, (south ? -0.5 : 0.5) * pi_rad, 0));
+        /* the slope at a pole, by the last metres and by the rows on both sides of it; posts every 1/4 degree */
+        const double row_off = 0.25 * rad_per_deg, m_rad = 6.4e6, last = 1e-5, hand = n & 1 ? -1 : 1,
+                     top_rad = 0.5 * pi_rad;
+        const double post_rad = rint(lon_rad / row_off) * row_off;
+        const double over = (geoid_height_m(&grid, hand * (top_rad - row_off), post_rad) -
+                             geoid_height_m(&grid, hand * (top_rad - row_off), post_rad + pi_rad)) /
+                            (2 * row_off * m_rad);
+        const double near = (geoid_height_m(&grid, hand * (top_rad - last), post_rad) -
+                             geoid_height_m(&grid, hand * top_rad, post_rad)) / (last * m_rad);
+        bench_worse(&kink, near - over);
         bench_worse(&seam_m, geoid_height_m(&grid, lat_rad, pi_rad) - geoid_height_m(&grid, lat_rad, -pi_rad));
-        bench_worse(&seam_m, geoid_height_m(&grid, lat_rad, lon_rad) - geoid_height_m(&grid, lat_rad, lon_rad + 2 * pi_rad));
+        bench_worse(&seam_m,
+                    geoid_height_m(&grid, lat_rad, lon_rad) - geoid_height_m(&grid, lat_rad, lon_rad + 2 * pi_rad));
         /* 6 mm of ground on either side of any place: over the seam, over a pole, over the rows of the grid */
         const double row_rad = rint(lat_rad / rad_per_deg * 4) / 4 * rad_per_deg;
         const double top = fmin(row_rad + 1e-9, 0.5 * pi_rad), low = fmax(row_rad - 1e-9, -0.5 * pi_rad);
         bench_worse(&jump_m, geoid_height_m(&grid, top, lon_rad) - geoid_height_m(&grid, low, lon_rad));
-        bench_worse(&jump_m, geoid_height_m(&grid, lat_rad, -pi_rad - 1e-9) - geoid_height_m(&grid, lat_rad, -pi_rad + 1e-9));
+        bench_worse(&jump_m,
+                    geoid_height_m(&grid, lat_rad, -pi_rad - 1e-9) - geoid_height_m(&grid, lat_rad, -pi_rad + 1e-9));
         bench_worse(&jump_m, geoid_height_m(&grid, (n & 1 ? -1 : 1) * (0.5 * pi_rad - 1e-9), lon_rad) -
                                  geoid_height_m(&grid, (n & 1 ? -1 : 1) * (0.5 * pi_rad - 1e-9), lon_rad + pi_rad));
     }
     geoid_close(&grid);
     bench_stress(bench, "geoid: a pole at any longitude", pole_m, 1e-12, "m", "the same pole at 0 E");
     bench_stress(bench, "geoid: east and west of the date line, a turn apart", seam_m, 1e-9, "m", "the same place");
+    /* what a cubic leaves of the curvature between posts 28 km apart */
+    bench_stress(bench, "geoid: slope at a pole", kink, 6e-6, "", "the posts on both sides of it");
     /* its slope is below 1e-3 */
     bench_stress(bench, "geoid: step over poles, date line and rows, in 12 mm", jump_m, 1.2e-5, "m", "continuity");
     return STATUS_OK;

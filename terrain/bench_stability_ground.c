@@ -44,10 +44,12 @@ static const Sheet huge_sheet = {16385, 16385, -8192, -8192, 1, 0, 0x1p-4}; /* h
 
 static Status fill(Elevation *out, const Sheet *s, Shape shape)
 {
-    const Status status = elevation_level_create(out, 0, s->nx, s->ny, s->x0_m, s->y0_m, s->spacing_m, s->z0_m, s->step_m);
+    const Status status =
+        elevation_level_create(out, 0, s->nx, s->ny, s->x0_m, s->y0_m, s->spacing_m, s->z0_m, s->step_m);
     if (status != STATUS_OK) return status;
     for (int j = 0; j < s->ny; j++)
-        for (int i = 0; i < s->nx; i++) out->level[0].post[(size_t)j * (size_t)s->nx + (size_t)i] = shape_post(shape, i, j, s->nx, s->ny);
+        for (int i = 0; i < s->nx; i++)
+            out->level[0].post[(size_t)j * (size_t)s->nx + (size_t)i] = shape_post(shape, i, j, s->nx, s->ny);
     elevation_build_pyramids(out);
     return STATUS_OK;
 }
@@ -80,7 +82,8 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
             errors->absent++;
             continue;
         }
-        const long double fx = ((long double)x_m - l->x0_m) / l->spacing_m, fy = ((long double)y_m - l->y0_m) / l->spacing_m;
+        const long double fx = ((long double)x_m - l->x0_m) / l->spacing_m,
+                          fy = ((long double)y_m - l->y0_m) / l->spacing_m;
         const int         i = (int)fminl(floorl(fx), l->nx - 2), j = (int)fminl(floorl(fy), l->ny - 2);
         /* a place on an edge belongs to both cells, on a diagonal to both triangles: the nearest of them is meant */
         double least_m = INFINITY, least_normal = INFINITY, low = INFINITY, high = -INFINITY;
@@ -93,7 +96,8 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
             for (int side = 0; side < 2; side++) {
                 if (side ? u > v + edge : u < v - edge) continue;
                 const long double sw = p[0], se = p[1], nw = p[l->nx], ne = p[l->nx + 1];
-                const long double du = (side ? ne - nw : se - sw) * l->step_m, dv = (side ? nw - sw : ne - se) * l->step_m;
+                const long double du = (side ? ne - nw : se - sw) * l->step_m,
+                                  dv = (side ? nw - sw : ne - se) * l->step_m;
                 const long double length = hypotl(hypotl(du, dv), l->spacing_m);
                 const long double want = l->z0_m + l->step_m * sw + u * du + v * dv;
                 least_m = fmin(least_m, (double)(fabsl(z_m - want) * l->spacing_m / length));
@@ -117,7 +121,8 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
 static double wrong_entries(const Elevation *ground)
 {
     const ElevationLevel *l = &ground->level[0];
-    double                wrong = l->pyramid_count < 1 || l->pyramid_nx[l->pyramid_count - 1] != 1 || l->pyramid_ny[l->pyramid_count - 1] != 1;
+    double wrong =
+        l->pyramid_count < 1 || l->pyramid_nx[l->pyramid_count - 1] != 1 || l->pyramid_ny[l->pyramid_count - 1] != 1;
     for (int k = 0; k < l->pyramid_count; k++)
         for (int b = 0; b < l->pyramid_ny[k]; b++)
             for (int a = 0; a < l->pyramid_nx[k]; a++) {
@@ -157,10 +162,12 @@ static Status grids(Bench *bench)
         elevation_destroy(&ground);
     }
     const char *plane = "the triangle's plane, long double";
-    bench_stress(bench, "ground: cliffs, spikes, chess of 65535 quanta, off the surface", errors.off_m, 1e-9, "m", plane);
+    bench_stress(bench, "ground: cliffs, spikes, chess of 65535 quanta, off the surface", errors.off_m, 1e-9, "m",
+                 plane);
     /* the heights themselves are rounded: 1.8e-12 m of 22 km, over posts 30 m apart */
     bench_stress(bench, "the same: its normals", errors.normal, 1e-13, "", plane);
-    bench_stress(bench, "the same: above or below every post of the cell", errors.over_m, 1e-11, "m", "the cell's four posts");
+    bench_stress(bench, "the same: above or below every post of the cell", errors.over_m, 1e-11, "m",
+                 "the cell's four posts");
     bench_stress(bench, "the same: places without ground", errors.absent, 0, "places", "outline of the grid");
     bench_stress(bench, "the same: pyramids and rises", wrong, 0, "entries", "every post of each square");
     return STATUS_OK;
@@ -260,7 +267,8 @@ static bool write_file(const char *folder, const File *f)
 static const double horizon_m = 3000;
 
 /* Places without ground or with a normal that is none; how far the ground leaves what the file holds. */
-static void look_at_file(double *absent, double *over_m, const Elevation *ground, const LocalFrame *frame, const File *f, int looks)
+static void look_at_file(double *absent, double *over_m, const Elevation *ground, const LocalFrame *frame,
+                         const File *f, int looks)
 {
     for (int n = 0; n < looks; n++) {
         const double scale = pow(10, uniform(30, (uint64_t)n, -3, 0)) * horizon_m;
@@ -269,7 +277,8 @@ static void look_at_file(double *absent, double *over_m, const Elevation *ground
         const double p_enu[3] = {x_m, y_m, elevation_height(ground, x_m, y_m, normal)};
         Geodetic     place;
         ecef_from_enu(p_ecef, frame, p_enu);
-        if (!isfinite(p_enu[2]) || !(fabs(v3_length(normal) - 1) <= 1e-14) || geodetic_from_ecef(&place, p_ecef) != STATUS_OK) {
+        if (!isfinite(p_enu[2]) || !(fabs(v3_length(normal) - 1) <= 1e-14) ||
+            geodetic_from_ecef(&place, p_ecef) != STATUS_OK) {
             ++*absent;
             continue;
         }
@@ -299,7 +308,10 @@ static Status imports(Bench *bench)
         snprintf(path, sizeof path, "%s/ground.flt", folder);
         if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
         if (status != STATUS_OK) break;
-        const ElevationFiles from = {.paths = path, .geoid_path = "", .vertical = ELEVATION_ELLIPSOID, .horizon_m = horizon_m,
+        const ElevationFiles from = {.paths = path,
+                                     .geoid_path = "",
+                                     .vertical = ELEVATION_ELLIPSOID,
+                                     .horizon_m = horizon_m,
                                      .spacing_m = f->step_deg * 1e5};
         log_hush(true);
         const bool taken = elevation_import(&ground, &report, &from, &frame, NULL, 0) == STATUS_OK;
@@ -317,10 +329,13 @@ static Status imports(Bench *bench)
         log_error("bench: cannot write into %s: %s", folder, status_name(status));
         return status;
     }
-    bench_stress(bench, "ground of files: voids, NaN, 1 x 1: wrongly taken or refused", judged, 0, "files", "what they hold");
-    bench_stress(bench, "ground of files: places without height or normal", absent, 0, "places", "every place to the horizon");
+    bench_stress(bench, "ground of files: voids, NaN, 1 x 1: wrongly taken or refused", judged, 0, "files",
+                 "what they hold");
+    bench_stress(bench, "ground of files: places without height or normal", absent, 0, "places",
+                 "every place to the horizon");
     /* half a quantum of 22 km in 16 bits, and the chord between posts under the Earth's bend */
-    bench_stress(bench, "ground of files: beyond the heights that the file holds", over_m, 0.5, "m", "least and greatest of the file");
+    bench_stress(bench, "ground of files: beyond the heights that the file holds", over_m, 0.5, "m",
+                 "least and greatest of the file");
     return STATUS_OK;
 }
 
