@@ -144,6 +144,16 @@ static const Setting keys[] = {
     {"entities.capacity", SETTING_INT, AT(entities.capacity), 1, 1000000, NULL, "", "most entities at once"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no picture"},
+    {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
+     "largest error of sampling, rms over the band's mean: picks sensor.samples, edge_samples, target_samples, antialias"},
+    {"quality.temperature_rms_k", SETTING_DOUBLE, AT(quality.temperature_rms_k), 1e-3, 1000, NULL, "K",
+     "the same in apparent temperature, of the thermal bands"},
+    {"quality.frame_ms", SETTING_DOUBLE, AT(quality.frame_ms), 0.01, 1e6, NULL, "ms",
+     "time that a frame's rays may take, by the table's times quality.machine_factor"},
+    {"quality.machine_factor", SETTING_DOUBLE, AT(quality.machine_factor), 0.001, 1000, NULL, "",
+     "time on this machine over that in the table; run measures it when it is not given"},
+    {"quality.table", SETTING_TEXT, AT(quality.table), 0, 0, NULL, "",
+     "settings with their errors and times, by `pitviper bench quality --table FILE`; empty: etc/quality.csv"},
     {"seed", SETTING_LONG, AT(seed), 0, 2147483647, NULL, "", "of everything random"},
 };
 enum { key_count = sizeof keys / sizeof keys[0] };
@@ -217,6 +227,8 @@ Config config_default(void)
     c.entities.extrapolation_limit_s = 12;
     c.entities.capacity             = 100000;
     strcpy(c.quality.budget, "on");
+    c.quality.radiance_rmse_percent = c.quality.temperature_rms_k = c.quality.frame_ms = NAN;
+    c.quality.machine_factor        = 1;
     c.seed                          = 1;
     return c;
 }

@@ -90,6 +90,9 @@ typedef struct Config {
     } entities;
     struct {
         char   budget[8];          /* off or on */
+        double radiance_rmse_percent, temperature_rms_k, frame_ms; /* asked for; NaN: not */
+        double machine_factor;
+        char   table[1024];        /* empty: etc/quality.csv */
     } quality;
     long long seed;
     bool      causal;

@@ -1,6 +1,7 @@
 #include "sensor/node/host_run.h"
 
 #include "sensor/node/frame_files.h"
+#include "sensor/node/quality.h"
 
 #include <stdlib.h>
 
@@ -44,7 +45,9 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 Status run_prepare(Run *run)
 {
     if (!parse_bands(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
-    const Status status = sensors_choose(&run->sensors, &run->choices, &run->options.config, run->bands);
+    Status status = quality_choose(&run->options.config, &run->choices, run->bands);
+    if (status != STATUS_OK) return status;
+    status = sensors_choose(&run->sensors, &run->choices, &run->options.config, run->bands);
     return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
 }
 

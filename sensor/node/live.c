@@ -4,9 +4,11 @@
 #include "dis/exercise_clock.h"
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/bench/quality.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/quality.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
@@ -323,10 +325,28 @@ static Status open_network(Live *l)
     return STATUS_OK;
 }
 
+/* How long this machine takes over a frame, once: the one clock that a choice of quality hangs on. Said so that a replay
+ * with the same quality.machine_factor makes the same pictures. */
+static Status measure_machine(Live *l)
+{
+    Config *config = &l->run.options.config;
+    char    path[1024], text[32];
+    double  factor;
+    if (!quality_wants_factor(config)) return STATUS_OK;
+    if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
+    else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
+    Status status = bench_machine_factor(&factor, path, l->run.options.threads);
+    if (status != STATUS_OK) return status;
+    snprintf(text, sizeof text, "%g", factor);
+    choice_add(&l->run.choices, "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);
+    return config_set(config, "quality.machine_factor", text, "run");
+}
+
 static Status run_node(Live *l)
 {
     bool   heard;
-    Status status = run_prepare(&l->run);
+    Status status = measure_machine(l);
+    if (status == STATUS_OK) status = run_prepare(&l->run);
     /* now, not when the first entity is heard, hours later */
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);

@@ -1,0 +1,180 @@
+/* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said, and
+ * whether what is promised holds in scenes and on a ground that the table of etc/ knows nothing of. */
+#include "sensor/node/quality.h"
+#include "tests/sensor/error_scenes.h"
+
+static const char good[] = "# by hand\n"
+    "samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n"
+    "1,0,0,10,20,5,2,2,10\n"
+    "1,4,48,6,4,1,0.5,0.6,40\n"
+    "2,4,48,4,3.5,0.8,0.3,0.4,90\n"
+    "4,8,96,2,1,0.5,0.1,0.1,400\n";
+
+static QualityTable table_of(const char *text)
+{
+    char         path[text_file_size];
+    QualityTable table;
+    text_file(path, text);
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    remove(path);
+    return table;
+}
+
+static int picked(bool *reached, const QualityTable *table, double percent, double kelvin, double frame_ms, unsigned bands)
+{
+    const QualityTarget target = {percent, kelvin, frame_ms, 0.5, 2, bands};
+    return quality_pick(reached, table, &target);
+}
+
+static void the_quickest_that_keeps_it(void **state)
+{
+    (void)state;
+    const QualityTable t = table_of(good);
+    const unsigned     all = 7, lwir = 1u << BAND_LWIR;
+    bool               reached;
+    CHECK(t.count == 4 && t.row[1].kelvin[BAND_LWIR] == 0.6 && t.row[3].target_samples == 96);
+    CHECK(picked(&reached, &t, 7, NAN, NAN, all) == 1 && reached);
+    CHECK(picked(&reached, &t, 4, NAN, NAN, all) == 2 && reached);      /* not above is kept */
+    CHECK(picked(&reached, &t, 3.99, NAN, NAN, all) == 3 && reached);
+    CHECK(picked(&reached, &t, 1, NAN, NAN, lwir) == 1 && reached);     /* only bands that are wanted */
+    CHECK(picked(&reached, &t, NAN, 0.45, NAN, all) == 2 && reached);
+    CHECK(picked(&reached, &t, 7, 0.2, NAN, all) == 3 && reached);      /* both */
+    CHECK(picked(&reached, &t, 1, NAN, NAN, all) == 3 && !reached);     /* none: the nearest */
+    CHECK(picked(&reached, &t, NAN, NAN, 95, all) == 2 && reached);     /* half a megapixel, twice the time: 90 ms */
+    CHECK(picked(&reached, &t, 7, NAN, 95, all) == 1 && reached);       /* in time, and no better than asked for */
+    CHECK(picked(&reached, &t, 3, NAN, 95, all) == 2 && !reached);      /* in time, nearest */
+    CHECK(picked(&reached, &t, 3, NAN, 1, all) == 0 && !reached);       /* none in time: the quickest */
+    CHECK(picked(&reached, &t, 0, NAN, NAN, 1u << BAND_RADAR) == 0);    /* radar alone: nothing to keep */
+}
+
+static void broken_tables_are_refused(void **state)
+{
+    (void)state;
+    static const char head[] = "samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n";
+    static const char *const rows[] = {"", "1,0,0,10,20,5,2,2\n", "0,0,0,1,1,1,1,1,1\n", "17,0,0,1,1,1,1,1,1\n", "1,1,48,1,1,1,1,1,1\n",
+                                       "1,4,0,1,1,1,1,1,1\n", "1,0,48,1,1,1,1,1,1\n", "1.5,0,0,1,1,1,1,1,1\n", "1,0,0,nan,1,1,1,1,1\n",
+                                       "1,0,0,-1,1,1,1,1,1\n", "1,0,0,1,1,1,1,1,0\n", "1,0,0,1,1,1,1,1,inf\n", "1,0,0,,1,1,1,1,1\n",
+                                       "1,4,7,1,1,1,1,1,1\n", "1,4,257,1,1,1,1,1,1\n", "1,0,0,1,1,1,1,1,1e300\n"};
+    char         path[text_file_size], text[16384];
+    QualityTable table;
+    log_hush(true);
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        snprintf(text, sizeof text, "%s%s", head, rows[k]);
+        text_file(path, text);
+        CHECK(quality_open(&table, path) != STATUS_OK);
+        remove(path);
+    }
+    text_file(path, "samples,edge_samples\n1,0\n"); /* columns missing */
+    CHECK(quality_open(&table, path) == STATUS_BAD_VALUE);
+    remove(path);
+    strcpy(text, head); /* too many */
+    for (int k = 0; k <= quality_rows_max; k++) strcat(text, "1,0,0,1,1,1,1,1,1\n");
+    text_file(path, text);
+    CHECK(quality_open(&table, path) == STATUS_BAD_VALUE);
+    remove(path);
+    CHECK(quality_open(&table, "/nonexistent/quality.csv") != STATUS_OK);
+    log_hush(false);
+    /* and what is written reads back */
+    const QualityTable t = table_of(good);
+    text_file(path, "");
+    assert_int_equal(quality_write(path, &t, "again"), STATUS_OK);
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    remove(path);
+    CHECK(table.count == t.count && table.row[2].percent[1] == 3.5 && table.row[3].ms_megapixel == 400);
+}
+
+static void given_keys_stay_and_the_choice_is_said(void **state)
+{
+    (void)state;
+    char    path[text_file_size], text[2][16384];
+    Choices choices = {0};
+    Config  config = config_default(), plain = config;
+    text_file(path, good);
+    assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK); /* nothing asked for */
+    CHECK(choices.count == 0 && config.sensor.edge_samples == plain.sensor.edge_samples);
+    assert_int_equal(config_set(&config, "quality.table", path, "test"), STATUS_OK);
+    assert_int_equal(config_set(&config, "quality.radiance_rmse_percent", "3", "test"), STATUS_OK);
+    assert_int_equal(config_set(&config, "sensor.edge_samples", "5", "test"), STATUS_OK);
+    assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
+    CHECK(config.sensor.samples == 4 && config.sensor.edge_samples == 5 && config.sensor.target_samples == 96);
+    print_message("%s\n", choices.line[0]);
+    CHECK(choices.count == 1 && strstr(choices.line[0], "3 % rmse") && strstr(choices.line[0], "sensor.edge_samples as given"));
+    CHECK(!strstr(choices.line[0], "NOT reached"));
+    /* asking changes no hash, what is picked does */
+    config.sensor = plain.sensor;
+    config_text(text[0], sizeof text[0], &config);
+    config_text(text[1], sizeof text[1], &plain);
+    assert_string_equal(text[0], text[1]);
+    /* out of reach */
+    choices.count = 0;
+    config = plain;
+    assert_int_equal(config_set(&config, "quality.table", path, "test"), STATUS_OK);
+    assert_int_equal(config_set(&config, "quality.temperature_rms_k", "0.01", "test"), STATUS_OK);
+    log_hush(true);
+    assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
+    print_message("%s\n", choices.line[0]);
+    CHECK(strstr(choices.line[0], "NOT reached") && config.sensor.samples == 4);
+    /* antialias off where the row says so; time by a factor */
+    config = plain, choices.count = 0;
+    assert_int_equal(config_set(&config, "quality.table", path, "test"), STATUS_OK);
+    assert_int_equal(config_set(&config, "quality.frame_ms", "5", "test"), STATUS_OK);
+    CHECK(quality_wants_factor(&config));
+    assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
+    CHECK(strcmp(config.sensor.antialias, "off") == 0 && config.sensor.samples == 1);
+    assert_int_equal(config_set(&config, "quality.machine_factor", "0.1", "test"), STATUS_OK);
+    CHECK(!quality_wants_factor(&config));
+    assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK); /* 0.35 megapixels, 90 ms, a tenth: 3.1 ms */
+    CHECK(config.sensor.samples == 2 && strcmp(config.sensor.antialias, "adaptive") == 0);
+    CHECK(config_set(&config, "quality.frame_ms", "0", "test") == STATUS_BAD_VALUE);
+    CHECK(config_set(&config, "quality.machine_factor", "-1", "test") == STATUS_BAD_VALUE);
+    CHECK(config_set(&config, "quality.radiance_rmse_percent", "nan", "test") == STATUS_BAD_VALUE);
+    log_hush(false);
+    remove(path);
+}
+
+/* Another ground, other vehicles, other eyes than those the table was measured on. */
+static void promises_hold_elsewhere(void **state)
+{
+    (void)state;
+    static const ErrorScene scenes[] = {{"ground from 100 m", 700, 110, 45, 0, false, 0}, {"vehicles at 80 m", 80, 15, 40, 6, false, 0},
+                                        {"vehicles at 400 m", 400, 50, 15, 10, false, 0}, {"horizon", 250, 9, 35, 3, false, 3}};
+    static const double asked_percent[] = {10, 5, 2.5};
+    char         path[512];
+    QualityTable table;
+    int          held = 0, cases = 0;
+    CHECK(etc_path(path, sizeof path, "quality.csv"));
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    for (int s = 0; s < 4; s++) {
+        BenchScene scene;
+        open_scene(&scene, &lab.ground, &scenes[s]);
+        RenderRequest request = request_of(&scene, &scenes[s]);
+        request.budget = false;
+        request.samples = 16, request.edge_samples = request.target_samples = 0;
+        const BenchFrame true_one = frame_of(&scene, &request, 0);
+        for (int k = 0; k < 3; k++) {
+            bool                reached;
+            const QualityTarget target = {asked_percent[k], NAN, NAN, 1, 1, 7};
+            const QualityRow   *r = &table.row[quality_pick(&reached, &table, &target)];
+            CHECK(reached);
+            request.samples = r->samples, request.edge_samples = r->edge_samples, request.target_samples = r->target_samples;
+            const BenchFrame f = frame_of(&scene, &request, 1);
+            for (int b = 0; b < radiance_bands; b++) {
+                const double percent = 100 * apart(&f.picture, &true_one.picture, (Band)b);
+                print_message("%-18s %-8s asked for %4.1f %%: samples %d, edge_samples %d, target_samples %d: %.2f %%%s\n",
+                              scenes[s].name, band_name((Band)b), asked_percent[k], r->samples, r->edge_samples, r->target_samples,
+                              percent, percent <= asked_percent[k] ? "" : "  *");
+                cases++, held += percent <= asked_percent[k];
+            }
+        }
+        bench_scene_close(&scene);
+    }
+    print_message("kept: %d of %d\n", held, cases);
+    CHECK(held == cases);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(broken_tables_are_refused),
+                                       cmocka_unit_test(given_keys_stay_and_the_choice_is_said), cmocka_unit_test(promises_hold_elsewhere)};
+    return cmocka_run_group_tests(tests, lab_open, lab_close);
+}
