@@ -2,8 +2,8 @@
 
 #include "sensor/bench/network.h"
 #include "sensor/bench/precision.h"
-#include "sensor/bench/skip.h"
 #include "sensor/bench/quality.h"
+#include "sensor/bench/skip.h"
 #include "sensor/bench/speed.h"
 #include "sensor/bench/stability.h"
 
@@ -21,7 +21,6 @@ const BenchSuite sensor_benches[] = {
      .run = bench_precision},
     {.name = "stability", .help = "detectors of 1 to 16 bits, displays without contrast, threads that agree",
      .run = sensor_bench_stability},
-     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone", .run = bench_speed},
     {.name = "quality", .options = "table=FILE: written too; quality.* picks from etc/quality.csv",
      .help = "rays a pixel, at edges and over small targets together: time against error, what quality.* picks from",
      .run = bench_quality},
