@@ -1,12 +1,12 @@
 #include "sensor/node/pairs.h"
 
 #include "sensor/node/session_private.h" /* turn_normals */
+#include "sensor/publish/pair_record.h"
 
 #include <errno.h>
-#include <jansson.h>
 #include <stdlib.h>
 
-enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, member_count, path_size = 4200 };
+enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = 4200 };
 
 /* What lies behind a detector, of one member. The first is the session's own. */
 typedef struct Member {
@@ -22,7 +22,7 @@ struct Pairs {
     unsigned raw;
     FILE    *index;
     int      frames, taken; /* taken: entities, over all frames */
-    Member   member[member_count];
+    Member   member[pair_members];
 };
 
 Status pairs_open(Pairs **out, const SessionShared *shared, const char *folder, unsigned raw)
@@ -39,7 +39,7 @@ Status pairs_open(Pairs **out, const SessionShared *shared, const char *folder, 
     p->noiseless.detector.noise = 0;
     *quiet = *shared->sensors;
     for (int b = 0; b < BAND_COUNT; b++) quiet->preset[b].noise_scale = 0;
-    for (int m = CLEAN; m < member_count && status == STATUS_OK; m++) {
+    for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) {
         Member *member = &p->member[m];
         snprintf(member->folder, sizeof member->folder, "%s/%s", folder, pair_folder[m - 1]);
         status = sensors_chains(member->chain, m == BACKGROUND ? shared->sensors : quiet, shared->config);
@@ -75,7 +75,7 @@ Status pairs_close(Pairs *p)
         log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
         status = STATUS_IO;
     }
-    for (int m = CLEAN; m < member_count; m++)
+    for (int m = CLEAN; m < pair_members; m++)
         for (int b = 0; b < BAND_COUNT; b++) chain_destroy(p->member[m].chain[b]);
     free(p);
     return status;
@@ -83,72 +83,41 @@ Status pairs_close(Pairs *p)
 
 /* ---- the index -------------------------------------------------------------------------------- */
 
-static void set_file(json_t *object, const char *key, const char *below, const char *place, const char *band, int frame,
-                     const char *ending)
-{
-    char path[128];
-    snprintf(path, sizeof path, "%s%s%s/%s/%06d.%s", below, *below ? "/" : "", place, band, frame, ending);
-    json_object_set_new(object, key, json_string(path));
-}
-
-static json_t *member_json(const Pairs *p, const FrameFiles *files, int m, const FrameLevel level[BAND_COUNT])
-{
-    const bool  without = m >= BACKGROUND, noise = m == WITH || m == BACKGROUND;
-    const char *radiance = without ? pair_folder[BACKGROUND - 1] : "", *shown = m == WITH ? "" : pair_folder[m - 1];
-    json_t     *member = json_pack("{s:b,s:b}", "target", !without, "noise", noise), *bands = json_object();
-    set_file(member, "truth", radiance, "frames", "truth", files->frame, "exr");
-    for (int b = 0; b < BAND_COUNT; b++) {
-        if (!(files->request->bands >> b & 1)) continue;
-        const char *name = band_name((Band)b);
-        json_t     *band = json_object();
-        set_file(band, "radiance", radiance, "frames", name, files->frame, "exr");
-        if (files->png)
-            set_file(band, "display", b == BAND_RADAR ? radiance : shown, "frames", name, files->frame, "png");
-        if (p->raw >> b & 1) set_file(band, "raw", shown, "raw", name, files->frame, "png");
-        if (files->png && b != BAND_RADAR)
-            json_object_set_new(band, "level", json_pack("[f,f]", level[b].shown.low, level[b].shown.high));
-        json_object_set_new(bands, name, band);
-    }
-    json_object_set_new(member, "bands", bands);
-    return member;
-}
-
 static Status write_line(const Pairs *p, const FrameFiles *files, const char *with_sha256, const char *without_sha256,
-                         json_t *taken)
+                         const DisEntityId *removed, int removed_count)
 {
-    json_t *line = json_pack("{s:i,s:f,s:I,s:o,s:s,s:s}", "frame", files->frame, "time_s", files->time_s, "seed",
-                             (json_int_t)p->shared->config->seed, "removed", taken, "frame_sha256", with_sha256,
-                             "background_sha256", without_sha256);
-    json_t *members = json_array();
-    for (int m = WITH; m < member_count; m++)
-        json_array_append_new(members, member_json(p, files, m, m == WITH ? files->level : p->member[m].level));
-    json_object_set_new(line, "members", members);
-    char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
-    json_decref(line);
-    if (!text) return STATUS_NO_MEMORY;
-    const bool ok = fprintf(p->index, "%s\n", text) > 0 && fflush(p->index) == 0;
-    free(text);
-    if (!ok) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
-    return ok ? STATUS_OK : STATUS_IO;
+    PairRecord r = {.frame = files->frame, .time_s = files->time_s, .seed = p->shared->config->seed, .removed = removed,
+                    .removed_count = removed_count, .frame_sha256 = with_sha256, .background_sha256 = without_sha256,
+                    .bands = files->request->bands, .raw = p->raw, .png = files->png};
+    for (int m = WITH; m < pair_members; m++)
+        r.member[m] = (PairMember){
+            .target   = m < BACKGROUND,
+            .noise    = m == WITH || m == BACKGROUND,
+            .radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1],
+            .shown    = m == WITH ? "" : pair_folder[m - 1],
+            .level    = m == WITH ? files->level : p->member[m].level,
+        };
+    const Status status = record_write_pair(p->index, &r);
+    if (status == STATUS_IO) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
+    return status;
 }
 
 /* ---- a frame ---------------------------------------------------------------------------------- */
 
 /* The same snapshot, indices and all, less what is taken away, whose ids are listed. */
-static Status take_away(Snapshot *without, json_t *taken, Pairs *p, const Snapshot *with, DisEntityId aim, int host,
-                        Arena *arena)
+static Status take_away(Snapshot *without, DisEntityId **taken, int *taken_count, const Pairs *p, const Snapshot *with,
+                        DisEntityId aim, int host, Arena *arena)
 {
     const int       only = p->all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
     SnapshotEntity *entity = arena_alloc(arena, (size_t)with->count + 1, sizeof *entity);
-    char            id[dis_id_text_size];
-    if (!entity || !taken) return STATUS_NO_MEMORY;
+    *taken       = arena_alloc(arena, (size_t)with->count + 1, sizeof **taken);
+    *taken_count = 0;
+    if (!entity || !*taken) return STATUS_NO_MEMORY;
     if (with->count > 0) memcpy(entity, with->entity, (size_t)with->count * sizeof *entity);
     for (int i = 0; i < with->count; i++) {
         if (i == host || (!p->all && i != only)) continue;
         entity[i].model = -1;
-        dis_entity_id_text(id, entity[i].id);
-        json_array_append_new(taken, json_string(id));
-        p->taken++;
+        (*taken)[(*taken_count)++] = entity[i].id;
     }
     *without        = *with;
     without->entity = entity;
@@ -175,22 +144,21 @@ Status pairs_frame(Pairs *p, const FrameFiles *with, const char *sha256, const A
     Picture    picture;
     char       without_sha256[sha256_text_size];
     FrameFiles without = *with;
-    json_t    *taken   = json_array();
+    DisEntityId *taken;
+    int          taken_count;
 
     without.snapshot = &snapshot;
     without.picture  = &picture;
     without.noise_of = with->picture;
-    Status status    = take_away(&snapshot, taken, p, with->snapshot, aim, host, arena);
+    Status status    = take_away(&snapshot, &taken, &taken_count, p, with->snapshot, aim, host, arena);
     if (status == STATUS_OK)
         status = render(&picture, p->shared->world, &snapshot, with->request, air, p->shared->pool, arena);
     if (status == STATUS_OK) turn_normals(&picture, r_host_from_enu);
     if (status == STATUS_OK) status = write_member(NULL, p, CLEAN, *with);
     if (status == STATUS_OK) status = write_member(without_sha256, p, BACKGROUND, without);
     if (status == STATUS_OK) status = write_member(NULL, p, BACKGROUND_CLEAN, without);
-    if (status != STATUS_OK) {
-        json_decref(taken);
-        return status;
-    }
+    if (status != STATUS_OK) return status;
     p->frames++;
-    return write_line(p, with, sha256, without_sha256, taken);
+    p->taken += taken_count;
+    return write_line(p, with, sha256, without_sha256, taken, taken_count);
 }

@@ -4,10 +4,10 @@
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/sweep_file.h"
+#include "sensor/publish/variant_record.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <jansson.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
@@ -35,7 +35,8 @@ typedef struct SweepRun {
 /* How one variant ended. */
 typedef struct Outcome {
     const char *status;
-    json_t     *run;           /* run.json; NULL: there is none */
+    bool        has_run;
+    MadeRun     run;           /* run.json */
     char        why[400];      /* of a failure */
     double      seconds;
 } Outcome;
@@ -166,35 +167,29 @@ static Status open_products(SweepRun *s)
 
 /* ---- one variant ------------------------------------------------------------------------------ */
 
-static const char *text_at(const json_t *object, const char *key)
+static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
 {
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "";
+    return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
+           strcmp(run->log_sha256, s->log_sha256) == 0;
 }
 
-static bool is_run(const json_t *run, const SweepRun *s, const Variant *v)
-{
-    return strcmp(text_at(run, "pitviper"), PITVIPER_VERSION) == 0 &&
-           strcmp(text_at(run, "config_sha256"), v->config_sha256) == 0 &&
-           strcmp(text_at(run, "log_sha256"), s->log_sha256) == 0;
-}
-
-static json_t *read_json(const char *folder, const char *name)
+static bool read_run(MadeRun *out, const char *folder, const char *name)
 {
     char path[path_size + 32];
     snprintf(path, sizeof path, "%s/%s", folder, name);
-    return json_load_file(path, 0, NULL);
+    return made_run_read(out, path);
 }
 
 /* A whole run of these settings; its run.json is then the outcome's. */
 static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings_sha256)
 {
-    json_t *variant = read_json(folder, "variant.json"), *run = read_json(folder, "run.json");
-    const bool kept = is_run(variant, s, v) && strcmp(text_at(variant, "settings_sha256"), settings_sha256) == 0 &&
-                      is_run(run, s, v);
-    json_decref(variant);
-    if (kept) *outcome = (Outcome){.status = "kept", .run = run};
-    else json_decref(run);
+    MadeRun    variant, run;
+    const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
+                       strcmp(variant.settings_sha256, settings_sha256) == 0;
+    const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v);
+    made_run_free(&variant);
+    if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
+    else made_run_free(&run);
     return kept;
 }
 
@@ -265,26 +260,22 @@ static void find_reason(char *why, size_t size, const char *folder, int code)
     free(text);
 }
 
-static json_t *variant_json(const SweepRun *s, const Variant *v, const Outcome *outcome, const char *settings_sha256)
+/* Its line of the manifest. NULL: out of memory. */
+static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome, const char *settings_sha256)
 {
-    char    value[sweep_value_size];
-    json_t *settings = json_object(), *hashes = json_object_get(outcome->run, "frame_sha256");
+    char        text[sweep_axes_max][sweep_value_size];
+    const char *key[sweep_axes_max], *value[sweep_axes_max];
     for (int i = 0; i < s->sweep.axis_count; i++) {
-        sweep_value(value, &s->sweep, v->number, i);
-        json_object_set_new(settings, s->sweep.axis[i].key, json_string(value));
+        sweep_value(text[i], &s->sweep, v->number, i);
+        key[i]   = s->sweep.axis[i].key;
+        value[i] = text[i];
     }
-    json_t *line = json_pack("{s:s,s:s,s:i,s:s,s:o,s:s,s:s,s:s,s:s}", "variant", v->name, "folder", v->name, "number",
-                             v->number + 1, "status", outcome->status, "settings", settings, "config_sha256",
-                             v->config_sha256, "settings_sha256", settings_sha256, "log_sha256", s->log_sha256,
-                             "pitviper", PITVIPER_VERSION);
-    if (!line) return NULL;
-    if (*outcome->why) json_object_set_new(line, "error", json_string(outcome->why));
-    if (outcome->seconds > 0) json_object_set_new(line, "seconds", json_real(outcome->seconds));
-    if (outcome->run) {
-        json_object_set(line, "frames", json_object_get(outcome->run, "frames"));
-        json_object_set(line, "frame_sha256", hashes);
-    }
-    return line;
+    return variant_line(&(VariantRecord){
+        .name = v->name, .status = outcome->status, .error = outcome->why, .number = v->number + 1,
+        .setting_count = s->sweep.axis_count, .key = key, .value = value, .config_sha256 = v->config_sha256,
+        .settings_sha256 = settings_sha256, .log_sha256 = s->log_sha256, .seconds = outcome->seconds,
+        .run = outcome->has_run ? &outcome->run : NULL,
+    });
 }
 
 static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings,
@@ -306,17 +297,10 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     const double begun_s = wall_clock_s();
     const int    code    = run_child(s->options, folder);
     outcome->seconds     = wall_clock_s() - begun_s;
-    outcome->run         = code == 0 ? read_json(folder, "run.json") : NULL;
-    if (code == 0 && is_run(outcome->run, s, v)) outcome->status = "made";
+    outcome->has_run     = code == 0 && read_run(&outcome->run, folder, "run.json");
+    if (outcome->has_run && is_run(&outcome->run, s, v)) outcome->status = "made";
     else if (code == 0) snprintf(outcome->why, sizeof outcome->why, "run.json is not of these settings and this log");
     else find_reason(outcome->why, sizeof outcome->why, folder, code);
-}
-
-/* The frame in the middle of the run: mid-course, its target in view. */
-static int middle_frame(const json_t *run)
-{
-    const json_t *number = json_object_get(run, "frame_number");
-    return (int)json_integer_value(json_array_get(number, json_array_size(number) / 2));
 }
 
 static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
@@ -324,14 +308,15 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
     char words[words_size], text[words_size + 600];
     settings_words(words, &s->sweep, v->number, "\n");
     snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
-    sheet_add(&s->sheet, s->options->out, v->name, outcome->run ? middle_frame(outcome->run) : -1, text, *outcome->why);
+    /* the frame in the middle of the run: mid-course, its target in view */
+    sheet_add(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text, *outcome->why);
     settings_words(words, &s->sweep, v->number, ", ");
     if (*outcome->why)
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
-        printf("%d of %d: %s %s, %s: %lld frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
-               (long long)json_integer_value(json_object_get(outcome->run, "frames")), outcome->seconds);
+        printf("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+               outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }
 
@@ -352,8 +337,7 @@ static Status one_variant(SweepRun *s, int place)
     s->failed += strcmp(outcome.status, "failed") == 0;
     tell(s, v, &outcome, place);
 
-    json_t *line = variant_json(s, v, &outcome, settings_sha256);
-    char   *text = line ? json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(6)) : NULL;
+    char *text = line_of(s, v, &outcome, settings_sha256);
     if (!text) status = STATUS_NO_MEMORY;
     if (text && (fprintf(s->manifest, "%s\n", text) < 0 || fflush(s->manifest) != 0)) {
         log_error("sweep: cannot write %s/manifest.jsonl: %s", s->options->out, strerror(errno));
@@ -366,8 +350,7 @@ static Status one_variant(SweepRun *s, int place)
         if (status == STATUS_OK && rename(part, path) != 0) status = STATUS_IO;
     }
     free(text);
-    json_decref(line);
-    json_decref(outcome.run);
+    made_run_free(&outcome.run);
     return status;
 }
 

@@ -1,0 +1,30 @@
+/* sensor/publish/pair_record.h: pairs.jsonl (sensor/node/pairs.h): a line a frame, all its members and their files. */
+#ifndef SENSOR_PUBLISH_PAIR_RECORD_H
+#define SENSOR_PUBLISH_PAIR_RECORD_H
+
+#include "sensor/node/frame_files.h"
+
+enum { pair_members = 1 + pair_folders };
+
+typedef struct PairMember {
+    bool        target, noise;
+    const char *radiance, *shown;       /* folders below the run's: of radiance and truth, of displays and raw counts */
+    const FrameLevel *level;            /* [BAND_COUNT] what black and white stand for */
+} PairMember;
+
+typedef struct PairRecord {
+    int       frame;
+    double    time_s;
+    long long seed;
+    int       removed_count;
+    const DisEntityId *removed;         /* taken away */
+    const char *frame_sha256, *background_sha256;
+    unsigned  bands, raw;               /* 1 << Band: rendered; with raw counts */
+    bool      png;
+    PairMember member[pair_members];
+} PairRecord;
+
+/* One line, flushed. STATUS_IO when the file does not take it; STATUS_NO_MEMORY. */
+Status record_write_pair(FILE *file, const PairRecord *record);
+
+#endif
