@@ -205,7 +205,7 @@ static bool keep(Bench *bench, const BenchRow *row)
 
 void bench_add(Bench *bench, const BenchRow *row)
 {
-    char       median_text[32], best[32], rate[32], ratio[96] = "", error[32], what[256];
+    char       median_text[32], best[32], rate[32], ratio[96] = "", error[32], limit[32], what[256];
     const bool holds = bench_holds(row);
     if (bench->rows++ == 0 || bench->part[bench->parts - 1].first == bench->kept_count) show_head(bench);
     bench->broken += !holds;
@@ -215,10 +215,13 @@ void bench_add(Bench *bench, const BenchRow *row)
     bench_show(best, row->best, row->unit);
     bench_show(rate, row->rate, row->rate_unit);
     bench_show(error, row->error, row->error_unit);
-    if (!isnan(row->ratio)) snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio, or_empty(row->to));
+    bench_show(limit, row->error_limit, row->error_unit);
+    if (!isnan(row->ratio))
+        snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio, or_empty(row->to));
     if (bench->terminal) fputs("\r\x1b[K", stderr);
-    printf("%-*s %10s %10s  %-18s %-22s %s%s%s%s\n", what_width, what, median_text, best, rate, ratio, error,
-           row->against ? ": " : "", or_empty(row->against), holds ? "" : "  ** beyond its limit **");
+    printf("%-*s %10s %10s  %-18s %-22s %s%s%s%s%s%s\n", what_width, what, median_text, best, rate, ratio, error,
+           *limit ? ", limit " : "", limit, row->against ? ": " : "", or_empty(row->against),
+           holds ? "" : "  ** beyond its limit **");
     fflush(stdout);
     if (bench->csv) csv_row(bench->csv, bench->suite, row);
 }

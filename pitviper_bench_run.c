@@ -6,10 +6,29 @@
 
 /* ---- the command ------------------------------------------------------------------------------ */
 
+static void usage_suite(FILE *to, const BenchSuite *suite)
+{
+    fprintf(to, "      %s\n", suite->help);
+    for (const char *at = suite->options; at && *at;) {
+        const int length = (int)strcspn(at, ","), name = (int)strcspn(at, "=");
+        fprintf(to, "      --%.*s %.*s\n", name, at, length - name - 1, at + name + 1);
+        at += length + (at[length] == ',');
+    }
+}
+
+/* Whether it is the first of its name: rooms have parts of the same suite. */
+static bool is_first(const BenchSuite *suite, BenchNext *next)
+{
+    size_t            state[2] = {0};
+    const BenchSuite *other;
+    while ((other = next(state)) != suite)
+        if (strcmp(other->name, suite->name) == 0) return false;
+    return true;
+}
+
 static void usage(FILE *to, BenchNext *next)
 {
-    size_t      state[2] = {0};
-    const char *last = "";
+    size_t state[2] = {0};
     fputs("usage: pitviper bench WHAT [options]\n"
           "       pitviper bench all [options]            everything there is, one after the other\n"
           "       pitviper bench compare A.csv B.csv [--report FILE] [--slower FACTOR]\n\n"
@@ -21,14 +40,12 @@ static void usage(FILE *to, BenchNext *next)
           "  --plots DIR      each approximation's settings as NAME.svg: run time against error\n"
           "  --quick          few rounds and small scenes: seconds\n"
           "  --threads N      default: one for each processor\n", to);
-    for (const BenchSuite *suite; (suite = next(state)); last = suite->name) {
-        if (strcmp(suite->name, last) != 0) fprintf(to, "\n  %s\n", suite->name);
-        fprintf(to, "      %s\n", suite->help);
-        for (const char *at = suite->options; at && *at;) {
-            const int length = (int)strcspn(at, ","), name = (int)strcspn(at, "=");
-            fprintf(to, "      --%.*s %.*s\n", name, at, length - name - 1, at + name + 1);
-            at += length + (at[length] == ',');
-        }
+    for (const BenchSuite *suite; (suite = next(state));) {
+        if (!is_first(suite, next)) continue;
+        fprintf(to, "\n  %s\n", suite->name);
+        size_t part_state[2] = {0};
+        for (const BenchSuite *part; (part = next(part_state));)
+            if (strcmp(part->name, suite->name) == 0) usage_suite(to, part);
     }
 }
 
