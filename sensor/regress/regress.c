@@ -40,7 +40,7 @@ static const char help[] =
     "  card.md              written by --update: when and why the record changed, newest first\n"
     "\n"
     "what is compared, in the way of the data; what fails first is named, as the probable cause of what fails after it\n"
-    "  time, counters, pose of the eye, sun, motion of the targets; entity, part, range, normal, targets seen; material;\n"
+    "  counters, time, pose of the eye, sun, motion of the targets; entity, part, range, normal, targets seen; material;\n"
     "  temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and counters must be the\n"
     "  same; radiance may differ by 0.05 K apparent, 1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number\n"
     "  crosses from one step of the record to the next within that.\n"

@@ -10,8 +10,8 @@
 
 /* In the way of the data. */
 typedef enum Channel {
-    CHANNEL_TIME,     /* which frames there are, and when */
     CHANNEL_COUNTERS, /* of PDUs, drops, entities, events: run.json */
+    CHANNEL_TIME,     /* which frames there are, and when */
     CHANNEL_POSE,     /* host and sensor: truth.jsonl */
     CHANNEL_SUN,      /* as seen from the host: truth.jsonl */
     CHANNEL_MOTION,   /* who is there, and where by dead reckoning: targets of truth.jsonl */
@@ -34,6 +34,7 @@ typedef struct ChannelResult {
     int          bounce;        /* of a profile, which has no plane: FRAME_PLANES */
     PlaneVerdict verdict;
     double       limit, relative; /* absolute, and of the expected */
+    double       allowed;      /* share of pixels that may be beyond */
     const char  *unit;
     int          diffs;         /* of texts: how many fields */
 } ChannelResult;
@@ -47,6 +48,7 @@ typedef struct Verdict {
 } Verdict;
 
 const char *channel_name(Channel channel);
+const char *channel_about(Channel channel); /* what it is, in a few words */
 
 /* A frame of both, as the report shows it: in the channel's unit. Freed by the caller with free. */
 typedef struct ChannelPlanes {
