@@ -25,7 +25,7 @@
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
  * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row of range
- * bins; truth.jsonl and run.json as the run wrote them. */
+ * bins; truth.jsonl as the run wrote it, and run.json without times. */
 #ifndef SENSOR_REGRESS_CASE_H
 #define SENSOR_REGRESS_CASE_H
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-enum { png_most = 32 << 20, bar_width = 240, bar_height = 12 };
+enum { png_most = 32 << 20, bar_width = 120, bar_height = 12 };
 
 static int compare_floats(const void *a, const void *b)
 {
@@ -129,8 +129,8 @@ bool legend_put(FILE *page, Colours colours, Scale scale, const char *unit, cons
             const double t = (x + 0.5) / bar_width;
             colour_of(rgb + 3 * (y * bar_width + x), (float)(scale.low + t * (scale.high - scale.low)), colours, scale);
         }
-    html_text(page, "%.5g%s%s ", scale.low, *unit ? " " : "", unit);
+    html_text(page, "%.4g ", scale.low);
     if (!put_png(page, rgb, bar_width, bar_height, scratch, "scale of colours")) return false;
-    html_text(page, " %.5g%s%s", scale.high, *unit ? " " : "", unit);
+    html_text(page, " %.4g%s%s", scale.high, *unit ? " " : "", unit);
     return true;
 }

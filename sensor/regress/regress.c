@@ -27,6 +27,8 @@ static const char help[] =
     "  --report FILE        one HTML page: expected, got and difference of each channel that failed\n"
     "  --work DIR           where everything is made, and kept (default: a temporary folder, kept when a case fails)\n"
     "  --jobs N             cases at a time (default: one for each processor)\n"
+    "  --threads N          of each case (default: what the cases at a time leave)\n"
+    "  --isa NAME           instruction set of the tracer, as of replay: avx2 (default), sse4.2, avx512\n"
     "  --keys               every key of case.yaml, with its range and default\n"
     "  --help               this\n"
     "\n"
@@ -38,18 +40,18 @@ static const char help[] =
     "  card.md              written by --update: when and why the record changed, newest first\n"
     "\n"
     "what is compared, in the way of the data; what fails first is named, as the probable cause of what fails after it\n"
-    "  time, counters, pose; entity, part, range, normal, targets; material; sun; temperature; optical, mwir, lwir,\n"
-    "  radar, radar profile; target signals. Ids and counters must be the same; radiance may differ by 0.05 K apparent,\n"
-    "  1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number crosses from one step of the record to the next\n"
-    "  within that.\n"
+    "  counters, time, pose of the eye, sun, motion of the targets; entity, part, range, normal, targets seen; material;\n"
+    "  temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and counters must be the\n"
+    "  same; radiance may differ by 0.05 K apparent, 1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number\n"
+    "  crosses from one step of the record to the next within that.\n"
     "\n"
     "Each case runs in processes of its own: one that crashes or hangs has failed by itself. A log that is not here is\n"
     "skipped; a record that is not yet there has failed. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
 
 typedef struct Options {
     bool        update;
-    const char *why, *junit, *report, *work;
-    int         jobs;
+    const char *why, *junit, *report, *work, *isa;
+    int         jobs, threads;
 } Options;
 
 typedef struct Suite {
@@ -71,15 +73,22 @@ static int refuse(const char *format, const char *text)
     return 1 + 2;
 }
 
+static bool few(int *out, const char *text)
+{
+    long long value;
+    if (!text_to_long(&value, text) || value < 1 || value > 256) return false;
+    *out = (int)value;
+    return true;
+}
+
 /* 0: go on; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, KEYS, HELP };
+    enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, HELP };
     static const struct option options[] = {
         {"update", 0, NULL, UPDATE}, {"why", 1, NULL, WHY}, {"junit", 1, NULL, JUNIT}, {"report", 1, NULL, REPORT},
-        {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"keys", 0, NULL, KEYS}, {"help", 0, NULL, HELP},
-        {NULL, 0, NULL, 0}};
-    long long jobs;
+        {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
+        {"keys", 0, NULL, KEYS}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         switch (option) {
@@ -89,9 +98,16 @@ static int parse(Options *o, int argc, char **argv)
         case REPORT: o->report = optarg; break;
         case WORK: o->work = optarg; break;
         case JOBS:
-            if (!text_to_long(&jobs, optarg) || jobs < 1 || jobs > 256)
-                return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
-            o->jobs = (int)jobs;
+            if (!few(&o->jobs, optarg)) return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
+            break;
+        case THREADS:
+            if (!few(&o->threads, optarg))
+                return refuse("regress: --threads: '%s' is not a whole number in 1 .. 256", optarg);
+            break;
+        case ISA:
+            if (strcmp(optarg, "avx2") != 0 && strcmp(optarg, "sse4.2") != 0 && strcmp(optarg, "avx512") != 0)
+                return refuse("regress: --isa: '%s' is not avx2, sse4.2 or avx512", optarg);
+            o->isa = optarg;
             break;
         case KEYS: case_write_keys(stdout); return 1;
         case HELP: fputs(help, stdout); return 1;
@@ -263,8 +279,9 @@ static bool run_all(Suite *s)
     const int processors = thread_processors();
     int       jobs       = s->o.jobs ? s->o.jobs : processors;
     if (jobs > s->count) jobs = s->count;
-    s->how =
-        (CaseHow){.threads = processors / jobs > 1 ? processors / jobs : 1, .update = s->o.update, .why = s->o.why};
+    const int left = processors / jobs > 1 ? processors / jobs : 1;
+    s->how = (CaseHow){.threads = s->o.threads ? s->o.threads : left, .isa = s->o.isa, .update = s->o.update,
+                       .why = s->o.why};
     s->begun_s = wall_clock_s();
     if (pool_create(&pool, jobs) != STATUS_OK) {
         log_error("regress: cannot start %d threads; fewer --jobs", jobs);

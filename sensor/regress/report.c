@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-enum { path_size = case_path_size + 64, shown_width = 384, thumbnail_width = 192, plot_width = 760, plot_height = 220 };
+enum { path_size = case_path_size + 64, shown_width = 288, thumbnail_width = 192, plot_width = 760, plot_height = 220 };
 
 static void record_folder(char out[path_size], const CaseResult *r)
 {
@@ -29,21 +29,62 @@ static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResul
 
 /* ---- a channel that failed -------------------------------------------------------------------- */
 
+/* The largest difference that is none. */
+static void tolerance_text(char out[96], int channel, const ChannelResult *found)
+{
+    const char *unit = found->unit ? found->unit : "", *space = *unit ? " " : "";
+    if (found->picture && frame_plane_is_id(found->plane)) snprintf(out, 96, "the same id");
+    else if (channel == CHANNEL_OPTICAL)
+        snprintf(out, 96, "%.3g %% of it and %.3g %s", 100 * found->relative, found->limit, unit);
+    else if (found->relative > 0) snprintf(out, 96, "%.3g of it", found->relative);
+    else snprintf(out, 96, "%.3g%s%s", found->limit, space, unit);
+}
+
+/* How many, how much, where: what the pictures below it cannot say. */
+static void put_facts(FILE *page, const ChannelResult *found, int channel)
+{
+    const PlaneVerdict *v = &found->verdict;
+    const bool          ids = found->picture && frame_plane_is_id(found->plane);
+    const char         *unit = found->unit ? found->unit : "";
+    char                tolerance[96];
+    tolerance_text(tolerance, channel, found);
+    html_text(page, "Frame %d, %s: %zu of %zu %s (%.3g %%) ", found->frame,
+              found->picture ? frame_plane_name(found->plane) : "range profile", v->beyond, v->compared,
+              found->picture ? "pixels" : "bins", 100 * v->share);
+    if (ids) html_text(page, "show another id; ");
+    else html_text(page, "differ by more than the tolerance of %s; ", tolerance);
+    if (found->allowed > 0) html_text(page, "%.3g %% may.", 100 * found->allowed);
+    else html_text(page, "none may.");
+    if (v->column < 0) return;
+    if (ids) html_text(page, " The first");
+    else html_text(page, " Rms %.3g %s, largest difference %.3g %s", v->rms, unit, v->max, unit);
+    if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
+    else html_text(page, " in bin %d of bounce %d", v->column, found->bounce + 1);
+    html_text(page, ": expected %.6g %s, got %.6g %s.", v->expected, unit, v->got, unit);
+}
+
 static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, Colours colours, Scale scale,
-                       const char *scratch, const char *caption)
+                       const char *scratch, const char *unit, const char *caption)
 {
     fputs("<figure>", page);
     if (!picture_put(page, &plane, 1, p->width, p->height, colours, scale, shown_width, scratch, caption))
         fputs("(this picture could not be made)", page);
-    fputs("<figcaption>", page);
+    fputs("<figcaption><b>", page);
     html_text(page, "%s", caption);
+    fputs("</b><br>", page);
+    if (unit) legend_put(page, colours, scale, unit, scratch);
+    else if (colours == COLOURS_IDS) fputs("a colour for each id; dark: none", page);
+    else fputs("bright: beyond tolerance", page);
     fputs("</figcaption></figure>\n", page);
 }
 
-/* Which pixels show another id. */
-static void mark_differences(float *difference, size_t count)
+/* 1 where the tolerance does not reach, else 0. */
+static void mark_beyond(float *plane, const ChannelPlanes *p, const ChannelResult *found)
 {
-    for (size_t i = 0; i < count; i++) difference[i] = difference[i] != 0;
+    for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
+        const double was = (double)p->expected[i], d = fabs((double)p->difference[i]);
+        plane[i] = !(d <= found->limit + (isfinite(was) ? found->relative * fabs(was) : 0));
+    }
 }
 
 static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *found, const RecordFrame *expected,
@@ -57,21 +98,14 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     const bool    ids     = frame_plane_is_id(found->plane);
     const Colours colours = ids ? COLOURS_IDS : COLOURS_HEAT;
     const Scale   scale   = scale_of(p.expected, p.got, count);
-    put_figure(page, p.expected, &p, colours, scale, scratch, "expected");
-    put_figure(page, p.got, &p, colours, scale, scratch, "got");
-    if (ids) {
-        mark_differences(p.difference, count);
-        put_figure(page, p.difference, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, "where they differ: bright");
-        fputs("<p class=\"dim\">one colour an id; dark: none</p>\n", page);
-    } else {
-        const Scale change = scale_of_difference(p.difference, count, found->limit);
-        put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, "got - expected");
-        fputs("<p>both: ", page);
-        legend_put(page, colours, scale, found->unit, scratch);
-        fputs(" &nbsp; difference: ", page);
-        legend_put(page, COLOURS_SIGNED, change, found->unit, scratch);
-        fputs(" &nbsp; beyond the ends: as at the ends; violet: no number</p>\n", page);
-    }
+    const Scale   change  = scale_of_difference(p.difference, count, found->limit);
+    const char   *unit    = ids ? NULL : found->unit;
+    put_figure(page, p.expected, &p, colours, scale, scratch, unit, "expected: the record");
+    put_figure(page, p.got, &p, colours, scale, scratch, unit, "got: this run");
+    if (!ids) put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, unit, "difference: got - expected");
+    mark_beyond(p.got, &p, found);
+    put_figure(page, p.got, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, NULL, ids ? "another id" : "beyond tolerance");
+    if (!ids) fputs("<p class=\"dim\">Beyond the ends of a scale: as at its ends. Violet: no number there.</p>\n", page);
     free(p.expected);
     free(p.got);
     free(p.difference);
@@ -115,54 +149,61 @@ static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *fo
     free(db);
 }
 
-static void put_channel(FILE *page, const CaseResult *r, int channel)
+/* open: at once, not when it is asked for. */
+static void put_channel(FILE *page, const CaseResult *r, int channel, bool open)
 {
     const ChannelResult *found = &r->verdict.channel[channel];
+    const bool           plane = found->picture || channel == CHANNEL_PROFILE;
     RecordFrame          expected = {0}, got = {0};
-    fputs("<h3>", page);
-    html_text(page, "%s%s%s", channel_name((Channel)channel),
-              channel == CHANNEL_MWIR || channel == CHANNEL_LWIR ? ", apparent temperature"
-              : channel == CHANNEL_RADAR                         ? ", below the brightest expected"
-                                                                 : "",
-              channel == r->verdict.first ? ": the probable cause" : "");
-    fputs("</h3>\n<p>", page);
-    html_text(page, "%s", found->line);
+    fprintf(page, "<details%s><summary><b>", open ? " open" : "");
+    html_text(page, "%s%s", channel_name((Channel)channel), channel == r->verdict.first ? ": the probable cause" : "");
+    fputs("</b> <span class=\"dim\">", page);
+    html_text(page, "%s", channel_about((Channel)channel));
+    fputs("</span></summary>\n<p>", page);
+    if (plane && found->verdict.compared > 0) put_facts(page, found, channel);
+    else html_text(page, "%s", found->line);
     fputs("</p>\n", page);
-    if ((found->picture || channel == CHANNEL_PROFILE) && both_frames(&expected, &got, r, found->frame)) {
+    if (plane && both_frames(&expected, &got, r, found->frame)) {
         if (found->picture) put_pictures(page, r, found, &expected, &got);
         else put_profile(page, r, found, &expected, &got);
         frame_free(&expected);
         frame_free(&got);
     }
+    fputs("</details>\n", page);
 }
 
 /* ---- a case ----------------------------------------------------------------------------------- */
 
 static void put_numbers(FILE *page, const CaseResult *r)
 {
-    fputs("<table><tr><th>channel</th><th>verdict</th><th class=\"n\">beyond</th><th class=\"n\">largest</th>"
-          "<th class=\"n\">rms</th><th>where</th><th>what</th></tr>\n", page);
+    fputs("<table><tr><th>channel</th><th>verdict</th><th class=\"n\">beyond tolerance</th><th class=\"n\">allowed</th>"
+          "<th>tolerance</th><th class=\"n\">largest difference</th><th>where: frame (column, row)</th></tr>\n", page);
     for (int k = 0; k < CHANNEL_COUNT; k++) {
         const ChannelResult *c = &r->verdict.channel[k];
         const PlaneVerdict  *v = &c->verdict;
+        char                 tolerance[96];
         if (!c->there) continue;
-        fprintf(page, "<tr><td>%s</td><td class=\"%s\">%s</td>", channel_name((Channel)k), c->failed ? "bad" : "good",
+        fputs("<tr><td title=\"", page);
+        html_text(page, "%s", channel_about((Channel)k));
+        fprintf(page, "\">%s</td><td class=\"%s\">%s</td>", channel_name((Channel)k), c->failed ? "bad" : "good",
                 c->failed ? "failed" : "ok");
-        if (c->picture || k == CHANNEL_PROFILE) {
-            fprintf(page, "<td class=\"n\">%.3g %%</td><td class=\"n\">%.3g %s</td><td class=\"n\">%.3g %s</td>",
-                    100 * v->share, v->max, c->unit ? c->unit : "", v->rms, c->unit ? c->unit : "");
-            if (v->column >= 0 && c->picture)
-                fprintf(page, "<td style=\"white-space:nowrap\">frame %d (%d, %d)</td>", c->frame, v->column, v->row);
-            else if (v->column >= 0)
-                fprintf(page, "<td style=\"white-space:nowrap\">frame %d, bin %d</td>", c->frame, v->column);
-            else fputs("<td></td>", page);
+        if ((c->picture || k == CHANNEL_PROFILE) && v->compared > 0) {
+            tolerance_text(tolerance, k, c);
+            fprintf(page, "<td class=\"n\">%zu of %zu</td><td class=\"n\">%.0f</td><td>", v->beyond, v->compared,
+                    floor(c->allowed * (double)v->compared));
+            html_text(page, "%s", tolerance);
+            if (c->picture && frame_plane_is_id(c->plane)) fputs("</td><td></td>", page);
+            else fprintf(page, "</td><td class=\"n\">%.3g %s</td>", v->max, c->unit ? c->unit : "");
+            if (v->column < 0) fputs("<td></td>", page);
+            else if (c->picture) fprintf(page, "<td>%d (%d, %d)</td>", c->frame, v->column, v->row);
+            else fprintf(page, "<td>%d, bin %d</td>", c->frame, v->column);
         } else {
-            fprintf(page, "<td class=\"n\">%d field%s</td><td></td><td></td><td></td>", c->diffs,
+            fprintf(page, "<td class=\"n\">%d field%s</td><td class=\"n\">0</td><td colspan=\"3\">", c->diffs,
                     c->diffs == 1 ? "" : "s");
+            html_text(page, "%s", c->line);
+            fputs("</td>", page);
         }
-        fputs("<td>", page);
-        html_text(page, "%s", c->line);
-        fputs("</td></tr>\n", page);
+        fputs("</tr>\n", page);
     }
     fputs("</table>\n", page);
 }
@@ -185,8 +226,15 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     html_text(page, "%s", r->line);
     fputs("</p>\n", page);
     if (r->compared) put_numbers(page, r);
-    for (int k = 0; k < CHANNEL_COUNT && r->compared; k++)
-        if (r->verdict.channel[k].failed) put_channel(page, r, k);
+    /* the cause, and what it looks like; the rest follows from it */
+    if (r->compared && r->verdict.first >= 0) fputs("<h3>What failed, in the order in which the data is made</h3>\n", page);
+    bool pictured = false;
+    for (int k = 0; k < CHANNEL_COUNT && r->compared; k++) {
+        const ChannelResult *c = &r->verdict.channel[k];
+        if (!c->failed) continue;
+        put_channel(page, r, k, k == r->verdict.first || (c->picture && !pictured));
+        pictured |= c->picture;
+    }
     put_block(page, "What is other than when it was recorded", r->compared ? r->verdict.remarks : "");
     put_block(page, "Last lines of the run", r->said);
     put_block(page, "By hand", r->command);

@@ -156,6 +156,10 @@ static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const
         child_add(&line, config);
     }
     if (r->c.causal) child_add(&line, "--causal");
+    if (how->isa) {
+        child_add(&line, "--isa");
+        child_add(&line, how->isa);
+    }
     frame_files_clear(out); /* of an earlier run in the same --work: nothing of it may be taken for this one's */
     return run_child(r, &line, "replay");
 }
@@ -204,10 +208,11 @@ static void compare_case(CaseResult *r)
     int others = 0;
     for (int k = first + 1; k < CHANNEL_COUNT; k++) others += r->verdict.channel[k].failed;
     snprintf(r->line, sizeof r->line, "%s: %s", channel_name((Channel)first), r->verdict.channel[first].line);
-    if (others) {
-        const size_t n = strlen(r->line);
-        snprintf(r->line + n, sizeof r->line - n, " (and %d channel%s after it)", others, others > 1 ? "s" : "");
-    }
+    size_t n = strlen(r->line);
+    if (others)
+        n += (size_t)snprintf(r->line + n, sizeof r->line - n, " (and %d channel%s after it)", others,
+                              others > 1 ? "s" : "");
+    if (r->verdict.other_log) snprintf(r->line + n, sizeof r->line - n, "; and the log is not that of the record");
 }
 
 bool make_folder(const char *path) { return frame_files_folder(path) == STATUS_OK; }

@@ -27,6 +27,7 @@ typedef struct CaseResult {
 
 typedef struct CaseHow {
     int         threads;         /* of a child */
+    const char *isa;             /* of its tracer; NULL: as replay has it */
     bool        update;
     const char *why;
 } CaseHow;

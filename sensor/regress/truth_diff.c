@@ -21,6 +21,11 @@ static const struct Field {
     {"box_px", 0, 0},              {"age_s", 1e-5, 0},            {"position_error_m", 1e-3, 1e-3},
     {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
     {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
+    {"intensity_error_w_sr", 1e-4, 0.05}, /* of an error: its size */
+    {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"tables", 1e-3, 0.05},
+    {"dead_reckoning", 1e-3, 0.05},{"total", 1e-3, 0.05},
+    {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"tables_k", 0.05, 0.05},
+    {"dead_reckoning_k", 0.05, 0.05}, {"total_k", 0.05, 0.05},
     {"width_px", 0, 0},            {"height_px", 0, 0},           {"entity", 0, 0},      {"marking", 0, 0},
     {"type", 0, 0},                {"model", 0, 0},               {"occluded_by", 0, 0}, {"gimbal_at_limit", 0, 0},
     {"name", 0, 0},                {"bands", 0, 0},               {"frame", 0, 0},
@@ -42,11 +47,28 @@ static const struct Field *field_of(const char *path)
     return NULL;
 }
 
+static bool ends_with(const char *path, const char *word)
+{
+    const char *found = strstr(path, word);
+    return found && (!found[strlen(word)] || found[strlen(word)] == '[');
+}
+
+/* Of a target: what pictures of ids tell, what those of radiance tell, and the rest, which is known before any ray. */
+static Channel channel_of_target(const char *path)
+{
+    static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px", "].occluded_by"};
+    if (strstr(path, "].bands.")) return CHANNEL_SIGNALS;
+    for (size_t i = 0; i < sizeof seen / sizeof *seen; i++)
+        if (ends_with(path, seen[i])) return CHANNEL_TARGETS;
+    return CHANNEL_MOTION;
+}
+
 static Channel channel_of(const char *path)
 {
     if (strncmp(path, "time_s", 6) == 0) return CHANNEL_TIME;
     if (strncmp(path, "sun", 3) == 0) return CHANNEL_SUN;
-    if (strncmp(path, "targets", 7) == 0) return strstr(path, "].bands.") ? CHANNEL_SIGNALS : CHANNEL_TARGETS;
+    if (strncmp(path, "targets", 7) == 0) return channel_of_target(path);
+    if (strncmp(path, "error", 5) == 0) return CHANNEL_ERROR;
     return CHANNEL_POSE;
 }
 

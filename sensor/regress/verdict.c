@@ -8,33 +8,37 @@
 enum { file_most = 64 << 20 };
 
 static const struct ChannelRow {
-    const char *name, *unit;
+    const char *name, *about, *unit;
     FramePlane  plane[4];
     int         planes;
 } rows[CHANNEL_COUNT] = {
-    [CHANNEL_TIME] = {.name = "time"},
-    [CHANNEL_COUNTERS] = {.name = "counters"},
-    [CHANNEL_POSE] = {.name = "pose"},
-    [CHANNEL_ENTITY] = {"entity", "", {FRAME_ENTITY}, 1},
-    [CHANNEL_PART] = {"part", "", {FRAME_PART}, 1},
-    [CHANNEL_RANGE] = {"range", "m", {FRAME_RANGE}, 1},
-    [CHANNEL_NORMAL] = {"normal", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
-    [CHANNEL_TARGETS] = {.name = "targets"},
-    [CHANNEL_MATERIAL] = {"material", "", {FRAME_MATERIAL}, 1},
-    [CHANNEL_SUN] = {.name = "sun"},
-    [CHANNEL_TEMP] = {"temperature", "K", {FRAME_TEMP}, 1},
+    [CHANNEL_COUNTERS] = {"counters", "PDUs, what was dropped, entities and effects, over the whole log", "", {0}, 0},
+    [CHANNEL_TIME] = {"time", "which frames there are, and when", "", {0}, 0},
+    [CHANNEL_POSE] = {"pose", "where the eye is, and where it looks", "", {0}, 0},
+    [CHANNEL_SUN] = {"sun", "where the sun stands, seen from the eye", "", {0}, 0},
+    [CHANNEL_MOTION] = {"motion", "who is there, and where by dead reckoning", "", {0}, 0},
+    [CHANNEL_ENTITY] = {"entity", "which entity a pixel shows", "", {FRAME_ENTITY}, 1},
+    [CHANNEL_PART] = {"part", "which part of its model a pixel shows", "", {FRAME_PART}, 1},
+    [CHANNEL_RANGE] = {"range", "how far a pixel's surface is from the eye", "m", {FRAME_RANGE}, 1},
+    [CHANNEL_NORMAL] = {"normal", "where a pixel's surface faces", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
+    [CHANNEL_TARGETS] = {"targets", "how much of each target is seen, in which box, and what hides it", "", {0}, 0},
+    [CHANNEL_MATERIAL] = {"material", "which material a pixel shows", "", {FRAME_MATERIAL}, 1},
+    [CHANNEL_TEMP] = {"temperature", "of a pixel's surface", "K", {FRAME_TEMP}, 1},
     [CHANNEL_OPTICAL] = {"optical",
+                         "radiance at the eye, visible light",
                          "W/(m2 sr)",
                          {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y},
                          4},
-    [CHANNEL_MWIR] = {"mwir", "K", {FRAME_MWIR}, 1},
-    [CHANNEL_LWIR] = {"lwir", "K", {FRAME_LWIR}, 1},
-    [CHANNEL_RADAR] = {"radar", "dB", {FRAME_RADAR}, 1},
-    [CHANNEL_PROFILE] = {.name = "radar profile", .unit = "dB"},
-    [CHANNEL_SIGNALS] = {.name = "target signals"},
+    [CHANNEL_MWIR] = {"mwir", "radiance at the eye as apparent temperature, middle infrared", "K", {FRAME_MWIR}, 1},
+    [CHANNEL_LWIR] = {"lwir", "radiance at the eye as apparent temperature, thermal infrared", "K", {FRAME_LWIR}, 1},
+    [CHANNEL_RADAR] = {"radar", "radar power of a pixel, below the brightest expected", "dB", {FRAME_RADAR}, 1},
+    [CHANNEL_PROFILE] = {"radar profile", "radar power over range, below the largest expected", "dB", {0}, 0},
+    [CHANNEL_SIGNALS] = {"target signals", "contrast, signal to noise and intensity of each target", "", {0}, 0},
+    [CHANNEL_ERROR] = {"error budget", "what the run says of its own error", "", {0}, 0},
 };
 
 const char *channel_name(Channel channel) { return rows[channel].name; }
+const char *channel_about(Channel channel) { return rows[channel].about; }
 
 /* ---- units ----------------------------------------------------------------------------------- */
 
@@ -152,7 +156,8 @@ static void hold_numbers(ChannelResult *result, const Held *h, Channel channel, 
     to_unit(h->scratch + h->count, is, h->count, plane, full, h->tolerance);
     compare_numbers(&found.verdict, NULL, h->scratch, h->scratch + h->count, h->got->width, h->got->height, found.limit,
                     found.relative, h->other);
-    found.failed = is_geometry(channel) ? found.verdict.beyond > 0 : found.verdict.share > h->tolerance->share;
+    found.allowed = is_geometry(channel) ? 0 : h->tolerance->share;
+    found.failed  = found.verdict.share > found.allowed;
     if (found.verdict.column >= 0) say_number(&found, channel);
     keep_worse(result, &found);
 }
@@ -196,7 +201,7 @@ static void hold_profile(ChannelResult *result, const Held *h)
     float *db = malloc(2 * (size_t)was->bins * sizeof *db);
     for (int b = 0; db && b < frame_bounces; b++) {
         ChannelResult found = {.there = true, .frame = is->number, .plane = FRAME_PLANES, .bounce = b, .unit = "dB",
-                               .limit = h->tolerance->profile_db * (1 + 1e-6)};
+                               .limit = h->tolerance->profile_db * (1 + 1e-6), .allowed = h->tolerance->share};
         PlaneVerdict *v = &found.verdict;
         plane_to_db(db, was->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
         plane_to_db(db + was->bins, is->profile[b], (size_t)was->bins, full, h->tolerance->radar_span_db);
@@ -332,8 +337,8 @@ static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is
     }
     if (strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
         remark(v, "the settings are not those of the record (config_sha256)");
-    if (strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0)
-        remark(v, "the log is not that of the record (log_sha256)");
+    v->other_log = strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0;
+    if (v->other_log) remark(v, "the log is not that of the record (log_sha256)");
     for (int i = 0; i < is->count; i++) {
         const char *path = is->value[i].path;
         if (strncmp(path, "choices[", 8) == 0 && is->value[i].text &&

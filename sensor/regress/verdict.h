@@ -10,15 +10,17 @@
 
 /* In the way of the data. */
 typedef enum Channel {
-    CHANNEL_TIME,     /* which frames there are, and when */
     CHANNEL_COUNTERS, /* of PDUs, drops, entities, events: run.json */
+    CHANNEL_TIME,     /* which frames there are, and when */
     CHANNEL_POSE,     /* host and sensor: truth.jsonl */
+    CHANNEL_SUN,      /* as seen from the host: truth.jsonl */
+    CHANNEL_MOTION,   /* who is there, and where by dead reckoning: targets of truth.jsonl */
     CHANNEL_ENTITY, CHANNEL_PART, CHANNEL_RANGE, CHANNEL_NORMAL,
-    CHANNEL_TARGETS,  /* who is where, and how much of it is seen: truth.jsonl */
+    CHANNEL_TARGETS,  /* how much of each is seen, and what hides it: truth.jsonl */
     CHANNEL_MATERIAL,
-    CHANNEL_SUN,      /* truth.jsonl */
     CHANNEL_TEMP, CHANNEL_OPTICAL, CHANNEL_MWIR, CHANNEL_LWIR, CHANNEL_RADAR, CHANNEL_PROFILE,
     CHANNEL_SIGNALS,  /* contrast, SNR, intensity of each target: truth.jsonl */
+    CHANNEL_ERROR,    /* what the node says its own error is: truth.jsonl */
     CHANNEL_COUNT
 } Channel;
 
@@ -32,6 +34,7 @@ typedef struct ChannelResult {
     int          bounce;        /* of a profile, which has no plane: FRAME_PLANES */
     PlaneVerdict verdict;
     double       limit, relative; /* absolute, and of the expected */
+    double       allowed;      /* share of pixels that may be beyond */
     const char  *unit;
     int          diffs;         /* of texts: how many fields */
 } ChannelResult;
@@ -40,10 +43,12 @@ typedef struct Verdict {
     ChannelResult channel[CHANNEL_COUNT];
     int           first;        /* that failed; -1: none */
     bool          same_build;   /* version, libraries, ISA as in the record */
+    bool          other_log;    /* what was replayed is not what was recorded: its writer may be the cause */
     char          remarks[2048];/* lines: other version, other hashes */
 } Verdict;
 
 const char *channel_name(Channel channel);
+const char *channel_about(Channel channel); /* what it is, in a few words */
 
 /* A frame of both, as the report shows it: in the channel's unit. Freed by the caller with free. */
 typedef struct ChannelPlanes {

@@ -235,7 +235,7 @@ static void each_field_has_its_own_tolerance(void **state)
     char said[512];
 #define TARGET(rest) "{\"frame\":3,\"targets\":[{\"entity\":\"1:2:3\"," rest "}]}"
     CHECK(first_of_truth(TARGET("\"range_m\":1000.0"), TARGET("\"range_m\":1000.001"), 1, said) == -1);
-    CHECK(first_of_truth(TARGET("\"range_m\":1000.0"), TARGET("\"range_m\":1000.003"), 1, said) == CHANNEL_TARGETS);
+    CHECK(first_of_truth(TARGET("\"range_m\":1000.0"), TARGET("\"range_m\":1000.003"), 1, said) == CHANNEL_MOTION);
     assert_string_equal(said, "targets[1:2:3].range_m is 1000.003, was 1000 in frame 3");
     CHECK(first_of_truth(TARGET("\"range_m\":1000.0"), TARGET("\"range_m\":1000.003"), 2, said) == -1);
     CHECK(first_of_truth(TARGET("\"bands\":{\"lwir\":{\"contrast_k\":2.0}}"),
@@ -247,6 +247,14 @@ static void each_field_has_its_own_tolerance(void **state)
     CHECK(first_of_truth("{\"sun\":{\"elevation_deg\":10}}", "{\"sun\":{\"elevation_deg\":11}}", 1, said) ==
           CHANNEL_SUN);
     CHECK(first_of_truth("{\"host\":{\"lat_deg\":10}}", "{\"host\":{\"lat_deg\":10.1}}", 1, said) == CHANNEL_POSE);
+    CHECK(first_of_truth(TARGET("\"pixels_error\":5"), TARGET("\"pixels_error\":6"), 1, said) == CHANNEL_MOTION);
+    CHECK(first_of_truth(TARGET("\"visible_fraction\":0.5"), TARGET("\"visible_fraction\":0.6"), 1, said) ==
+          CHANNEL_TARGETS);
+    /* an error, to 5 % and 0.001 */
+    CHECK(first_of_truth("{\"error\":{\"lwir\":{\"total\":0.1}}}", "{\"error\":{\"lwir\":{\"total\":0.1059}}}", 1,
+                         said) == -1);
+    CHECK(first_of_truth("{\"error\":{\"lwir\":{\"total\":0.1}}}", "{\"error\":{\"lwir\":{\"total\":0.1061}}}", 1,
+                         said) == CHANNEL_ERROR);
 }
 
 static void fields_may_come_but_not_go(void **state)
@@ -258,10 +266,10 @@ static void fields_may_come_but_not_go(void **state)
     CHECK(first_of_truth(TARGET("\"pixels\":3"), TARGET("\"pixels\":3,\"box_px\":[1]"), 1, said) == CHANNEL_TARGETS);
     CHECK(first_of_truth(TARGET("\"pixels\":3"), TARGET("\"pixels\":3,\"colour\":\"red\""), 1, said) ==
           -1); /* unknown */
-    CHECK(first_of_truth(TARGET("\"colour\":\"red\""), TARGET("\"pixels\":3"), 1, said) == CHANNEL_TARGETS);
+    CHECK(first_of_truth(TARGET("\"colour\":\"red\""), TARGET("\"pixels\":3"), 1, said) == CHANNEL_MOTION);
     CHECK(first_of_truth(TARGET("\"occluded_by\":\"ground\""), TARGET("\"occluded_by\":\"1:1:1\""), 1, said) ==
           CHANNEL_TARGETS);
-    CHECK(first_of_truth("{\"frame\":3,\"targets\":[]}", TARGET("\"pixels\":3"), 1, said) == CHANNEL_TARGETS);
+    CHECK(first_of_truth("{\"frame\":3,\"targets\":[]}", TARGET("\"pixels\":3"), 1, said) == CHANNEL_MOTION);
     CHECK(first_of_truth("{\"frame_sha256\":\"a\"}", "{\"frame_sha256\":\"b\"}", 1, said) == -1);
 }
 

@@ -62,9 +62,11 @@ same_planes() {
     ! grep -v ' changed 0 ' <<<"$said"
 }
 # regress_case NAME: its log in $tmp/NAME.pcap, and the options it is seen with in the array case_options
+# shellcheck disable=SC2034
 regress_case() {
-    local yaml=tests/regress/$1/scenario.yaml
-    read -ra case_options < <(sed -n 's/^# *seen by: //p' "$yaml")
-    [ ${#case_options[@]} -gt 0 ] || fail "$yaml: no line 'seen by:'"
-    [ -f "$tmp/$1.pcap" ] || exercise "$yaml" "$tmp/$1.pcap"
+    local folder=tests/regress/$1
+    case_options=(--config "$tmp/$1.yaml")
+    sed -n '/^config: |$/,/^[^ ]/s/^  //p' "$folder/case.yaml" >"$tmp/$1.yaml"
+    [ -s "$tmp/$1.yaml" ] || fail "$folder/case.yaml: no 'config: |'"
+    [ -f "$tmp/$1.pcap" ] || exercise "$folder/scenario.yaml" "$tmp/$1.pcap"
 }

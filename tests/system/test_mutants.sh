@@ -1,76 +1,65 @@
 #!/usr/bin/env bash
-# A program with one thing wrong is noticed, and by the planes that the wrong thing is about: each of tests/mutants, and
-# a copy of etc/ with one reflectance off, on the exercise of tests/regress that shows it.
+# A program with one thing wrong is caught by `pitviper regress`, against the records of tests/regress, and the channel
+# that the wrong thing is about is named first: each of tests/mutants, and a copy of etc/ with one reflectance off.
 . "$(dirname "$0")/common.sh"
-tools=$build/tests
-if [ ! -d "$tools/mutants" ]; then
+mutants=$build/tests/mutants
+if [ ! -d "$mutants" ]; then
     echo "skipped: no mutants in this build (they are left out under sanitizers)"
     exit 77
 fi
-
-# compare A B: one line a plane, as tests/tools/picture_difference.c says; exit code 2: other frames
-compare() { "$tools/picture_difference" "$1" "$2"; }
-
-# replayed PROGRAM CASE OUT: the case's exercise, as its first lines say it is seen
-replayed() {
-    regress_case "$2"
-    "$1" replay "$tmp/$2.pcap" --out "$3" --size 96x64 --threads 2 --no-png "${case_options[@]}" >"$tmp/stdout" 2>"$tmp/stderr" || {
-        fail "$1 does not replay $2"
-        cat "$tmp/stderr"
-    }
-}
-
-# column OUTPUT PLANES NAME: the largest of a column over planes that match
-column() { awk -v planes="^($2)\$" -v name="$3" '$2 ~ planes { for (i = 3; i < NF; i++) if ($i == name && $(i + 1) > most) most = $(i + 1) }
-    END { print most + 0 }' "$1"; }
-
-geometry='truth\.(entity|part|material|range_m|n.)'
-# caught MUTANT PROGRAM CASE LEAST PLANES SAME: at least LEAST pixels of one of PLANES differ clearly, none of SAME by a bit
-caught() {
-    local mutant=$1 program=$2 case=$3 least=$4 planes=$5 same=$6 found
-    checks=$((checks + 1))
-    [ -d "$tmp/$case" ] || replayed "$pitviper" "$case" "$tmp/$case"
-    replayed "$program" "$case" "$tmp/$case-$mutant"
-    check "$mutant: other hashes" not same_hashes "$tmp/$case" "$tmp/$case-$mutant"
-    compare "$tmp/$case" "$tmp/$case-$mutant" >"$tmp/planes" || { fail "$mutant: cannot be compared"; return; }
-    found=$(column "$tmp/planes" "$planes" clear)
-    printf '%-20s %-13s clear: %s\n' "$mutant" "$case" \
-        "$(awk '{ for (i = 3; i < NF; i++) if ($i == "clear" && $(i + 1) > 0) printf "%s %d  ", $2, $(i + 1) }' "$tmp/planes")"
-    check "$mutant: $found pixels differ clearly in $planes; at least $least" [ "$found" -ge "$least" ]
-    [ -z "$same" ] || check "$mutant: not a bit of $same" [ "$(column "$tmp/planes" "$same" changed)" = 0 ]
-    rm -rf "${tmp:?}/$case-$mutant"
-}
-mutant() { caught "$1" "$tools/mutants/pitviper_mutant_$1" "${@:2}"; }
-
-# Half of what was counted when this was written, so that another scene of the same kind still passes.
-mutant sun                 tank         120 'optical\..'           "$geometry|radar.Y"
-mutant dead_reckoning      impact       150 'truth\.entity'        ''
-mutant dead_reckoning_body tank           8 'truth\.entity'        ''
-mutant delay               dis7        1600 'truth\.entity'        ''
-mutant delay_tick          dis7          28 'truth\.entity'        ''
-mutant joint               antimeridian 110 'truth\.entity'        ''
-mutant emissivity          pole       20000 '[ml]wir\.Y'           "truth.*|optical.*|radar.Y"
-mutant lobe                helicopter    95 'radar\.Y'             "truth.*|optical.*|.wir.Y"
-
-# a plane that no mutant but one may touch is only worth something if the unspoilt program never does
-replayed "$pitviper" tank "$tmp/again"
-check "the program itself: the same bits again" same_hashes "$tmp/tank" "$tmp/again"
-compare "$tmp/tank" "$tmp/again" >"$tmp/planes"
-check "and no plane that differs" [ "$(column "$tmp/planes" '.*' changed)" = 0 ]
-
-# what follows the first PDU of a datagram is lost: vehicles are missing
-replayed "$pitviper" bundles "$tmp/bundles"
-replayed "$tools/mutants/pitviper_mutant_bundle" bundles "$tmp/bundles-lost"
-check "bundle: other hashes" not same_hashes "$tmp/bundles" "$tmp/bundles-lost"
-seen() { json_numbers "$1/truth.jsonl" pixels | wc -l; }
-printf '%-20s %-13s targets: %d of %d\n' bundle bundles "$(seen "$tmp/bundles-lost")" "$(seen "$tmp/bundles")"
-check "bundle: fewer targets" [ "$(seen "$tmp/bundles-lost")" -lt "$(seen "$tmp/bundles")" ]
 
 # one reflectance: green of olive paint, a tenth more
 cp -r etc "$tmp/etc"
 awk -F, -v OFS=, '$1 == "paint_olive" { $3 = $3 * 1.1; found++ } { print } END { exit found != 1 }' etc/materials.csv >"$tmp/etc/materials.csv" ||
     fail "etc/materials.csv: paint_olive does not stand there once"
-PITVIPER_ETC=$tmp/etc caught material "$pitviper" dis7 680 'optical\.G' "truth.*|optical.[RB]|.wir.Y|radar.Y"
+
+# mutant/case/how its line begins/which channels may fail after that one
+mutants_table() {
+    cat <<'TABLE'
+material/dis7/optical: optical\.G: /target signals|error budget
+sun/tank/sun: sun\.azimuth_deg /optical|mwir|lwir|target signals|error budget
+sun_light/tank/optical: /mwir|lwir|target signals|error budget
+dead_reckoning/dis7/pose: host\./.*
+dead_reckoning_body/tank/pose: host\./.*
+delay/dis7/motion: targets\[[0-9:]+\]\.age_s /.*
+delay_tick/dis7/motion: targets\[[0-9:]+\]\.age_s /.*
+joint/antimeridian/entity: /.*
+emissivity/pole/mwir: /lwir|target signals|error budget
+lobe/helicopter/radar: /radar profile|target signals|error budget
+bundle/bundles/counters: /.*
+TABLE
+}
+check "each mutant is in the table" [ "$(printf '%s\n' "$mutants"/pitviper_mutant_* | sed 's/.*_mutant_//' | sort)" = "$(mutants_table | sed '/^material/d; s,/.*,,' | sort)" ]
+
+# regressed NAME PROGRAM CASE ...: in the background, as many at a time as there are processors
+regressed() {
+    local name=$1 program=$2; shift 2
+    while [ "$(jobs -pr | wc -l)" -ge "$(nproc)" ]; do wait -n; done
+    {
+        "$program" regress "${@/#/tests/regress/}" --junit "$tmp/$name.xml" --work "$tmp/$name" --jobs 1 --threads 1 \
+            >"$tmp/$name.out" 2>&1
+        echo $? >"$tmp/$name.code"
+    } &
+}
+cases=(tank antimeridian dis7 pole helicopter bundles)
+regressed none "$pitviper" "${cases[@]}"
+while IFS=/ read -r name case _; do
+    if [ "$name" = material ]; then PITVIPER_ETC=$tmp/etc regressed "$name" "$pitviper" "$case"
+    else regressed "$name" "$mutants/pitviper_mutant_$name" "$case"; fi
+done < <(mutants_table)
+wait
+
+check "the program itself passes" [ "$(cat "$tmp/none.code")" = 0 ] || cat "$tmp/none.out"
+check "and without other bits" [ "$(grep -cE ' ok  \(' "$tmp/none.out")" = ${#cases[@]} ] || cat "$tmp/none.out"
+while IFS=/ read -r name case said after; do
+    line=$(sed -n "s/^$case  *FAILED: //p" "$tmp/$name.out")
+    printf '%-20s %-13s %s\n' "$name" "$case" "${line:-passes}"
+    check "$name: ends with 1" [ "$(cat "$tmp/$name.code")" = 1 ]
+    check "$name: names $said" grep -qE "^$said" <<<"$line"
+    sed -n '/<failure/,/^by hand/s/^\([a-z ]*\): .*/\1/p' "$tmp/$name.xml" >"$tmp/channels"
+    check "$name: the channels that fail are known" [ -s "$tmp/channels" ]
+    check "$name: none but $after after it" not grep -vxE "${said%%:*}|$after" "$tmp/channels"
+done < <(mutants_table)
 
 # a mutation whose text is gone, or stands there twice, is no mutation and no build
 mutate() { # FROM TO
