@@ -325,7 +325,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
 {
     enum { settings = 4 };
     static const char *const name[settings] = {"summed over 8 x 32 directions", "summed over 24 x 96 directions",
-                                               "17 heights x 13 azimuths", "9 heights x 7 azimuths"};
+                                               "17 tilts x 13 azimuths", "9 tilts x 7 azimuths"};
     static const int steps[settings] = {8, 24, 0, 0};
     static PlaneSet  set[settings], fine;
     BenchWork        work[settings];
@@ -354,7 +354,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
         point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.plane_w_m2[0];
     }
     bench_turn(bench, &(BenchKnob){"light of the sky on a plane", "render/air.h", "a plane, 0.5-0.6 um", "%",
-                                   "largest over that of a level one; 64 x 256 directions or more", 8},
+                                   "largest over that of a level one; 64 x 256 directions or more", 1},
                work, point, settings);
 }
 
