@@ -283,6 +283,8 @@ typedef struct BenchPoint {
     const char *setting;     /* "2 x 2" */
     BenchTime   time;        /* all settings of a knob are timed in turn, by one bench_time */
     double      error;       /* in BenchKnob.error_unit, against a reference that does not approximate */
+    double      also;        /* a second error of the same setting, which is judged by both; 0: there is none */
+    const char *also_is;     /* what that is, of the first point: "of 8-12 um, K" */
     double      bytes;       /* memory it needs; 0: the same for all */
     bool        is_default;  /* exactly one is */
 } BenchPoint;
@@ -301,6 +303,10 @@ typedef struct BenchKnob {
 void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count);
 bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b); /* a dominates b */
 bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, int index);
+/* The default's place in words: what it keeps, and what better settings there are. quick: times judge nobody. */
+void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick);
+/* More rounds of the same works, behind those that there are, up to bench_rounds_max. */
+void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count);
 /* Run time against error, log-log, as SVG of its own style, for light and dark: each setting with its name, the front as
  * a line, the default ringed, what is stated dashed. */
 void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count);

@@ -49,23 +49,31 @@ void bench_time_finish(BenchTime *time)
     for (int r = 0; r < time->rounds; r++) time->best_s = fmin(time->best_s, time->item_s[r]);
 }
 
-void bench_time(BenchTime *out, Bench *bench, const BenchWork *work, int count)
+void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count)
 {
     const double budget_s = count * (bench->quick ? 0.02 : 1.0);
-    const int    least = bench->quick ? 3 : 7;
-    int          rounds = 0;
+    const int    first = time[0].rounds, least = first + (bench->quick ? 3 : 7);
+    int          rounds = first;
     for (int k = 0; k < count; k++) work[k].run(work[k].user);
     for (const double begun_s = wall_clock_s();
-         rounds < least || (rounds < bench_rounds_max && wall_clock_s() - begun_s < budget_s); rounds++)
-        for (int k = 0; k < count; k++) {
+         rounds < bench_rounds_max && (rounds < least || wall_clock_s() - begun_s < budget_s); rounds++)
+        for (int n = 0; n < count; n++) {
+            /* there and back, so that none always comes behind the same one and finds what that left in the caches */
+            const int    k = rounds % 2 ? count - 1 - n : n;
             const double start_s = wall_clock_s();
             work[k].run(work[k].user);
-            out[k].item_s[rounds] = (wall_clock_s() - start_s) / work[k].items;
+            time[k].item_s[rounds] = (wall_clock_s() - start_s) / work[k].items;
         }
     for (int k = 0; k < count; k++) {
-        out[k].rounds = rounds;
-        bench_time_finish(&out[k]);
+        time[k].rounds = rounds;
+        bench_time_finish(&time[k]);
     }
+}
+
+void bench_time(BenchTime *out, Bench *bench, const BenchWork *work, int count)
+{
+    for (int k = 0; k < count; k++) out[k].rounds = 0;
+    bench_time_more(out, bench, work, count);
 }
 
 double bench_ratio(const BenchTime *a, const BenchTime *b)
@@ -182,8 +190,10 @@ void bench_forget(Bench *bench)
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free((void *)(uintptr_t)texts[k]);
     }
     free(bench->kept);
+    free(bench->block);
     bench->kept       = NULL;
-    bench->kept_count = 0;
+    bench->block      = NULL;
+    bench->kept_count = bench->blocks = 0;
 }
 
 static bool keep(Bench *bench, const BenchRow *row)

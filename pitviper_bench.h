@@ -17,6 +17,13 @@ typedef struct BenchKept {
     char    *plot;     /* SVG that stands behind the row; NULL: none */
 } BenchKept;
 
+/* The rows of one approximation, for the report; its plot stands behind the last. */
+typedef struct BenchBlock {
+    int  first, rows, chosen;  /* of the rows kept; chosen: the default's, -1: none */
+    bool broken;               /* a row of it is beyond its limit */
+    char name[96], turned_by[96], of[128], also[64], words[512];
+} BenchBlock;
+
 typedef struct BenchPart {     /* a suite, of all rooms */
     const char *name, *help, *reads;
     int         first, count;  /* of the rows kept */
@@ -43,6 +50,8 @@ struct Bench {
     FILE       *csv;
     BenchKept  *kept;          /* [kept_count] */
     int         kept_count, kept_capacity;
+    BenchBlock *block;         /* [blocks], by their first rows */
+    int         blocks, blocks_capacity;
     BenchPart  *part;          /* [parts] */
     int         parts;
 };

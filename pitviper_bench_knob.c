@@ -7,6 +7,7 @@
  *     error   the same inputs give the same error: its noise is what other inputs, a finer reference or another rounding
  *             would change. Better: below 0.9 of the other's, and by more than a hundredth of what is stated. Worse:
  *             above 1.02 of it.
+ *             A second error of the same settings (of another band) is judged like the first.
  *     memory  is counted, and has no noise; a tenth less is better, anything more is worse.
  * To be better takes more than not to be worse: what noise can explain dominates nobody. The front are those that nobody
  * dominates. A default off the front fails, as does one whose error is above what is stated: there is another setting that
@@ -14,6 +15,7 @@
 #include "pitviper_bench.h"
 
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 
@@ -37,6 +39,11 @@ static Verdict by_error(const BenchKnob *knob, const BenchPoint *a, const BenchP
     return a->error <= 1.02 * b->error ? SAME : WORSE;
 }
 
+static Verdict by_also(const BenchPoint *a, const BenchPoint *b)
+{
+    return a->also < 0.9 * b->also ? BETTER : a->also <= 1.02 * b->also ? SAME : WORSE;
+}
+
 static Verdict by_bytes(const BenchPoint *a, const BenchPoint *b)
 {
     if (!(a->bytes > 0) || !(b->bytes > 0)) return SAME;
@@ -45,9 +52,9 @@ static Verdict by_bytes(const BenchPoint *a, const BenchPoint *b)
 
 bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b)
 {
-    const Verdict verdict[3] = {by_time(a, b), by_error(knob, a, b), by_bytes(a, b)};
+    const Verdict verdict[4] = {by_time(a, b), by_error(knob, a, b), by_also(a, b), by_bytes(a, b)};
     bool          better = false;
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 4; k++) {
         if (verdict[k] == WORSE) return false;
         better |= verdict[k] == BETTER;
     }
@@ -107,16 +114,31 @@ static void write_plot(Bench *bench, const BenchKnob *knob, const char *text)
 
 /* ---- rows ------------------------------------------------------------------------------------- */
 
-/* Who dominates the default, and how: the first that does, and how many. */
+/* Who dominates the default: the best of those that do, NULL: nobody, and how many. */
+static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, const BenchPoint *point, int count, int chosen)
+{
+    const BenchPoint *best = NULL;
+    *how_many = 0;
+    for (int i = 0; i < count; i++) {
+        if (i == chosen || !bench_dominates(knob, &point[i], &point[chosen])) continue;
+        if ((*how_many)++ == 0 || bench_dominates(knob, &point[i], best)) best = &point[i];
+    }
+    return best;
+}
+
+static int default_of(const BenchPoint *point, int count)
+{
+    int chosen = -1;
+    for (int i = 0; i < count; i++)
+        if (point[i].is_default) chosen = i;
+    return chosen;
+}
+
 static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen)
 {
     char              what[160], against[256];
-    const BenchPoint *best = NULL, *held = &point[chosen];
-    int               better = 0;
-    for (int i = 0; i < count; i++) {
-        if (i == chosen || !bench_dominates(knob, &point[i], held)) continue;
-        if (better++ == 0 || bench_dominates(knob, &point[i], best)) best = &point[i];
-    }
+    int               better;
+    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen), *held = &point[chosen];
     snprintf(what, sizeof what, "%s: settings better than the default", knob->name);
     BenchRow row = bench_row(what);
     row.error    = better;
@@ -134,12 +156,92 @@ static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *p
     bench_add(bench, &row);
 }
 
+/* ---- in words ----------------------------------------------------------------------------------- */
+
+__attribute__((format(printf, 3, 4))) static void say(char *out, size_t size, const char *format, ...)
+{
+    const size_t n = strlen(out);
+    va_list      arguments;
+    va_start(arguments, format);
+    vsnprintf(out + n, size - n, format, arguments);
+    va_end(arguments);
+}
+
+static void say_trade(char *out, size_t size, const char *what, const BenchPoint *other, const BenchPoint *held)
+{
+    const double ratio = bench_ratio(&other->time, &held->time);
+    if (other->error > 0 && held->error > 0)
+        say(out, size, "%s '%.40s': %.2g x the time, %.2g x the error", what, other->setting, ratio, other->error / held->error);
+    else say(out, size, "%s '%.40s': %.2g x the time, %s", what, other->setting, ratio, other->error > 0 ? "some error" : "no error");
+}
+
+void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick)
+{
+    const size_t size = 512;
+    const int    chosen = default_of(point, count);
+    char         error[32], stated[32];
+    *out = 0;
+    if (chosen < 0) {
+        say(out, size, "No setting is the default: nothing is judged.");
+        return;
+    }
+    const BenchPoint *held = &point[chosen], *faster = NULL, *closer = NULL;
+    bench_show(error, held->error, knob->error_unit);
+    bench_show(stated, knob->stated, knob->error_unit);
+    if (isnan(held->error)) say(out, size, "The error of the default, '%.40s', is unknown.", held->setting);
+    else if (isnan(knob->stated)) say(out, size, "The default, '%.40s', has an error of %s.", held->setting, error);
+    else say(out, size, "The default, '%.40s', %s: %s, stated at most %s.", held->setting,
+             held->error <= knob->stated ? "keeps its stated error" : "MISSES its stated error", error, stated);
+    int better;
+    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen);
+    if (best) {
+        say(out, size, " %d better setting%s", better, better > 1 ? "s;" : ":");
+        say_trade(out, size, "", best, held);
+        say(out, size, quick ? " (quick rounds: not judged)." : ". The default is NOT on the front.");
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        if (i == chosen || isnan(point[i].error)) continue;
+        const bool quicker = by_time(&point[i], held) == BETTER;
+        if (quicker && (!faster || point[i].time.median_s > faster->time.median_s)) faster = &point[i];
+        if (by_error(knob, &point[i], held) == BETTER && (!closer || point[i].time.median_s < closer->time.median_s))
+            closer = &point[i];
+    }
+    say(out, size, " It is on the front: ");
+    if (faster) say_trade(out, size, "the next faster one is", faster, held);
+    else say(out, size, "none is faster");
+    say(out, size, "; ");
+    if (closer) say_trade(out, size, "the next closer one is", closer, held);
+    else say(out, size, "none is closer");
+    say(out, size, ".");
+}
+
+static void keep_block(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen, int first)
+{
+    if (bench->blocks == bench->blocks_capacity) {
+        const int   larger = bench->blocks_capacity ? 2 * bench->blocks_capacity : 32;
+        BenchBlock *grown = realloc(bench->block, (size_t)larger * sizeof *grown);
+        if (!grown) {
+            bench->out_of_memory = true;
+            return;
+        }
+        bench->block           = grown;
+        bench->blocks_capacity = larger;
+    }
+    BenchBlock *b = &bench->block[bench->blocks++];
+    *b = (BenchBlock){.first = first, .rows = bench->kept_count - first, .chosen = chosen < 0 ? -1 : first + chosen};
+    snprintf(b->name, sizeof b->name, "%s", knob->name);
+    snprintf(b->turned_by, sizeof b->turned_by, "%s", knob->turned_by ? knob->turned_by : "");
+    snprintf(b->of, sizeof b->of, "%s", knob->of ? knob->of : "");
+    snprintf(b->also, sizeof b->also, "%s", point[0].also_is ? point[0].also_is : "");
+    bench_verdict(b->words, knob, point, count, bench->quick);
+    for (int i = first; i < bench->kept_count; i++) b->broken |= !bench_holds(&bench->kept[i].row);
+}
+
 void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count)
 {
-    char what[256];
-    int  chosen = -1;
-    for (int i = 0; i < count; i++)
-        if (point[i].is_default) chosen = i;
+    const int chosen = default_of(point, count), before = bench->kept_count;
+    char      what[256];
     for (int i = 0; i < count; i++) {
         const bool front = bench_on_front(knob, point, count, i);
         snprintf(what, sizeof what, "%s: %s", knob->name, point[i].setting);
@@ -157,6 +259,10 @@ void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, in
     char *text = plot_text(knob, point, count);
     if (!text) bench->out_of_memory = true;
     if (text && bench->plots) write_plot(bench, knob, text);
-    if (bench->kept_count > 0 && !bench->kept[bench->kept_count - 1].plot) bench->kept[bench->kept_count - 1].plot = text;
-    else free(text);
+    if (bench->kept_count > before && !bench->kept[bench->kept_count - 1].plot) {
+        bench->kept[bench->kept_count - 1].plot = text;
+        keep_block(bench, knob, point, count, chosen, before);
+    } else {
+        free(text);
+    }
 }

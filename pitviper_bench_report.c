@@ -5,13 +5,17 @@
 static const char table_style[] =
     "<style>.bar{display:inline-block;height:.7em;background:#1f6fb2;opacity:.6;margin-left:.5em;vertical-align:baseline}"
     "svg.pvp{max-width:100%;height:auto}nav a{margin-right:1rem}td.w{min-width:16rem}"
+    "figure{margin:.5rem 0}section{margin:2rem 0;border-top:1px solid #8884}summary{cursor:pointer}"
     ".scroll{overflow-x:auto}</style>\n";
 
 static const struct {
     const char *name, *reads;
 } usual[] = {
-    {"precision", "One block for each approximation: its settings by run time and error; the default (ringed in the plot) must "
-                  "keep its stated error, and no setting may be better without being worse elsewhere (the front, *)."},
+    {"precision", "Where the program does not compute exactly, it could compute faster and worse, or slower and better. For each "
+                  "such place: what each setting takes and how wrong it is, against a reference that does not approximate. In "
+                  "the plots fast is left and close is low; the blue line, the front, joins settings than which no other is "
+                  "better in time, error or memory without being worse in another (* in tables). The default (ringed) must be "
+                  "on it, beyond what noise of times explains, and below the dashed line, its stated error."},
     {"stability", "Each row is the worst error over inputs that are hard on arithmetic, beside the limit that it must keep."},
     {"skip", "Each row is what leaving out needless work saves; its error is what that changes in the picture, and must be nothing."},
 };
@@ -138,6 +142,71 @@ static void show_limit(FILE *page, const Bench *bench)
     if (begun) fputs("</table>\n", page);
 }
 
+/* ---- approximations ----------------------------------------------------------------------------- */
+
+static const BenchBlock *block_at(const Bench *bench, int row)
+{
+    for (int k = 0; k < bench->blocks; k++)
+        if (bench->block[k].first == row) return &bench->block[k];
+    return NULL;
+}
+
+static bool blocks_in(const Bench *bench, const BenchPart *part)
+{
+    for (int k = 0; k < bench->blocks; k++)
+        if (bench->block[k].first >= part->first && bench->block[k].first < part->first + part->count) return true;
+    return false;
+}
+
+/* A line for each: what holds, before any of its settings. */
+static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
+{
+    bool begun = false;
+    for (int k = 0; k < bench->blocks; k++) {
+        const BenchBlock *b = &bench->block[k];
+        if (b->first < part->first || b->first >= part->first + part->count || b->chosen < 0) continue;
+        const BenchRow *row = &bench->kept[b->chosen].row;
+        if (!begun)
+            fputs("<div class=\"scroll\"><table><tr><th>approximation</th><th>default</th><th class=\"n\">run time</th><th>of</th>"
+                  "<th class=\"n\">error</th><th class=\"n\">stated at most</th><th>verdict</th></tr>\n", page);
+        begun = true;
+        fprintf(page, "<tr><td class=\"w\"><a href=\"#knob-%d\">", k);
+        html_text(page, "%s", b->name);
+        fputs("</a></td><td>", page);
+        html_text(page, "%s", strlen(row->what) > strlen(b->name) + 2 ? row->what + strlen(b->name) + 2 : row->what);
+        fputs("</td>", page);
+        cell(page, row->median, row->unit);
+        fputs("<td class=\"dim\">", page);
+        html_text(page, "%s", b->of);
+        fputs("</td>", page);
+        cell(page, row->error, row->error_unit);
+        cell(page, row->error_limit, row->error_unit);
+        fprintf(page, "<td class=\"%s\">%s</td></tr>\n", b->broken ? "bad" : "good", !b->broken ? "holds"
+                : bench_holds(row) ? "another setting is better" : "misses its stated error");
+    }
+    if (begun) end_table(page);
+}
+
+/* Its plot beside its verdict in words, and its settings. */
+static void show_block(FILE *page, const Bench *bench, const BenchBlock *b)
+{
+    const char *plot = bench->kept[b->first + b->rows - 1].plot;
+    fprintf(page, "<section><h3 id=\"knob-%d\">", (int)(b - bench->block));
+    html_text(page, "%s", b->name);
+    fprintf(page, "</h3>\n<p class=\"%s\">", b->broken ? "bad" : "good");
+    html_text(page, "%s", b->words);
+    fputs("</p>\n<p class=\"dim\">", page);
+    html_text(page, "Set by %s. Timed: %s.", *b->turned_by ? b->turned_by : "nothing", b->of);
+    if (*b->also) html_text(page, " The same settings have another error, %s, and are judged by both.", b->also);
+    fputs("</p>\n", page);
+    if (plot) fprintf(page, "<figure>%s</figure>\n", plot);
+    fputs("<details><summary>its settings in figures</summary>\n", page);
+    begin_table(page);
+    for (int i = b->first; i < b->first + b->rows; i++) show_row(page, &bench->kept[i].row);
+    end_table(page);
+    fputs("</details></section>\n", page);
+}
+
 static void show_part(FILE *page, const Bench *bench, const BenchPart *part)
 {
     fputs("<h2 id=\"", page);
@@ -145,15 +214,23 @@ static void show_part(FILE *page, const Bench *bench, const BenchPart *part)
     fputs("\">", page);
     html_text(page, "%s", part->name);
     fprintf(page, " <span class=\"dim\">%.1f s</span></h2>\n<p>", part->took_s);
-    html_text(page, "%s.", part->help ? part->help : "");
-    fputs(" ", page);
+    if (!blocks_in(bench, part)) html_text(page, "%s. ", part->help ? part->help : "");
     html_text(page, "%s", reads_of(part));
     fputs("</p>\n", page);
-    begin_table(page);
-    for (int i = part->first; i < part->first + part->count; i++) show_row(page, &bench->kept[i].row);
-    end_table(page);
-    for (int i = part->first; i < part->first + part->count; i++)
-        if (bench->kept[i].plot) fprintf(page, "<figure>%s</figure>\n", bench->kept[i].plot);
+    show_overview(page, bench, part);
+    bool open = false;
+    for (int i = part->first; i < part->first + part->count;) {
+        const BenchBlock *block = block_at(bench, i);
+        if (block || !open) {
+            if (open) end_table(page);
+            open = !block;
+            if (open) begin_table(page);
+        }
+        if (block) show_block(page, bench, block);
+        else show_row(page, &bench->kept[i].row);
+        i += block ? block->rows : 1;
+    }
+    if (open) end_table(page);
 }
 
 Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s)

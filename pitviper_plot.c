@@ -5,7 +5,7 @@
 
 #include <stdlib.h>
 
-enum { width_px = 640, height_px = 400, left_px = 76, right_px = 20, top_px = 52, bottom_px = 56, zero_px = 34,
+enum { width_px = 640, height_px = 418, left_px = 76, right_px = 20, top_px = 52, bottom_px = 74, zero_px = 34,
        points_max = 64, ticks_max = 16 };
 
 static const double letter_px = 6.7, line_px = 14, dot_px = 4.5;
@@ -15,9 +15,10 @@ static const char style[] =
     ".pvp .d{fill:#666}.pvp .bg{fill:#fff}.pvp .g{stroke:#e3e3e3}.pvp .ax{stroke:#777;fill:none}"
     ".pvp .fr{stroke:#1f6fb2;stroke-width:2;fill:none}.pvp .p{fill:#888}.pvp .f{fill:#1f6fb2}"
     ".pvp .df{stroke:#c2570c;stroke-width:2.5;fill:none}.pvp .st{stroke:#c0392b;stroke-dasharray:6 4;fill:none}"
-    ".pvp text.s{fill:#c0392b}.pvp .ld{stroke:#999;stroke-width:.8}"
+    ".pvp text.s{fill:#c0392b}.pvp text.ok{fill:#217a3c}.pvp .ld{stroke:#999;stroke-width:.8}"
     "@media (prefers-color-scheme:dark){.pvp text{fill:#ddd}.pvp .d{fill:#999}.pvp .bg{fill:#1b1b1d}.pvp .g{stroke:#333}"
-    ".pvp .fr{stroke:#6db3f2}.pvp .f{fill:#6db3f2}.pvp .df{stroke:#f59e4b}.pvp .st{stroke:#ff7b6b}.pvp text.s{fill:#ff7b6b}}"
+    ".pvp .fr{stroke:#6db3f2}.pvp .f{fill:#6db3f2}.pvp .df{stroke:#f59e4b}.pvp .st{stroke:#ff7b6b}.pvp text.s{fill:#ff7b6b}"
+    ".pvp text.ok{fill:#6fcf8a}}"
     "</style>";
 
 typedef struct Axis {
@@ -240,11 +241,34 @@ static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char
                 "y=\"%.1f\">0</text>\n", left_px, p->zero_y_px, width_px - right_px, p->zero_y_px, left_px - 6, p->zero_y_px + 4);
     fprintf(to, "<path class=\"ax\" d=\"M%d %dV%.0fH%d\"/>\n", left_px, top_px, floor_px, width_px - right_px);
     fprintf(to, "<text text-anchor=\"middle\" x=\"%d\" y=\"%d\">run time, %s: ", (left_px + width_px - right_px) / 2,
-            height_px - 16, unit);
+            height_px - 34, unit);
     html_text(to, "%.60s", knob->of ? knob->of : "");
     fprintf(to, "</text>\n<text text-anchor=\"middle\" transform=\"translate(16 %.0f) rotate(-90)\">error", 0.5 * (top_px + floor_px));
     if (knob->error_unit) html_text(to, ", %.30s", knob->error_unit);
     fputs("</text>\n", to);
+}
+
+/* What is what, below the axis; and how the default does, above the plot. */
+static void draw_legend(FILE *to, const Plot *p, const BenchPoint *point)
+{
+    const int y = height_px - 10;
+    fprintf(to, "<circle class=\"f\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/><circle class=\"df\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
+            "<text class=\"d\" x=\"%d\" y=\"%d\">default</text>", 84, y - 4, dot_px, 84, y - 4, dot_px + 4, 98, y);
+    fprintf(to, "<path class=\"fr\" d=\"M156 %dh28\"/><circle class=\"f\" cx=\"170\" cy=\"%d\" r=\"%.1f\"/>"
+            "<text class=\"d\" x=\"190\" y=\"%d\">the front: none is better in all</text>", y - 4, y - 4, dot_px, y);
+    fprintf(to, "<circle class=\"p\" cx=\"398\" cy=\"%d\" r=\"%.1f\"/><text class=\"d\" x=\"408\" y=\"%d\">another is better</text>",
+            y - 4, dot_px, y);
+    if (!isnan(p->stated_y_px))
+        fprintf(to, "<line class=\"st\" x1=\"520\" y1=\"%d\" x2=\"546\" y2=\"%d\"/><text class=\"d\" x=\"552\" y=\"%d\">stated</text>",
+                y - 4, y - 4, y);
+    fputs("\n", to);
+    for (int k = 0; k < p->points; k++) {
+        if (!point[p->index[k]].is_default) continue;
+        const bool keeps = isnan(p->stated_y_px) || p->y_px[k] >= p->stated_y_px;
+        fprintf(to, "<text class=\"%s\" text-anchor=\"end\" x=\"%d\" y=\"20\">%s</text>\n", keeps && p->front[k] ? "ok" : "s",
+                width_px - right_px, !keeps ? "the default misses its stated error" : p->front[k] ? "the default holds"
+                : "another setting is better than the default");
+    }
 }
 
 void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count)
@@ -268,9 +292,10 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
     html_text(to, "%.70s", knob->name);
     fputs("</text><text class=\"d\" x=\"12\" y=\"38\">", to);
     if (knob->turned_by) html_text(to, "%.50s", knob->turned_by);
-    if (knob->against) html_text(to, "%serror against %.60s", knob->turned_by ? "; " : "", knob->against);
+    if (knob->against) html_text(to, "%serror: %.90s", knob->turned_by ? "; " : "", knob->against);
     fputs("</text>\n", to);
     draw_axes(to, p, knob, units[u].name);
+    draw_legend(to, p, point);
 
     if (!isnan(p->stated_y_px)) {
         char text[48], number[24];
@@ -297,7 +322,7 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
     for (int k = 0; k < p->points; k++)
         draw_label(to, p, k, &point[p->index[k]], p->front[k] ? "" : "d", bytes_differ);
     if (p->points < count)
-        fprintf(to, "<text class=\"d\" text-anchor=\"end\" x=\"%d\" y=\"20\">%d without a time or an error not shown</text>\n",
+        fprintf(to, "<text class=\"d\" text-anchor=\"end\" x=\"%d\" y=\"48\">%d without a time or an error not shown</text>\n",
                 width_px - right_px, count - p->points);
     fputs("</svg>\n", to);
 }

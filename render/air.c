@@ -98,7 +98,9 @@ double air_sky_light(const Air *air, AirBand band, const double d_enu[3])
 
 void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3])
 {
-    out->up_share = (float)split(&out->up, 0.5 * air_plane_ups * (1 + n_enu[2]), air_plane_ups);
+    const double up = clamp(n_enu[2], -1, 1), x = 0.5 * air_plane_ups * sqrt(1 - fabs(up));
+    out->open = (float)(0.5 * (1 + up));
+    out->up_share = (float)split(&out->up, up < 0 ? x : air_plane_ups - x, air_plane_ups);
     const double azimuth_rad = acos_quick(cos_azimuth(n_enu, air->sun_d_enu));
     out->azimuth_share = (float)split(&out->azimuth, air_plane_azimuths / pi_rad * azimuth_rad, air_plane_azimuths);
 }
@@ -350,12 +352,14 @@ static void light_planes(SkyJob *job, int i)
     const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]);
     const double sun_east = level > 1e-10 ? air->sun_d_enu[0] / level : 1;
     const double sun_north = level > 1e-10 ? air->sun_d_enu[1] / level : 0;
-    const double up = 2.0 * i / air_plane_ups - 1, flat = sqrt(fmax(1 - up * up, 0));
+    /* a plane that faces down sees nothing: what one sees that leans by a little less, over its share */
+    const double x = fmax((i < air_plane_ups / 2 ? i : air_plane_ups - i) * 2.0 / air_plane_ups, i == 0 ? 0.02 : 0);
+    const double up = i < air_plane_ups / 2 ? x * x - 1 : 1 - x * x, open = 0.5 * (1 + up), flat = sqrt(1 - up * up);
     for (int p = 0; p <= air_plane_azimuths; p++) {
         const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
         const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (job->bands >> b & 1) air->plane_w_m2[b][i][p] = (float)on_plane(job->w_m2[b], &job->lamp, n_enu);
+            if (job->bands >> b & 1) air->plane_w_m2[b][i][p] = (float)(on_plane(job->w_m2[b], &job->lamp, n_enu) / open);
     }
 }
 
@@ -534,7 +538,7 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
                 (float)sky_w_m2_sr[b];
         for (int i = 0; i <= air_plane_ups; i++)
             for (int a = 0; a <= air_plane_azimuths; a++)
-                out->plane_w_m2[b][i][a] = (float)(out->sky_w_m2[b] * i / air_plane_ups);
+                out->plane_w_m2[b][i][a] = (float)out->sky_w_m2[b];
     }
     out->solar_direct_w_m2 = sun_w_m2;
     out->solar_diffuse_w_m2 = out->sky_w_m2[AIR_PAN];

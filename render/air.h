@@ -21,8 +21,9 @@
 
 /* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
  * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
- * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: by its normal's height, -1 .. 1,
- * and azimuth. */
+ * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: over (1 + n_up) / 2, the share of
+ * the sky that it sees, so that an even sky is exact; by azimuth, and by tilt, dense where a plane is level: equal steps
+ * of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which are straight in small tilts where n_up is not. */
 enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
 
 typedef struct AirSky {
@@ -46,7 +47,7 @@ typedef struct Air {
     AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
     AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
     AirSky  sky_eye[AIR_BAND_COUNT];       /* from the eye */
-    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* of the sky on a tilted plane */
+    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
     const PlanckTable *planck_mwir, *planck_lwir;
 
     double    eye_height_m;
@@ -89,7 +90,7 @@ typedef struct SkyPlace {
 } SkyPlace;
 typedef struct PlanePlace {
     int   up, azimuth;
-    float up_share, azimuth_share;
+    float up_share, azimuth_share, open; /* open: share of the sky before it */
 } PlanePlace;
 void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3]);
 void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3]);
@@ -117,7 +118,7 @@ static inline double air_plane_there(const Air *air, AirBand band, const PlanePl
     const float *low = &air->plane_w_m2[band][p->up][p->azimuth], *high = low + air_plane_azimuths + 1;
     const float  l = low[0] + p->azimuth_share * (low[1] - low[0]);
     const float  h = high[0] + p->azimuth_share * (high[1] - high[0]);
-    return (double)(l + p->up_share * (h - l));
+    return (double)(p->open * (l + p->up_share * (h - l)));
 }
 
 /* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */

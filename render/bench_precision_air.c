@@ -155,13 +155,17 @@ static void thin_scattered(AirTable *t)
     }
 }
 
-static double table_bytes(const AirTable *t)
-{
-    return t->lights * (double)sizeof *t->light[0] + (double)sizeof *t->heat;
-}
-
 enum { ways = 4, eyes = 3 };
 typedef enum AirWay { AIR_ONE_BY_ONE, AIR_TABLED, AIR_THIN_DEPTHS, AIR_THIN_SCATTERED } AirWay;
+
+/* What the tables take, and would take if they were made as thin as they answer. */
+static double table_bytes(const AirTable *t, AirWay way)
+{
+    const double depths = t->lights * (double)sizeof t->light[0]->depth + (double)sizeof *t->heat;
+    const double scattered = t->lights * (double)sizeof t->light[0]->log2_source;
+    if (way == AIR_ONE_BY_ONE) return 1;
+    return depths / (way == AIR_THIN_DEPTHS ? 4 : 1) + scattered / (way == AIR_THIN_SCATTERED ? 8 : 1);
+}
 
 typedef struct AirFrames {
     AirSet set[eyes];
@@ -185,7 +189,6 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
     BenchWork     work[ways];
     BenchTime     fill;
     BenchPoint    seen[ways] = {0}, warm[ways] = {0};
-    double        bytes = 0;
     for (int w = 0; w < ways; w++) {
         frame[w].way = (AirWay)w;
         for (int e = 0; e < eyes; e++) {
@@ -195,13 +198,12 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
             make_paths(s);
             if (w == 0) ask_atmosphere(s);
             else memcpy(s->path, frame[0].set[e].path, sizeof s->path);
-            bytes = table_bytes(s->air.table);
             if (w == AIR_THIN_DEPTHS) thin_depths(s->air.table);
             if (w == AIR_THIN_SCATTERED) thin_scattered(s->air.table);
             if (w > 0) ask_veils(s);
         }
-        seen[w] = (BenchPoint){.setting = name[w], .is_default = w == AIR_TABLED, 
-                               .bytes = w == 0 ? 1 : w == 1 ? bytes : 0.4 * bytes};
+        seen[w] = (BenchPoint){.setting = name[w], .is_default = w == AIR_TABLED,
+                               .bytes = table_bytes(frame[w].set[0].air.table, (AirWay)w)};
         warm[w] = seen[w];
         for (int thermal = 0; thermal < 2 && w > 0; thermal++) {
             int n = 0;
@@ -213,6 +215,8 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
         }
         work[w] = (BenchWork){ask_frames, &frame[w], eyes * frame[w].set[0].hits.count};
     }
+    for (int w = 0; w < ways; w++) seen[w].also = warm[w].error, warm[w].also = seen[w].error;
+    seen[0].also_is = "of thermal bands, %", warm[0].also_is = "of visible bands, %";
     const BenchWork making = {make_air, &frame[0].set[1], 1};
     bench_time(&fill, bench, &making, 1);
     bench_turn(bench, &(BenchKnob){"air before a pixel, visible", "render/air_private.h", "a path, seven bands", "%",
@@ -325,7 +329,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
 {
     enum { settings = 4 };
     static const char *const name[settings] = {"summed over 8 x 32 directions", "summed over 24 x 96 directions",
-                                               "17 heights x 13 azimuths", "9 heights x 7 azimuths"};
+                                               "17 tilts x 13 azimuths", "9 tilts x 7 azimuths"};
     static const int steps[settings] = {8, 24, 0, 0};
     static PlaneSet  set[settings], fine;
     BenchWork        work[settings];
@@ -354,7 +358,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
         point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.plane_w_m2[0];
     }
     bench_turn(bench, &(BenchKnob){"light of the sky on a plane", "render/air.h", "a plane, 0.5-0.6 um", "%",
-                                   "largest over that of a level one; 64 x 256 directions or more", 8},
+                                   "largest over that of a level one; 64 x 256 directions or more", 1},
                work, point, settings);
 }
 

@@ -21,7 +21,7 @@ typedef struct GroundRays {
 
 typedef struct GroundSet {
     const GroundRays *rays;
-    double step_posts;   /* of a march; 0: the tracer, one at a time; -1: together */
+    double step_posts;   /* of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
     double range_m[ground_rays];
 } GroundSet;
 
@@ -46,12 +46,48 @@ static double march_ground(const Elevation *e, const double o[3], const double d
     }
 }
 
+static float height_over_float(const ElevationLevel *g, const float u[2], float z)
+{
+    if (!(u[0] >= 0 && u[1] >= 0 && u[0] < g->nx - 1 && u[1] < g->ny - 1)) return NAN;
+    const int       i = (int)u[0], j = (int)u[1];
+    const float     a = u[0] - i, b = u[1] - j;
+    const uint16_t *post = g->post + (size_t)j * (size_t)g->nx + i;
+    const float     sw = post[0], se = post[1], nw = post[g->nx], ne = post[g->nx + 1];
+    return z - ((float)g->z0_m + (float)g->step_m * (a >= b ? sw + a * (se - sw) + b * (ne - se)
+                                                            : sw + a * (ne - nw) + b * (nw - sw)));
+}
+
+/* As walk_ground does, below, with nothing but floats: what a tracer of triangles would do with this ground. */
+static double walk_ground_float(const ElevationLevel *g, const GroundRays *r, int i)
+{
+    const float s = (float)g->spacing_m, d2 = (float)r->d[2][i], o2 = (float)r->o[2][i];
+    float       u[3] = {(float)(r->o[0][i] - g->x0_m) / s, (float)(r->o[1][i] - g->y0_m) / s, 0};
+    float       du[3] = {(float)r->d[0][i] / s, (float)r->d[1][i] / s, 0}, t = 0, above = 1, line[3];
+    u[2] = u[0] - u[1], du[2] = du[0] - du[1];
+    for (int k = 0; k < 3; k++) line[k] = du[k] > 0 ? floorf(u[k]) + 1 : ceilf(u[k]) - 1;
+    for (;;) {
+        int   next = 0;
+        float at = INFINITY;
+        for (int k = 0; k < 3; k++) {
+            const float when = (line[k] - u[k]) / du[k];
+            if (du[k] != 0 && when < at) at = when, next = k;
+        }
+        line[next] += du[next] > 0 ? 1 : -1;
+        const float place[2] = {u[0] + at * du[0], u[1] + at * du[1]}, here = height_over_float(g, place, o2 + at * d2);
+        if (isnan(here)) return INFINITY;
+        if (here <= 0) return (double)(t + (at - t) * (above / (above - here)));
+        t = at, above = here;
+    }
+}
+
 static void trace_ground(void *user)
 {
     GroundSet        *s = user;
     const GroundRays *r = s->rays;
     const double *const o[3] = {r->o[0], r->o[1], r->o[2]}, *const d[3] = {r->d[0], r->d[1], r->d[2]};
-    if (s->step_posts < 0) ground_first_hits_together(s->range_m, NULL, &r->ground, ground_rays, o, d, r->far_m);
+    if (s->step_posts == -1) ground_first_hits_together(s->range_m, NULL, &r->ground, ground_rays, o, d, r->far_m);
+    for (int i = 0; s->step_posts == -2 && i < ground_rays; i++)
+        s->range_m[i] = walk_ground_float(&r->elevation->level[0], r, i);
     for (int i = 0; s->step_posts >= 0 && i < ground_rays; i++) {
         const double at[3] = {o[0][i], o[1][i], o[2][i]}, way[3] = {d[0][i], d[1][i], d[2][i]};
         s->range_m[i] = s->step_posts > 0 ? march_ground(r->elevation, at, way, s->step_posts)
@@ -103,11 +139,11 @@ static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int
 
 static Status knob_ground(Bench *bench)
 {
-    enum { settings = 5 };
+    enum { settings = 6 };
     static const char *const name[settings] =
-        {"marched by 4 posts, halved", "marched by 1 post, halved", "marched by 1 / 4 post, halved",
-                                               "lines met in double, one ray", "lines met in double, a tile of rays"};
-    static const double step[settings] = {4, 1, 0.25, 0, -1};
+        {"marched by 4 posts, halved", "marched by 1 post, halved", "marched by 1 / 4 post, halved", "every line met in float",
+         "lines met in double, one ray", "lines met in double, a tile of rays"};
+    static const double step[settings] = {4, 1, 0.25, -2, 0, -1};
     static GroundRays rays;
     static GroundSet  set[settings];
     static double     error[ground_rays], want[ground_rays];

@@ -108,10 +108,13 @@ static inline void look_up(Eight out[8], const float *table, int row, Steps up, 
 
 static inline void light_on_plane(Eight out[8], const SurfaceLight *light, Three n, Three sun)
 {
-    const Steps up = steps_of((one() + n.z) * eight_all(0.5 * air_plane_ups), air_plane_ups);
+    const Eight z = eight_clamp(n.z, -1, 1), x = eight_all(0.5 * air_plane_ups) * eight_sqrt(one() - eight_abs(z));
+    const Eight open = eight_all(0.5) * (one() + z);
+    const Steps up = steps_of(eight_pick(eight_less(z, zero()), x, eight_all(air_plane_ups) - x), air_plane_ups);
     const Steps azimuth = steps_of(azimuth_from_sun(n, sun) * eight_all(air_plane_azimuths / pi_rad), air_plane_azimuths);
     look_up(out, light->plane[0][0], air_plane_azimuths + 1, up, azimuth);
     eight_turn(out);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = out[b] * open;
 }
 
 /* Sky in the direction d, nothing about the sun finer than blur_rad. */

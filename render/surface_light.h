@@ -14,7 +14,7 @@ enum { surface_light_bands = 8 }; /* AIR_BAND_COUNT and one to spare */
 /* One Air's, for a frame. */
 typedef struct SurfaceLight {
     const Air *air;
-    float plane[air_plane_ups + 1][air_plane_azimuths + 1][surface_light_bands];    /* irradiance of the sky, W/m2 */
+    float plane[air_plane_ups + 1][air_plane_azimuths + 1][surface_light_bands];    /* as Air.plane_w_m2 */
     float scattered[air_sky_ups + 1][air_sky_azimuths + 1][surface_light_bands];    /* sky in a mirror, as AirSky */
     float thermal[air_sky_ups + 1][surface_light_bands], around_sun[air_sky_angles + 2][surface_light_bands];
     float level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands];       /* level ground's radiance; the sun */

@@ -101,9 +101,14 @@ static Status knob_rays(Precision *p)
         point[k] = (BenchPoint){.setting = rays[k].name, .is_default = rays[k].is_default};
     }
     snprintf(of, sizeof of, "a picture of %d x %d, three bands and truth", p->shot_px[0], p->shot_px[1]);
+    worst_shot(point, rms_k);
+    for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
+    point[0].also_is = "of 8-12 um, K";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms)]);
     bench_turn(p->bench, &(BenchKnob){"rays a pixel", "sensor.samples, sensor.edge_samples", of, "%", against, 6}, work,
                point, ray_settings);
+    for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
+    point[0].also_is = "of radiance, %";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms_k)]);
     bench_knob(p->bench, &(BenchKnob){"rays a pixel, 8-12 um", "sensor.samples, sensor.edge_samples", of, "K",
                                       against, 1},

@@ -159,6 +159,8 @@ static Status knob_facets(Bench *bench)
     }
     if (status == STATUS_OK) {
         snprintf(against, sizeof against, "p99 of range, a tank of %g mm", 1e3 * finest_m);
+        for (int k = 0; k < sag_settings; k++) by_range[k].also = by_area[k].error, by_area[k].also = by_range[k].error;
+        by_range[0].also_is = "of silhouettes, %", by_area[0].also_is = "of range, m";
         bench_turn(bench, &(BenchKnob){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006},
                    work, by_range, sag_settings);
         for (int k = 0; k < sag_settings; k++) by_area[k].time = by_range[k].time;
@@ -224,9 +226,9 @@ static double mirrors_error(const Mirrors *got, const Mirrors *want)
 
 static Status knob_bounces(Precision *p)
 {
-    enum { settings = 5 };
-    static const char *const name[settings] = {"1", "2", "3", "4", "6"};
-    static const int         more[settings] = {-2, -1, 0, 1, 3};
+    enum { settings = 6 };
+    static const char *const name[settings] = {"1", "2", "3", "4", "5", "6"};
+    static const int         more[settings] = {-2, -1, 0, 1, 2, 3};
     const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
     Mirrors    set[settings], fine = {.p = p, .more = most_more, .samples = 2, .eyes = eyes};
     BenchWork  work[settings];
