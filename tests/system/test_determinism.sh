@@ -2,7 +2,7 @@
 # Same log, configuration and version: the same planes to the bit, for any number of threads, at any speed,
 # with every skip or none, whoever wants files, pictures or all bands. More scenes: test_determinism_scenes.sh; other
 # builds and tracers: test_determinism_builds.sh; live against replay: test_live.sh, where one node publishes on the
-# network and its replay does not. labels: small
+# network and its replay does not.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"

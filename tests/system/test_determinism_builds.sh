@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Same bits whatever instructions the tracer uses, and from a debug build as from an optimized one. labels: small
+# Same bits whatever instructions the tracer uses, and from a debug build as from an optimized one.
 #
 # Other tracers. Embree says only which triangle is met; range, normal and place on it are computed again in double, with
 # the instructions of x86-64-v3 whatever the tracer has. A ray through an edge two triangles share may be given to either,

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Motion in truth.jsonl against differences of its own ranges; the seeker flying on when its missile falls
-# silent; every frame's boresight on its own tick. labels: small
+# silent; every frame's boresight on its own tick.
 . "$(dirname "$0")/common.sh"
 
 # aim OUT ENTITY: a line a frame: time, range, closing speed, boresight error right and up of that target

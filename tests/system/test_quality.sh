@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# A frame's account of its own error, and settings picked by what they must keep, from the command line. labels: small
+# A frame's account of its own error, and settings picked by what they must keep, from the command line.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # replay --sweep: each variant is the run that its settings make, what is made is kept, one that fails stops no other, and
-# a file with slips runs nothing. labels: small
+# a file with slips runs nothing.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
