@@ -22,9 +22,9 @@ static const struct Field {
     {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
     {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
     {"intensity_error_w_sr", 1e-4, 0.05}, /* of an error: its size */
-    {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"tables", 1e-3, 0.05},
+    {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"table", 1e-3, 0.05},
     {"dead_reckoning", 1e-3, 0.05},{"total", 1e-3, 0.05},
-    {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"tables_k", 0.05, 0.05},
+    {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"table_k", 0.05, 0.05},
     {"dead_reckoning_k", 0.05, 0.05}, {"total_k", 0.05, 0.05},
     {"width_px", 0, 0},            {"height_px", 0, 0},           {"entity", 0, 0},      {"marking", 0, 0},
     {"type", 0, 0},                {"model", 0, 0},               {"occluded_by", 0, 0}, {"gimbal_at_limit", 0, 0},
