@@ -68,18 +68,24 @@ static int compare_paths(const void *a, const void *b)
     return strcmp(((const JsonValue *)a)->path, ((const JsonValue *)b)->path);
 }
 
-Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source)
+/* NULL, logged: it is none. */
+static json_t *object_of(const char *text, size_t octets, const char *module, const char *source)
 {
     json_error_t error;
-    char         path[path_size] = "";
+    json_t      *json = json_loadb(text, octets, JSON_REJECT_DUPLICATES, &error);
+    if (json && json_is_object(json)) return json;
+    log_error("%s: %s: not JSON as pitviper writes it: %s (line %d, column %d)", module, source,
+              json ? "no object" : error.text, json ? 1 : error.line, json ? 1 : error.column);
+    json_decref(json);
+    return NULL;
+}
+
+Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source)
+{
+    char path[path_size] = "";
     *out         = (JsonValues){0};
-    json_t *json = json_loadb(text, octets, JSON_REJECT_DUPLICATES, &error);
-    if (!json || !json_is_object(json)) {
-        log_error("%s: %s: not JSON as pitviper writes it: %s (line %d, column %d)", module, source,
-                  json ? "no object" : error.text, json ? 1 : error.line, json ? 1 : error.column);
-        json_decref(json);
-        return STATUS_BAD_VALUE;
-    }
+    json_t *json = object_of(text, octets, module, source);
+    if (!json) return STATUS_BAD_VALUE;
     const Status status = flatten(out, path, 0, json, 0);
     json_decref(json);
     if (status == STATUS_OK) {
@@ -107,4 +113,17 @@ const JsonValue *json_values_find(const JsonValues *values, const char *path)
     const JsonValue wanted = {.path = (char *)path};
     if (values->count == 0) return NULL;
     return bsearch(&wanted, values->value, (size_t)values->count, sizeof *values->value, compare_paths);
+}
+
+Status json_text_without(char **out, const char *text, size_t octets, const char *const *key, int keys,
+                         const char *module, const char *source)
+{
+    json_t *json = object_of(text, octets, module, source);
+    if (!json) return STATUS_BAD_VALUE;
+    for (int i = 0; i < keys; i++) json_object_del(json, key[i]);
+    char *written = json_dumps(json, JSON_INDENT(1));
+    json_decref(json);
+    if (!written) return STATUS_NO_MEMORY;
+    *out = written;
+    return STATUS_OK;
 }

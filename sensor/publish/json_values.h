@@ -27,5 +27,9 @@ enum { json_values_most = 4000000 };
 Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source);
 void   json_values_free(JsonValues *values);
 const JsonValue *json_values_find(const JsonValues *values, const char *path); /* NULL: not there */
+/* The object of `text` without these keys of its own, as run.json is written. *out: the caller's, freed with free.
+ * STATUS_BAD_VALUE, logged: not one JSON object. */
+Status json_text_without(char **out, const char *text, size_t octets, const char *const *key, int keys,
+                         const char *module, const char *source);
 
 #endif

@@ -98,7 +98,8 @@ static int parse(Options *o, int argc, char **argv)
         case REPORT: o->report = optarg; break;
         case WORK: o->work = optarg; break;
         case JOBS:
-            if (!few(&o->jobs, optarg)) return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
+            if (!few(&o->jobs, optarg))
+                return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case THREADS:
             if (!few(&o->threads, optarg))

@@ -45,9 +45,9 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
 {
     const PlaneVerdict *v = &found->verdict;
     const bool          ids = found->picture && frame_plane_is_id(found->plane);
-    const char         *unit = found->unit ? found->unit : "";
-    char                tolerance[96];
+    char                tolerance[96], unit[24] = "";
     tolerance_text(tolerance, channel, found);
+    if (found->unit && *found->unit) snprintf(unit, sizeof unit, " %s", found->unit);
     html_text(page, "Frame %d, %s: %zu of %zu %s (%.3g %%) ", found->frame,
               found->picture ? frame_plane_name(found->plane) : "range profile", v->beyond, v->compared,
               found->picture ? "pixels" : "bins", 100 * v->share);
@@ -57,10 +57,10 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
     else html_text(page, "none may.");
     if (v->column < 0) return;
     if (ids) html_text(page, " The first");
-    else html_text(page, " Rms %.3g %s, largest difference %.3g %s", v->rms, unit, v->max, unit);
+    else html_text(page, " Rms %.3g%s, largest difference %.3g%s", v->rms, unit, v->max, unit);
     if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
     else html_text(page, " in bin %d of bounce %d", v->column, found->bounce + 1);
-    html_text(page, ": expected %.6g %s, got %.6g %s.", v->expected, unit, v->got, unit);
+    html_text(page, ": expected %.6g%s, got %.6g%s.", v->expected, unit, v->got, unit);
 }
 
 static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, Colours colours, Scale scale,
@@ -74,7 +74,7 @@ static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, C
     fputs("</b><br>", page);
     if (unit) legend_put(page, colours, scale, unit, scratch);
     else if (colours == COLOURS_IDS) fputs("a colour for each id; dark: none", page);
-    else fputs("bright: beyond tolerance", page);
+    else fputs("bright pixels", page);
     fputs("</figcaption></figure>\n", page);
 }
 
@@ -91,7 +91,9 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
                          const RecordFrame *got)
 {
     ChannelPlanes p;
-    char          scratch[path_size];
+    char          scratch[path_size], was[64], is[64];
+    snprintf(was, sizeof was, "expected: %s, frame %d", frame_plane_name(found->plane), found->frame);
+    snprintf(is, sizeof is, "got: %s, frame %d", frame_plane_name(found->plane), found->frame);
     scratch_file(scratch, r);
     if (!channel_planes(&p, found, expected, got, &r->c.tolerance)) return;
     const size_t  count   = (size_t)p.width * (size_t)p.height;
@@ -100,12 +102,12 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     const Scale   scale   = scale_of(p.expected, p.got, count);
     const Scale   change  = scale_of_difference(p.difference, count, found->limit);
     const char   *unit    = ids ? NULL : found->unit;
-    put_figure(page, p.expected, &p, colours, scale, scratch, unit, "expected: the record");
-    put_figure(page, p.got, &p, colours, scale, scratch, unit, "got: this run");
-    if (!ids) put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, unit, "difference: got - expected");
+    put_figure(page, p.expected, &p, colours, scale, scratch, unit, was);
+    put_figure(page, p.got, &p, colours, scale, scratch, unit, is);
+    if (!ids) put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, unit, "got - expected");
     mark_beyond(p.got, &p, found);
-    put_figure(page, p.got, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, NULL, ids ? "another id" : "beyond tolerance");
-    if (!ids) fputs("<p class=\"dim\">Beyond the ends of a scale: as at its ends. Violet: no number there.</p>\n", page);
+    put_figure(page, p.got, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, NULL, "beyond tolerance");
+    if (!ids) fputs("<p class=\"dim\">Beyond the ends of a scale: as at its ends. Violet: no number.</p>\n", page);
     free(p.expected);
     free(p.got);
     free(p.difference);
@@ -227,7 +229,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     fputs("</p>\n", page);
     if (r->compared) put_numbers(page, r);
     /* the cause, and what it looks like; the rest follows from it */
-    if (r->compared && r->verdict.first >= 0) fputs("<h3>What failed, in the order in which the data is made</h3>\n", page);
+    if (r->compared) fputs("<h3>What failed, in the order in which the data is made</h3>\n", page);
     bool pictured = false;
     for (int k = 0; k < CHANNEL_COUNT && r->compared; k++) {
         const ChannelResult *c = &r->verdict.channel[k];

@@ -56,7 +56,8 @@ static bool ends_with(const char *path, const char *word)
 /* Of a target: what pictures of ids tell, what those of radiance tell, and the rest, which is known before any ray. */
 static Channel channel_of_target(const char *path)
 {
-    static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px", "].occluded_by"};
+    static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px",
+                                       "].occluded_by"};
     if (strstr(path, "].bands.")) return CHANNEL_SIGNALS;
     for (size_t i = 0; i < sizeof seen / sizeof *seen; i++)
         if (ends_with(path, seen[i])) return CHANNEL_TARGETS;

@@ -2,7 +2,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <jansson.h>
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -37,19 +36,17 @@ static Status copy_file(const char *from_folder, const char *to_folder, const ch
 /* run.json without what is other in every run, so that the same again is the same file. */
 static Status copy_run(const char *from_folder, const char *to_folder)
 {
-    char         path[path_size];
-    json_error_t error;
+    static const char *const other[] = {"timings_ms", "threads"};
+    char   path[path_size], *text, *same = NULL;
+    size_t octets;
     snprintf(path, sizeof path, "%.4090s/run.json", from_folder);
-    json_t *run = json_load_file(path, 0, &error);
-    json_object_del(run, "timings_ms");
-    json_object_del(run, "threads");
-    char  *text   = run ? json_dumps(run, JSON_INDENT(1)) : NULL;
-    Status status = STATUS_IO;
-    json_decref(run);
-    if (!text) log_error("regress: cannot read %s: %s", path, error.text);
-    snprintf(path, sizeof path, "%.4090s/run.json", to_folder);
-    if (text) status = write_file(path, text, strlen(text));
+    Status status = text_read_file(&text, &octets, "regress", path, file_most);
+    if (status != STATUS_OK) return status;
+    status = json_text_without(&same, text, octets, other, 2, "regress", path);
     free(text);
+    snprintf(path, sizeof path, "%.4090s/run.json", to_folder);
+    if (status == STATUS_OK) status = write_file(path, same, strlen(same));
+    free(same);
     return status;
 }
 

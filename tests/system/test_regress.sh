@@ -25,9 +25,9 @@ check "passes: its line" grep -qE '^good +ok' "$tmp/stdout"
 check "passes: to the bit" test -z "$(grep 'bits differ' "$tmp/stdout")"
 check "other files are left alone" grep -qx mine "$tmp/good/notes.txt"
 touch "$tmp/good/record/notes.txt"
-before=$(cat "$tmp"/good/record/*.exr | cksum)
+before=$(cat "$tmp"/good/record/*.{exr,jsonl,json} | cksum)
 run regress --update "$tmp/good" --why again
-check "the same again: same octets" [ "$before" = "$(cat "$tmp"/good/record/*.exr | cksum)" ]
+check "the same again: same octets" [ "$before" = "$(cat "$tmp"/good/record/*.{exr,jsonl,json} | cksum)" ]
 check "the same again: newest first" [ "$(grep '^- why' "$tmp/good/card.md" | head -n 1)" = '- why: again' ]
 check "the same again: the old reason stays" [ "$(grep -c '^- why' "$tmp/good/card.md")" = 2 ]
 check "the same again: what is not ours stays" [ -e "$tmp/good/record/notes.txt" ]
