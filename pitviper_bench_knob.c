@@ -173,6 +173,8 @@ static void say_trade(char *out, size_t size, const char *what, const BenchPoint
     if (other->error > 0 && held->error > 0)
         say(out, size, "%s '%.40s': %.2g x the time, %.2g x the error", what, other->setting, ratio, other->error / held->error);
     else say(out, size, "%s '%.40s': %.2g x the time, %s", what, other->setting, ratio, other->error > 0 ? "some error" : "no error");
+    if (other->bytes > 1 && held->bytes > 1 && other->bytes != held->bytes)
+        say(out, size, ", %.2g x the memory", other->bytes / held->bytes);
 }
 
 void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick)

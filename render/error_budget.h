@@ -8,7 +8,7 @@
  *                    normals and by how far it moves on the image. What is missing below the posts' distance is taken to
  *                    be as much again: where hills are as high as they are long (terrain/landscape.c) each halving of
  *                    that distance brings half of what is left. Shadows and what stands behind a crest are left out.
- *   tables           A few of those pixels, their air asked path by path and their light in double (air_veils_directly,
+ *   tables           A few pixels, the bright ones first, their air asked path by path and their light in double (air_veils_directly,
  *                    optical_shade, thermal_shade), against what the frame's tables and eight-wide shading give. The
  *                    light of the sky on a plane is the table's in both; errors of the atmosphere itself are no part.
  *

@@ -151,9 +151,11 @@ static void time_larger(Lab *lab)
     if (!lab->quick) lab->width = timed_width, lab->height = timed_height;
 }
 
-static void list_row(Bench *bench, const QualityRow *r, const QualityRow *first, const BenchTime *time)
+/* Those that some target picks are marked, as a front is. */
+static void list_row(Bench *bench, const QualityTable *table, int k, const BenchTime *time)
 {
-    char what[96];
+    const QualityRow *r = &table->row[k], *first = &table->row[0];
+    char              what[96];
     if (r->edge_samples > 0)
         snprintf(what, sizeof what, "samples %d, edge_samples %d, target_samples %d", r->samples, r->edge_samples, r->target_samples);
     else snprintf(what, sizeof what, "samples %d, antialias off", r->samples);
@@ -168,6 +170,7 @@ static void list_row(Bench *bench, const QualityRow *r, const QualityRow *first,
     row.error      = fmax(r->percent[BAND_OPTICAL], fmax(r->percent[BAND_MWIR], r->percent[BAND_LWIR]));
     row.error_unit = "%";
     row.against    = "16 x 16 rays a pixel: worst band of the worst view";
+    row.mark       = quality_wanted(table, k) ? "*" : NULL;
     bench_add(bench, &row);
 }
 
@@ -196,10 +199,14 @@ Status bench_quality(Bench *bench)
     for (int k = 0; k < grid_count && status == STATUS_OK; k++) {
         bench_time_finish(&time[k]);
         table.row[k].ms_megapixel = 1e3 * time[k].best_s;
-        list_row(bench, &table.row[k], &table.row[0], &time[k]);
     }
+    for (int k = 0; k < grid_count && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
+    /* what nothing would pick is not written, but for the first, by which machines are compared */
+    QualityTable written = {.count = 0};
+    for (int k = 0; k < grid_count; k++)
+        if (k == 0 || quality_wanted(&table, k)) written.row[written.count++] = table.row[k];
     if (status == STATUS_OK && path)
-        status = quality_write(path, &table, "rms error at most, and time on one thread of the machine it was measured on, by "
+        status = quality_write(path, &written, "rms error at most, and time on one thread of the machine it was measured on, by "
                                "`pitviper bench quality --table FILE`");
     close_lab(&lab);
     return status;

@@ -115,6 +115,24 @@ int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *
     return best;
 }
 
+bool quality_wanted(const QualityTable *table, int row)
+{
+    const QualityRow *r = &table->row[row];
+    for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
+        /* the tightest that it keeps: who is quicker and keeps that keeps whatever this row keeps */
+        const QualityTarget target = {worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands};
+        bool                quicker = false;
+        for (int k = 0; k < table->count; k++) {
+            const QualityRow *q = &table->row[k];
+            const bool        first = q->ms_megapixel < r->ms_megapixel || (q->ms_megapixel == r->ms_megapixel && k < row);
+            quicker |= k != row && first && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
+                       worst(q->kelvin, bands, BAND_MWIR) <= target.kelvin;
+        }
+        if (!quicker) return true;
+    }
+    return false;
+}
+
 /* ---- the configuration ------------------------------------------------------------------------ */
 
 static bool asks(const Config *c)

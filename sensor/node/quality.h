@@ -40,6 +40,9 @@ typedef struct QualityTarget {
  * alone: the smallest error within it. reached: whether all are kept. */
 int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
 
+/* Whether there is any target, of any bands, that this row is picked for; else a quicker one is as good in all. */
+bool quality_wanted(const QualityTable *table, int row);
+
 /* Sets what quality.* asks for, and says so; keys that were given stay. Nothing asked for: nothing is done. */
 Status quality_choose(Config *config, Choices *choices, unsigned bands);
 /* Whether the machine's own time would change the pick: frame_ms is asked for, and no factor given. */

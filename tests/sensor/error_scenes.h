@@ -152,9 +152,23 @@ static FrameError error_of(BenchFrame *f)
     return error;
 }
 
+/* Of one source of error, a band. */
 typedef struct Tally {
-    int cases, held;
+    int cases[radiance_bands], held[radiance_bands];
 } Tally;
+
+/* Whether nine in ten estimates of every band are within a factor of 2 of the truth; says how many are. */
+static inline bool nine_in_ten(const Tally *tally, const char *source)
+{
+    bool all = true;
+    for (int b = 0; b < radiance_bands; b++) {
+        const bool enough = tally->cases[b] > 0 && tally->held[b] * 10 >= tally->cases[b] * 9;
+        print_message("%-16s %-8s within a factor of 2: %d of %d%s\n", source, band_name((Band)b), tally->held[b], tally->cases[b],
+                      enough ? "" : ": TOO FEW");
+        all = all && enough;
+    }
+    return all;
+}
 
 /* Below this an error is none: a hundredth of a percent of the mean. */
 static const double nothing = 1e-4;
@@ -162,7 +176,7 @@ static const double nothing = 1e-4;
 static void judge(Tally *tally, const char *scene, const char *source, Band band, double estimate, double truth)
 {
     const bool held = (truth < nothing && estimate < 2 * nothing) || (estimate < 2 * truth && estimate > 0.5 * truth);
-    tally->cases++, tally->held += held;
+    tally->cases[band]++, tally->held[band] += held;
     print_message("%-22s %-8s %-16s estimate %8.4f %%  truth %8.4f %%  ratio %5.2f%s\n", scene, band_name(band), source,
                   100 * estimate, 100 * truth, estimate / truth, held ? "" : "  *");
 }
@@ -196,6 +210,24 @@ static inline void judge_ground(Tally *tally, const ErrorScene *of)
     for (int band = 0; band < radiance_bands; band++)
         judge(tally, of->name, "level_of_detail", (Band)band, error.share[band][ERROR_LEVEL_OF_DETAIL],
               apart(&a.picture, &b.picture, (Band)band));
+    bench_scene_close(&coarse);
+    bench_scene_close(&fine);
+}
+
+/* Rays and posts together, on a ground of every post with 16 x 16 rays: whether the sources add up as squares do. */
+static inline void judge_sum(Tally *tally, const ErrorScene *of)
+{
+    BenchScene coarse, fine;
+    open_scene(&coarse, &lab.ground, of);
+    open_scene(&fine, &lab.fine, of);
+    RenderRequest    request = request_of(&coarse, of);
+    BenchFrame       frame = frame_of(&coarse, &request, 0);
+    const FrameError error = error_of(&frame);
+    request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
+    const BenchFrame better = frame_of(&fine, &request, 1);
+    for (int b = 0; b < radiance_bands; b++)
+        judge(tally, of->name, "rays and posts", (Band)b, hypot(error.share[b][ERROR_SAMPLING], error.share[b][ERROR_LEVEL_OF_DETAIL]),
+              apart(&frame.picture, &better.picture, (Band)b));
     bench_scene_close(&coarse);
     bench_scene_close(&fine);
 }

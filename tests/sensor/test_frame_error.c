@@ -77,7 +77,7 @@ static void dead_reckoning_is_near_the_truth(void **state)
                                         {"drivers at 700 m", 700, 120, 12, 0, false, 0}};
     enum { times = 8 };
     static const double times_s[times] = {5.1, 7.3, 9.6, 11.9, 13.4, 16.4, 18.7, 20.9};
-    Tally tally = {0, 0}, pooled = {0, 0};
+    Tally tally = {0}, pooled = {0};
     for (int k = 0; k < 3; k++) {
         double estimates[radiance_bands] = {0}, truths[radiance_bands] = {0};
         for (int n = 0; n < times; n++) {
@@ -104,11 +104,13 @@ static void dead_reckoning_is_near_the_truth(void **state)
         for (int band = 0; band < radiance_bands; band++)
             judge(&pooled, scenes[k].name, "all eight", (Band)band, sqrt(estimates[band]), sqrt(truths[band]));
     }
-    print_message("within a factor of 2: %d of %d frames, %d of %d over all eight\n", tally.held, tally.cases, pooled.held, pooled.cases);
-    /* What a driver does after its last report is in no report: an estimate can be right for many, not for each. Of one
-     * frame three in four are (measured), two in three must be. */
-    CHECK(pooled.held * 10 >= pooled.cases * 9);
-    CHECK(tally.held * 3 >= tally.cases * 2);
+    /* What a driver does after its last report is in no report: an estimate can be right for many frames, not for each. The
+     * way of one driver in a plane, normal in both directions, is within a factor of 2 of its own rms in exp(-1/4) - exp(-4)
+     * = 76 of 100 cases, which is the most that a frame in which one driver counts can be expected to keep; nine in ten
+     * would take two of equal weight. Of single frames 71 .. 79 % are (measured); one in ten fewer than on paper must be. */
+    CHECK(nine_in_ten(&pooled, "over all eight"));
+    nine_in_ten(&tally, "single frames");
+    for (int band = 0; band < radiance_bands; band++) CHECK(tally.held[band] * 3 >= tally.cases[band] * 2);
 }
 
 /* What a correction says of the next one. */

@@ -47,6 +47,25 @@ static void the_quickest_that_keeps_it(void **state)
     CHECK(picked(&reached, &t, 0, NAN, NAN, 1u << BAND_RADAR) == 0);    /* radar alone: nothing to keep */
 }
 
+/* A row as good as a quicker one in everything is for nobody; one that is better in one band alone is for somebody. */
+static void rows_for_nobody_are_told(void **state)
+{
+    (void)state;
+    static const char *const rows[] = {"2,4,64,6,4,1,0.5,0.6,50\n",  "2,4,64,9,4.5,2,0.6,0.7,90\n", "2,4,64,5.9,4,1,0.5,0.6,50\n",
+                                       "2,4,64,9,4.5,2,0.6,0.35,91\n", "2,4,64,6,3.9,1,0.5,0.6,41\n"};
+    static const bool wanted[] = {false, false, true, true, true};
+    char              text[1024], path[512];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        snprintf(text, sizeof text, "%s%s", good, rows[k]);
+        const QualityTable t = table_of(text);
+        CHECK(t.count == 5 && quality_wanted(&t, 4) == wanted[k] && quality_wanted(&t, 0));
+    }
+    QualityTable table;
+    CHECK(etc_path(path, sizeof path, "quality.csv"));
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    for (int k = 0; k < table.count; k++) CHECK(quality_wanted(&table, k));
+}
+
 static void broken_tables_are_refused(void **state)
 {
     (void)state;
@@ -174,7 +193,8 @@ static void promises_hold_elsewhere(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(broken_tables_are_refused),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(rows_for_nobody_are_told),
+                                       cmocka_unit_test(broken_tables_are_refused),
                                        cmocka_unit_test(given_keys_stay_and_the_choice_is_said), cmocka_unit_test(promises_hold_elsewhere)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

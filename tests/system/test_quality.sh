@@ -40,6 +40,18 @@ check "the same again" same_hashes "$tmp/fast" "$tmp/again"
 check "a slow machine does less" [ "$(config_hash "$tmp/fast")" != "$(config_hash "$tmp/slow")" ]
 check "and says that it is not enough" grep -q 'NOTreached' <(run_json "$tmp/slow")
 
+# measured again: the same errors to the digit, by whatever number of threads; no time is judged
+run bench quality --quick --table "$tmp/q1.csv" --threads 1
+check "a table" [ "$code" = 0 ]
+run bench quality --quick --table "$tmp/q2.csv" --threads 2
+measured() { grep '^[0-9]' "$1" | cut -d, -f1-8 | sort; }
+# rows that a time leaves out of one of them are not compared
+grep '^[0-9]' "$tmp/q1.csv" | cut -d, -f1-3 | sort >"$tmp/q1.rows"
+check "a table with rows" [ "$(wc -l <"$tmp/q1.rows")" -ge 8 ]
+check "the quickest first" grep -q '^1,0,0,' <(grep -m 1 '^[0-9]' "$tmp/q1.csv")
+check "the same errors" [ -z "$(comm -3 <(measured "$tmp/q1.csv") <(measured "$tmp/q2.csv") |
+    cut -d, -f1-3 | tr -d '\t' | sort | uniq -d)" ]
+
 printf 'samples,edge_samples\n1,2\n' >"$tmp/bad.csv"
 replay "$tmp/demo.pcap" "$tmp/bad" "${few[@]}" --set quality.table="$tmp/bad.csv" --set quality.frame_ms=20
 check "a broken table is refused" [ "$code" != 0 ]
