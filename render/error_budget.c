@@ -50,7 +50,10 @@ typedef struct Budget {
 
 static Band band_of(int plane)
 {
-    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+    return plane == picture_mwir    ? BAND_MWIR
+           : plane == picture_lwir  ? BAND_LWIR
+           : plane == picture_radar ? BAND_RADAR
+                                    : BAND_OPTICAL;
 }
 
 double plane_contrast(const Picture *p, const float *value, int x, int y)
@@ -70,7 +73,8 @@ double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, doubl
 {
     const double step = 1e-3 * mean_w_m2_sr;
     if (!(mean_w_m2_sr > 0)) return NAN;
-    return rms_w_m2_sr * (planck_table_temp(planck, mean_w_m2_sr + step) - planck_table_temp(planck, mean_w_m2_sr)) / step;
+    return rms_w_m2_sr * (planck_table_temp(planck, mean_w_m2_sr + step) - planck_table_temp(planck, mean_w_m2_sr)) /
+           step;
 }
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
@@ -83,7 +87,8 @@ static unsigned planes_to_ask(const Job *job, size_t px)
     if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
     for (int k = 0; k < picture_plane_count; k++) {
         const bool sunlit = band_of(k) == BAND_OPTICAL || band_of(k) == BAND_MWIR;
-        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit)) planes |= 1u << k;
+        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit))
+            planes |= 1u << k;
     }
     return planes;
 }
@@ -154,8 +159,8 @@ static int draw_probes(Budget *b, const double mean[picture_plane_count])
     return draw(b->probe, b->probes, b);
 }
 
-/* By how bright it is, over each plane's mean, and no less than evenly: what tables do is in proportion to that, and a few
- * hot pixels can hold half of a thermal band. */
+/* By how bright it is, over each plane's mean, and no less than evenly: what tables do is in proportion to that, and a
+ * few hot pixels can hold half of a thermal band. */
 static int draw_tables(Budget *b, const double mean[picture_plane_count])
 {
     for (int i = 0; i < b->candidates; i++) {
@@ -223,7 +228,8 @@ void law_take(Scratch *s, const Job *job, int plane)
     const Block *block = &s->block;
     const int    samples = block->n * block->n;
     for (int p = 0; p < block->pixels; p++) {
-        const double open = job->picture->covered ? 1 - (double)job->picture->covered[pixel_index(job, block->x[p], block->y[p])] : 1;
+        const double open =
+            job->picture->covered ? 1 - (double)job->picture->covered[pixel_index(job, block->x[p], block->y[p])] : 1;
         s->law[plane] += open * open * error_budget_law(s->out + p * samples, block->n);
     }
 }
@@ -263,7 +269,8 @@ static void coarsen(Scratch *s, const Job *job, ProbeTask *t)
         double turn_enu[3], rise_m;
         t->image_px[p] = 0;
         if (!world->landscape || !s->hits.surface[p] ||
-            !error_budget_coarser(turn_enu, &rise_m, &world->landscape->elevation, s->hits.p_enu[0][p], s->hits.p_enu[1][p]))
+            !error_budget_coarser(turn_enu, &rise_m, &world->landscape->elevation, s->hits.p_enu[0][p],
+                                  s->hits.p_enu[1][p]))
             continue;
         double n_enu[3];
         for (int k = 0; k < 3; k++) n_enu[k] = (double)s->hits.n_enu[k][p] + turn_enu[k];
@@ -293,11 +300,11 @@ static void ask_directly(Scratch *s, const Job *job, ProbeTask *t, Veils direct[
         const float *around = request->sky_samples > 0 ? s->gathered.w_m2[b] : NULL;
         float       *out = s->radiance[b];
         if (b >= AIR_MWIR)
-            thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k, s->shadow,
-                          around, &direct[b], NULL);
+            thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k,
+                          s->shadow, around, &direct[b], NULL);
         else
-            optical_shade(out, (int)b, job->air, materials, &s->hits, &s->rays, s->material, s->texture[b], s->shadow, around,
-                          &direct[b], NULL);
+            optical_shade(out, (int)b, job->air, materials, &s->hits, &s->rays, s->material, s->texture[b], s->shadow,
+                          around, &direct[b], NULL);
         veil_apply(out, &s->veil, b == AIR_MWIR ? effect_band_mwir : b == AIR_LWIR ? effect_band_lwir : (int)b, count);
         for (int p = 0; p < count; p++) {
             const double apart = (double)(out[p] - t->base[plane][p]);
@@ -330,8 +337,8 @@ static void probe_task(void *user, int worker, int index)
         box[0] = fmin(box[0], c->x), box[1] = fmin(box[1], c->y);
         box[2] = fmax(box[2], c->x + 1), box[3] = fmax(box[3], c->y + 1);
     }
-    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, box[0], box[1], box[2], box[3],
-                                              job->request->hidden_entity, &s->counters.visibility);
+    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, box[0], box[1], box[2],
+                                              box[3], job->request->hidden_entity, &s->counters.visibility);
     int       listed = 0;
     for (int k = 0; k < all; k++)
         if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];
@@ -405,7 +412,8 @@ Status error_budget(Job *job, Pool *pool, Arena *arena)
     if (status != STATUS_OK) return status;
     pool_run(pool, b.rows, candidate_task, &b);
     for (int i = 0; i < b.candidates; i++)
-        for (int k = 0; k < picture_plane_count; k++) out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
+        for (int k = 0; k < picture_plane_count; k++)
+            out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
     for (int k = 0; k < picture_plane_count; k++) out->mean[k] /= pixels;
     out->probes = draw_probes(&b, out->mean);
     const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));

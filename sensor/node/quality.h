@@ -1,8 +1,8 @@
 /* sensor/node/quality.h: settings off a measured front, for who says how good or how quick and not how.
  *
- * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to have
- * over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table and
- * configuration alone: times are the table's times quality.machine_factor, never a clock's. */
+ * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to
+ * have over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table
+ * and configuration alone: times are the table's times quality.machine_factor, never a clock's. */
 #ifndef SENSOR_NODE_QUALITY_H
 #define SENSOR_NODE_QUALITY_H
 

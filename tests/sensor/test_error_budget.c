@@ -1,5 +1,5 @@
-/* What frames say of their own error against frames of 16 x 16 rays, of finer ground, and without tables; the rest of the
- * scenes are in test_error_budget_deep.c. And: planes do not change, nor the budget with threads. */
+/* What frames say of their own error against frames of 16 x 16 rays, of finer ground, and without tables; the rest of
+ * the scenes are in test_error_budget_deep.c. And: planes do not change, nor the budget with threads. */
 #include "tests/sensor/error_scenes.h"
 
 static const ErrorScene scenes[] = {
@@ -19,11 +19,13 @@ static void estimates_are_near_the_truth(void **state)
         judge_ground(&ground, &scenes[k]);
         judge_tables(&tables, &scenes[k]);
     }
-    const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"), nine_in_ten(&tables, "tables")};
+    const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),
+                         nine_in_ten(&tables, "tables")};
     CHECK(held[0] && held[1] && held[2]);
 }
 
-/* What the tests count by can fail, in one band alone, too; and an estimate that is two and a half times the truth does. */
+/* What the tests count by can fail, in one band alone, too; and an estimate that is two and a half times the truth
+ * does. */
 static void too_few_are_too_few(void **state)
 {
     (void)state;
@@ -73,7 +75,8 @@ static void nothing_else_changes(void **state)
 static void small_pictures_have_a_budget(void **state)
 {
     (void)state;
-    static const int sizes[][2] = {{1, 1}, {8, 8}, {3, 97}, {31, 33}}, grids[][2] = {{1, 4}, {1, 0}, {2, 4}, {5, 0}, {16, 0}, {1, 2}};
+    static const int sizes[][2] = {{1, 1}, {8, 8}, {3, 97}, {31, 33}},
+                     grids[][2] = {{1, 4}, {1, 0}, {2, 4}, {5, 0}, {16, 0}, {1, 2}};
     BenchScene scene;
     open_scene(&scene, &lab.ground, &scenes[2]);
     for (int s = 0; s < 4; s++)
@@ -93,8 +96,8 @@ static void small_pictures_have_a_budget(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(too_few_are_too_few),
-                                       cmocka_unit_test(estimates_are_near_the_truth), cmocka_unit_test(nothing_else_changes),
-                                       cmocka_unit_test(small_pictures_have_a_budget)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(too_few_are_too_few), cmocka_unit_test(estimates_are_near_the_truth),
+        cmocka_unit_test(nothing_else_changes), cmocka_unit_test(small_pictures_have_a_budget)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

@@ -23,8 +23,8 @@ static void estimates_are_near_the_truth(void **state)
         judge_sum(&sum, &scenes[k]);
         if (!scenes[k].smoke) judge_tables(&tables, &scenes[k]); /* what leaves a surface is not told from smoke */
     }
-    const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"), nine_in_ten(&sum, "rays and posts"),
-                         nine_in_ten(&tables, "tables")};
+    const bool held[] = {nine_in_ten(&rays, "sampling"), nine_in_ten(&ground, "level of detail"),
+                         nine_in_ten(&sum, "rays and posts"), nine_in_ten(&tables, "tables")};
     CHECK(held[0] && held[1] && held[2] && held[3]);
 }
 

@@ -8,7 +8,8 @@ replay "$tmp/demo.pcap" "$tmp/plain" "${few[@]}" --set quality.budget=off
 check "a replay" [ "$code" = 0 ]
 check "no budget, no errors" [ "$(grep -c '"error"' "$tmp/plain/truth.jsonl")" = 0 ]
 replay "$tmp/demo.pcap" "$tmp/on" "${few[@]}"
-check "errors by default, in every line" [ "$(grep -c '"error":{"optical":{"sampling"' "$tmp/on/truth.jsonl")" = "$(wc -l <"$tmp/on/truth.jsonl")" ]
+check "errors by default, in every line" \
+    [ "$(grep -c '"error":{"optical":{"sampling"' "$tmp/on/truth.jsonl")" = "$(wc -l <"$tmp/on/truth.jsonl")" ]
 check "the same planes" same_hashes "$tmp/plain" "$tmp/on"
 config_hash() { run_json "$1" | grep -oE '"config_sha256":"[0-9a-f]+"'; }
 check "the same configuration" [ "$(config_hash "$tmp/plain")" = "$(config_hash "$tmp/on")" ]
@@ -32,7 +33,9 @@ check "under the same hash" [ "$(config_hash "$tmp/asked")" = "$(config_hash "$t
 check "not as by default" [ "$(config_hash "$tmp/asked")" != "$(config_hash "$tmp/on")" ]
 
 # time: by the table and the factor, not by a clock
-time_asked() { replay "$tmp/demo.pcap" "$1" "${few[@]}" --causal --set quality.frame_ms=20 --set quality.machine_factor="$2"; }
+time_asked() {
+    replay "$tmp/demo.pcap" "$1" "${few[@]}" --causal --set quality.frame_ms=20 --set quality.machine_factor="$2"
+}
 time_asked "$tmp/fast" 0.01
 time_asked "$tmp/again" 0.01
 time_asked "$tmp/slow" 100
