@@ -285,7 +285,7 @@ typedef struct BenchPoint {
     double      error;       /* in BenchKnob.error_unit, against a reference that does not approximate */
     double      also;        /* a second error of the same setting, which is judged by both; 0: there is none */
     const char *also_is;     /* what that is, of the first point: "of 8-12 um, K" */
-    double      bytes;       /* memory it needs; 0: the same for all */
+    double      bytes;       /* memory it needs; 0: the same for all; 1: as good as none */
     bool        is_default;  /* exactly one is */
 } BenchPoint;
 

@@ -256,7 +256,7 @@ void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, in
         row.error_unit = knob->error_unit;
         row.against    = knob->against;
         row.mark       = i == chosen ? (front ? "* default" : "default") : front ? "*" : NULL;
-        if (point[i].bytes > 0) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
+        if (point[i].bytes > 1) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
         if (i == chosen) row.error_limit = knob->stated;
         else if (chosen >= 0) row.ratio = bench_ratio(&point[i].time, &point[chosen].time), row.to = "default";
         bench_add(bench, &row);

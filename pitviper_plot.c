@@ -169,7 +169,7 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 {
     char   text[96], memory[24] = "";
     double leader = 0;
-    if (with_bytes && point->bytes > 0) {
+    if (with_bytes && point->bytes > 1) {
         number_text(memory, round(point->bytes * 1e-4) * 1e-2);
         if (point->bytes < 1e4) snprintf(memory, sizeof memory, "%.3g", 1e-6 * point->bytes);
     }
@@ -186,13 +186,23 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 
 /* ---- the picture ------------------------------------------------------------------------------ */
 
+/* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no point
+ * past another. */
+static double shown_s(const BenchPoint *point, int count, int index)
+{
+    for (int i = 0; i < count; i++)
+        if (point[i].is_default && i != index && point[i].time.rounds > 0 && point[i].time.rounds == point[index].time.rounds)
+            return point[i].time.median_s * bench_ratio(&point[index].time, &point[i].time);
+    return point[index].time.median_s;
+}
+
 static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int count, double unit_s)
 {
     double fast = INFINITY, slow = 0, least = INFINITY, most = 0;
     bool   zero = false;
     *p = (Plot){.zero_y_px = NAN, .stated_y_px = NAN};
     for (int i = 0; i < count && p->points < points_max; i++) {
-        const double t = point[i].time.median_s, e = point[i].error;
+        const double t = shown_s(point, count, i), e = point[i].error;
         if (!(t > 0 && t < INFINITY && e >= 0 && e < INFINITY)) continue;
         p->index[p->points++] = i;
         fast = fmin(fast, t / unit_s), slow = fmax(slow, t / unit_s);
@@ -210,7 +220,7 @@ static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int
     if (stated) p->stated_y_px = at_px(&p->error, knob->stated);
     for (int k = 0; k < p->points; k++) {
         const BenchPoint *at = &point[p->index[k]];
-        p->x_px[k]  = at_px(&p->time, at->time.median_s / unit_s);
+        p->x_px[k]  = at_px(&p->time, shown_s(point, count, p->index[k]) / unit_s);
         p->y_px[k]  = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
         p->front[k] = bench_on_front(knob, point, count, p->index[k]);
     }
