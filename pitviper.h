@@ -243,7 +243,7 @@ typedef struct BenchSuite {
     const char *name, *help;
     const char *options;           /* beyond those of every bench, as usage shows them: "size=WxH,model=FILE"; NULL */
     Status    (*run)(Bench *bench);/* on failure logs why */
-    const char *reads;             /* how to read its table, one sentence for a report; NULL: as the others of this name */
+    const char *reads; /* how to read its table, one sentence for a report; NULL: as the others of this name */
 } BenchSuite;
 
 BenchRow bench_row(const char *what);
@@ -285,7 +285,7 @@ typedef struct BenchPoint {
     double      error;       /* in BenchKnob.error_unit, against a reference that does not approximate */
     double      also;        /* a second error of the same setting, which is judged by both; 0: there is none */
     const char *also_is;     /* what that is, of the first point: "of 8-12 um, K" */
-    double      bytes;       /* memory it needs; 0: the same for all */
+    double      bytes;       /* memory it needs; 0: the same for all; 1: as good as none */
     bool        is_default;  /* exactly one is */
 } BenchPoint;
 
@@ -307,8 +307,8 @@ bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, i
 void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick);
 /* More rounds of the same works, behind those that there are, up to bench_rounds_max. */
 void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count);
-/* Run time against error, log-log, as SVG of its own style, for light and dark: each setting with its name, the front as
- * a line, the default ringed, what is stated dashed. */
+/* Run time against error, log-log, as SVG of its own style, for light and dark: each setting with its name, the front
+ * as a line, the default ringed, what is stated dashed. */
 void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count);
 
 /* The command: argv[0] NAME, then options; suites are walked by next(&state) from a zeroed state. Exit code: 1 when a
@@ -325,7 +325,8 @@ FILE  *html_begin(const char *path, const char *title);
 __attribute__((format(printf, 2, 3))) void html_text(FILE *page, const char *format, ...);
 /* A picture inside the page. type: "png", "svg+xml". */
 void   html_image(FILE *page, const char *type, const void *bytes, size_t count, const char *alt);
-/* Ends the page and gives the file its name. STATUS_IO, logged, and no file, when anything of it could not be written. */
+/* Ends the page and gives the file its name. STATUS_IO, logged, and no file, when anything of it could not be written.
+ */
 Status html_end(FILE *page, const char *path);
 
 /* ---- small vectors ------------------------------------------------------------------------ */

@@ -39,7 +39,8 @@ double bench_quantile(const double *value, int count, double share)
     qsort(sorted, (size_t)count, sizeof *sorted, by_value);
     const double place = share * (count - 1);
     const int    below = (int)place;
-    return below + 1 < count ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below]) : sorted[count - 1];
+    return below + 1 < count ? sorted[below] + (place - below) * (sorted[below + 1] - sorted[below])
+                             : sorted[count - 1];
 }
 
 void bench_time_finish(BenchTime *time)
@@ -185,8 +186,8 @@ void bench_forget(Bench *bench)
 {
     for (int i = 0; i < bench->kept_count; i++) {
         const BenchRow *row = &bench->kept[i].row;
-        const char *const texts[] = {row->what, row->unit, row->rate_unit, row->to, row->error_unit, row->against, row->mark,
-                                     bench->kept[i].plot};
+        const char *const texts[] = {row->what,       row->unit,    row->rate_unit, row->to,
+                                     row->error_unit, row->against, row->mark,      bench->kept[i].plot};
         for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) free((void *)(uintptr_t)texts[k]);
     }
     free(bench->kept);
@@ -207,7 +208,8 @@ static bool keep(Bench *bench, const BenchRow *row)
     }
     BenchRow *kept = &bench->kept[bench->kept_count].row;
     bench->kept[bench->kept_count++] = (BenchKept){.row = *row};
-    const char **texts[] = {&kept->what, &kept->unit, &kept->rate_unit, &kept->to, &kept->error_unit, &kept->against, &kept->mark};
+    const char **texts[] = {&kept->what,       &kept->unit,    &kept->rate_unit, &kept->to,
+                            &kept->error_unit, &kept->against, &kept->mark};
     bool ok = true;
     for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) ok = keep_text(texts[k]) && ok;
     return ok;
@@ -227,7 +229,8 @@ void bench_add(Bench *bench, const BenchRow *row)
     bench_show(error, row->error, row->error_unit);
     bench_show(limit, row->error_limit, row->error_unit);
     if (!isnan(row->ratio))
-        snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio, or_empty(row->to));
+        snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio,
+                 or_empty(row->to));
     if (bench->terminal) fputs("\r\x1b[K", stderr);
     printf("%-*s %10s %10s  %-18s %-22s %s%s%s%s%s%s\n", what_width, what, median_text, best, rate, ratio, error,
            *limit ? ", limit " : "", limit, row->against ? ": " : "", or_empty(row->against),

@@ -2,16 +2,15 @@
  *
  * The rule. A setting dominates another when it is better, beyond noise, in time, error or memory, and not worse in
  * any of them.
- *     time    rounds are in turn, so each gives a ratio that a busy machine hardly touches. Better: their median is below
- *             0.9 and their upper quartile below 1. Worse: their median is above 1.05, or their lower quartile above 1.
- *     error   the same inputs give the same error: its noise is what other inputs, a finer reference or another rounding
- *             would change. Better: below 0.9 of the other's, and by more than a hundredth of what is stated. Worse:
- *             above 1.02 of it.
- *             A second error of the same settings (of another band) is judged like the first.
- *     memory  is counted, and has no noise; a tenth less is better, anything more is worse.
- * To be better takes more than not to be worse: what noise can explain dominates nobody. The front are those that nobody
- * dominates. A default off the front fails, as does one whose error is above what is stated: there is another setting that
- * costs nothing. On quick rounds the times judge nobody: what dominates is shown. */
+ *     time    rounds are in turn, so each gives a ratio that a busy machine hardly touches. Better: their median is
+ * below 0.9 and their upper quartile below 1. Worse: their median is above 1.05, or their lower quartile above 1. error
+ * the same inputs give the same error: its noise is what other inputs, a finer reference or another rounding would
+ * change. Better: below 0.9 of the other's, and by more than a hundredth of what is stated. Worse: above 1.02 of it. A
+ * second error of the same settings (of another band) is judged like the first. memory  is counted, and has no noise; a
+ * tenth less is better, anything more is worse. To be better takes more than not to be worse: what noise can explain
+ * dominates nobody. The front are those that nobody dominates. A default off the front fails, as does one whose error
+ * is above what is stated: there is another setting that costs nothing. On quick rounds the times judge nobody: what
+ * dominates is shown. */
 #include "pitviper_bench.h"
 
 #include <errno.h>
@@ -115,7 +114,8 @@ static void write_plot(Bench *bench, const BenchKnob *knob, const char *text)
 /* ---- rows ------------------------------------------------------------------------------------- */
 
 /* Who dominates the default: the best of those that do, NULL: nobody, and how many. */
-static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, const BenchPoint *point, int count, int chosen)
+static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, const BenchPoint *point, int count,
+                                       int chosen)
 {
     const BenchPoint *best = NULL;
     *how_many = 0;
@@ -147,7 +147,8 @@ static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *p
     snprintf(against, sizeof against, "none is better in time, error or memory alone");
     if (best) {
         char   with[96] = "";
-        if (best->bytes > 0 && held->bytes > 0) snprintf(with, sizeof with, ", %.2g x the memory", best->bytes / held->bytes);
+        if (best->bytes > 0 && held->bytes > 0)
+            snprintf(with, sizeof with, ", %.2g x the memory", best->bytes / held->bytes);
         snprintf(against, sizeof against, "'%.60s': %.2g x the time, %.2g x the error%s%s", best->setting,
                  bench_ratio(&best->time, &held->time), held->error > 0 ? best->error / held->error : 1, with,
                  bench->quick ? "; quick rounds, not judged" : "");
@@ -171,8 +172,13 @@ static void say_trade(char *out, size_t size, const char *what, const BenchPoint
 {
     const double ratio = bench_ratio(&other->time, &held->time);
     if (other->error > 0 && held->error > 0)
-        say(out, size, "%s '%.40s': %.2g x the time, %.2g x the error", what, other->setting, ratio, other->error / held->error);
-    else say(out, size, "%s '%.40s': %.2g x the time, %s", what, other->setting, ratio, other->error > 0 ? "some error" : "no error");
+        say(out, size, "%s '%.40s': %.2g x the time, %.2g x the error", what, other->setting, ratio,
+            other->error / held->error);
+    else
+        say(out, size, "%s '%.40s': %.2g x the time, %s", what, other->setting, ratio,
+            other->error > 0 ? "some error" : "no error");
+    if (other->bytes > 1 && held->bytes > 1 && other->bytes != held->bytes)
+        say(out, size, ", %.2g x the memory", other->bytes / held->bytes);
 }
 
 void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick)
@@ -250,7 +256,7 @@ void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, in
         row.error_unit = knob->error_unit;
         row.against    = knob->against;
         row.mark       = i == chosen ? (front ? "* default" : "default") : front ? "*" : NULL;
-        if (point[i].bytes > 0) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
+        if (point[i].bytes > 1) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
         if (i == chosen) row.error_limit = knob->stated;
         else if (chosen >= 0) row.ratio = bench_ratio(&point[i].time, &point[chosen].time), row.to = "default";
         bench_add(bench, &row);

@@ -3,7 +3,8 @@
 #include "pitviper_bench.h"
 
 static const char table_style[] =
-    "<style>.bar{display:inline-block;height:.7em;background:#1f6fb2;opacity:.6;margin-left:.5em;vertical-align:baseline}"
+    "<style>.bar{display:inline-block;height:.7em;background:#1f6fb2;opacity:.6;margin-left:.5em;vertical-align:"
+    "baseline}"
     "svg.pvp{max-width:100%;height:auto}nav a{margin-right:1rem}td.w{min-width:16rem}"
     "figure{margin:.5rem 0}section{margin:2rem 0;border-top:1px solid #8884}summary{cursor:pointer}"
     ".scroll{overflow-x:auto}</style>\n";
@@ -11,13 +12,16 @@ static const char table_style[] =
 static const struct {
     const char *name, *reads;
 } usual[] = {
-    {"precision", "Where the program does not compute exactly, it could compute faster and worse, or slower and better. For each "
-                  "such place: what each setting takes and how wrong it is, against a reference that does not approximate. In "
-                  "the plots fast is left and close is low; the blue line, the front, joins settings than which no other is "
-                  "better in time, error or memory without being worse in another (* in tables). The default (ringed) must be "
-                  "on it, beyond what noise of times explains, and below the dashed line, its stated error."},
-    {"stability", "Each row is the worst error over inputs that are hard on arithmetic, beside the limit that it must keep."},
-    {"skip", "Each row is what leaving out needless work saves; its error is what that changes in the picture, and must be nothing."},
+    {"precision",
+     "Where the program does not compute exactly, it could compute faster and worse, or slower and better. For each "
+     "such place: what each setting takes and how wrong it is, against a reference that does not approximate. In "
+     "the plots fast is left and close is low; the blue line, the front, joins settings than which no other is "
+     "better in time, error or memory without being worse in another (* in tables). The default (ringed) must be "
+     "on it, beyond what noise of times explains, and below the dashed line, its stated error."},
+    {"stability",
+     "Each row is the worst error over inputs that are hard on arithmetic, beside the limit that it must keep."},
+    {"skip", "Each row is what leaving out needless work saves; its error is what that changes in the picture, and "
+             "must be nothing."},
 };
 
 static const char *reads_of(const BenchPart *part)
@@ -67,8 +71,10 @@ static void show_row(FILE *page, const BenchRow *row)
 
 static void begin_table(FILE *page)
 {
-    fputs("<div class=\"scroll\"><table><tr><th>what</th><th class=\"n\">median</th><th class=\"n\">best</th><th class=\"n\">rate</th>"
-          "<th>ratio to</th><th class=\"n\">error</th><th class=\"n\">limit</th><th>against</th></tr>\n", page);
+    fputs("<div class=\"scroll\"><table><tr><th>what</th><th class=\"n\">median</th><th class=\"n\">best</th><th "
+          "class=\"n\">rate</th>"
+          "<th>ratio to</th><th class=\"n\">error</th><th class=\"n\">limit</th><th>against</th></tr>\n",
+          page);
 }
 
 static void end_table(FILE *page) { fputs("</table></div>\n", page); }
@@ -80,11 +86,12 @@ static void show_verdict(FILE *page, const Bench *bench)
     for (int i = 0; i < bench->kept_count; i++) judged += !isnan(bench->kept[i].row.error_limit);
     for (int p = 0; p < bench->parts; p++) failed += bench->part[p].failed;
     if (bench->broken == 0 && failed == 0) {
-        fprintf(page, "<p class=\"good\">Everything holds: %d errors within their limits, of %d rows.</p>\n", judged, bench->rows);
+        fprintf(page, "<p class=\"good\">Everything holds: %d errors within their limits, of %d rows.</p>\n", judged,
+                bench->rows);
         return;
     }
-    fprintf(page, "<p class=\"bad\">%d of %d errors beyond their limit; %d suites did not come to their end.</p>\n", bench->broken,
-            judged, failed);
+    fprintf(page, "<p class=\"bad\">%d of %d errors beyond their limit; %d suites did not come to their end.</p>\n",
+            bench->broken, judged, failed);
     for (int p = 0; p < bench->parts; p++) {
         const BenchPart *part = &bench->part[p];
         if (!part->failed) continue;
@@ -117,7 +124,8 @@ static void show_machine(FILE *page, const Bench *bench, const BenchMachine *m, 
     snprintf(text, sizeof text, "pitviper %s, for x86-64-v3 by %s", PITVIPER_VERSION, m->compiler);
     fact(page, "build", text);
     fact(page, "libraries", m->libraries);
-    snprintf(text, sizeof text, "%s rounds, %d threads, %.0f s in all", bench->quick ? "quick" : "full", bench->threads, took_s);
+    snprintf(text, sizeof text, "%s rounds, %d threads, %.0f s in all", bench->quick ? "quick" : "full", bench->threads,
+             took_s);
     fact(page, "run", text);
     fputs("</table>\n", page);
 }
@@ -130,14 +138,17 @@ static void show_limit(FILE *page, const Bench *bench)
         const BenchRow *row = &bench->kept[i].row;
         if (!row->to || strcmp(row->to, "rays alone") != 0) continue;
         if (!begun) {
-            fputs("<h2>Against the tracer alone</h2>\n<p>A frame's time over that of its eye and sun rays alone, in turn: 1 would be "
-                  "the limit.</p>\n<table><tr><th>frame</th><th class=\"n\">x its rays</th><th></th></tr>\n", page);
+            fputs("<h2>Against the tracer alone</h2>\n<p>A frame's time over that of its eye and sun rays alone, in "
+                  "turn: 1 would be "
+                  "the limit.</p>\n<table><tr><th>frame</th><th class=\"n\">x its rays</th><th></th></tr>\n",
+                  page);
             begun = true;
         }
         fputs("<tr><td>", page);
         html_text(page, "%s", row->what);
-        fprintf(page, "</td><td class=\"n\">%.2f</td><td><span class=\"bar\" style=\"width:%.1frem\"></span></td></tr>\n", row->ratio,
-                clamp(row->ratio, 0, 20));
+        fprintf(page,
+                "</td><td class=\"n\">%.2f</td><td><span class=\"bar\" style=\"width:%.1frem\"></span></td></tr>\n",
+                row->ratio, clamp(row->ratio, 0, 20));
     }
     if (begun) fputs("</table>\n", page);
 }
@@ -167,8 +178,10 @@ static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
         if (b->first < part->first || b->first >= part->first + part->count || b->chosen < 0) continue;
         const BenchRow *row = &bench->kept[b->chosen].row;
         if (!begun)
-            fputs("<div class=\"scroll\"><table><tr><th>approximation</th><th>default</th><th class=\"n\">run time</th><th>of</th>"
-                  "<th class=\"n\">error</th><th class=\"n\">stated at most</th><th>verdict</th></tr>\n", page);
+            fputs("<div class=\"scroll\"><table><tr><th>approximation</th><th>default</th><th class=\"n\">run "
+                  "time</th><th>of</th>"
+                  "<th class=\"n\">error</th><th class=\"n\">stated at most</th><th>verdict</th></tr>\n",
+                  page);
         begun = true;
         fprintf(page, "<tr><td class=\"w\"><a href=\"#knob-%d\">", k);
         html_text(page, "%s", b->name);

@@ -16,8 +16,10 @@ static const char style[] =
     ".pvp .fr{stroke:#1f6fb2;stroke-width:2;fill:none}.pvp .p{fill:#888}.pvp .f{fill:#1f6fb2}"
     ".pvp .df{stroke:#c2570c;stroke-width:2.5;fill:none}.pvp .st{stroke:#c0392b;stroke-dasharray:6 4;fill:none}"
     ".pvp text.s{fill:#c0392b}.pvp text.ok{fill:#217a3c}.pvp .ld{stroke:#999;stroke-width:.8}"
-    "@media (prefers-color-scheme:dark){.pvp text{fill:#ddd}.pvp .d{fill:#999}.pvp .bg{fill:#1b1b1d}.pvp .g{stroke:#333}"
-    ".pvp .fr{stroke:#6db3f2}.pvp .f{fill:#6db3f2}.pvp .df{stroke:#f59e4b}.pvp .st{stroke:#ff7b6b}.pvp text.s{fill:#ff7b6b}"
+    "@media (prefers-color-scheme:dark){.pvp text{fill:#ddd}.pvp .d{fill:#999}.pvp .bg{fill:#1b1b1d}.pvp "
+    ".g{stroke:#333}"
+    ".pvp .fr{stroke:#6db3f2}.pvp .f{fill:#6db3f2}.pvp .df{stroke:#f59e4b}.pvp .st{stroke:#ff7b6b}.pvp "
+    "text.s{fill:#ff7b6b}"
     ".pvp text.ok{fill:#6fcf8a}}"
     "</style>";
 
@@ -68,7 +70,8 @@ static void choose_ticks(Axis *a)
             for (int k = 0; k < steps[s].count && d % every == 0; k++) add_tick(a, steps[s].m[k] * pow(10, d));
         if (a->ticks >= 3) return;
     }
-    const double low = pow(10, a->low), high = pow(10, a->high), raw = (high - low) / 5, unit = pow(10, floor(log10(raw)));
+    const double low = pow(10, a->low), high = pow(10, a->high), raw = (high - low) / 5,
+                 unit = pow(10, floor(log10(raw)));
     const double step = unit * (raw < 1.5 * unit ? 1 : raw < 3.5 * unit ? 2 : raw < 7.5 * unit ? 5 : 10);
     a->ticks = 0;
     for (double v = ceil(low / step) * step; v <= high && a->ticks < ticks_max; v += step) add_tick(a, v);
@@ -137,7 +140,8 @@ static double cost_of(const Plot *p, const Box *b)
         cost += 10 * shared(b, &dot);
     }
     for (int k = 0; k + 1 < p->lines; k++)
-        cost += 8 * crossed(b, p->x_px[p->line[k]], p->y_px[p->line[k]], p->x_px[p->line[k + 1]], p->y_px[p->line[k + 1]]);
+        cost +=
+            8 * crossed(b, p->x_px[p->line[k]], p->y_px[p->line[k]], p->x_px[p->line[k + 1]], p->y_px[p->line[k + 1]]);
     if (!isnan(p->stated_y_px)) cost += 3 * crossed(b, left_px, p->stated_y_px, width_px - right_px, p->stated_y_px);
     return cost;
 }
@@ -165,7 +169,7 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 {
     char   text[96], memory[24] = "";
     double leader = 0;
-    if (with_bytes && point->bytes > 0) {
+    if (with_bytes && point->bytes > 1) {
         number_text(memory, round(point->bytes * 1e-4) * 1e-2);
         if (point->bytes < 1e4) snprintf(memory, sizeof memory, "%.3g", 1e-6 * point->bytes);
     }
@@ -182,13 +186,23 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 
 /* ---- the picture ------------------------------------------------------------------------------ */
 
+/* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no point
+ * past another. */
+static double shown_s(const BenchPoint *point, int count, int index)
+{
+    for (int i = 0; i < count; i++)
+        if (point[i].is_default && i != index && point[i].time.rounds > 0 && point[i].time.rounds == point[index].time.rounds)
+            return point[i].time.median_s * bench_ratio(&point[index].time, &point[i].time);
+    return point[index].time.median_s;
+}
+
 static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int count, double unit_s)
 {
     double fast = INFINITY, slow = 0, least = INFINITY, most = 0;
     bool   zero = false;
     *p = (Plot){.zero_y_px = NAN, .stated_y_px = NAN};
     for (int i = 0; i < count && p->points < points_max; i++) {
-        const double t = point[i].time.median_s, e = point[i].error;
+        const double t = shown_s(point, count, i), e = point[i].error;
         if (!(t > 0 && t < INFINITY && e >= 0 && e < INFINITY)) continue;
         p->index[p->points++] = i;
         fast = fmin(fast, t / unit_s), slow = fmax(slow, t / unit_s);
@@ -206,7 +220,7 @@ static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int
     if (stated) p->stated_y_px = at_px(&p->error, knob->stated);
     for (int k = 0; k < p->points; k++) {
         const BenchPoint *at = &point[p->index[k]];
-        p->x_px[k]  = at_px(&p->time, at->time.median_s / unit_s);
+        p->x_px[k]  = at_px(&p->time, shown_s(point, count, p->index[k]) / unit_s);
         p->y_px[k]  = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
         p->front[k] = bench_on_front(knob, point, count, p->index[k]);
     }
@@ -227,8 +241,11 @@ static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char
     for (int k = 0; k < p->time.ticks; k++) {
         const double x = at_px(&p->time, p->time.tick[k]);
         number_text(text, p->time.tick[k]);
-        fprintf(to, "<line class=\"g\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%.0f\"/><text text-anchor=\"middle\" x=\"%.1f\" "
-                "y=\"%.0f\">%s</text>\n", x, top_px, x, floor_px, x, floor_px + 17, text);
+        fprintf(
+            to,
+            "<line class=\"g\" x1=\"%.1f\" y1=\"%d\" x2=\"%.1f\" y2=\"%.0f\"/><text text-anchor=\"middle\" x=\"%.1f\" "
+            "y=\"%.0f\">%s</text>\n",
+            x, top_px, x, floor_px, x, floor_px + 17, text);
     }
     for (int k = 0; k < p->error.ticks; k++) {
         const double y = at_px(&p->error, p->error.tick[k]);
@@ -237,13 +254,16 @@ static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char
                 "y=\"%.1f\">%s</text>\n", left_px, y, width_px - right_px, y, left_px - 6, y + 4, text);
     }
     if (!isnan(p->zero_y_px))
-        fprintf(to, "<line class=\"g\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text text-anchor=\"end\" x=\"%d\" "
-                "y=\"%.1f\">0</text>\n", left_px, p->zero_y_px, width_px - right_px, p->zero_y_px, left_px - 6, p->zero_y_px + 4);
+        fprintf(to,
+                "<line class=\"g\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text text-anchor=\"end\" x=\"%d\" "
+                "y=\"%.1f\">0</text>\n",
+                left_px, p->zero_y_px, width_px - right_px, p->zero_y_px, left_px - 6, p->zero_y_px + 4);
     fprintf(to, "<path class=\"ax\" d=\"M%d %dV%.0fH%d\"/>\n", left_px, top_px, floor_px, width_px - right_px);
     fprintf(to, "<text text-anchor=\"middle\" x=\"%d\" y=\"%d\">run time, %s: ", (left_px + width_px - right_px) / 2,
             height_px - 34, unit);
     html_text(to, "%.60s", knob->of ? knob->of : "");
-    fprintf(to, "</text>\n<text text-anchor=\"middle\" transform=\"translate(16 %.0f) rotate(-90)\">error", 0.5 * (top_px + floor_px));
+    fprintf(to, "</text>\n<text text-anchor=\"middle\" transform=\"translate(16 %.0f) rotate(-90)\">error",
+            0.5 * (top_px + floor_px));
     if (knob->error_unit) html_text(to, ", %.30s", knob->error_unit);
     fputs("</text>\n", to);
 }
@@ -252,22 +272,30 @@ static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char
 static void draw_legend(FILE *to, const Plot *p, const BenchPoint *point)
 {
     const int y = height_px - 10;
-    fprintf(to, "<circle class=\"f\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/><circle class=\"df\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
-            "<text class=\"d\" x=\"%d\" y=\"%d\">default</text>", 84, y - 4, dot_px, 84, y - 4, dot_px + 4, 98, y);
+    fprintf(to,
+            "<circle class=\"f\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/><circle class=\"df\" cx=\"%d\" cy=\"%d\" r=\"%.1f\"/>"
+            "<text class=\"d\" x=\"%d\" y=\"%d\">default</text>",
+            84, y - 4, dot_px, 84, y - 4, dot_px + 4, 98, y);
     fprintf(to, "<path class=\"fr\" d=\"M156 %dh28\"/><circle class=\"f\" cx=\"170\" cy=\"%d\" r=\"%.1f\"/>"
             "<text class=\"d\" x=\"190\" y=\"%d\">the front: none is better in all</text>", y - 4, y - 4, dot_px, y);
-    fprintf(to, "<circle class=\"p\" cx=\"398\" cy=\"%d\" r=\"%.1f\"/><text class=\"d\" x=\"408\" y=\"%d\">another is better</text>",
+    fprintf(to,
+            "<circle class=\"p\" cx=\"398\" cy=\"%d\" r=\"%.1f\"/><text class=\"d\" x=\"408\" y=\"%d\">another is "
+            "better</text>",
             y - 4, dot_px, y);
     if (!isnan(p->stated_y_px))
-        fprintf(to, "<line class=\"st\" x1=\"520\" y1=\"%d\" x2=\"546\" y2=\"%d\"/><text class=\"d\" x=\"552\" y=\"%d\">stated</text>",
+        fprintf(to,
+                "<line class=\"st\" x1=\"520\" y1=\"%d\" x2=\"546\" y2=\"%d\"/><text class=\"d\" x=\"552\" "
+                "y=\"%d\">stated</text>",
                 y - 4, y - 4, y);
     fputs("\n", to);
     for (int k = 0; k < p->points; k++) {
         if (!point[p->index[k]].is_default) continue;
         const bool keeps = isnan(p->stated_y_px) || p->y_px[k] >= p->stated_y_px;
-        fprintf(to, "<text class=\"%s\" text-anchor=\"end\" x=\"%d\" y=\"20\">%s</text>\n", keeps && p->front[k] ? "ok" : "s",
-                width_px - right_px, !keeps ? "the default misses its stated error" : p->front[k] ? "the default holds"
-                : "another setting is better than the default");
+        fprintf(to, "<text class=\"%s\" text-anchor=\"end\" x=\"%d\" y=\"20\">%s</text>\n",
+                keeps && p->front[k] ? "ok" : "s", width_px - right_px,
+                !keeps        ? "the default misses its stated error"
+                : p->front[k] ? "the default holds"
+                              : "another setting is better than the default");
     }
 }
 
@@ -285,10 +313,13 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
     while (u < 3 && fast < units[u].s) u++;
     lay_out(p, knob, point, count, units[u].s);
 
-    fprintf(to, "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvp\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-            "role=\"img\">%s<title>", width_px, height_px, width_px, height_px, style);
+    fprintf(to,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"pvp\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+            "role=\"img\">%s<title>",
+            width_px, height_px, width_px, height_px, style);
     html_text(to, "%s: run time against error", knob->name);
-    fprintf(to, "</title>\n<rect class=\"bg\" width=\"%d\" height=\"%d\"/>\n<text class=\"h\" x=\"12\" y=\"20\">", width_px, height_px);
+    fprintf(to, "</title>\n<rect class=\"bg\" width=\"%d\" height=\"%d\"/>\n<text class=\"h\" x=\"12\" y=\"20\">",
+            width_px, height_px);
     html_text(to, "%.70s", knob->name);
     fputs("</text><text class=\"d\" x=\"12\" y=\"38\">", to);
     if (knob->turned_by) html_text(to, "%.50s", knob->turned_by);
@@ -302,8 +333,10 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
         number_text(number, knob->stated);
         snprintf(text, sizeof text, "stated: %s %.16s", number, knob->error_unit ? knob->error_unit : "");
         const double wide = letter_px * letters(text), x = width_px - right_px - wide;
-        fprintf(to, "<line class=\"st\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text class=\"s\" x=\"%.1f\" y=\"%.1f\">",
-                left_px, p->stated_y_px, width_px - right_px, p->stated_y_px, x, p->stated_y_px - 4);
+        fprintf(
+            to,
+            "<line class=\"st\" x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\"/><text class=\"s\" x=\"%.1f\" y=\"%.1f\">",
+            left_px, p->stated_y_px, width_px - right_px, p->stated_y_px, x, p->stated_y_px - 4);
         html_text(to, "%s", text);
         fputs("</text>\n", to);
         p->box[p->boxes++] = (Box){x, p->stated_y_px - 15, width_px - right_px, p->stated_y_px - 1};
@@ -315,14 +348,17 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
     for (int k = 0; k < p->points; k++) {
         const BenchPoint *at = &point[p->index[k]];
         if (at->is_default)
-            fprintf(to, "<circle class=\"df\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>", p->x_px[k], p->y_px[k], dot_px + 4);
-        fprintf(to, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n", p->front[k] ? "f" : "p", p->x_px[k], p->y_px[k],
-                dot_px);
+            fprintf(to, "<circle class=\"df\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>", p->x_px[k], p->y_px[k],
+                    dot_px + 4);
+        fprintf(to, "<circle class=\"%s\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>\n", p->front[k] ? "f" : "p", p->x_px[k],
+                p->y_px[k], dot_px);
     }
     for (int k = 0; k < p->points; k++)
         draw_label(to, p, k, &point[p->index[k]], p->front[k] ? "" : "d", bytes_differ);
     if (p->points < count)
-        fprintf(to, "<text class=\"d\" text-anchor=\"end\" x=\"%d\" y=\"48\">%d without a time or an error not shown</text>\n",
-                width_px - right_px, count - p->points);
+        fprintf(
+            to,
+            "<text class=\"d\" text-anchor=\"end\" x=\"%d\" y=\"48\">%d without a time or an error not shown</text>\n",
+            width_px - right_px, count - p->points);
     fputs("</svg>\n", to);
 }

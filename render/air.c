@@ -249,9 +249,11 @@ static double height_of(const SkyJob *job, int from_eye) { return from_eye ? job
 static void ask_around_sun(SkyJob *job, int from_eye, int k)
 {
     const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
-    const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad), azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
+    const double zenith_rad = fmax(job->day_zenith_rad - angle_rad, -0.5 * pi_rad),
+                 azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
     double thermal[2];
-    air_day_sky(&job->answer[from_eye].around[k], thermal, job->day, height_of(job, from_eye), fabs(zenith_rad), &azimuth_rad, 1);
+    air_day_sky(&job->answer[from_eye].around[k], thermal, job->day, height_of(job, from_eye), fabs(zenith_rad),
+                &azimuth_rad, 1);
 }
 
 /* One height of the sky. */
@@ -260,8 +262,8 @@ static void ask_sky(SkyJob *job, int from_eye, int i)
     const double u = (double)i / asked_ups;
     const int azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
     SkyAnswers *answer = &job->answer[from_eye];
-    air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, from_eye), acos(u * u), job->azimuth_rad,
-                azimuths);
+    air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, from_eye), acos(u * u),
+                job->azimuth_rad, azimuths);
     for (int a = azimuths; a <= asked_azimuths; a++)
         memcpy(answer->scattered[i][a], answer->scattered[i][0], sizeof answer->scattered[i][a]);
 }
@@ -286,9 +288,11 @@ static void without_ring(AskedSky *asked, const SkyJob *job, const AirSky *sky, 
             place_in_sky(&place, sun, d, 0);
             const float *ring = &sky->around_sun[place.angle];
             const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
-            asked->scattered_w_m2_sr[i][a] = b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->scattered_scale / around;
+            asked->scattered_w_m2_sr[i][a] =
+                b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->scattered_scale / around;
         }
-        asked->thermal_w_m2_sr[i] = b >= AIR_MWIR ? answer->thermal[i][b - AIR_MWIR] * job->thermal_scale[b - AIR_MWIR] : 0;
+        asked->thermal_w_m2_sr[i] =
+            b >= AIR_MWIR ? answer->thermal[i][b - AIR_MWIR] * job->thermal_scale[b - AIR_MWIR] : 0;
     }
 }
 
@@ -359,13 +363,18 @@ static void light_planes(SkyJob *job, int i)
         const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
         const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (job->bands >> b & 1) air->plane_w_m2[b][i][p] = (float)(on_plane(job->w_m2[b], &job->lamp, n_enu) / open);
+            if (job->bands >> b & 1)
+                air->plane_w_m2[b][i][p] = (float)(on_plane(job->w_m2[b], &job->lamp, n_enu) / open);
     }
 }
 
 /* ---- in three passes, each of tasks for a pool ------------------------------------------------ */
 
-enum { asks_of_sky = 2 * (asked_ups + 1), asks_around_sun = 2 * (air_sky_angles + 1), lamp_tasks = lamp_ups + lamp_rings };
+enum {
+    asks_of_sky = 2 * (asked_ups + 1),
+    asks_around_sun = 2 * (air_sky_angles + 1),
+    lamp_tasks = lamp_ups + lamp_rings
+};
 
 static void ask_task(void *user, int worker, int task)
 {
@@ -502,8 +511,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
     double temp_k[air_temps + 1];
     memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
     temp_k[air_temps] = out->weather.air_temp_k;
-    Status status = air_day_at(&job->day, atmosphere, weather->visibility_m, job->day_zenith_rad, eye->bands, temp_k, air_temps + 1,
-                               arena);
+    Status status = air_day_at(&job->day, atmosphere, weather->visibility_m, job->day_zenith_rad, eye->bands, temp_k,
+                               air_temps + 1, arena);
     out->day = job->day;
     memcpy(out->day_thermal_scale, job->thermal_scale, sizeof out->day_thermal_scale);
     out->day_scattered_scale = job->scattered_scale;

@@ -21,9 +21,10 @@
 
 /* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
  * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
- * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: over (1 + n_up) / 2, the share of
- * the sky that it sees, so that an even sky is exact; by azimuth, and by tilt, dense where a plane is level: equal steps
- * of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which are straight in small tilts where n_up is not. */
+ * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: over (1 + n_up) / 2, the share
+ * of the sky that it sees, so that an even sky is exact; by azimuth, and by tilt, dense where a plane is level: equal
+ * steps of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which are straight in small tilts where n_up is
+ * not. */
 enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
 
 typedef struct AirSky {
@@ -47,7 +48,7 @@ typedef struct Air {
     AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
     AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
     AirSky  sky_eye[AIR_BAND_COUNT];       /* from the eye */
-    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
+    float plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
     const PlanckTable *planck_mwir, *planck_lwir;
 
     double    eye_height_m;

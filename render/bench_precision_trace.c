@@ -140,9 +140,9 @@ static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int
 static Status knob_ground(Bench *bench)
 {
     enum { settings = 6 };
-    static const char *const name[settings] =
-        {"marched by 4 posts, halved", "marched by 1 post, halved", "marched by 1 / 4 post, halved", "every line met in float",
-         "lines met in double, one ray", "lines met in double, a tile of rays"};
+    static const char *const name[settings] = {"marched by 4 posts, halved",    "marched by 1 post, halved",
+                                               "marched by 1 / 4 post, halved", "every line met in float",
+                                               "lines met in double, one ray",  "lines met in double, a tile of rays"};
     static const double step[settings] = {4, 1, 0.25, -2, 0, -1};
     static GroundRays rays;
     static GroundSet  set[settings];

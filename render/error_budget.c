@@ -6,7 +6,8 @@
 #include "render/optical.h"
 #include "render/render_private.h"
 
-enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48 };
+enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48,
+       tables_blocks = 4 /* of them, for as many threads */ };
 static const double pixels_a_probe = 1200; /* 16 rays each: 1.3 % of a frame of one ray a pixel */
 static const uint32_t stream = 0x6275;     /* "bu" */
 
@@ -26,6 +27,7 @@ typedef struct ProbeOf {
 typedef enum ProbePass { PASS_RAYS, PASS_BASE, PASS_COARSE } ProbePass;
 
 struct ProbeTask {
+    bool           of_tables; /* asked directly, and nothing else */
     ProbePass      pass;
     int            count;
     const ProbeOf *probe; /* [count] */
@@ -41,14 +43,17 @@ typedef struct Budget {
     int         field_px, columns, rows, candidates, probes, blocks, n;
     bool        law;       /* more rays than the pixels have are too many: by the law */
     Candidate  *candidate;
-    ProbeOf    *probe;
-    ProbeTask  *task;      /* [blocks] */
+    ProbeOf    *probe, tables_probe[tables_probes];
+    ProbeTask  *task;      /* [blocks + tables_blocks] */
     Veils     (*direct)[AIR_BAND_COUNT]; /* [workers] */
 } Budget;
 
 static Band band_of(int plane)
 {
-    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+    return plane == picture_mwir    ? BAND_MWIR
+           : plane == picture_lwir  ? BAND_LWIR
+           : plane == picture_radar ? BAND_RADAR
+                                    : BAND_OPTICAL;
 }
 
 double plane_contrast(const Picture *p, const float *value, int x, int y)
@@ -68,7 +73,8 @@ double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, doubl
 {
     const double step = 1e-3 * mean_w_m2_sr;
     if (!(mean_w_m2_sr > 0)) return NAN;
-    return rms_w_m2_sr * (planck_table_temp(planck, mean_w_m2_sr + step) - planck_table_temp(planck, mean_w_m2_sr)) / step;
+    return rms_w_m2_sr * (planck_table_temp(planck, mean_w_m2_sr + step) - planck_table_temp(planck, mean_w_m2_sr)) /
+           step;
 }
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
@@ -81,7 +87,8 @@ static unsigned planes_to_ask(const Job *job, size_t px)
     if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
     for (int k = 0; k < picture_plane_count; k++) {
         const bool sunlit = band_of(k) == BAND_OPTICAL || band_of(k) == BAND_MWIR;
-        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit)) planes |= 1u << k;
+        if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit))
+            planes |= 1u << k;
     }
     return planes;
 }
@@ -112,13 +119,32 @@ static void candidate_task(void *user, int worker, int row)
     }
 }
 
-/* By the root of what it differs by, over each plane's mean, and by no less than an even share. Returns how many. */
+/* By weight, in steps. Returns how many. */
+static int draw(ProbeOf *out, int most, const Budget *b)
+{
+    double sum = 0, gone = 0;
+    int    count = 0;
+    for (int i = 0; i < b->candidates; i++) sum += b->candidate[i].weight * b->candidate[i].area;
+    if (!(sum > 0)) return 0;
+    const double step = sum / most;
+    double       to = 0.5 * step;
+    for (int i = 0; i < b->candidates; i++) {
+        const Candidate *c = &b->candidate[i];
+        int              drawn = 0;
+        for (gone += c->weight * c->area; to < gone; to += step) drawn++;
+        if (drawn > 0 && count < most) out[count++] = (ProbeOf){i, drawn * step / c->weight};
+    }
+    return count;
+}
+
+/* By the root of what it differs by, over each plane's mean, and by no less than an even share. */
 static int draw_probes(Budget *b, const double mean[picture_plane_count])
 {
     double sum = 0, area = 0;
     for (int i = 0; i < b->candidates; i++) {
         Candidate *c = &b->candidate[i];
         double     relative = 0;
+        c->weight = 0;
         if (!c->planes) continue;
         for (int k = 0; k < picture_plane_count; k++)
             if (c->planes >> k & 1 && mean[k] != 0) relative += (double)c->contrast[k] / (mean[k] * mean[k]);
@@ -127,18 +153,23 @@ static int draw_probes(Budget *b, const double mean[picture_plane_count])
         area += c->area;
     }
     if (!(area > 0)) return 0;
-    const double even = sum > 0 ? sum / area : 1, step = (sum + even * area) / b->probes;
-    double       to = 0.5 * step, gone = 0;
-    int          count = 0;
+    const double even = sum > 0 ? sum / area : 1;
+    for (int i = 0; i < b->candidates; i++)
+        if (b->candidate[i].planes) b->candidate[i].weight += even;
+    return draw(b->probe, b->probes, b);
+}
+
+/* By how bright it is, over each plane's mean, and no less than evenly: what tables do is in proportion to that, and a
+ * few hot pixels can hold half of a thermal band. */
+static int draw_tables(Budget *b, const double mean[picture_plane_count])
+{
     for (int i = 0; i < b->candidates; i++) {
-        const Candidate *c = &b->candidate[i];
-        if (!c->planes) continue;
-        const double weight = c->weight + even;
-        int          drawn = 0;
-        for (gone += weight * c->area; to < gone; to += step) drawn++;
-        if (drawn > 0 && count < b->probes) b->probe[count++] = (ProbeOf){i, drawn * step / weight};
+        Candidate *c = &b->candidate[i];
+        c->weight = c->planes ? 1 : 0;
+        for (int k = 0; k < picture_radar; k++)
+            if (c->planes >> k & 1 && mean[k] > 0) c->weight = fmax(c->weight, (double)c->value[k] / mean[k]);
     }
-    return count;
+    return draw(b->tables_probe, tables_probes, b);
 }
 
 /* ---- the ground at every second post ----------------------------------------------------------- */
@@ -197,7 +228,8 @@ void law_take(Scratch *s, const Job *job, int plane)
     const Block *block = &s->block;
     const int    samples = block->n * block->n;
     for (int p = 0; p < block->pixels; p++) {
-        const double open = job->picture->covered ? 1 - (double)job->picture->covered[pixel_index(job, block->x[p], block->y[p])] : 1;
+        const double open =
+            job->picture->covered ? 1 - (double)job->picture->covered[pixel_index(job, block->x[p], block->y[p])] : 1;
         s->law[plane] += open * open * error_budget_law(s->out + p * samples, block->n);
     }
 }
@@ -237,7 +269,8 @@ static void coarsen(Scratch *s, const Job *job, ProbeTask *t)
         double turn_enu[3], rise_m;
         t->image_px[p] = 0;
         if (!world->landscape || !s->hits.surface[p] ||
-            !error_budget_coarser(turn_enu, &rise_m, &world->landscape->elevation, s->hits.p_enu[0][p], s->hits.p_enu[1][p]))
+            !error_budget_coarser(turn_enu, &rise_m, &world->landscape->elevation, s->hits.p_enu[0][p],
+                                  s->hits.p_enu[1][p]))
             continue;
         double n_enu[3];
         for (int k = 0; k < 3; k++) n_enu[k] = (double)s->hits.n_enu[k][p] + turn_enu[k];
@@ -267,11 +300,11 @@ static void ask_directly(Scratch *s, const Job *job, ProbeTask *t, Veils direct[
         const float *around = request->sky_samples > 0 ? s->gathered.w_m2[b] : NULL;
         float       *out = s->radiance[b];
         if (b >= AIR_MWIR)
-            thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k, s->shadow,
-                          around, &direct[b], NULL);
+            thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k,
+                          s->shadow, around, &direct[b], NULL);
         else
-            optical_shade(out, (int)b, job->air, materials, &s->hits, &s->rays, s->material, s->texture[b], s->shadow, around,
-                          &direct[b], NULL);
+            optical_shade(out, (int)b, job->air, materials, &s->hits, &s->rays, s->material, s->texture[b], s->shadow,
+                          around, &direct[b], NULL);
         veil_apply(out, &s->veil, b == AIR_MWIR ? effect_band_mwir : b == AIR_LWIR ? effect_band_lwir : (int)b, count);
         for (int p = 0; p < count; p++) {
             const double apart = (double)(out[p] - t->base[plane][p]);
@@ -304,11 +337,17 @@ static void probe_task(void *user, int worker, int index)
         box[0] = fmin(box[0], c->x), box[1] = fmin(box[1], c->y);
         box[2] = fmax(box[2], c->x + 1), box[3] = fmax(box[3], c->y + 1);
     }
-    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, box[0], box[1], box[2], box[3],
-                                              job->request->hidden_entity, &s->counters.visibility);
+    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, box[0], box[1], box[2],
+                                              box[3], job->request->hidden_entity, &s->counters.visibility);
     int       listed = 0;
     for (int k = 0; k < all; k++)
         if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];
+    if (t->of_tables) {
+        set_block(s, job, t, PASS_BASE, 1);
+        render_block(s, job, listed, NULL);
+        ask_directly(s, job, t, b->direct[worker], t->count);
+        return;
+    }
     /* as many pixels at a time as a block of samples holds */
     const ProbeOf *first = t->probe;
     const int      count = t->count, piece = hits_capacity / (b->n * b->n);
@@ -321,8 +360,6 @@ static void probe_task(void *user, int worker, int index)
     t->probe = first, t->count = count;
     set_block(s, job, t, PASS_BASE, 1);
     render_block(s, job, listed, NULL);
-    const int asked = tables_probes / b->blocks + 1;
-    ask_directly(s, job, t, b->direct[worker], asked < count ? asked : count);
     coarsen(s, job, t);
     t->pass = PASS_COARSE;
     shade_block(s, job);
@@ -345,26 +382,23 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     b->candidates = b->columns * b->rows;
     b->candidate = arena_alloc(arena, (size_t)b->candidates, sizeof *b->candidate);
     b->probe     = arena_alloc(arena, (size_t)b->probes, sizeof *b->probe);
-    b->task      = arena_alloc(arena, (size_t)b->blocks, sizeof *b->task);
+    b->task      = arena_alloc(arena, (size_t)b->blocks + tables_blocks, sizeof *b->task);
     b->direct    = arena_alloc(arena, (size_t)pool_threads(pool), sizeof *b->direct);
     return b->candidate && b->probe && b->task && b->direct ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* Within a block the order of places is mixed, so that those whose tables are asked lie all over it. */
-static void deal(Budget *b, int count)
+/* Blocks of probes, then those of tables; returns how many there are of both. */
+static int deal(Budget *b, int probes, int of_tables)
 {
-    b->blocks = (count + probes_a_block - 1) / probes_a_block;
-    for (int k = 0; k < b->blocks; k++) {
-        ProbeOf mixed[probes_a_block];
-        const int first = k * probes_a_block, n = count - first < probes_a_block ? count - first : probes_a_block;
-        int       m = 0;
-        for (int i = 0; i < probes_a_block; i++)
-            if (i * 37 % probes_a_block < n) mixed[m++] = b->probe[first + i * 37 % probes_a_block];
-        memcpy(b->probe + first, mixed, (size_t)n * sizeof *mixed);
-        b->task[k].probe     = b->probe + first;
-        b->task[k].candidate = b->candidate;
-        b->task[k].count     = n;
-    }
+    const int a_block = (of_tables + tables_blocks - 1) / tables_blocks;
+    int       tasks = 0;
+    for (int first = 0; first < probes; first += probes_a_block)
+        b->task[tasks++] = (ProbeTask){.probe = b->probe + first, .candidate = b->candidate,
+                                       .count = probes - first < probes_a_block ? probes - first : probes_a_block};
+    for (int first = 0; first < of_tables; first += a_block)
+        b->task[tasks++] = (ProbeTask){.of_tables = true, .probe = b->tables_probe + first, .candidate = b->candidate,
+                                       .count = of_tables - first < a_block ? of_tables - first : a_block};
+    return tasks;
 }
 
 Status error_budget(Job *job, Pool *pool, Arena *arena)
@@ -378,19 +412,20 @@ Status error_budget(Job *job, Pool *pool, Arena *arena)
     if (status != STATUS_OK) return status;
     pool_run(pool, b.rows, candidate_task, &b);
     for (int i = 0; i < b.candidates; i++)
-        for (int k = 0; k < picture_plane_count; k++) out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
+        for (int k = 0; k < picture_plane_count; k++)
+            out->mean[k] += (double)b.candidate[i].value[k] * b.candidate[i].area;
     for (int k = 0; k < picture_plane_count; k++) out->mean[k] /= pixels;
     out->probes = draw_probes(&b, out->mean);
-    deal(&b, out->probes);
-    pool_run(pool, b.blocks, probe_task, &b);
+    const int tasks = deal(&b, out->probes, draw_tables(&b, out->mean));
+    pool_run(pool, tasks, probe_task, &b);
 
     const int tiles = job->law ? job->tiles_x * job->tiles_y : 0;
     double    tables_px = 0;
-    for (int t = 0; t < b.blocks; t++) tables_px += b.task[t].tables_px;
+    for (int t = 0; t < tasks; t++) tables_px += b.task[t].tables_px;
     for (int k = 0; k < picture_plane_count; k++) {
         double sampling = job->footprint_law[k], detail = 0, tables = 0;
         for (int t = 0; t < tiles; t++) sampling += job->law[t][k];
-        for (int t = 0; t < b.blocks; t++) {
+        for (int t = 0; t < tasks; t++) {
             sampling += b.task[t].sampling[k];
             detail += b.task[t].detail[k];
             tables += b.task[t].tables[k];

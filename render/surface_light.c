@@ -1,5 +1,5 @@
-/* render/surface_light.c: see surface_light.h. Formulas, and why they are, stand in optical.c, thermal.c and materials.c;
- * here are the forms of them that keep their digits in float. */
+/* render/surface_light.c: see surface_light.h. Formulas, and why they are, stand in optical.c, thermal.c and
+ * materials.c; here are the forms of them that keep their digits in float. */
 #include "render/surface_light.h"
 
 #include "render/optical.h"
@@ -111,7 +111,8 @@ static inline void light_on_plane(Eight out[8], const SurfaceLight *light, Three
     const Eight z = eight_clamp(n.z, -1, 1), x = eight_all(0.5 * air_plane_ups) * eight_sqrt(one() - eight_abs(z));
     const Eight open = eight_all(0.5) * (one() + z);
     const Steps up = steps_of(eight_pick(eight_less(z, zero()), x, eight_all(air_plane_ups) - x), air_plane_ups);
-    const Steps azimuth = steps_of(azimuth_from_sun(n, sun) * eight_all(air_plane_azimuths / pi_rad), air_plane_azimuths);
+    const Steps azimuth =
+        steps_of(azimuth_from_sun(n, sun) * eight_all(air_plane_azimuths / pi_rad), air_plane_azimuths);
     look_up(out, light->plane[0][0], air_plane_azimuths + 1, up, azimuth);
     eight_turn(out);
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = out[b] * open;
@@ -125,9 +126,11 @@ static inline void sky_towards(Eight out[8], const SurfaceLight *light, Three d,
     const Three chord = {d.x - sun.x, d.y - sun.y, d.z - sun.z};
     const Eight c2 = eight_min(dot(chord, chord) * eight_all(0.25), one()), over = eight_more(c2, eight_all(0.5));
     const Eight less = eight_pick(over, eight_all(2) - c2 - c2, c2 + c2);
-    const Eight angle = eight_pick(eight_less(c2, eight_all(0.01)), eight_sqrt(c2) * eight_all(2), arc_cosine(less, over));
+    const Eight angle =
+        eight_pick(eight_less(c2, eight_all(0.01)), eight_sqrt(c2) * eight_all(2), arc_cosine(less, over));
     const Eight blurred = eight_min(eight_max(angle, blur_rad), eight_all(pi_rad));
-    const Steps ring = steps_of(eight_sqrt(blurred * eight_all(1 / pi_rad)) * eight_all(air_sky_angles), air_sky_angles);
+    const Steps ring =
+        steps_of(eight_sqrt(blurred * eight_all(1 / pi_rad)) * eight_all(air_sky_angles), air_sky_angles);
     look_up(out, light->scattered[0][0], air_sky_azimuths + 1, up, azimuth);
     int32_t height[8], angles[8];
     float   u[8], a[8];
@@ -136,7 +139,8 @@ static inline void sky_towards(Eight out[8], const SurfaceLight *light, Three d,
     for (int k = 0; k < 8; k++) {
         const float *around = light->around_sun[angles[k]], *thermal = light->thermal[height[k]];
         const Eight  bright = eight_mix(eight_load(around), eight_load(around + 8), _mm256_set1_ps(a[k]));
-        out[k] = eight_fma(out[k], bright, eight_mix(eight_load(thermal), eight_load(thermal + 8), _mm256_set1_ps(u[k])));
+        out[k] =
+            eight_fma(out[k], bright, eight_mix(eight_load(thermal), eight_load(thermal + 8), _mm256_set1_ps(u[k])));
     }
     eight_turn(out);
 }
@@ -159,7 +163,8 @@ static inline Eight fresnel(Eight gloss_rho, Eight smooth2, Eight cosine, Eight 
         const Eight root = eight_sqrt(normal), index = (one() + root) / (one() - root);
         const Eight metal = eight_clamp((normal - eight_all(0.2)) * eight_all(10), 0, 1);
         const Eight away = one() - cosine, away5 = square(square(away)) * away;
-        const Eight other = eight_pick(eight_more(gloss_rho, eight_all(0.02)), dielectric(index * index, cosine), water);
+        const Eight other =
+            eight_pick(eight_more(gloss_rho, eight_all(0.02)), dielectric(index * index, cosine), water);
         reflected = eight_mix(other, eight_fma(one() - normal, away5, normal), metal);
         reflected = eight_pick(eight_less(metal, one()), reflected, eight_fma(one() - normal, away5, normal));
     }
@@ -196,7 +201,8 @@ static inline Eight lobe(Eight slope2, Three n, Three eye, Three sun, Eight n_ey
 /* ---- eight hits ------------------------------------------------------------------------------ */
 
 /* Eight rows of a table by material, turned: of one material as a rule. */
-static inline void material_rows(Eight out[8], float (*table)[surface_light_bands], const uint16_t material[8], bool same)
+static inline void material_rows(Eight out[8], float (*table)[surface_light_bands], const uint16_t material[8],
+                                 bool same)
 {
     if (same) {
         for (int k = 0; k < 8; k++) out[k] = _mm256_set1_ps(table[material[0]][k]);
@@ -247,8 +253,10 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     for (int band = 0; band < AIR_BAND_COUNT; band++) {
         if (!out[band]) continue;
         const Veils *veil = &b->veils[band];
-        const Eight  level = _mm256_set1_ps(light->level_w_m2_sr[band]), sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
-        const Eight  all_rho = band >= AIR_MWIR ? rho[band] : eight_min(rho[band] * eight_load(b->texture[band] + i), one());
+        const Eight level = _mm256_set1_ps(light->level_w_m2_sr[band]),
+                    sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
+        const Eight all_rho =
+            band >= AIR_MWIR ? rho[band] : eight_min(rho[band] * eight_load(b->texture[band] + i), one());
         const Eight  around =
             b->around_w_m2[band] ? eight_load(b->around_w_m2[band] + i) : eight_fma(level, below, plane[band]);
         Eight diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
@@ -269,7 +277,8 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
             const PlanckTable *planck = band == AIR_MWIR ? air->planck_mwir : air->planck_lwir;
             float              emitted[8];
             planck_table_radiance8(emitted, planck, b->temp_k + i);
-            seen = eight_fma((one() - diffuse - mirrors) * eight_load(emitted), eight_load(veil->transmittance + i), seen);
+            seen =
+                eight_fma((one() - diffuse - mirrors) * eight_load(emitted), eight_load(veil->transmittance + i), seen);
         }
         eight_store(out[band] + i, seen);
     }

@@ -1,8 +1,8 @@
 /* render/surface_light.h: what ground and parts send to the eye in all bands, eight hits at a time.
  *
- * The same light as render/optical.c and thermal.c give (no term is left out), in float, from tables that hold all bands
- * of a place side by side: what depends on the hit alone is found once for all bands. Within 3e-5 of those for anything
- * as rough as ground and flat paint, 1e-3 where a mirror flashes (tests/render/test_surface_light.c). */
+ * The same light as render/optical.c and thermal.c give (no term is left out), in float, from tables that hold all
+ * bands of a place side by side: what depends on the hit alone is found once for all bands. Within 3e-5 of those for
+ * anything as rough as ground and flat paint, 1e-3 where a mirror flashes (tests/render/test_surface_light.c). */
 #ifndef RENDER_SURFACE_LIGHT_H
 #define RENDER_SURFACE_LIGHT_H
 
@@ -17,7 +17,7 @@ typedef struct SurfaceLight {
     float plane[air_plane_ups + 1][air_plane_azimuths + 1][surface_light_bands];    /* as Air.plane_w_m2 */
     float scattered[air_sky_ups + 1][air_sky_azimuths + 1][surface_light_bands];    /* sky in a mirror, as AirSky */
     float thermal[air_sky_ups + 1][surface_light_bands], around_sun[air_sky_angles + 2][surface_light_bands];
-    float level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands];       /* level ground's radiance; the sun */
+    float level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands]; /* level ground's radiance; the sun */
     float (*rho)[surface_light_bands], (*gloss)[surface_light_bands];               /* [materials]; GlossValue */
     bool  any_sun;
 } SurfaceLight;

@@ -285,8 +285,10 @@ static void knob_counts(Bench *bench, bool display)
     BenchPoint       point[settings] = {0};
     const int        count = display ? 2 : settings;
     make_plane(in, display ? 280 : 5, 30);
-    /* A converter comes behind a detector: steps far finer than its noise bring nothing. 20 mK is a good cooled camera's. */
-    for (int i = 0; i < blur_px; i++) noisy[i] = in[i] + (float)(display ? 0 : 0.02 * random_normal(8, 0, 0, (uint64_t)i));
+    /* A converter comes behind a detector: steps far finer than its noise bring nothing. 20 mK is a good cooled
+     * camera's. */
+    for (int i = 0; i < blur_px; i++)
+        noisy[i] = in[i] + (float)(display ? 0 : 0.02 * random_normal(8, 0, 0, (uint64_t)i));
     for (int k = 0; k < count; k++) {
         const int bits = display ? display_bits[k] : converter_bits[k];
         set[k] = (Converter){.in = noisy, .true_in = in, .bits = bits, .display = display, .low = display ? 280 : 0,

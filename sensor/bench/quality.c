@@ -1,6 +1,7 @@
-/* sensor/bench/quality.c: each row of settings in each scene against 16 x 16 rays in every pixel. A row's error is that of
- * its worst scene. Its time is of two of the scenes in larger pictures (small targets cost the same in any), on one thread,
- * rows in turn, the best of the rounds: the thread's own, which another program on the machine does not lengthen. */
+/* sensor/bench/quality.c: each row of settings in each scene against 16 x 16 rays in every pixel. A row's error is that
+ * of its worst scene. Its time is of two of the scenes in larger pictures (small targets cost the same in any), on one
+ * thread, rows in turn, the best of the rounds: the thread's own, which another program on the machine does not
+ * lengthen. */
 #include "sensor/bench/quality.h"
 
 #include "sensor/bench/scene.h"
@@ -19,8 +20,9 @@ static const int timed[] = {2, 6};
 enum { timed_count = sizeof timed / sizeof *timed };
 
 /* samples, edge_samples, target_samples; the first is the quickest, by which machines are compared. */
-static const int grid[][3] = {{1, 0, 0}, {1, 2, 8}, {1, 2, 24}, {1, 4, 24}, {1, 4, 48}, {1, 8, 64}, {2, 0, 0}, {2, 4, 48}, {2, 8, 64},
-                              {3, 6, 64}, {3, 9, 96}, {4, 8, 96}, {5, 10, 96}, {6, 12, 128}, {8, 0, 0}, {8, 16, 128}};
+static const int grid[][3] = {{1, 0, 0},   {1, 2, 8},    {1, 2, 24}, {1, 4, 24},  {1, 4, 48}, {1, 8, 64},
+                              {2, 0, 0},   {2, 4, 48},   {2, 8, 64}, {3, 6, 64},  {3, 9, 96}, {4, 8, 96},
+                              {5, 10, 96}, {6, 12, 128}, {8, 0, 0},  {8, 16, 128}};
 enum { grid_count = sizeof grid / sizeof *grid };
 
 typedef struct Lab {
@@ -64,16 +66,21 @@ static void close_lab(Lab *lab)
 static BenchFrame frame_of(const Lab *lab, int view, int samples, int edge_samples, int target_samples)
 {
     BenchFrame f = {.scene = &lab->scene, .pool = lab->pool, .arena = lab->arena};
-    f.request = (RenderRequest){.bands = 7, .truth = true, .optical = OPTICAL_RGB, .samples = samples, .edge_samples = edge_samples,
-                                .target_samples = target_samples, .hidden_entity = -1};
-    f.request.view = bench_view(&lab->scene, views[view].back_m, views[view].above_m, views[view].hfov_deg * rad_per_deg, lab->width,
-                                lab->height);
+    f.request = (RenderRequest){.bands = 7,
+                                .truth = true,
+                                .optical = OPTICAL_RGB,
+                                .samples = samples,
+                                .edge_samples = edge_samples,
+                                .target_samples = target_samples,
+                                .hidden_entity = -1};
+    f.request.view = bench_view(&lab->scene, views[view].back_m, views[view].above_m,
+                                views[view].hfov_deg * rad_per_deg, lab->width, lab->height);
     return f;
 }
 
 /* Of one picture, percent and kelvin a band. */
-static void errors_of(double percent[quality_bands], double kelvin[quality_bands], const Picture *p, const Picture *true_one,
-                      const World *world)
+static void errors_of(double percent[quality_bands], double kelvin[quality_bands], const Picture *p,
+                      const Picture *true_one, const World *world)
 {
     const size_t count = (size_t)p->width * (size_t)p->height;
     double       shares[quality_bands] = {0};
@@ -98,7 +105,7 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
 
 static Status measure_errors(QualityTable *table, Lab *lab, Bench *bench)
 {
-    for (int v = 0; v < view_count; v++) {
+    for (int v = 0; v < view_count; v += lab->quick ? 3 : 1) {
         char what[64];
         snprintf(what, sizeof what, "errors, view %d of %d", v + 1, view_count);
         bench_progress(bench, what);
@@ -151,11 +158,14 @@ static void time_larger(Lab *lab)
     if (!lab->quick) lab->width = timed_width, lab->height = timed_height;
 }
 
-static void list_row(Bench *bench, const QualityRow *r, const QualityRow *first, const BenchTime *time)
+/* Those that some target picks are marked, as a front is. */
+static void list_row(Bench *bench, const QualityTable *table, int k, const BenchTime *time)
 {
-    char what[96];
+    const QualityRow *r = &table->row[k], *first = &table->row[0];
+    char              what[96];
     if (r->edge_samples > 0)
-        snprintf(what, sizeof what, "samples %d, edge_samples %d, target_samples %d", r->samples, r->edge_samples, r->target_samples);
+        snprintf(what, sizeof what, "samples %d, edge_samples %d, target_samples %d", r->samples, r->edge_samples,
+                 r->target_samples);
     else snprintf(what, sizeof what, "samples %d, antialias off", r->samples);
     BenchRow row   = bench_row(what);
     row.median     = time->median_s;
@@ -168,6 +178,7 @@ static void list_row(Bench *bench, const QualityRow *r, const QualityRow *first,
     row.error      = fmax(r->percent[BAND_OPTICAL], fmax(r->percent[BAND_MWIR], r->percent[BAND_LWIR]));
     row.error_unit = "%";
     row.against    = "16 x 16 rays a pixel: worst band of the worst view";
+    row.mark       = quality_wanted(table, k) ? "*" : NULL;
     bench_add(bench, &row);
 }
 
@@ -196,10 +207,15 @@ Status bench_quality(Bench *bench)
     for (int k = 0; k < grid_count && status == STATUS_OK; k++) {
         bench_time_finish(&time[k]);
         table.row[k].ms_megapixel = 1e3 * time[k].best_s;
-        list_row(bench, &table.row[k], &table.row[0], &time[k]);
     }
+    for (int k = 0; k < grid_count && status == STATUS_OK; k++) list_row(bench, &table, k, &time[k]);
+    /* what nothing would pick is not written, but for the first, by which machines are compared */
+    QualityTable written = {.count = 0};
+    for (int k = 0; k < grid_count; k++)
+        if (k == 0 || quality_wanted(&table, k)) written.row[written.count++] = table.row[k];
     if (status == STATUS_OK && path)
-        status = quality_write(path, &table, "rms error at most, and time on one thread of the machine it was measured on, by "
+        status = quality_write(path, &written,
+                               "rms error at most, and time on one thread of the machine it was measured on, by "
                                "`pitviper bench quality --table FILE`");
     close_lab(&lab);
     return status;
@@ -214,8 +230,10 @@ Status bench_machine_factor(double *factor, const char *table_path, int threads)
     if (status != STATUS_OK) return status;
     const QualityRow *first = &table.row[0];
     if (first->samples != grid[0][0] || first->edge_samples != grid[0][1] || first->target_samples != grid[0][2]) {
-        log_error("quality: %s: its first row is not samples 1 without edge_samples, by which machines are compared; give "
-                  "quality.machine_factor", table_path);
+        log_error(
+            "quality: %s: its first row is not samples 1 without edge_samples, by which machines are compared; give "
+            "quality.machine_factor",
+            table_path);
         return STATUS_BAD_VALUE;
     }
     status = open_lab(&lab, threads, false);

@@ -20,9 +20,12 @@ static Status read_row(QualityRow *out, const Table *table, const int at[column_
         if (status != STATUS_OK) return status;
     }
     const bool off = value[1] == 0 && value[2] == 0;
-    if (!is_whole(value[0]) || !is_whole(value[1]) || !is_whole(value[2]) || !(off || (value[1] >= 2 && value[2] >= 8))) {
-        log_error("quality: %s:%d: samples %g, edge_samples %g, target_samples %g: whole numbers, the last two both 0 or 2 .. 16 "
-                  "and 8 .. 256", path, table->line[row + 1], value[0], value[1], value[2]);
+    if (!is_whole(value[0]) || !is_whole(value[1]) || !is_whole(value[2]) ||
+        !(off || (value[1] >= 2 && value[2] >= 8))) {
+        log_error("quality: %s:%d: samples %g, edge_samples %g, target_samples %g: whole numbers, the last two both 0 "
+                  "or 2 .. 16 "
+                  "and 8 .. 256",
+                  path, table->line[row + 1], value[0], value[1], value[2]);
         return STATUS_BAD_VALUE;
     }
     *out = (QualityRow){.samples = (int)value[0], .edge_samples = (int)value[1], .target_samples = (int)value[2],
@@ -40,7 +43,8 @@ Status quality_open(QualityTable *out, const char *path)
     QualityTable *made = out;
     for (int c = 0; c < column_count && status == STATUS_OK; c++)
         if ((at[c] = table_column(&table, columns[c])) < 0) {
-            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a whole table", path, columns[c]);
+            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a whole table", path,
+                      columns[c]);
             status = STATUS_BAD_VALUE;
         }
     if (status == STATUS_OK && (table.rows < 1 || table.rows > quality_rows_max)) {
@@ -61,11 +65,12 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
     FILE *file = fopen(path, "w");
     bool  ok = file != NULL;
     ok = ok && fprintf(file, "# %s\n", comment) > 0;
-    for (int c = 0; ok && c < column_count; c++) ok = fprintf(file, "%s%s", columns[c], c + 1 < column_count ? "," : "\n") > 0;
+    for (int c = 0; ok && c < column_count; c++)
+        ok = fprintf(file, "%s%s", columns[c], c + 1 < column_count ? "," : "\n") > 0;
     for (int k = 0; ok && k < table->count; k++) {
         const QualityRow *r = &table->row[k];
-        ok = fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples, r->percent[0],
-                     r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
+        ok = fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
+                     r->percent[0], r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
     }
     if (file) ok = fclose(file) == 0 && ok;
     if (!ok) log_error("quality: cannot write %s: %s", path, strerror(errno));
@@ -74,7 +79,10 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
 
 /* ---- the pick --------------------------------------------------------------------------------- */
 
-static double frame_ms(const QualityRow *r, const QualityTarget *t) { return r->ms_megapixel * t->megapixels * t->machine_factor; }
+static double frame_ms(const QualityRow *r, const QualityTarget *t)
+{
+    return r->ms_megapixel * t->megapixels * t->machine_factor;
+}
 
 static double worst(const double *value, unsigned bands, int first)
 {
@@ -84,7 +92,8 @@ static double worst(const double *value, unsigned bands, int first)
     return most;
 }
 
-/* By how much the errors are too large, as a factor, at least 1; without a target the error itself, so that less is better. */
+/* By how much the errors are too large, as a factor, at least 1; without a target the error itself, so that less is
+ * better. */
 static double excess(const QualityRow *r, const QualityTarget *t)
 {
     const double percent = worst(r->percent, t->bands, BAND_OPTICAL), kelvin = worst(r->kelvin, t->bands, BAND_MWIR);
@@ -115,11 +124,31 @@ int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *
     return best;
 }
 
+bool quality_wanted(const QualityTable *table, int row)
+{
+    const QualityRow *r = &table->row[row];
+    for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
+        /* the tightest that it keeps: who is quicker and keeps that keeps whatever this row keeps */
+        const QualityTarget target = {
+            worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands};
+        bool                quicker = false;
+        for (int k = 0; k < table->count; k++) {
+            const QualityRow *q = &table->row[k];
+            const bool first = q->ms_megapixel < r->ms_megapixel || (q->ms_megapixel == r->ms_megapixel && k < row);
+            quicker |= k != row && first && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
+                       worst(q->kelvin, bands, BAND_MWIR) <= target.kelvin;
+        }
+        if (!quicker) return true;
+    }
+    return false;
+}
+
 /* ---- the configuration ------------------------------------------------------------------------ */
 
 static bool asks(const Config *c)
 {
-    return !isnan(c->quality.radiance_rmse_percent) || !isnan(c->quality.temperature_rms_k) || !isnan(c->quality.frame_ms);
+    return !isnan(c->quality.radiance_rmse_percent) || !isnan(c->quality.temperature_rms_k) ||
+           !isnan(c->quality.frame_ms);
 }
 
 bool quality_wants_factor(const Config *config)
@@ -149,24 +178,33 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
     if (!given && !etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
     const Status status = quality_open(&table, given ? config->quality.table : path);
     if (status != STATUS_OK) return status;
-    const QualityTarget target = {config->quality.radiance_rmse_percent, config->quality.temperature_rms_k, config->quality.frame_ms,
-                                  1e-6 * config->sensor.width_px * config->sensor.height_px, config->quality.machine_factor, bands};
+    const QualityTarget target = {config->quality.radiance_rmse_percent,
+                                  config->quality.temperature_rms_k,
+                                  config->quality.frame_ms,
+                                  1e-6 * config->sensor.width_px * config->sensor.height_px,
+                                  config->quality.machine_factor,
+                                  bands};
     const QualityRow *r = &table.row[quality_pick(&reached, &table, &target)];
     take(kept, sizeof kept, &config->sensor.samples, r->samples, config, "sensor.samples");
     if (r->edge_samples > 0) {
         take(kept, sizeof kept, &config->sensor.edge_samples, r->edge_samples, config, "sensor.edge_samples");
         take(kept, sizeof kept, &config->sensor.target_samples, r->target_samples, config, "sensor.target_samples");
     }
-    if (!config_given(config, "sensor.antialias")) strcpy(config->sensor.antialias, r->edge_samples > 0 ? "adaptive" : "off");
+    if (!config_given(config, "sensor.antialias"))
+        strcpy(config->sensor.antialias, r->edge_samples > 0 ? "adaptive" : "off");
     add(wants, sizeof wants, " %g %% rmse", target.percent);
     add(wants, sizeof wants, " %g K rms", target.kelvin);
     add(wants, sizeof wants, " %g ms", target.frame_ms);
-    if (bands & (1u << BAND_MWIR | 1u << BAND_LWIR)) add(k_text, sizeof k_text, ", %.2g K", worst(r->kelvin, bands, BAND_MWIR));
+    if (bands & (1u << BAND_MWIR | 1u << BAND_LWIR))
+        add(k_text, sizeof k_text, ", %.2g K", worst(r->kelvin, bands, BAND_MWIR));
     char grids[64] = "";
-    if (r->edge_samples > 0) snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
-    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the quickest)%s", r->samples, grids, wants,
-               reached ? "" : ": NOT reached, the nearest", worst(r->percent, bands, BAND_OPTICAL), k_text, frame_ms(r, &target),
-               r->ms_megapixel / table.row[0].ms_megapixel, kept);
-    if (!reached) log_warn("quality: no setting of the table keeps%s; the nearest is taken (`pitviper bench quality` lists them)", wants);
+    if (r->edge_samples > 0)
+        snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
+    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the quickest)%s", r->samples,
+               grids, wants, reached ? "" : ": NOT reached, the nearest", worst(r->percent, bands, BAND_OPTICAL),
+               k_text, frame_ms(r, &target), r->ms_megapixel / table.row[0].ms_megapixel, kept);
+    if (!reached)
+        log_warn("quality: no setting of the table keeps%s; the nearest is taken (`pitviper bench quality` lists them)",
+                 wants);
     return STATUS_OK;
 }

@@ -1,8 +1,8 @@
 /* sensor/node/quality.h: settings off a measured front, for who says how good or how quick and not how.
  *
- * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to have
- * over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table and
- * configuration alone: times are the table's times quality.machine_factor, never a clock's. */
+ * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to
+ * have over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table
+ * and configuration alone: times are the table's times quality.machine_factor, never a clock's. */
 #ifndef SENSOR_NODE_QUALITY_H
 #define SENSOR_NODE_QUALITY_H
 
@@ -39,6 +39,9 @@ typedef struct QualityTarget {
  * frame_ms, where any row is, then with the smallest excess of error over target. Equal ones: the first. With frame_ms
  * alone: the smallest error within it. reached: whether all are kept. */
 int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
+
+/* Whether there is any target, of any bands, that this row is picked for; else a quicker one is as good in all. */
+bool quality_wanted(const QualityTable *table, int row);
 
 /* Sets what quality.* asks for, and says so; keys that were given stay. Nothing asked for: nothing is done. */
 Status quality_choose(Config *config, Choices *choices, unsigned bands);

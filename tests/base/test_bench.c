@@ -83,7 +83,79 @@ static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
     const BenchPoint tiny = point_of("", 1e-3, 0.02, 1e-9, 0), less = point_of("", 1e-3, 0.02, 1e-10, 0);
     CHECK(!bench_dominates(&knob, &less, &tiny) && !bench_dominates(&knob, &tiny, &less));
     const BenchPoint three[3] = {held, cases[0].point, cases[4].point};
-    CHECK(!bench_on_front(&knob, three, 3, 0) && bench_on_front(&knob, three, 3, 1) && bench_on_front(&knob, three, 3, 2));
+    CHECK(!bench_on_front(&knob, three, 3, 0) && bench_on_front(&knob, three, 3, 1) &&
+          bench_on_front(&knob, three, 3, 2));
+}
+
+/* Settings with two errors are judged by both: better in one alone dominates nobody that is better in the other. */
+static void two_errors_are_judged_together(void **state)
+{
+    (void)state;
+    BenchPoint held = point_of("held", 1e-3, 0.02, 1, 1e6), other = point_of("other", 0.5e-3, 0.02, 0.5, 0.5e6);
+    CHECK(bench_dominates(&knob, &other, &held)); /* none has a second */
+    held.also = other.also = 3;
+    CHECK(bench_dominates(&knob, &other, &held));
+    other.also = 3.5;
+    CHECK(!bench_dominates(&knob, &other, &held) && !bench_dominates(&knob, &held, &other));
+    other.also = NAN;
+    CHECK(!bench_dominates(&knob, &other, &held));
+    other = held, other.also = 2; /* the same, but for the second */
+    CHECK(bench_dominates(&knob, &other, &held) && !bench_dominates(&knob, &held, &other));
+}
+
+static bool says(const BenchPoint *point, int count, bool quick, const char *text)
+{
+    char words[512];
+    bench_verdict(words, &knob, point, count, quick);
+    const bool found = strstr(words, text);
+    if (!found) print_error("%s\n", words);
+    return found;
+}
+
+static void verdicts_are_said_in_words(void **state)
+{
+    (void)state;
+    BenchPoint three[3] = {point_of("coarse", 0.5e-3, 0.02, 4, 1e6), point_of("middle", 1e-3, 0.02, 1, 1e6),
+                           point_of("fine", 2e-3, 0.02, 0.2, 3e6)};
+    CHECK(says(three, 3, false, "nothing is judged"));
+    three[1].is_default = true;
+    CHECK(says(three, 3, false, "'middle', keeps its stated error: 1.00 %, stated at most 2.00 %. It is on the front"));
+    CHECK(says(three, 3, false, "the next faster one is 'coarse': 0.5 x the time, 4 x the error;"));
+    CHECK(says(three, 3, false, "the next closer one is 'fine': 2 x the time, 0.2 x the error, 3 x the memory."));
+    three[1].error = 2.5;
+    CHECK(says(three, 3, false, "MISSES its stated error"));
+    three[0].error = 0.1; /* planted: quicker, closer, no larger */
+    CHECK(says(three, 3, false, "2.5") &&
+          says(three, 3, false, " 1 better setting: 'coarse': 0.5 x the time, 0.04 x the"));
+    CHECK(says(three, 3, false, "NOT on the front") && says(three, 3, true, "not judged"));
+    three[1].error = NAN;
+    CHECK(says(three, 3, false, "'middle', is unknown"));
+}
+
+/* What is planted in noise: times of a machine that others share. A default that another setting beats by a quarter
+ * must fail in nearly all draws, one that is as good must hardly ever. Lognormal noise of 20 %, the same for all of a
+ * round, as a neighbour makes it, and 5 % of each alone; 7 rounds, the fewest that there are. */
+static void noise_neither_hides_nor_makes_a_verdict(void **state)
+{
+    (void)state;
+    enum { draws = 1000 };
+    int found = 0, made = 0;
+    for (uint32_t n = 0; n < draws; n++) {
+        BenchPoint two[3] = {point_of("held", 1, 0, 1, 0), point_of("a quarter faster", 1, 0, 1, 0),
+                             point_of("as good", 1, 0, 1, 0)};
+        static const double take_s[3] = {1, 0.75, 1};
+        for (int k = 0; k < 3; k++) two[k].time.rounds = 7;
+        for (int r = 0; r < 7; r++) {
+            const double all = exp(0.2 * random_normal(3, n, (uint32_t)r, 9));
+            for (int k = 0; k < 3; k++)
+                two[k].time.item_s[r] = take_s[k] * all * exp(0.05 * random_normal(3, n, (uint32_t)r, (uint64_t)k));
+        }
+        found += bench_dominates(&knob, &two[1], &two[0]);
+        made += bench_dominates(&knob, &two[2], &two[0]);
+    }
+    print_message("of %d: found %d, made of nothing %d\n", draws, found, made);
+    CHECK(found > 0.99 * draws); /* the median's own 0.035 is five times below 0.9 - 0.75 */
+    CHECK(made < 0.01 * draws);  /* and three times below 1 - 0.9 */
 }
 
 static BenchPoint settings[3];
@@ -101,7 +173,8 @@ static Status broken_run(Bench *bench)
 }
 
 static const BenchSuite suites[] = {{.name = "judged", .help = "", .options = "size=WxH,model=FILE", .run = judged_run},
-                                    {.name = "broken", .help = "", .run = broken_run}, {.name = "knob", .help = "", .run = knob_run}};
+                                    {.name = "broken", .help = "", .run = broken_run},
+                                    {.name = "knob", .help = "", .run = knob_run}};
 
 static const BenchSuite *next(size_t state[2]) { return state[0] < 3 ? &suites[state[0]++] : NULL; }
 
@@ -169,7 +242,8 @@ static void the_file_has_a_row_for_each_and_says_what_holds(void **state)
     CHECK(strcmp(table_text(&table, 1, table_column(&table, "median")), "") == 0);
     table_close(&table);
     FILE *file = fopen(path, "r");
-    CHECK(file && fgets(text, sizeof text, file) && strncmp(text, "# ", 2) == 0 && strstr(text, "pitviper ")); /* the machine */
+    CHECK(file && fgets(text, sizeof text, file) && strncmp(text, "# ", 2) == 0 &&
+          strstr(text, "pitviper ")); /* the machine */
     fclose(file);
     remove(path);
 }
@@ -186,7 +260,8 @@ static void a_default_off_the_front_fails_and_is_told_why(void **state)
     CHECK(COMMAND("bench", "knob", "--csv", path) == 0);
     Table table;
     CHECK(table_open(&table, path) == STATUS_OK && table.rows == 4);
-    const int mark = table_column(&table, "mark"), what = table_column(&table, "what"), error = table_column(&table, "error");
+    const int mark = table_column(&table, "mark"), what = table_column(&table, "what"),
+              error = table_column(&table, "error");
     CHECK(strcmp(table_text(&table, 1, what), "a knob: default") == 0);
     CHECK(strcmp(table_text(&table, 1, mark), "* default") == 0 && strcmp(table_text(&table, 2, mark), "*") == 0);
     CHECK(strcmp(table_text(&table, 3, error), "0") == 0);
@@ -223,7 +298,8 @@ static void a_plot_shows_each_setting_once(void **state)
     CHECK(file != NULL);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);
-    CHECK(strstr(text, "&lt;a&gt; &amp; b (2 MB)") && !strstr(text, "<a>") && !strstr(text, "nan") && !strstr(text, "inf"));
+    CHECK(strstr(text, "&lt;a&gt; &amp; b (2 MB)") && !strstr(text, "<a>") && !strstr(text, "nan") &&
+          !strstr(text, "inf"));
     CHECK(strstr(text, "1 without a time or an error") && strstr(text, "stated: 2 %") && strstr(text, "</svg>"));
     CHECK(strstr(text, "run time, us") && strstr(text, "class=\"df\""));
     remove(path);
@@ -233,8 +309,9 @@ static void a_plot_shows_each_setting_once(void **state)
 
 /* ---- two runs side by side -------------------------------------------------------------------- */
 
-static const char *const csv_head = "# version: 0.1\n# machine: a box\n# rounds: full\n# threads: 2\n"
-                                    "bench,what,median,best,unit,error,error_limit,error_unit,lower_quartile,upper_quartile\n";
+static const char *const csv_head =
+    "# version: 0.1\n# machine: a box\n# rounds: full\n# threads: 2\n"
+    "bench,what,median,best,unit,error,error_limit,error_unit,lower_quartile,upper_quartile\n";
 
 static int compare(const char *a, const char *b, const char *slower)
 {
@@ -263,15 +340,17 @@ static void what_became_worse_fails_a_comparison(void **state)
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,1.1,1,m,,\n", NULL) == 1);
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,,1,m,,\n", NULL) == 1);                   /* no longer known */
     CHECK(compare(base, "s,frame,1e-3,0.9e-3,s,inf,1,m,,\n", NULL) == 1);
-    CHECK(compare("s,frame,1,,s,3,1,m,,\n", "s,frame,1,,s,2,1,m,,\n", NULL) == 0);      /* broken before, and now less so */
-    CHECK(compare(base, "s,another,1e-3,,s,9,1,m,,\n", NULL) == 0);                      /* only in one: told, not judged */
-    CHECK(compare("s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "1.1") == 0); /* one name twice: in turn */
+    CHECK(compare("s,frame,1,,s,3,1,m,,\n", "s,frame,1,,s,2,1,m,,\n", NULL) == 0); /* broken before, and now less so */
+    CHECK(compare(base, "s,another,1e-3,,s,9,1,m,,\n", NULL) == 0);                /* only in one: told, not judged */
+    CHECK(compare("s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "s,x,1,,s,,,,,\ns,x,2,,s,,,,,\n", "1.1") ==
+          0); /* one name twice: in turn */
 }
 
 static void a_table_that_is_none_is_refused(void **state)
 {
-    static const char *const bad[] = {"s,frame,1e-3,,s,0.5,1\n", "s,frame,many,,s,0.5,1,m,,\n", "s,frame,-1,,s,0.5,1,m,,\n",
-                                      "s,frame,1e999,,s,0.5,1,m,,\n", "s,\"frame,1,,s,0.5,1,m,,\n", "s,frame,nan,,s,0.5,1,m,,\n"};
+    static const char *const bad[] = {"s,frame,1e-3,,s,0.5,1\n",    "s,frame,many,,s,0.5,1,m,,\n",
+                                      "s,frame,-1,,s,0.5,1,m,,\n",  "s,frame,1e999,,s,0.5,1,m,,\n",
+                                      "s,\"frame,1,,s,0.5,1,m,,\n", "s,frame,nan,,s,0.5,1,m,,\n"};
     char path[text_file_size];
     (void)state;
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) CHECK(compare(bad[k], bad[k], NULL) == 1);
@@ -309,7 +388,8 @@ static void a_page_says_first_what_failed(void **state)
     CHECK(file != NULL);
     text[fread(text, 1, sizeof text - 1, file)] = 0;
     fclose(file);
-    const char *failed = strstr(text, "1 of 2 errors beyond their limit; 1 suites did not come"), *row = strstr(text, "a knob: default");
+    const char *failed = strstr(text, "1 of 2 errors beyond their limit; 1 suites did not come"),
+               *row = strstr(text, "a knob: default");
     const char *machine = strstr(text, "<h2>Machine"), *plot = strstr(text, "<svg");
     CHECK(failed && row && machine && plot && failed < row && row < machine && machine < plot);
     CHECK(strstr(text, "a &quot;work&quot;, counted") && strstr(text, "broken did not come to its end"));
@@ -324,6 +404,9 @@ int main(void)
         cmocka_unit_test(an_error_beyond_its_limit_fails_the_run),
         cmocka_unit_test(what_it_does_not_know_it_refuses),
         cmocka_unit_test(a_setting_that_is_better_and_nowhere_worse_dominates),
+        cmocka_unit_test(two_errors_are_judged_together),
+        cmocka_unit_test(verdicts_are_said_in_words),
+        cmocka_unit_test(noise_neither_hides_nor_makes_a_verdict),
         cmocka_unit_test(a_default_off_the_front_fails_and_is_told_why),
         cmocka_unit_test(a_plot_shows_each_setting_once),
         cmocka_unit_test(what_became_worse_fails_a_comparison),

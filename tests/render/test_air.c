@@ -211,7 +211,8 @@ static void sky_adds_up(void **state)
                 elevations_deg[e], air_band_name(bands[b]), air.sky_w_m2[bands[b]], sun.diffuse_horizontal_w_m2,
                 air.sky_scale[bands[b]]);
             for (int n = 0; n < planes; n++)
-                print_message(" %.4f%s", air_sky_on_plane(&air, bands[b], normals[n]) / sum[n], n < planes - 1 ? "" : "\n");
+                print_message(" %.4f%s", air_sky_on_plane(&air, bands[b], normals[n]) / sum[n],
+                              n < planes - 1 ? "" : "\n");
             /* 1 %: the grid cuts the ring about a low sun at the horizon */
             for (int n = 0; n < planes; n++)
                 CHECK_NEAR(air_sky_on_plane(&air, bands[b], normals[n]), sum[n], 0.01 * air.sky_w_m2[bands[b]]);
@@ -228,7 +229,8 @@ static void a_band_does_not_see_its_company(void **state)
     const Weather weather = weather_default();
     const Air alone = air_of(&weather, 35, 100, 1 << AIR_LWIR, NULL);
     const Air company = air_of(&weather, 35, 100, 1 << AIR_LWIR | 1 << AIR_PAN | 1 << AIR_G | 1 << AIR_MWIR, NULL);
-    CHECK(alone.solar_direct_w_m2 == company.solar_direct_w_m2 && alone.solar_diffuse_w_m2 == company.solar_diffuse_w_m2);
+    CHECK(alone.solar_direct_w_m2 == company.solar_direct_w_m2 &&
+          alone.solar_diffuse_w_m2 == company.solar_diffuse_w_m2);
     CHECK(alone.longwave_loss_w_m2 == company.longwave_loss_w_m2);
     CHECK(alone.ground_w_m2_sr[AIR_LWIR] == company.ground_w_m2_sr[AIR_LWIR]);
     CHECK(alone.sky_w_m2[AIR_LWIR] == company.sky_w_m2[AIR_LWIR]);

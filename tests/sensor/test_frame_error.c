@@ -1,5 +1,5 @@
-/* What dead reckoning does to a frame: vehicles that drive as they like, heard as a sender of the standard speaks (1 m, 3
- * degrees, a heartbeat of 5 s), against the frame of their true poses, which the test alone knows. */
+/* What dead reckoning does to a frame: vehicles that drive as they like, heard as a sender of the standard speaks (1 m,
+ * 3 degrees, a heartbeat of 5 s), against the frame of their true poses, which the test alone knows. */
 #include "tests/sensor/error_scenes.h"
 
 enum { drivers = 8, ticks_a_s = 30 };
@@ -12,10 +12,13 @@ typedef struct Driver {
 static DisEntityState report_of(int index, double x, double y, double heading, double speed)
 {
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
-    const double   c = cos(heading), s = sin(heading), p_enu[3] = {x, y, elevation_height(&lab.ground.elevation, x, y, NULL)};
+    const double c = cos(heading), s = sin(heading),
+                 p_enu[3] = {x, y, elevation_height(&lab.ground.elevation, x, y, NULL)};
     const double   r_enu_from_body[9] = {c, s, 0, s, -c, 0, 0, 0, -1}, v_enu[3] = {speed * c, speed * s, 0};
     double         r[9], euler[3], v_ecef[3];
-    DisEntityState pdu = {.header = {.version = 6, .type = dis_pdu_entity_state}, .type = tank, .id = {1, 1, (uint16_t)(index + 1)},
+    DisEntityState pdu = {.header = {.version = 6, .type = dis_pdu_entity_state},
+                          .type = tank,
+                          .id = {1, 1, (uint16_t)(index + 1)},
                           .dead_reckoning = 2};
     ecef_from_enu(pdu.p_ecef, &lab.frame, p_enu);
     m3_mul(r, lab.frame.r_ecef_from_enu, r_enu_from_body);
@@ -46,7 +49,8 @@ static void drive(Driver *d, int index, double t_s, double dt_s)
 static bool must_report(const Driver *d, double t_s)
 {
     const double dt_s = t_s - d->sent_s;
-    const double x = d->sent_enu[0] + d->sent_v[0] * dt_s - d->p_enu[0], y = d->sent_enu[1] + d->sent_v[1] * dt_s - d->p_enu[1];
+    const double x = d->sent_enu[0] + d->sent_v[0] * dt_s - d->p_enu[0],
+                 y = d->sent_enu[1] + d->sent_v[1] * dt_s - d->p_enu[1];
     return dt_s >= 5 || hypot(x, y) > 1 || fabs(d->heading_rad - d->sent_heading) > 3 * rad_per_deg;
 }
 
@@ -55,7 +59,10 @@ static void place_drivers(Driver driver[drivers], EntityTable *heard, EntityTabl
 {
     for (int i = 0; i < drivers; i++) {
         Driver *d = &driver[i];
-        *d = (Driver){.p_enu = {-45 + 30.0 * (i % 4), i < 4 ? -20 : 20}, .speed_mps = 6 + i % 3, .heading_rad = i, .sent_s = -1e9};
+        *d = (Driver){.p_enu = {-45 + 30.0 * (i % 4), i < 4 ? -20 : 20},
+                      .speed_mps = 6 + i % 3,
+                      .heading_rad = i,
+                      .sent_s = -1e9};
         for (int k = 0; k <= (int)(until_s * ticks_a_s); k++) {
             const double t_s = k / (double)ticks_a_s;
             if (k > 0) drive(d, i, t_s, 1.0 / ticks_a_s);
@@ -73,11 +80,12 @@ static void place_drivers(Driver driver[drivers], EntityTable *heard, EntityTabl
 static void dead_reckoning_is_near_the_truth(void **state)
 {
     (void)state;
-    static const ErrorScene scenes[] = {{"drivers at 100 m", 100, 40, 40, 0, false, 0}, {"drivers at 250 m", 250, 60, 30, 0, false, 0},
+    static const ErrorScene scenes[] = {{"drivers at 100 m", 100, 40, 40, 0, false, 0},
+                                        {"drivers at 250 m", 250, 60, 30, 0, false, 0},
                                         {"drivers at 700 m", 700, 120, 12, 0, false, 0}};
     enum { times = 8 };
     static const double times_s[times] = {5.1, 7.3, 9.6, 11.9, 13.4, 16.4, 18.7, 20.9};
-    Tally tally = {0, 0}, pooled = {0, 0};
+    Tally tally = {0}, pooled = {0};
     for (int k = 0; k < 3; k++) {
         double estimates[radiance_bands] = {0}, truths[radiance_bands] = {0};
         for (int n = 0; n < times; n++) {
@@ -94,7 +102,8 @@ static void dead_reckoning_is_near_the_truth(void **state)
             char          name[64];
             snprintf(name, sizeof name, "%s %.1f s", scenes[k].name, times_s[n]);
             for (int band = 0; band < radiance_bands; band++) {
-                const double estimate = error.share[band][ERROR_DEAD_RECKONING], true_one = apart(&a.picture, &b.picture, (Band)band);
+                const double estimate = error.share[band][ERROR_DEAD_RECKONING],
+                             true_one = apart(&a.picture, &b.picture, (Band)band);
                 judge(&tally, name, "dead_reckoning", (Band)band, estimate, true_one);
                 estimates[band] += estimate * estimate / times, truths[band] += true_one * true_one / times;
             }
@@ -104,11 +113,14 @@ static void dead_reckoning_is_near_the_truth(void **state)
         for (int band = 0; band < radiance_bands; band++)
             judge(&pooled, scenes[k].name, "all eight", (Band)band, sqrt(estimates[band]), sqrt(truths[band]));
     }
-    print_message("within a factor of 2: %d of %d frames, %d of %d over all eight\n", tally.held, tally.cases, pooled.held, pooled.cases);
-    /* What a driver does after its last report is in no report: an estimate can be right for many, not for each. Of one
-     * frame three in four are (measured), two in three must be. */
-    CHECK(pooled.held * 10 >= pooled.cases * 9);
-    CHECK(tally.held * 3 >= tally.cases * 2);
+    /* What a driver does after its last report is in no report: an estimate can be right for many frames, not for each.
+     * The way of one driver in a plane, normal in both directions, is within a factor of 2 of its own rms in exp(-1/4)
+     * - exp(-4) = 76 of 100 cases, which is the most that a frame in which one driver counts can be expected to keep;
+     * nine in ten would take two of equal weight. Of single frames 71 .. 79 % are (measured); one in ten fewer than on
+     * paper must be. */
+    CHECK(nine_in_ten(&pooled, "over all eight"));
+    nine_in_ten(&tally, "single frames");
+    for (int band = 0; band < radiance_bands; band++) CHECK(tally.held[band] * 3 >= tally.cases[band] * 2);
 }
 
 /* What a correction says of the next one. */
@@ -130,6 +142,7 @@ static void corrections_tell(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(corrections_tell), cmocka_unit_test(dead_reckoning_is_near_the_truth)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(corrections_tell),
+                                       cmocka_unit_test(dead_reckoning_is_near_the_truth)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

@@ -1,5 +1,5 @@
-/* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said, and
- * whether what is promised holds in scenes and on a ground that the table of etc/ knows nothing of. */
+/* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said,
+ * and whether what is promised holds in scenes and on a ground that the table of etc/ knows nothing of. */
 #include "sensor/node/quality.h"
 #include "tests/sensor/error_scenes.h"
 
@@ -20,7 +20,8 @@ static QualityTable table_of(const char *text)
     return table;
 }
 
-static int picked(bool *reached, const QualityTable *table, double percent, double kelvin, double frame_ms, unsigned bands)
+static int picked(bool *reached, const QualityTable *table, double percent, double kelvin, double frame_ms,
+                  unsigned bands)
 {
     const QualityTarget target = {percent, kelvin, frame_ms, 0.5, 2, bands};
     return quality_pick(reached, table, &target);
@@ -47,14 +48,47 @@ static void the_quickest_that_keeps_it(void **state)
     CHECK(picked(&reached, &t, 0, NAN, NAN, 1u << BAND_RADAR) == 0);    /* radar alone: nothing to keep */
 }
 
+/* A row as good as a quicker one in everything is for nobody; one that is better in one band alone is for somebody. */
+static void rows_for_nobody_are_told(void **state)
+{
+    (void)state;
+    static const char *const rows[] = {"2,4,64,6,4,1,0.5,0.6,50\n", "2,4,64,9,4.5,2,0.6,0.7,90\n",
+                                       "2,4,64,5.9,4,1,0.5,0.6,50\n", "2,4,64,9,4.5,2,0.6,0.35,91\n",
+                                       "2,4,64,6,3.9,1,0.5,0.6,41\n"};
+    static const bool wanted[] = {false, false, true, true, true};
+    char              text[1024], path[512];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        snprintf(text, sizeof text, "%s%s", good, rows[k]);
+        const QualityTable t = table_of(text);
+        CHECK(t.count == 5 && quality_wanted(&t, 4) == wanted[k] && quality_wanted(&t, 0));
+    }
+    QualityTable table;
+    CHECK(etc_path(path, sizeof path, "quality.csv"));
+    assert_int_equal(quality_open(&table, path), STATUS_OK);
+    for (int k = 0; k < table.count; k++) CHECK(quality_wanted(&table, k));
+}
+
 static void broken_tables_are_refused(void **state)
 {
     (void)state;
-    static const char head[] = "samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n";
-    static const char *const rows[] = {"", "1,0,0,10,20,5,2,2\n", "0,0,0,1,1,1,1,1,1\n", "17,0,0,1,1,1,1,1,1\n", "1,1,48,1,1,1,1,1,1\n",
-                                       "1,4,0,1,1,1,1,1,1\n", "1,0,48,1,1,1,1,1,1\n", "1.5,0,0,1,1,1,1,1,1\n", "1,0,0,nan,1,1,1,1,1\n",
-                                       "1,0,0,-1,1,1,1,1,1\n", "1,0,0,1,1,1,1,1,0\n", "1,0,0,1,1,1,1,1,inf\n", "1,0,0,,1,1,1,1,1\n",
-                                       "1,4,7,1,1,1,1,1,1\n", "1,4,257,1,1,1,1,1,1\n", "1,0,0,1,1,1,1,1,1e300\n"};
+    static const char head[] =
+        "samples,edge_samples,target_samples,optical_percent,mwir_percent,lwir_percent,mwir_k,lwir_k,ms_megapixel\n";
+    static const char *const rows[] = {"",
+                                       "1,0,0,10,20,5,2,2\n",
+                                       "0,0,0,1,1,1,1,1,1\n",
+                                       "17,0,0,1,1,1,1,1,1\n",
+                                       "1,1,48,1,1,1,1,1,1\n",
+                                       "1,4,0,1,1,1,1,1,1\n",
+                                       "1,0,48,1,1,1,1,1,1\n",
+                                       "1.5,0,0,1,1,1,1,1,1\n",
+                                       "1,0,0,nan,1,1,1,1,1\n",
+                                       "1,0,0,-1,1,1,1,1,1\n",
+                                       "1,0,0,1,1,1,1,1,0\n",
+                                       "1,0,0,1,1,1,1,1,inf\n",
+                                       "1,0,0,,1,1,1,1,1\n",
+                                       "1,4,7,1,1,1,1,1,1\n",
+                                       "1,4,257,1,1,1,1,1,1\n",
+                                       "1,0,0,1,1,1,1,1,1e300\n"};
     char         path[text_file_size], text[16384];
     QualityTable table;
     log_hush(true);
@@ -98,7 +132,8 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
     assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
     CHECK(config.sensor.samples == 4 && config.sensor.edge_samples == 5 && config.sensor.target_samples == 96);
     print_message("%s\n", choices.line[0]);
-    CHECK(choices.count == 1 && strstr(choices.line[0], "3 % rmse") && strstr(choices.line[0], "sensor.edge_samples as given"));
+    CHECK(choices.count == 1 && strstr(choices.line[0], "3 % rmse") &&
+          strstr(choices.line[0], "sensor.edge_samples as given"));
     CHECK(!strstr(choices.line[0], "NOT reached"));
     /* asking changes no hash, what is picked does */
     config.sensor = plain.sensor;
@@ -136,8 +171,10 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
 static void promises_hold_elsewhere(void **state)
 {
     (void)state;
-    static const ErrorScene scenes[] = {{"ground from 100 m", 700, 110, 45, 0, false, 0}, {"vehicles at 80 m", 80, 15, 40, 6, false, 0},
-                                        {"vehicles at 400 m", 400, 50, 15, 10, false, 0}, {"horizon", 250, 9, 35, 3, false, 3}};
+    static const ErrorScene scenes[] = {{"ground from 100 m", 700, 110, 45, 0, false, 0},
+                                        {"vehicles at 80 m", 80, 15, 40, 6, false, 0},
+                                        {"vehicles at 400 m", 400, 50, 15, 10, false, 0},
+                                        {"horizon", 250, 9, 35, 3, false, 3}};
     static const double asked_percent[] = {10, 5, 2.5};
     char         path[512];
     QualityTable table;
@@ -156,13 +193,15 @@ static void promises_hold_elsewhere(void **state)
             const QualityTarget target = {asked_percent[k], NAN, NAN, 1, 1, 7};
             const QualityRow   *r = &table.row[quality_pick(&reached, &table, &target)];
             CHECK(reached);
-            request.samples = r->samples, request.edge_samples = r->edge_samples, request.target_samples = r->target_samples;
+            request.samples = r->samples, request.edge_samples = r->edge_samples,
+            request.target_samples = r->target_samples;
             const BenchFrame f = frame_of(&scene, &request, 1);
             for (int b = 0; b < radiance_bands; b++) {
                 const double percent = 100 * apart(&f.picture, &true_one.picture, (Band)b);
-                print_message("%-18s %-8s asked for %4.1f %%: samples %d, edge_samples %d, target_samples %d: %.2f %%%s\n",
-                              scenes[s].name, band_name((Band)b), asked_percent[k], r->samples, r->edge_samples, r->target_samples,
-                              percent, percent <= asked_percent[k] ? "" : "  *");
+                print_message(
+                    "%-18s %-8s asked for %4.1f %%: samples %d, edge_samples %d, target_samples %d: %.2f %%%s\n",
+                    scenes[s].name, band_name((Band)b), asked_percent[k], r->samples, r->edge_samples,
+                    r->target_samples, percent, percent <= asked_percent[k] ? "" : "  *");
                 cases++, held += percent <= asked_percent[k];
             }
         }
@@ -174,7 +213,9 @@ static void promises_hold_elsewhere(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(broken_tables_are_refused),
-                                       cmocka_unit_test(given_keys_stay_and_the_choice_is_said), cmocka_unit_test(promises_hold_elsewhere)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_quickest_that_keeps_it), cmocka_unit_test(rows_for_nobody_are_told),
+        cmocka_unit_test(broken_tables_are_refused), cmocka_unit_test(given_keys_stay_and_the_choice_is_said),
+        cmocka_unit_test(promises_hold_elsewhere)};
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

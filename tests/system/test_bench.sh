@@ -8,11 +8,14 @@ check "all ends well" [ $code = 0 ]
 [ $code = 0 ] || { grep -F '**' "$tmp/stdout"; cat "$tmp/stderr"; }
 check "it names the machine first" grep -q "pitviper [0-9]" <(head -n 1 "$tmp/stdout")
 check "the file too" grep -q "^# .*pitviper [0-9]" <(head -n 1 "$tmp/all.csv")
-for key in version machine rounds threads libraries; do check "the file says its $key" grep -q "^# $key: [^ ]" "$tmp/all.csv"; done
+for key in version machine rounds threads libraries; do
+    check "the file says its $key" grep -q "^# $key: [^ ]" "$tmp/all.csv"
+done
 check "every error keeps its limit" eval '! grep -q ",no," "$tmp/all.csv"'
 # the rows without comments and quoted texts
 sed -e '/^#/d' -e 's/"[^"]*"//g' "$tmp/all.csv" >"$tmp/bare.csv"
-check "every row has as many columns as the header" awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 }' "$tmp/bare.csv"
+check "every row has as many columns as the header" \
+    awk -F, 'NR == 1 { n = NF } NF != n { print; exit 1 }' "$tmp/bare.csv"
 # what a version or a machine does not have is named, and has none
 check "every row has a figure: a time, a rate, a ratio or an error" \
     awk -F, 'NR > 1 && !($3 > 0 || $6 > 0 || $8 > 0 || $10 != "") { print; exit 1 }' \
@@ -32,32 +35,39 @@ for what in "Entity State: decode" "Entity State: encode" "Fire: decode" "Detona
 
 table speed
 for what in "ground: " "ground: pyramid" "40 m up: frame" "100 m up: frame" "300 m up: frame" "1000 m up: frame" \
-            "rays alone" "one ray a pixel" "1 thread: snapshot" "1 thread: air" "1 thread: visibility" "1 thread: sun rays" \
+            "rays alone" "one ray a pixel" "1 thread: snapshot" "1 thread: air" "1 thread: visibility" \
+            "1 thread: sun rays" \
             "1 thread: shading" "small targets" "pass over edges" "truth of targets" "hash of the planes" "256 x 256" \
-            "close target: one ray a pixel" "adaptive edges" "1 thread: frame" "optical alone, one ray" "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
+            "close target: one ray a pixel" "adaptive edges" "1 thread: frame" "optical alone, one ray" \
+            "radar alone" "files of a frame" "memory: posts" "memory: arena" "memory: resident"; do
     has speed "$what"
 done
 
 table skip
-for what in "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" "walked together" \
-            "sun rays miss" "stops the sun" "too low to stop" "nothing behind" "beside a small target" "first rays" "smoke" \
+for what in "outside a block" "by their sphere" "parts missed" "behind the part that was met" "below a block" \
+            "walked together" \
+            "sun rays miss" "stops the sun" "too low to stop" "nothing behind" "beside a small target" \
+            "first rays" "smoke" \
             "all of them" "bands nobody asked for" "planes nobody asked for"; do has skip "$what"; done
 
 table network
-for what in "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: most" recorder "live node: ready" "live node: reports heard" \
+for what in "IPv4: datagrams" "IPv4: bundles" "IPv4: arrival to taken" "IPv4: most" recorder "live node: ready" \
+            "live node: reports heard" \
             "live node: arrival to pose" "live node: frame time to published" "live node: memory"; do
     has network "$what"
 done
 
 # every approximation has its knob, with one default each, whose error is what is stated
 table precision
-for knob in "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" "powers of two" \
+for knob in "Earth to local frame" "latitude. longitude. height" "geoid between posts" "the sun's place" \
+            "powers of two" \
             "spacing of invented ground" "reach of the finest level" "height of a post" "texture under a pixel" \
             "dead reckoning" "heat of parts between reports" "radiance of a black body" "temperature of a radiance" \
             "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
-            "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "electrons of a radiance" "display" "converter" \
+            "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "electrons of a radiance" \
+            "display" "converter" \
             "display's curve"; do
     check "precision has one default of: $knob" \
         [ "$(grep -cE "^precision,\"?$knob: .*,yes,.*,(\* )?default$" "$tmp/precision.csv")" = 1 ]
@@ -89,11 +99,13 @@ check "a run is like itself" [ $code = 0 ]
 rows=$(grep -c within\ noise "$tmp/stdout")
 check "in every row" grep -qE "^($((rows - 1))) rows in both: \1 within noise" "$tmp/stdout"
 check "and is a page" grep -q '</html>' "$tmp/compare.html"
-awk -F, -v OFS=, '$2 == "Fire: decode" { $3 *= 1.5; $4 *= 1.5; $15 *= 1.5; $16 *= 1.5 } { print }' "$tmp/all.csv" >"$tmp/slow.csv"
+awk -F, -v OFS=, '$2 == "Fire: decode" { $3 *= 1.5; $4 *= 1.5; $15 *= 1.5; $16 *= 1.5 } { print }' "$tmp/all.csv" \
+    >"$tmp/slow.csv"
 run bench compare "$tmp/all.csv" "$tmp/slow.csv" --slower 1.3
 check "a slower row ends it with 1" [ $code = 1 ]
 check "and is named, alone" [ "$(grep 'slower 1.50 x' "$tmp/stdout" | grep -c 'dis: Fire: decode')" = 1 ]
-sed '/^dis,Fire: encode,/d; s/^# machine: .*/# machine: another/' "$tmp/all.csv" | sed '/^dis,Detonation: decode,/s/,0,0,octets,/,3,0,octets,/' >"$tmp/worse.csv"
+sed '/^dis,Fire: encode,/d; s/^# machine: .*/# machine: another/' "$tmp/all.csv" |
+    sed '/^dis,Detonation: decode,/s/,0,0,octets,/,3,0,octets,/' >"$tmp/worse.csv"
 run bench compare "$tmp/all.csv" "$tmp/worse.csv"
 check "an error beyond its limit ends it with 1" [ $code = 1 ]
 check "and is named" grep -q 'dis: Detonation: decode.*error beyond its limit' "$tmp/stdout"
@@ -104,13 +116,19 @@ run bench compare "$tmp/all.csv" "$tmp/noise.csv"
 check "noise is refused" [ $code = 1 ]
 
 table stability
-for what in "time stamp to seconds" "exercise clock unwrapped" "denormals, infinities" "latitude, longitude, height to ECEF" "ENU axes: jump" \
-            "1000 km away" "origins anywhere" "sun over leap seconds" "geoid: a pole" "ground: cliffs" "ground of files: voids" \
-            "dead reckoning, nine algorithms" "turn to turn" "psi, theta, phi" "turrets at any angle" "Entity State: each float" \
-            "Detonation: each float" "scenario: each key" "effects.csv" "probes: each column" "built-in models" "1e6 to 1" \
+for what in "time stamp to seconds" "exercise clock unwrapped" "denormals, infinities" \
+            "latitude, longitude, height to ECEF" "ENU axes: jump" \
+            "1000 km away" "origins anywhere" "sun over leap seconds" "geoid: a pole" "ground: cliffs" \
+            "ground of files: voids" \
+            "dead reckoning, nine algorithms" "turn to turn" "psi, theta, phi" "turrets at any angle" \
+            "Entity State: each float" \
+            "Detonation: each float" "scenario: each key" "effects.csv" "probes: each column" "built-in models" \
+            "1e6 to 1" \
             "model files: needles"; do has stability "$what"; done
-for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" "sun: " "picture: a block" \
-            "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " "threads: "; do
+for what in "parts: a plate" "parts: needles" leaks "ground: rough" "by eights" "light: Planck" "light: smoke" \
+            "sun: " "picture: a block" \
+            "any place on Earth" "8192 x 1" "crowd: " "eye: in a block" "radar: " "detector: " "display: " \
+            "threads: "; do
     has stability "$what"
 done
 
