@@ -57,7 +57,8 @@ static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_en
 static int material_of(const Visibility *v, const Materials *materials, const Hits *hits, int k)
 {
     if (hits->entity[k] == 0) return materials->surface[hits->surface[k]];
-    return material_of_part(materials, hits->model[k], hits->part[k] - 1, visibility_damage(v, (int)hits->entity[k] - 1));
+    return material_of_part(materials, hits->model[k], hits->part[k] - 1,
+                            visibility_damage(v, (int)hits->entity[k] - 1));
 }
 
 /* Everything one block needs besides its input. */
@@ -99,8 +100,8 @@ static void first_bounce(RadarReturns *out, Scratch *s, const RadarConfig *confi
     }
 }
 
-/* One more bounce of all paths: where they hit, what of it comes back to the eye, and who goes on. What comes back of those
- * beyond the last that is reported is added to it. */
+/* One more bounce of all paths: where they hit, what of it comes back to the eye, and who goes on. What comes back of
+ * those beyond the last that is reported is added to it. */
 static void next_bounce(RadarReturns *out, int nth, Scratch *s, const RadarConfig *config, const Visibility *v,
                         const Materials *materials, const Rays *rays, int hidden, VisibilityCounters *counters)
 {

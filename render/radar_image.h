@@ -3,7 +3,8 @@
  * Relative units (model=pseudo-radar), never dBsm. From each eye hit a mirror path is followed for up to
  * six bounces; it counts by how near its exit direction comes to the way back to the eye, under a lobe
  * that keeps energy. Bounces are reported apart, those beyond the third with it: they are rare, and some vehicles send
- * a sixth of their power by five (bench precision, mirrors of a radar path). Ground and rough surfaces add diffuse backscatter. */
+ * a sixth of their power by five (bench precision, mirrors of a radar path). Ground and rough surfaces add diffuse
+ * backscatter. */
 #ifndef RENDER_RADAR_IMAGE_H
 #define RENDER_RADAR_IMAGE_H
 
@@ -24,7 +25,8 @@ typedef struct RadarReturns {
 
 /* Share of the power that leaves an exit lobe about a direction into one at an angle of this cosine to it,
  * 1/sr: exp(-(1 - cosine) / s^2) over a hemisphere, s^2 = lobe_rad^2 / 2; its integral over that hemisphere is
- * 1 exactly, its mean square angle lobe_rad^2 (to lobe_rad^2 / 3, relative). 0 beyond a right angle. Below 1e-9 and beyond 1e6 rad those count. */
+ * 1 exactly, its mean square angle lobe_rad^2 (to lobe_rad^2 / 3, relative). 0 beyond a right angle. Below 1e-9 and
+ * beyond 1e6 rad those count. */
 double radar_lobe(double lobe_rad, double cosine);
 
 /* Total of a sample = sum of power over the bounces. hidden as in visibility_first_hit. Some 350 KB of stack. */

@@ -263,8 +263,9 @@ static void a_dihedral_is_seen_all_over_its_plane(void **state)
     }
 }
 
-/* A wedge of an eighth of a turn sends back what comes along its middle by four mirrors. Unfolded, the way is a straight
- * line, which meets the faces at 22.5, 67.5, 112.5 and 157.5 degrees: those that pass the edge within a sin(22.5). */
+/* A wedge of an eighth of a turn sends back what comes along its middle by four mirrors. Unfolded, the way is a
+ * straight line, which meets the faces at 22.5, 67.5, 112.5 and 157.5 degrees: those that pass the edge within a
+ * sin(22.5). */
 static void a_sharp_wedge_takes_four_mirrors(void **state)
 {
     (void)state;
