@@ -186,12 +186,13 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 
 /* ---- the picture ------------------------------------------------------------------------------ */
 
-/* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no point
- * past another. */
+/* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no
+ * point past another. */
 static double shown_s(const BenchPoint *point, int count, int index)
 {
     for (int i = 0; i < count; i++)
-        if (point[i].is_default && i != index && point[i].time.rounds > 0 && point[i].time.rounds == point[index].time.rounds)
+        if (point[i].is_default && i != index && point[i].time.rounds > 0 &&
+            point[i].time.rounds == point[index].time.rounds)
             return point[i].time.median_s * bench_ratio(&point[index].time, &point[i].time);
     return point[index].time.median_s;
 }

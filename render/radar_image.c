@@ -57,7 +57,8 @@ static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_en
 static int material_of(const Visibility *v, const Materials *materials, const Hits *hits, int k)
 {
     if (hits->entity[k] == 0) return materials->surface[hits->surface[k]];
-    return material_of_part(materials, hits->model[k], hits->part[k] - 1, visibility_damage(v, (int)hits->entity[k] - 1));
+    return material_of_part(materials, hits->model[k], hits->part[k] - 1,
+                            visibility_damage(v, (int)hits->entity[k] - 1));
 }
 
 /* Everything one block needs besides its input. */
@@ -67,6 +68,7 @@ typedef struct Scratch {
     Paths  paths;
     int    back_sample[hits_capacity];
     double back_power[hits_capacity];
+    double back_slant_m[hits_capacity];
 } Scratch;
 
 /* The first bounce: seen from the eye by construction. Starts the paths that go on. */
@@ -98,10 +100,13 @@ static void first_bounce(RadarReturns *out, Scratch *s, const RadarConfig *confi
     }
 }
 
-/* One more bounce of all paths: where they hit, what of it comes back to the eye, and who goes on. */
-static void next_bounce(RadarReturns *out, int bounce, Scratch *s, const RadarConfig *config, const Visibility *v,
+/* One more bounce of all paths: where they hit, what of it comes back to the eye, and who goes on. What comes back of
+ * those beyond the last that is reported is added to it. */
+static void next_bounce(RadarReturns *out, int nth, Scratch *s, const RadarConfig *config, const Visibility *v,
                         const Materials *materials, const Rays *rays, int hidden, VisibilityCounters *counters)
 {
+    const bool beyond = nth >= radar_bounces;
+    const int  bounce = beyond ? radar_bounces - 1 : nth;
     visibility_first_hit(&s->met, v, &s->onward, NULL, -1, hidden, counters);
 
     Paths *paths = &s->paths;
@@ -126,11 +131,12 @@ static void next_bounce(RadarReturns *out, int bounce, Scratch *s, const RadarCo
         double home_enu[3];
         v3_sub(home_enu, eye_enu, p_enu);
         const double home_m = v3_length(home_enu);
-        out->slant_m[bounce][sample] = (float)(0.5 * (travelled_m + home_m));
+        if (!beyond) out->slant_m[bounce][sample] = (float)(0.5 * (travelled_m + home_m));
         if (v3_normalize(home_enu, home_enu)) {
             const double cosine = v3_dot(exit_enu, home_enu);
             if (!lobe_is_dark(config->lobe_rad, cosine) && v3_dot(home_enu, n_geo) > 0) {
                 s->back_sample[s->back.count] = sample;
+                s->back_slant_m[s->back.count] = 0.5 * (travelled_m + home_m);
                 s->back_power[s->back.count]  = reflectance * radar_lobe(config->lobe_rad, cosine);
                 add_ray(&s->back, p_enu, n_geo, home_enu, home_m);
             }
@@ -146,8 +152,15 @@ static void next_bounce(RadarReturns *out, int bounce, Scratch *s, const RadarCo
     if (s->back.count == 0) return;
 
     visibility_first_hit(&s->between, v, &s->back, NULL, -1, hidden, counters);
-    for (int k = 0; k < s->back.count; k++)
-        if (!(s->between.range_m[k] < INFINITY)) out->power[bounce][s->back_sample[k]] += (float)s->back_power[k];
+    for (int k = 0; k < s->back.count; k++) {
+        if (s->between.range_m[k] < INFINITY) continue;
+        const int    i = s->back_sample[k];
+        const double held = (double)out->power[bounce][i], more = s->back_power[k];
+        if (beyond && more > 0)
+            out->slant_m[bounce][i] =
+                (float)((held * (double)out->slant_m[bounce][i] + more * s->back_slant_m[k]) / (held + more));
+        out->power[bounce][i] += (float)more;
+    }
 }
 
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
@@ -161,6 +174,6 @@ void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility 
         memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
     }
     first_bounce(out, &s, config, materials, hits, rays, material);
-    for (int b = 1; b < radar_bounces + config->more_bounces && s.paths.count > 0; b++)
-        next_bounce(out, b < radar_bounces ? b : radar_bounces - 1, &s, config, v, materials, rays, hidden, counters);
+    for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++)
+        next_bounce(out, b, &s, config, v, materials, rays, hidden, counters);
 }

@@ -9,7 +9,7 @@
 
 static const double edge_m = 2, range_m = 1500, lobe_rad = 0.05;
 
-enum { model_plate, model_dihedral, model_trihedral, model_wall, model_total };
+enum { model_plate, model_dihedral, model_trihedral, model_wall, model_wedge, model_total };
 enum { material_mirror = 1, material_earth = 2 };
 
 /* Squares of edge_m, each two triangles, corner at the origin. Corners of a face: any of the axes' planes. */
@@ -85,7 +85,15 @@ static int open_bench(void **state)
     add_square(&shapes[model_dihedral], 2, 0, 0, 0); /* z = 0 */
     for (int axis = 0; axis < 3; axis++) add_square(&shapes[model_trihedral], axis, 0, 0, 0);
     add_square(&shapes[model_wall], 0, -edge_m / 2, -edge_m / 2, 0);
-    static const char *const names[] = {"plate", "dihedral", "trihedral", "wall"};
+    /* z = 0 and a square that leans over it by 45 degrees, about the y axis */
+    Shape *wedge = &shapes[model_wedge];
+    add_square(wedge, 2, 0, 0, 0);
+    add_square(wedge, 2, 0, 0, 0);
+    for (int k = 4; k < 8; k++) {
+        wedge->normal[k][0] = -(float)sqrt(0.5), wedge->normal[k][2] = (float)sqrt(0.5);
+        wedge->vertex[k][2] = wedge->vertex[k][0] *= sqrt(0.5);
+    }
+    static const char *const names[] = {"plate", "dihedral", "trihedral", "wall", "wedge"};
     const Model *models[model_total];
     for (int m = 0; m < model_total; m++) {
         finish(&shapes[m], names[m]);
@@ -255,6 +263,23 @@ static void a_dihedral_is_seen_all_over_its_plane(void **state)
     }
 }
 
+/* A wedge of an eighth of a turn sends back what comes along its middle by four mirrors. Unfolded, the way is a
+ * straight line, which meets the faces at 22.5, 67.5, 112.5 and 157.5 degrees: those that pass the edge within a
+ * sin(22.5). */
+static void a_sharp_wedge_takes_four_mirrors(void **state)
+{
+    (void)state;
+    place(0, model_wedge, origin_enu);
+    pose_world();
+    const double a = pi_rad / 8, towards[3] = {cos(a), 0, sin(a)}, aim[3] = {0, edge_m / 2, 0};
+    const double width_m = 2 * edge_m * sin(a);
+    const Sum    sum = look(towards, aim, 160, -1);
+    CHECK_NEAR(sum.power[2] / retro(width_m * edge_m), 1, 0.05 / width_m + 0.01); /* as of the dihedral */
+    CHECK(sum.power[0] + sum.power[1] < 1e-9 * sum.power[2]);
+    CHECK_NEAR(sum.slant_low_m, range_m, 2e-3); /* as long as the way to the edge, not as the third mirror's */
+    CHECK_NEAR(sum.slant_high_m, range_m, 4e-3);
+}
+
 static void a_trihedral_is_seen_over_its_cone(void **state)
 {
     (void)state;
@@ -363,6 +388,7 @@ int main(void)
         cmocka_unit_test(the_lobe_keeps_energy),
         cmocka_unit_test(a_plate_peaks_at_its_normal),
         cmocka_unit_test(a_dihedral_is_seen_all_over_its_plane),
+        cmocka_unit_test(a_sharp_wedge_takes_four_mirrors),
         cmocka_unit_test(a_trihedral_is_seen_over_its_cone),
         cmocka_unit_test(it_converges),
         cmocka_unit_test(the_way_home_must_be_free),
