@@ -270,9 +270,9 @@ static void add_rows(Live *l)
     snprintf(against, sizeof against, "left out, of %.0f a second asked for; made: %.0f", (double)rate_hz, l->frames);
     row.against = against;
     bench_add(l->bench, &row);
-    add_latency(l, "live node: arrival to pose sampled", l->sampled_s, l->samples, 1.0 / rate_hz, "limit: one frame interval");
+    add_latency(l, "live node: arrival to pose sampled", l->sampled_s, l->samples, 1.0 / rate_hz, "the frame interval");
     add_latency(l, "live node: frame time to published", l->published_s, l->publications, l->frame_p95_s + publish_s,
-                "limit: a frame (95 %) and 10 ms");
+                "a frame (95 %) and 10 ms");
     add_figure(l, "live node: memory resident at most", l->resident_mb, "MB");
 }
 

@@ -17,5 +17,6 @@ sed -i '/^dis,Entity State: decode/d' "$tmp/house/etc/figures/bench_all.csv"
 check "a row that is gone" refused 'no such row: dis|Entity State: decode' --check
 cp etc/figures/bench_all.csv "$tmp/quick.csv"
 sed -i 's/^# rounds: .*/# rounds: quick/' "$tmp/quick.csv"
-check "quick rounds are no figures" refused 'quick rounds' "$tmp/quick.csv"
+check "quick rounds are no figures" refused 'quick rounds' "$tmp/quick.csv" "$tmp"
+check "plots are asked for" refused 'CSV PLOTS' "$tmp/quick.csv"
 finish
