@@ -248,6 +248,10 @@ typedef struct BenchSuite {
 
 BenchRow bench_row(const char *what);
 void     bench_add(Bench *bench, const BenchRow *row);
+/* For rows that are errors alone: the worst so far, by size; what is no number is worse than any. And its row. */
+void     bench_worse(double *worst, double error);
+void     bench_stress(Bench *bench, const char *what, double error, double limit, const char *unit,
+                      const char *against);
 bool     bench_quick(const Bench *bench);                         /* seconds, not minutes: fewer rounds */
 int      bench_threads(const Bench *bench);
 const char *bench_option(const Bench *bench, const char *name);   /* NULL: not given */

@@ -238,3 +238,19 @@ void bench_add(Bench *bench, const BenchRow *row)
     fflush(stdout);
     if (bench->csv) csv_row(bench->csv, bench->suite, row);
 }
+
+void bench_worse(double *worst, double error)
+{
+    error = fabs(error);
+    if (!(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
+}
+
+void bench_stress(Bench *bench, const char *what, double error, double limit, const char *unit, const char *against)
+{
+    BenchRow row    = bench_row(what);
+    row.error       = error;
+    row.error_limit = limit;
+    row.error_unit  = unit;
+    row.against     = against;
+    bench_add(bench, &row);
+}

@@ -17,23 +17,6 @@ static double uniform(uint32_t stream, uint64_t index, double low, double high)
     return low + (high - low) * random_uniform(0x57AB, stream, 0, index);
 }
 
-/* The worst so far; what is no number is worse than any. */
-static void worse(double *worst, double error)
-{
-    error = fabs(error);
-    if (!(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
-}
-
-static void add(Bench *bench, const char *what, double error, double limit, const char *unit, const char *against)
-{
-    BenchRow row    = bench_row(what);
-    row.error       = error;
-    row.error_limit = limit;
-    row.error_unit  = unit;
-    row.against     = against;
-    bench_add(bench, &row);
-}
-
 /* ---- stamps --------------------------------------------------------------------------------- */
 
 enum { near_ends = 48, special_ticks = 6 * near_ends };
@@ -54,12 +37,12 @@ static void stamps_and_back(Bench *bench)
         const uint32_t k = i < special_ticks ? special_tick(i) : (uint32_t)uniform(1, (uint64_t)i, 0, 2147483648.0);
         for (uint32_t absolute = 0; absolute < 2; absolute++) {
             const uint32_t stamp = k << 1 | absolute;
-            worse(&ticks, (double)(dis_timestamp(dis_timestamp_seconds(stamp), absolute) >> 1) - (double)k);
+            bench_worse(&ticks, (double)(dis_timestamp(dis_timestamp_seconds(stamp), absolute) >> 1) - (double)k);
             if (dis_timestamp_is_absolute(dis_timestamp(dis_timestamp_seconds(stamp), absolute)) != (bool)absolute)
                 ticks = INFINITY;
         }
     }
-    add(bench, "time stamp to seconds and back, about 0, 1/2 and 1 h", ticks, 1, "ticks", "the stamp");
+    bench_stress(bench, "time stamp to seconds and back, about 0, 1/2 and 1 h", ticks, 1, "ticks", "the stamp");
 
     /* an instant as a stamp, on both sides of each full hour in floating point */
     for (size_t h = 0; h < sizeof hours / sizeof *hours; h++)
@@ -70,9 +53,10 @@ static void stamps_and_back(Bench *bench)
             long double off =
                 (long double)dis_timestamp_seconds(dis_timestamp(t_s[side], true)) - fmodl(t_s[side], 3600);
             off -= 3600 * rintl(off / 3600);
-            worse(&late, (double)(off / tick_s));
+            bench_worse(&late, (double)(off / tick_s));
         }
-    add(bench, "an instant as a time stamp, on both sides of full hours", late, 1 + 1e-6, "ticks", "long double");
+    bench_stress(bench, "an instant as a time stamp, on both sides of full hours", late, 1 + 1e-6, "ticks",
+                 "long double");
 
     for (int i = 0; i < special_ticks; i++)
         for (int k = 0; k < special_ticks; k++) {
@@ -80,9 +64,9 @@ static void stamps_and_back(Bench *bench)
             int64_t       step = (to - from + 2 * hour_ticks) % hour_ticks; /* the short way round */
             if (step >= hour_ticks / 2) step -= hour_ticks;
             const double got_s = dis_timestamp_step_s((uint32_t)from << 1, (uint32_t)to << 1 | 1);
-            worse(&step_s, got_s - (double)step * tick_s);
+            bench_worse(&step_s, got_s - (double)step * tick_s);
         }
-    add(bench, "step from one time stamp to another, both ways over the hour", step_s, 0, "s", "64-bit ticks");
+    bench_stress(bench, "step from one time stamp to another, both ways over the hour", step_s, 0, "s", "64-bit ticks");
 }
 
 /* ---- exercise clock ------------------------------------------------------------------------- */
@@ -109,8 +93,8 @@ static double clock_error_s(const Trip *trip, int packets)
         const uint32_t stamp = (uint32_t)(tick % hour_ticks) << 1 | trip->absolute;
         /* all bits zero says that there is no stamp: then it is the ruler's, with its jitter */
         const double got_s = exercise_clock_time(clock, 1, 2, stamp, capture_s);
-        if (stamp != 0) worse(&worst, got_s - truth_s);
-        else worse(&worst, fmax(fabs(got_s - truth_s) - trip->jitter_s - 1e-6, 0));
+        if (stamp != 0) bench_worse(&worst, got_s - truth_s);
+        else bench_worse(&worst, fmax(fabs(got_s - truth_s) - trip->jitter_s - 1e-6, 0));
     }
     exercise_clock_destroy(clock);
     return worst;
@@ -127,16 +111,16 @@ static void clocks(Bench *bench)
         const Trip    shaken = {about[c / 2], second / 60 + 1, 2, c & 1, true};
         const Trip    rare = {about[c / 2], 1799 * second, 0.5, c & 1, false};
         const Trip    rarer = {about[c / 2], 47 * hour_ticks + hour_ticks / 2, 0.5, c & 1, false};
-        worse(&steady, clock_error_s(&even, days * 86400 / 7));
-        worse(&jitter, clock_error_s(&shaken, days * 20000));
-        worse(&silence, clock_error_s(&rare, days * 48));
-        worse(&silence, clock_error_s(&rarer, days * 48));
+        bench_worse(&steady, clock_error_s(&even, days * 86400 / 7));
+        bench_worse(&jitter, clock_error_s(&shaken, days * 20000));
+        bench_worse(&silence, clock_error_s(&rare, days * 48));
+        bench_worse(&silence, clock_error_s(&rarer, days * 48));
     }
     /* whole ticks on both sides; capture at 1.7e9 s steps by 2.4e-7 s and only chooses the hour */
     const char *ticks = "64-bit ticks";
-    add(bench, "exercise clock unwrapped over days, both kinds of stamp", steady, 1e-9, "s", ticks);
-    add(bench, "the same, packets 2 s early and late, two by two reversed", jitter, 1e-9, "s", ticks);
-    add(bench, "the same, silences of 30 minutes and of 47.5 hours", silence, 1e-8, "s", ticks);
+    bench_stress(bench, "exercise clock unwrapped over days, both kinds of stamp", steady, 1e-9, "s", ticks);
+    bench_stress(bench, "the same, packets 2 s early and late, two by two reversed", jitter, 1e-9, "s", ticks);
+    bench_stress(bench, "the same, silences of 30 minutes and of 47.5 hours", silence, 1e-8, "s", ticks);
 }
 
 /* Another sender is tied by capture time: how its distance from the truth changes. */
@@ -156,7 +140,8 @@ static void second_sender(Bench *bench)
         if (!(off_s <= high)) high = off_s;
     }
     exercise_clock_destroy(clock);
-    add(bench, "a second sender at another time of the hour: drift over days", high - low, 2 * tick_s, "s", "no drift");
+    bench_stress(bench, "a second sender at another time of the hour: drift over days", high - low, 2 * tick_s, "s",
+                 "no drift");
 }
 
 static void hostile_clock(Bench *bench)
@@ -175,7 +160,7 @@ static void hostile_clock(Bench *bench)
         bad += !(fabs(t_s) <= 2.1e11);
     }
     exercise_clock_destroy(clock);
-    add(bench, "wild stamps and capture times: times not finite", bad, 0, "times", "finite, within 2e11 s");
+    bench_stress(bench, "wild stamps and capture times: times not finite", bad, 0, "times", "finite, within 2e11 s");
 }
 
 /* ---- retiming ------------------------------------------------------------------------------- */
@@ -197,11 +182,11 @@ static void retimed_log(Bench *bench)
     }
     if (!log.datagram || !octets || !dis_log_retime(&log)) worst = INFINITY;
     for (int n = 0; log.datagram && octets && n < packets; n++)
-        worse(&worst, log.datagram[n].capture_s - (1e9 + (double)n * (double)step_ticks * tick_s));
+        bench_worse(&worst, log.datagram[n].capture_s - (1e9 + (double)n * (double)step_ticks * tick_s));
     free(log.datagram);
     free(octets);
     /* the double nearest to 1e9 s and some is 6e-8 s away */
-    add(bench, "a capture without times: 26 h made from its stamps", worst, 1.2e-7, "s", "64-bit ticks");
+    bench_stress(bench, "a capture without times: 26 h made from its stamps", worst, 1.2e-7, "s", "64-bit ticks");
 }
 
 static void unix_times(Bench *bench)
@@ -213,14 +198,15 @@ static void unix_times(Bench *bench)
                                   INT64_C(8899999999) * 1000000000};
         const int64_t ns = n < 500 ? about[n / 100] + n % 100 : (int64_t)uniform(7, (uint64_t)n, 0, 8.9e18);
         const double  unix_s = dis_unix_s(ns);
-        worse(&off_s, (double)((long double)unix_s - (long double)ns / 1000000000.0L));
+        bench_worse(&off_s, (double)((long double)unix_s - (long double)ns / 1000000000.0L));
         if (dis_unix_s(ns + 1) < unix_s) back++;
         const int64_t until = dis_unix_ns_until(unix_s);
         if (until < ns || dis_unix_s(until) > unix_s || dis_unix_s(until + 1) <= unix_s) back++;
     }
     /* at 8.9e9 s a double steps by 1.9 us: half of it, and a rounding of the sum's smaller term */
-    add(bench, "Unix nanoseconds to seconds, 1970 .. 2255", off_s, 1e-6, "s", "long double");
-    add(bench, "the same: steps back in time, and inverses that miss", back, 0, "instants", "order of whole numbers");
+    bench_stress(bench, "Unix nanoseconds to seconds, 1970 .. 2255", off_s, 1e-6, "s", "long double");
+    bench_stress(bench, "the same: steps back in time, and inverses that miss", back, 0, "instants",
+                 "order of whole numbers");
 }
 
 /* ---- octets --------------------------------------------------------------------------------- */
@@ -289,8 +275,8 @@ static void fields(Bench *bench)
                 lost += lost_octets(pdu, octets);
             }
     }
-    add(bench, "denormals, infinities, NaNs at every field: decode, encode", lost, 0, "octets",
-        "of those, encoded again");
+    bench_stress(bench, "denormals, infinities, NaNs at every field: decode, encode", lost, 0, "octets",
+                 "of those, encoded again");
 }
 
 Status dis_bench_stability(Bench *bench)

@@ -98,14 +98,14 @@ static void judge(MotionErrors *errors, const Kinematics *k, const Exponential *
             k->p_ecef[i] + (body ? r[3 * i] * way[0] + r[3 * i + 1] * way[1] + r[3 * i + 2] * way[2] : way[i]);
         const Wide v = body ? turned[3 * i] * end[0] + turned[3 * i + 1] * end[1] + turned[3 * i + 2] * end[2] : end[i];
         const double off_m = (double)(got.p_ecef[i] - p);
-        stress_worse(&errors->place_m, off_m);
-        if (off_m != 0) stress_worse(&errors->place, off_m / (reach * grain));
+        bench_worse(&errors->place_m, off_m);
+        if (off_m != 0) bench_worse(&errors->place, off_m / (reach * grain));
         const double off_mps = (double)(got.v_ecef_mps[i] - v);
-        if (off_mps != 0) stress_worse(&errors->speed, off_mps / (speed * grain));
+        if (off_mps != 0) bench_worse(&errors->speed, off_mps / (speed * grain));
     }
     for (int i = 0; i < 9; i++)
-        stress_worse(&errors->turn,
-                     (double)(got.r_ecef_from_body[i] - (dead_reckoning_turns(a) ? turned[i] : r[i])) / grain);
+        bench_worse(&errors->turn,
+                    (double)(got.r_ecef_from_body[i] - (dead_reckoning_turns(a) ? turned[i] : r[i])) / grain);
     stress_rotation(&errors->crooked, got.r_ecef_from_body);
 }
 
@@ -164,15 +164,15 @@ static void dead_reckoning(Bench *bench)
                             : "exponential of the turn by doubling, 64 bits";
     const MotionErrors whole = motions(&all, count), believed = motions(&table, count), common = motions(&real, count);
     /* some roundings: products, sums, and the closed form's cancellation at 1/2 rad */
-    stress_row(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8,
-               "roundings", judge);
-    stress_row(bench, "the same: velocity", whole.speed, 8, "roundings", judge);
-    stress_row(bench, "the same: attitude", whole.turn, 8, "roundings", judge);
-    stress_row(bench, "the same: attitude not square, unit, right-handed", fmax(whole.crooked, believed.crooked), 4e-15,
-               "", "R'R = I");
-    stress_row(bench, "dead reckoning of 1 km/s, 100 m/s2, 12 s: place", common.place_m, 4e-9, "m", judge);
+    bench_stress(bench, "dead reckoning, nine algorithms, 1e-12 .. 60 rad/s, 1 us .. 1e4 s: place", whole.place, 8,
+                 "roundings", judge);
+    bench_stress(bench, "the same: velocity", whole.speed, 8, "roundings", judge);
+    bench_stress(bench, "the same: attitude", whole.turn, 8, "roundings", judge);
+    bench_stress(bench, "the same: attitude not square, unit, right-handed", fmax(whole.crooked, believed.crooked),
+                 4e-15, "", "R'R = I");
+    bench_stress(bench, "dead reckoning of 1 km/s, 100 m/s2, 12 s: place", common.place_m, 4e-9, "m", judge);
     /* 8.7e7 m in 132 s, of which a double steps by 1.5e-8 m */
-    stress_row(bench, "dead reckoning of all that a report may say: place", believed.place_m, 5e-8, "m", judge);
+    bench_stress(bench, "dead reckoning of all that a report may say: place", believed.place_m, 5e-8, "m", judge);
 }
 
 /* Everything at the ends of double: no crash, and static stays where it is. */
@@ -198,8 +198,8 @@ static void extremes(Bench *bench)
             if (s == 0) bad += m.p_ecef[0] != 6378137 || m.p_ecef[1] != 0 || m.p_ecef[2] != 0;
         }
     }
-    stress_row(bench, "dead reckoning of denormals and 1e20 m/s: not finite, or moved in no time", bad, 0, "motions",
-               "its start");
+    bench_stress(bench, "dead reckoning of denormals and 1e20 m/s: not finite, or moved in no time", bad, 0, "motions",
+                 "its start");
 }
 
 /* A body turned a little again and again, each turn from where the last one left it. */
@@ -220,12 +220,12 @@ static void drift(Bench *bench)
     exponential(&x, k.w_body_rps, 0.015625 * steps);
     wide_mul(want, start, x.e);
     stress_rotation(&crooked, k.r_ecef_from_body);
-    for (int i = 0; i < 9; i++) stress_worse(&off, (double)(k.r_ecef_from_body[i] - want[i]));
+    for (int i = 0; i < 9; i++) bench_worse(&off, (double)(k.r_ecef_from_body[i] - want[i]));
     /* half a rounding a step if all were of one sign */
-    stress_row(bench, "attitude handed from turn to turn, 64 a second: not square or unit by", crooked, steps * 0x1p-53,
-               "", "R'R = I");
-    stress_row(bench, "the same: from where one long turn leads", off, 2 * steps * 0x1p-53, "rad",
-               "one turn, 113 bits");
+    bench_stress(bench, "attitude handed from turn to turn, 64 a second: not square or unit by", crooked,
+                 steps * 0x1p-53, "", "R'R = I");
+    bench_stress(bench, "the same: from where one long turn leads", off, 2 * steps * 0x1p-53, "rad",
+                 "one turn, 113 bits");
 }
 
 /* ---- Euler angles --------------------------------------------------------------------------- */
@@ -284,7 +284,7 @@ static void euler(Bench *bench)
             long double want = 0;
             for (int a = 0; a < 3; a++)
                 for (int b = 0; b < 3; b++) want += z[3 * (i / 3) + a] * y[3 * a + b] * x[3 * b + i % 3];
-            stress_worse(&want_off, (double)(r[i] - want));
+            bench_worse(&want_off, (double)(r[i] - want));
         }
         /* turned about some axis and back: what roundings leave, straight up too, where psi alone is noise */
         Kinematics turn = {.algorithm = 3, .w_body_rps = {0.3 + n % 7, -0.4, 0.5}};
@@ -298,17 +298,17 @@ static void euler(Bench *bench)
         range += !(back[0] > -pi_rad && back[0] <= pi_rad && fabs(back[1]) <= 0.5 * pi_rad && back[2] > -pi_rad &&
                    back[2] <= pi_rad);
         r_ecef_from_body_euler(again, back[0], back[1], back[2]);
-        stress_worse(&off_rad, apart_rad(r, again));
+        bench_worse(&off_rad, apart_rad(r, again));
         r_ecef_from_body_euler(again, (float)back[0], (float)back[1], (float)back[2]);
-        stress_worse(&wire_rad, apart_rad(r, again));
+        bench_worse(&wire_rad, apart_rad(r, again));
     }
-    stress_row(bench, "psi, theta, phi to a rotation, at +-90 degrees and about", want_off, 1e-15, "",
-               "three turns, long double");
-    stress_row(bench, "the same: not square, unit, right-handed", crooked, 1e-15, "", "R'R = I");
-    stress_row(bench, "a rotation to psi, theta, phi and back", off_rad, 2e-15, "rad", "itself");
-    stress_row(bench, "the same through the floats of a PDU", wire_rad, 3e-7, "rad",
-               "itself; half an ulp of pi is 1.2e-7, twice");
-    stress_row(bench, "angles out of their range", range, 0, "angles", "(-pi, pi], theta within pi / 2");
+    bench_stress(bench, "psi, theta, phi to a rotation, at +-90 degrees and about", want_off, 1e-15, "",
+                 "three turns, long double");
+    bench_stress(bench, "the same: not square, unit, right-handed", crooked, 1e-15, "", "R'R = I");
+    bench_stress(bench, "a rotation to psi, theta, phi and back", off_rad, 2e-15, "rad", "itself");
+    bench_stress(bench, "the same through the floats of a PDU", wire_rad, 3e-7, "rad",
+                 "itself; half an ulp of pi is 1.2e-7, twice");
+    bench_stress(bench, "angles out of their range", range, 0, "angles", "(-pi, pi], theta within pi / 2");
 }
 
 /* ---- a recorded track ------------------------------------------------------------------------- */
@@ -343,17 +343,17 @@ static void tracks(Bench *bench)
         }
         track_at(&pose, &track, 0.5 * (point[0].t_s + point[1].t_s));
         stress_rotation(&crooked, pose.r_ecef_from_body);
-        stress_worse(&place, pose.p_ecef[0] - 6378137);
-        stress_worse(&place, v3_length(pose.v_ecef_mps));
+        bench_worse(&place, pose.p_ecef[0] - 6378137);
+        bench_worse(&place, v3_length(pose.v_ecef_mps));
         /* the instant itself is a double: half a step of 1000 s of h_s; and at pi either way round is short */
         const double instant = 1.2e-13 / h_s * turn_rad, to_pi = pi_rad - turn_rad;
         if (to_pi > 1e-14)
-            stress_worse(&half_rad,
-                         fmax(apart_rad(pose.r_ecef_from_body, half.r_ecef_from_body) - instant, 0) * fmin(1, to_pi));
+            bench_worse(&half_rad,
+                        fmax(apart_rad(pose.r_ecef_from_body, half.r_ecef_from_body) - instant, 0) * fmin(1, to_pi));
     }
-    stress_row(bench, "a track between reports, turns of 0 .. pi: not square or unit", crooked, 4e-15, "", "R'R = I");
-    stress_row(bench, "the same: half way, times the rest to pi", half_rad, 1e-14, "rad", "half of the turn");
-    stress_row(bench, "the same: a stand that moves", place, 0, "m", "its two reports");
+    bench_stress(bench, "a track between reports, turns of 0 .. pi: not square or unit", crooked, 4e-15, "", "R'R = I");
+    bench_stress(bench, "the same: half way, times the rest to pi", half_rad, 1e-14, "rad", "half of the turn");
+    bench_stress(bench, "the same: a stand that moves", place, 0, "m", "its two reports");
 }
 
 /* ---- joints --------------------------------------------------------------------------------- */
@@ -375,16 +375,16 @@ static void joints(Bench *bench)
                 double       got = NAN;
                 articulation_report(&joint, record, 2, 100, 132);
                 if (!articulation_value(&got, &joint, 4096, 11, 100 + later_s, 132)) got = NAN;
-                stress_worse(&beyond, fmax(fabs(got) - pi_rad, 0));
+                bench_worse(&beyond, fmax(fabs(got) - pi_rad, 0));
                 /* later_s as the sum above has it */
                 const long double angle = value[v] + (long double)rate[r] * (100 + later_s - 100);
                 if (fabsl(angle) > 1e6L) continue; /* a float's step is the better part of a turn */
                 const double off = (double)remainderl(got - angle, 6.283185307179586476925286766559L);
-                stress_worse(&off_rad, off);
+                bench_worse(&off_rad, off);
             }
-    stress_row(bench, "turrets at any angle that a float has: beyond -pi .. pi by", beyond, 1e-9, "rad",
-               "the half turn");
-    stress_row(bench, "the same up to 1e6 rad: off the angle", off_rad, 1e-9, "rad", "remainder, long double");
+    bench_stress(bench, "turrets at any angle that a float has: beyond -pi .. pi by", beyond, 1e-9, "rad",
+                 "the half turn");
+    bench_stress(bench, "the same up to 1e6 rad: off the angle", off_rad, 1e-9, "rad", "remainder, long double");
 }
 
 Status entities_bench_stability(Bench *bench)

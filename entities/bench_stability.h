@@ -9,32 +9,14 @@ Status entities_bench_stability_inputs(Bench *bench); /* numbers of PDUs: entiti
 Status entities_bench_stability_text(Bench *bench);   /* numbers in files: entities/bench_stability_text.c */
 Status entities_bench_stability_models(Bench *bench); /* entities/bench_stability_models.c */
 
-/* The worst so far; what is no number is worse than any. */
-static inline void stress_worse(double *worst, double error)
-{
-    error = fabs(error);
-    if (!(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
-}
-
-static inline void stress_row(Bench *bench, const char *what, double error, double limit, const char *unit,
-                              const char *against)
-{
-    BenchRow row    = bench_row(what);
-    row.error       = error;
-    row.error_limit = limit;
-    row.error_unit  = unit;
-    row.against     = against;
-    bench_add(bench, &row);
-}
-
 /* How far a matrix is from a rotation: R'R - I, worst element, and its hand. */
 static inline void stress_rotation(double *worst, const double r[9])
 {
     double product[9], cross[3];
     m3_tmul(product, r, r);
     v3_cross(cross, r, r + 3);
-    for (int k = 0; k < 9; k++) stress_worse(worst, product[k] - (k % 4 == 0));
-    for (int k = 0; k < 3; k++) stress_worse(worst, cross[k] - r[6 + k]);
+    for (int k = 0; k < 9; k++) bench_worse(worst, product[k] - (k % 4 == 0));
+    for (int k = 0; k < 3; k++) bench_worse(worst, cross[k] - r[6 + k]);
 }
 
 #endif

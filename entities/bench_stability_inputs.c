@@ -295,7 +295,7 @@ Status entities_bench_stability_inputs(Bench *bench)
         if (!(w.refused > 0 && w.refused < w.cases))
             w.bad = INFINITY; /* some of these numbers are good, some are none */
         snprintf(what, sizeof what, "%s: each float at its extremes, not sound afterwards", row[r].what);
-        stress_row(bench, what, w.bad, 0, "inputs", "refused and counted, or all finite");
+        bench_stress(bench, what, w.bad, 0, "inputs", "refused and counted, or all finite");
     }
     if (status != STATUS_OK) log_error("bench: stability: the entity table: %s", status_name(status));
     world_close(&w);

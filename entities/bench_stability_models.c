@@ -65,7 +65,7 @@ static void look_at_model(ModelErrors *errors, const Model *m, int poses)
                 double p[3];
                 m3_mul_v3(p, at->r_body_from_node, m->vertex[m->triangle[t][c]]);
                 v3_add(p, p, at->p_body);
-                stress_worse(&errors->outside_m, fmax(v3_length(p) - m->radius_m, 0));
+                bench_worse(&errors->outside_m, fmax(v3_length(p) - m->radius_m, 0));
                 errors->unsound += k == 0 && !(p[0] >= m->box_low[0] - 1e-9 && p[1] >= m->box_low[1] - 1e-9 &&
                                                p[2] >= m->box_low[2] - 1e-9 && p[0] <= m->box_high[0] + 1e-9 &&
                                                p[1] <= m->box_high[1] + 1e-9 && p[2] <= m->box_high[2] + 1e-9);
@@ -77,7 +77,7 @@ static void look_at_model(ModelErrors *errors, const Model *m, int poses)
     free(value);
     for (int v = 0; v < m->vertex_count; v++) {
         const double n[3] = {m->normal[v][0], m->normal[v][1], m->normal[v][2]};
-        stress_worse(&errors->normal, v3_length(n) - 1);
+        bench_worse(&errors->normal, v3_length(n) - 1);
         errors->unsound += !v3_is_finite(m->vertex[v]);
     }
     for (int t = 0; t < m->triangle_count; t++) errors->unsound += !(area_of(m, t) > 0 && isfinite(area_of(m, t)));
@@ -109,12 +109,12 @@ static void built_in(Bench *bench)
             model_destroy(&m);
         }
     }
-    stress_row(bench, "built-in models, joints anywhere: not valid, or numbers that are none", errors.unsound, 0, "",
-               "model_validate, finite");
-    stress_row(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
-    stress_row(bench, "the same: vertices outside the sphere about every pose", errors.outside_m, 0, "m",
-               "every vertex of every pose");
-    stress_row(bench, "the same: sags that are none, accepted", taken, 0, "models", "refusal");
+    bench_stress(bench, "built-in models, joints anywhere: not valid, or numbers that are none", errors.unsound, 0, "",
+                 "model_validate, finite");
+    bench_stress(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
+    bench_stress(bench, "the same: vertices outside the sphere about every pose", errors.outside_m, 0, "m",
+                 "every vertex of every pose");
+    bench_stress(bench, "the same: sags that are none, accepted", taken, 0, "models", "refusal");
 }
 
 /* ---- shapes of a million to one ------------------------------------------------------------- */
@@ -156,8 +156,8 @@ static void shape_off(double *off, ModelErrors *errors, const Shape *shape)
     }
     if (mesh_builder_finish(&m, b) != STATUS_OK || model_validate(&m) != STATUS_OK) errors->unsound++;
     else {
-        stress_worse(off, model_area(&m) / area - 1);
-        stress_worse(off, model_volume(&m) / volume - 1);
+        bench_worse(off, model_area(&m) / area - 1);
+        bench_worse(off, model_volume(&m) / volume - 1);
         look_at_model(errors, &m, 1);
     }
     model_destroy(&m);
@@ -168,12 +168,12 @@ static void million_to_one(Bench *bench)
     ModelErrors errors = {0};
     double      off = 0;
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) shape_off(&off, &errors, &shapes[k]);
-    stress_row(bench, "boxes, cylinders, bars of 1e6 to 1: not valid", errors.unsound, 0, "models",
-               "model_validate, finite");
-    stress_row(bench, "the same: normals, and vertices outside their sphere", fmax(errors.normal, errors.outside_m),
-               1e-6, "", "1; floats");
+    bench_stress(bench, "boxes, cylinders, bars of 1e6 to 1: not valid", errors.unsound, 0, "models",
+                 "model_validate, finite");
+    bench_stress(bench, "the same: normals, and vertices outside their sphere", fmax(errors.normal, errors.outside_m),
+                 1e-6, "", "1; floats");
     /* the place of an end, 1e-16 of 1 km, over 1 mm of thickness */
-    stress_row(bench, "the same: area and volume", off, 1e-9, "", "prisms with as many sides");
+    bench_stress(bench, "the same: area and volume", off, 1e-9, "", "prisms with as many sides");
 }
 
 /* ---- files ---------------------------------------------------------------------------------- */
@@ -231,17 +231,17 @@ static Status obj_imports(Bench *bench)
         judged += (status == STATUS_OK) == isnan(obj_files[k].area_m2);
         if (status == STATUS_OK) {
             look_at_model(&errors, &m, 2);
-            if (!isnan(obj_files[k].area_m2)) stress_worse(&off, model_area(&m) / obj_files[k].area_m2 - 1);
+            if (!isnan(obj_files[k].area_m2)) bench_worse(&off, model_area(&m) / obj_files[k].area_m2 - 1);
         }
         model_destroy(&m);
     }
     remove(path);
-    stress_row(bench, "model files: needles, slivers, no area: wrongly taken or refused", judged, 0, "files",
-               "what they hold");
-    stress_row(bench, "the same: numbers that are none", errors.unsound, 0, "", "finite, area above 0, in the box");
-    stress_row(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
-    stress_row(bench, "the same: vertices outside the sphere", errors.outside_m, 0, "m", "every vertex");
-    stress_row(bench, "the same: area", off, 1e-9, "", "paper");
+    bench_stress(bench, "model files: needles, slivers, no area: wrongly taken or refused", judged, 0, "files",
+                 "what they hold");
+    bench_stress(bench, "the same: numbers that are none", errors.unsound, 0, "", "finite, area above 0, in the box");
+    bench_stress(bench, "the same: length of normals", errors.normal, 1e-6, "", "1; floats");
+    bench_stress(bench, "the same: vertices outside the sphere", errors.outside_m, 0, "m", "every vertex");
+    bench_stress(bench, "the same: area", off, 1e-9, "", "paper");
     return STATUS_OK;
 }
 

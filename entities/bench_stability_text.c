@@ -168,8 +168,8 @@ static Status scenarios(Bench *bench, const char *path)
     free(keys);
     if (!(refused > 0.3 * cases && refused < 0.9 * cases))
         bad = INFINITY; /* some of these texts are good, most are none */
-    stress_row(bench, "scenario: each key at extremes: silent, or an exercise not finite", bad, 0, "files",
-               "an error line, or finite PDUs");
+    bench_stress(bench, "scenario: each key at extremes: silent, or an exercise not finite", bad, 0, "files",
+                 "an error line, or finite PDUs");
     return STATUS_OK;
 }
 
@@ -271,8 +271,8 @@ static Status tables(Bench *bench, const char *path)
     if (status == STATUS_OK) status = table_cells(bench, &bad, "heat.csv", heat_is_sound, path);
     log_set_sink(NULL, NULL);
     if (status == STATUS_OK)
-        stress_row(bench, "effects.csv, heat.csv: each cell at extremes: silent, or not finite", bad, 0, "files",
-                   "an error line, or finite puffs");
+        bench_stress(bench, "effects.csv, heat.csv: each cell at extremes: silent, or not finite", bad, 0, "files",
+                     "an error line, or finite puffs");
     return status;
 }
 
@@ -360,8 +360,8 @@ static Status probes(Bench *bench)
         free(answer);
     }
     if (status == STATUS_OK)
-        stress_row(bench, "probes: each column at extremes: neither a reason nor finite", bad, 0, "rows",
-                   "an error, or finite results");
+        bench_stress(bench, "probes: each column at extremes: neither a reason nor finite", bad, 0, "rows",
+                     "an error, or finite results");
     return status;
 }
 
