@@ -2,6 +2,7 @@
 # The cases of tests/regress against their records: from here and from a copy elsewhere, by one thread and by many, with
 # another tracer's instructions. labels: small
 . "$(dirname "$0")/common.sh"
+export TMPDIR=$tmp # what failed on purpose is not kept
 data=${PITVIPER_DATA:-../shared/data}
 if [ -d "$data" ]; then PITVIPER_DATA=$(realpath "$data") && export PITVIPER_DATA; fi
 
