@@ -123,6 +123,12 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
  * module's. */
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
 
+/* An empty folder, or file whose name ends so, of our own in $TMPDIR or /tmp; the caller takes it away. False: logged,
+ * and an empty name. */
+enum { temp_path_size = 512, temp_name_size = temp_path_size + 128 }; /* temp_name_size: for a file in such a folder */
+bool temp_folder(char out[temp_path_size]);
+bool temp_file(char out[temp_path_size], const char *ending);
+
 /* Path of a file under etc/: $PITVIPER_ETC, else share/pitviper beside the program, the source folder or the installed
  * one. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);

@@ -215,7 +215,7 @@ static bool write_packet(FILE *file, uint32_t index, const uint8_t *octet, size_
 }
 
 typedef struct Capture {
-    char    path[64];
+    char    path[temp_path_size];
     const Octets *octets;
     Status  status;
 } Capture;
@@ -249,10 +249,9 @@ static double lost_of_capture(const Capture *c)
 static Status time_capture(Bench *bench, const Octets *o)
 {
     static const uint32_t head[6] = {0xA1B2C3D4, 0x00040002, 0, 0, 262144, 1};
-    Capture    c = {.path = "/tmp/pitviper-bench-XXXXXX", .octets = o};
+    Capture    c = {.octets = o};
     BenchTime  time;
-    const int  handle = mkstemp(c.path);
-    FILE      *file = handle >= 0 ? fdopen(handle, "wb") : NULL;
+    FILE      *file = temp_file(c.path, "") ? fopen(c.path, "wb") : NULL;
     bool       ok = file && fwrite(head, sizeof head, 1, file) == 1;
     for (int i = 0; i < o->pdus && ok; i++)
         ok = write_packet(file, (uint32_t)i, o->octet + o->first[i], o->first[i + 1] - o->first[i]);
@@ -269,7 +268,7 @@ static Status time_capture(Bench *bench, const Octets *o)
     } else {
         log_error("bench: cannot write %s", c.path);
     }
-    if (handle >= 0) remove(c.path);
+    if (*c.path) remove(c.path);
     return ok ? c.status : STATUS_IO;
 }
 

@@ -239,7 +239,7 @@ static Status time_link(Bench *bench, bool v6)
 /* ---- the recorder ----------------------------------------------------------------------------- */
 
 typedef struct Recording {
-    char   path[64];
+    char   path[temp_path_size];
     int    count;
     Status status;
 } Recording;
@@ -275,14 +275,9 @@ static double differing(const Recording *r)
 
 static Status time_recorder(Bench *bench)
 {
-    Recording r = {.path = "/tmp/pitviper-bench-XXXXXX.pcapng", .count = bench_quick(bench) ? 5000 : 100000};
+    Recording r = {.count = bench_quick(bench) ? 5000 : 100000};
     BenchTime time;
-    const int handle = mkstemps(r.path, 7);
-    if (handle < 0) {
-        log_error("bench: cannot write %s", r.path);
-        return STATUS_IO;
-    }
-    close(handle);
+    if (!temp_file(r.path, ".pcapng")) return STATUS_IO;
     const BenchWork work = {record, &r, r.count};
     bench_time(&time, bench, &work, 1);
     BenchRow row    = bench_row_of("recorder: a datagram of an Entity State", &time, "k datagrams/s", 1e3);

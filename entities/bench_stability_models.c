@@ -8,7 +8,6 @@
 #include "entities/parametric.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 typedef struct ModelErrors {
     double normal;    /* | |n| - 1 | */
@@ -209,15 +208,10 @@ static const ObjFile obj_files[] = {
 static Status obj_imports(Bench *bench)
 {
     const int   count = bench_quick(bench) ? 4 : (int)(sizeof obj_files / sizeof *obj_files);
-    char        path[] = "/tmp/pitviper-model-XXXXXX.obj";
+    char        path[temp_path_size];
     ModelErrors errors = {0};
     double      judged = 0, off = 0;
-    const int   handle = mkstemps(path, 4);
-    if (handle < 0) {
-        log_error("bench: cannot write %s", path);
-        return STATUS_IO;
-    }
-    close(handle);
+    if (!temp_file(path, ".obj")) return STATUS_IO;
     for (int k = 0; k < count; k++) {
         Model       m = {0};
         ModelImport report;

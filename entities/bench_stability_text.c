@@ -10,7 +10,6 @@
 #include "terrain/probe.h"
 
 #include <stdlib.h>
-#include <unistd.h>
 
 static const char *const texts[] = {"inf",
                                     "-inf",
@@ -367,13 +366,8 @@ static Status probes(Bench *bench)
 
 Status entities_bench_stability_text(Bench *bench)
 {
-    char      path[] = "/tmp/pitviper-bench-XXXXXX";
-    const int handle = mkstemp(path);
-    if (handle < 0) {
-        log_error("bench: cannot write %s", path);
-        return STATUS_IO;
-    }
-    close(handle);
+    char path[temp_path_size];
+    if (!temp_file(path, "")) return STATUS_IO;
     bench_progress(bench, "scenarios, tables, probes");
     Status status = scenarios(bench, path);
     if (status == STATUS_OK) status = tables(bench, path);

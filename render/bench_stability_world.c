@@ -7,11 +7,11 @@
 static Status open_catalog(Catalog **out)
 {
     static const char text[] = "type,model,origin\n1,marker,base\n";
-    char      path[] = "/tmp/pitviper-stability-XXXXXX";
-    const int file = mkstemp(path);
-    if (file < 0) return STATUS_IO;
-    const bool   written = write(file, text, sizeof text - 1) == (ssize_t)sizeof text - 1;
-    const Status status = close(file) == 0 && written ? catalog_open(out, path, 0.01) : STATUS_IO;
+    char  path[temp_path_size];
+    FILE *file = temp_file(path, "") ? fopen(path, "w") : NULL;
+    if (!file) return STATUS_IO;
+    const bool   written = fputs(text, file) >= 0;
+    const Status status = fclose(file) == 0 && written ? catalog_open(out, path, 0.01) : STATUS_IO;
     unlink(path);
     return status;
 }

@@ -243,7 +243,7 @@ static bool write_file(const char *folder, const File *f)
 {
     bool ok = true;
     for (int part = 0; part < 3 && ok; part++) {
-        char path[64];
+        char path[temp_name_size];
         snprintf(path, sizeof path, "%s/%s", folder, parts[part]);
         FILE *file = fopen(path, "wb");
         if (!file) return false;
@@ -289,12 +289,9 @@ static void look_at_file(double *absent, double *over_m, const Elevation *ground
 static Status imports(Bench *bench)
 {
     const int  count = bench_quick(bench) ? few_files : all_files;
-    char       folder[] = "/tmp/pitviper-ground-XXXXXX", path[64];
+    char       folder[temp_path_size], path[temp_name_size];
     double     absent = 0, over_m = 0, judged = 0;
-    if (!mkdtemp(folder)) {
-        log_error("bench: cannot make a folder in /tmp");
-        return STATUS_IO;
-    }
+    if (!temp_folder(folder)) return STATUS_IO;
     Status status = STATUS_OK;
     for (int k = 0; k < count && status == STATUS_OK; k++) {
         const File     *f = &files[k];

@@ -22,12 +22,12 @@
 
 extern char **environ;
 
-enum { rate_hz = 30, path_size = 128 };
+enum { rate_hz = 30, path_size = temp_name_size };
 static const double patience_s = 30, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
 
 typedef struct Live {
     Bench  *bench;
-    char    folder[64], recording[path_size], said[path_size], run_json[path_size];
+    char    folder[temp_path_size], recording[path_size], said[path_size], run_json[path_size];
     int     port;
     double  ready_s, sent_for_s, resident_mb;
     double  sent, heard, own, lost, frames, late;       /* datagrams; frames */
@@ -279,10 +279,10 @@ static void add_rows(Live *l)
 Status bench_live(Bench *bench)
 {
     static const char *const files[] = {"node.pcapng", "said.txt", "run.json", "truth.jsonl"};
-    Live l = {.bench = bench, .folder = "/tmp/pitviper-bench-XXXXXX", .port = 20000 + (int)(getpid() * 7L % 12000)};
+    Live l = {.bench = bench, .port = 20000 + (int)(getpid() * 7L % 12000)};
     char path[path_size];
     bench_progress(bench, "live node");
-    if (!mkdtemp(l.folder)) return STATUS_IO;
+    if (!temp_folder(l.folder)) return STATUS_IO;
     snprintf(l.recording, sizeof l.recording, "%s/%s", l.folder, files[0]);
     snprintf(l.said, sizeof l.said, "%s/%s", l.folder, files[1]);
     snprintf(l.run_json, sizeof l.run_json, "%s/%s", l.folder, files[2]);

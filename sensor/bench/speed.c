@@ -323,7 +323,7 @@ static Status time_pair(Speed *s, const char *name, const BenchScene *scene, con
 /* Into a file of this folder. */
 static bool write_text(const char *folder, const char *name, const char *format, const char *path)
 {
-    char text[128];
+    char text[temp_name_size];
     snprintf(text, sizeof text, "%s/%s", folder, name);
     FILE      *file = fopen(text, "w");
     const bool ok = file && fprintf(file, format, path) > 0;
@@ -337,7 +337,7 @@ static Status open_close_scene(Speed *s)
     static const DisEntityType tank = {1, 1, 222, 1, 1, 1, 0};
     static const char *const   files[] = {"catalog.csv", "ktank.yaml"};
     const char *root = getenv("PITVIPER_DATA"), *file = bench_option(s->bench, "model");
-    char        path[1024], folder[64] = "/tmp/pitviper-bench-XXXXXX", name[128];
+    char        path[1024], folder[temp_path_size], name[temp_name_size];
     const int   octets = snprintf(path, sizeof path, "%s/models/brlcad/ktank.obj", root ? root : "../shared/data");
     const bool  ktank = !file && (size_t)octets < sizeof path && access(path, R_OK) == 0;
     char *absolute = file || ktank ? realpath(ktank ? path : file, NULL) : NULL;
@@ -345,7 +345,7 @@ static Status open_close_scene(Speed *s)
         log_error("bench: cannot read %s: %s", file, strerror(errno));
         return STATUS_IO;
     }
-    bool ok = mkdtemp(folder) != NULL;
+    bool ok = temp_folder(folder);
     ok = ok && write_text(folder, "ktank.yaml", "file: %s\naxes: +x +z\norigin: auto\n", absolute ? absolute : "none");
     ok = ok && write_text(folder, "catalog.csv", "type,model,origin\n1,%s,base\n", ktank ? "ktank.yaml" : absolute ? absolute : "tank");
     snprintf(name, sizeof name, "%s/catalog.csv", folder);

@@ -25,7 +25,7 @@ static void encode(void *user)
 static double differing(const char *out, const Picture *p)
 {
     const size_t count = (size_t)p->width * (size_t)p->height;
-    char         path[128];
+    char         path[temp_name_size];
     float       *read = malloc(count * sizeof *read);
     double       bad = NAN;
     snprintf(path, sizeof path, "%s/frames/lwir/000000.exr", out);
@@ -40,7 +40,7 @@ static double differing(const char *out, const Picture *p)
 static void remove_folder(const char *out)
 {
     static const char *const parts[] = {"optical", "mwir", "lwir", "truth"};
-    char path[128];
+    char path[temp_name_size];
     for (int k = 0; k < 4; k++)
         for (int e = 0; e < 3; e++) {
             snprintf(path, sizeof path, "%s/frames/%s%s", out, parts[k], e == 0 ? "/000000.exr" : e == 1 ? "/000000.png" : "");
@@ -59,12 +59,12 @@ Status speed_files(Speed *s)
     BenchFrame   frame = speed_frame(s, &s->scene, &request, true);
     Chain       *chain[BAND_COUNT] = {NULL};
     FrameLevel   level[BAND_COUNT] = {{0}};
-    char         out[64] = "/tmp/pitviper-bench-XXXXXX", what[what_size];
+    char         out[temp_path_size], what[what_size];
     BenchTime    time[2];
     bench_progress(s->bench, "files");
     bench_frame(&frame);
     Status status = frame.status;
-    if (status == STATUS_OK && !mkdtemp(out)) status = STATUS_IO;
+    if (status == STATUS_OK && !temp_folder(out)) status = STATUS_IO;
     if (status != STATUS_OK) return status;
     status = frame_files_prepare(out, three_bands, 0);
     Encode with = {.pool = s->many, .files = {.out = out, .config = &config, .world = &s->scene.world, .picture = &frame.picture,

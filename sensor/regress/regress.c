@@ -260,14 +260,7 @@ static bool open_work(Suite *s, char own[case_path_size])
 {
     *own = 0;
     if (s->o.work) return make_folder(s->o.work);
-    const char *tmp = getenv("TMPDIR");
-    snprintf(own, case_path_size, "%.3000s/pitviper-regress-XXXXXX", tmp && *tmp ? tmp : "/tmp");
-    if (!mkdtemp(own)) {
-        log_error("regress: cannot make a folder in %s: %s; name one with --work, or set TMPDIR",
-                  tmp && *tmp ? tmp : "/tmp", strerror(errno));
-        *own = 0;
-        return false;
-    }
+    if (!temp_folder(own)) return false;
     s->o.work = own;
     return true;
 }
