@@ -54,10 +54,9 @@ static int spheres_in_block(int *list, const Visibility *v, const View *view, co
                             const double box_px[4], int hidden)
 {
     /* tangents of the block's four sides, and what turns an offset from a side into a distance */
-    const double left = (box_px[0] - 0.5 * view->width) / view->focal_px;
-    const double right = (box_px[2] - 0.5 * view->width) / view->focal_px;
-    const double top = (box_px[1] - 0.5 * view->height) / view->focal_px;
-    const double bottom = (box_px[3] - 0.5 * view->height) / view->focal_px;
+    double tangent[4];
+    view_box_tangents(tangent, view, box_px);
+    const double left = tangent[0], top = tangent[1], right = tangent[2], bottom = tangent[3];
     const double per_left = 1 / sqrt(1 + left * left), per_right = 1 / sqrt(1 + right * right);
     const double per_top = 1 / sqrt(1 + top * top), per_bottom = 1 / sqrt(1 + bottom * bottom);
     int          count = 0;
@@ -496,7 +495,6 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
     const PosedEntity *entity = &v->entity[index];
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
-    const double centre_x = 0.5 * view->width, centre_y = 0.5 * view->height;
     for (int k = 0; k < entity->node_count; k++) {
         const PosedNode *node = &entity->node[k];
         int              count;
@@ -510,12 +508,12 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
             m3_mul_v3(at, r_cam_from_node, corner[c]);
             v3_add(at, at, p_cam);
             if (!(at[2] > 0)) return false;
-            const double column = centre_x + view->focal_px * at[0] / at[2];
-            const double row    = centre_y + view->focal_px * at[1] / at[2];
-            box[0] = column < box[0] ? column : box[0];
-            box[1] = row < box[1] ? row : box[1];
-            box[2] = column > box[2] ? column : box[2];
-            box[3] = row > box[3] ? row : box[3];
+            double image_px[2];
+            view_project(image_px, view, at);
+            for (int a = 0; a < 2; a++) {
+                box[a]     = image_px[a] < box[a] ? image_px[a] : box[a];
+                box[a + 2] = image_px[a] > box[a + 2] ? image_px[a] : box[a + 2];
+            }
         }
     }
     memcpy(box_px, box, sizeof box);

@@ -65,20 +65,51 @@ static Status one_noise(const Sensors *s, const Config *config)
     return STATUS_OK;
 }
 
+/* first: NULL without a preset. */
+static Status choose_lens(Sensors *s, Choices *choices, const Config *config, const SensorPreset *first)
+{
+    const double given[7] = {config->sensor.lens_k1, config->sensor.lens_k2, config->sensor.lens_k3, config->sensor.lens_p1,
+                             config->sensor.lens_p2, config->sensor.lateral_r, config->sensor.lateral_b};
+    const double focal_px = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
+    const double half[2] = {0.5 * config->sensor.width_px / focal_px, 0.5 * config->sensor.height_px / focal_px};
+    double       value[7] = {0};
+    for (int k = 0; k < 5; k++) value[k] = first ? first->lens[k] : 0;
+    for (int k = 0; k < 2; k++) value[5 + k] = first ? first->lateral[k] : 0;
+    for (int k = 0; k < 7; k++) over(&value[k], given[k], 1);
+    memcpy(s->lateral, value + 5, sizeof s->lateral);
+    if (lens_make(&s->lens, value, value + 3, half) != STATUS_OK) {
+        log_error("replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) folds within a picture of %.4g x "
+                  "%.4g degrees, or squeezes it tenfold; give smaller sensor.lens_k1 .. sensor.lens_p2", value[0], value[1],
+                  value[2], value[3], value[4], 2 * atan(half[0]) / rad_per_deg, 2 * atan(half[1]) / rad_per_deg);
+        return STATUS_BAD_VALUE;
+    }
+    double corner[2] = {half[0], half[1]};
+    if (s->lens.reach > 0) lens_back(corner, &s->lens, half[0], half[1]);
+    if (s->lens.reach > 0)
+        choice_add(choices, "lens: k1=%.4g k2=%.4g k3=%.4g p1=%.4g p2=%.4g: %+.2f %% at the corner (sensor.lens_k1 ...)",
+                   value[0], value[1], value[2], value[3], value[4],
+                   100 * (hypot(half[0], half[1]) / hypot(corner[0], corner[1]) - 1));
+    if (value[5] != 0 || value[6] != 0)
+        choice_add(choices, "lateral colour: R %+.3g px and B %+.3g px against G at the picture's side (sensor.lateral_r)",
+                   0.5 * config->sensor.width_px * value[5], 0.5 * config->sensor.width_px * value[6]);
+    return STATUS_OK;
+}
+
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands)
 {
     Sensors s = {0};
     char    list[sizeof config->sensor.preset];
     bool    first = true;
+    int  first_band = 0;
     *out          = s;
-    if (strcmp(config->sensor.preset, "none") == 0) return STATUS_OK;
+    if (strcmp(config->sensor.preset, "none") == 0) return choose_lens(out, choices, config, NULL);
     strcpy(list, config->sensor.preset);
     char *save = NULL;
     for (char *name = strtok_r(list, ",", &save); name; name = strtok_r(NULL, ",", &save)) {
         const Status added = add_sensor(&s, name, bands);
         if (added != STATUS_OK) return added;
         for (int b = 0; b < BAND_COUNT && first; b++)
-            if (s.has[b]) apply_raster(config, &s.preset[b]);
+            if (s.has[b]) apply_raster(config, &s.preset[first_band = b]);
         first = false;
     }
     if (first) {
@@ -86,16 +117,18 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
                   config->sensor.preset);
         return STATUS_BAD_VALUE;
     }
-    const Status status = one_noise(&s, config);
+    Status status = one_noise(&s, config);
+    if (status == STATUS_OK) status = choose_lens(&s, choices, config, &s.preset[first_band]);
     if (status != STATUS_OK) return status;
     for (int b = 0; b < BAND_COUNT; b++) {
         SensorPreset *p = &s.preset[b];
         if (!s.has[b]) continue;
         apply_settings(p, config);
+        const PhotonDetector photons = preset_photons(p);
         const double step_e = p->photons.well_e / (exp2(p->bits) - 1);
         char         netd[40] = "";
         if (b != BAND_OPTICAL)
-            snprintf(netd, sizeof netd, ", NEdT %.3g mK at 300 K", 1e3 * photon_netd_k(&p->photons, 300, step_e, 0));
+            snprintf(netd, sizeof netd, ", NEdT %.3g mK at 300 K", 1e3 * photon_netd_k(&photons, 300, step_e, 0));
         choice_add(choices, "%s: %s, F/%.3g, %.3g um pitch, %.4g ms%s, %g bits of %.4g electrons%s (sensor.preset)",
                    band_name((Band)b), p->name, p->photons.f_number, 1e6 * p->photons.pitch_m,
                    1e3 * p->photons.integration_s, p->auto_exposure ? " at most" : "", p->bits, step_e, netd);
