@@ -70,7 +70,7 @@ static void resample_columns(float *out, const float *in, int width, int height,
     const size_t w = (size_t)width;
     for (int c = 0; c < width; c++) {
         int       phase;
-        const int first = c + split(&phase, rate_px_s[0] * scan_time_s(scan, width, height, c + 0.5, height / 2)) - before;
+        const int first = c + split(&phase, rate_px_s[0] * (scan->line_s * (c + 0.5 - 0.5 * width))) - before;
         memset(line, 0, (size_t)height * sizeof *line);
         for (int k = 0; k < scan_taps; k++) {
             const float *from = in + mirrored(first + k, width), weight = taps->weight[phase][k];

@@ -29,6 +29,8 @@ static const Setting keys[] = {
      "time constant of the tracking loop"},
     {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
      "none, or sensors of etc/sensors.csv, one a band: staring_lwir,staring_mwir,tv"},
+    {"sensor.table", SETTING_TEXT, AT(sensor.table), 0, 0, NULL, "",
+     "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), before those of sensor.preset"},
     {"sensor.lens_k1", SETTING_DOUBLE, AT(sensor.lens_k1), -1e6, 1e6, NULL, "",
      "distortion of all bands, as OpenCV has it, tangents off the axis; in place of the first preset's"},
     {"sensor.lens_k2", SETTING_DOUBLE, AT(sensor.lens_k2), -1e9, 1e9, NULL, "", "its fourth order"},
@@ -292,8 +294,8 @@ Status config_check(const Config *config)
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
                                             "detector.line_noise", "detector.smear", "detector.raw"};
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
-        if (strcmp(config->sensor.preset, "none") == 0 && config_given(config, of_preset[i])) {
-            log_error("config: %s: needs a sensor to change; choose one with sensor.preset", of_preset[i]);
+        if (strcmp(config->sensor.preset, "none") == 0 && !*config->sensor.table && config_given(config, of_preset[i])) {
+            log_error("config: %s: needs a sensor to change; choose one with sensor.preset or sensor.table", of_preset[i]);
             return STATUS_BAD_VALUE;
         }
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&

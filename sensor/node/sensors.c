@@ -1,6 +1,7 @@
 #include "sensor/node/sensors.h"
 
 #include "render/render.h"
+#include "sensor/detector/sheet.h"
 
 static void over(double *field, double setting, double unit)
 {
@@ -31,25 +32,36 @@ static void apply_raster(Config *config, const SensorPreset *p)
     if (!config_given(config, "sensor.hfov_deg")) config->sensor.hfov_deg = p->hfov_deg;
 }
 
-static Status add_sensor(Sensors *s, const char *name, unsigned bands)
+/* name: of a preset; NULL: the sheet of sensor.table. */
+static Status add_sensor(Sensors *s, const Config *config, const char *name, unsigned bands)
 {
     char         path[4096];
     SensorPreset p;
-    if (!etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
-    const Status status = preset_read(&p, path, name);
+    const char  *key = name ? "sensor.preset" : "sensor.table";
+    if (name && !etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
+    const Status status = name ? preset_read(&p, path, name) : sheet_read(&p, config->sensor.table);
     if (status != STATUS_OK) return status;
     if (s->has[p.band]) {
-        log_error("replay: sensor.preset: %s and %s are both for %s; choose one", s->preset[p.band].name, name,
-                  band_name(p.band));
+        log_error("replay: %s: %s and %s are both for %s; choose one", key, s->preset[p.band].name, p.name, band_name(p.band));
         return STATUS_BAD_VALUE;
     }
     if (!(bands >> p.band & 1)) {
-        log_error("replay: sensor.preset: %s is for %s, which sensor.bands does not name", name, band_name(p.band));
+        log_error("replay: %s: %s is for %s, which sensor.bands does not name", key, p.name, band_name(p.band));
         return STATUS_BAD_VALUE;
     }
     s->has[p.band]    = true;
     s->preset[p.band] = p;
     return STATUS_OK;
+}
+
+/* The first one says what the picture is. */
+static Status take_sensor(Sensors *s, int *first_band, Config *config, const char *name, unsigned bands)
+{
+    const Status status = add_sensor(s, config, name, bands);
+    if (status != STATUS_OK || *first_band >= 0) return status;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->has[b]) apply_raster(config, &s->preset[*first_band = b]);
+    return status;
 }
 
 /* Noise that a sensor makes itself is not set beside it. */
@@ -98,26 +110,24 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
 Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned bands)
 {
     Sensors s = {0};
-    char    list[sizeof config->sensor.preset];
-    bool    first = true;
-    int  first_band = 0;
-    *out          = s;
-    if (strcmp(config->sensor.preset, "none") == 0) return choose_lens(out, choices, config, NULL);
-    strcpy(list, config->sensor.preset);
+    char         list[sizeof config->sensor.preset];
+    int          first_band = -1;
+    const bool   named = strcmp(config->sensor.preset, "none") != 0;
+    Status       status = STATUS_OK;
+    *out                = s;
+    if (!named && !*config->sensor.table) return choose_lens(out, choices, config, NULL);
+    if (*config->sensor.table) status = take_sensor(&s, &first_band, config, NULL, bands);
+    strcpy(list, named ? config->sensor.preset : "");
     char *save = NULL;
-    for (char *name = strtok_r(list, ",", &save); name; name = strtok_r(NULL, ",", &save)) {
-        const Status added = add_sensor(&s, name, bands);
-        if (added != STATUS_OK) return added;
-        for (int b = 0; b < BAND_COUNT && first; b++)
-            if (s.has[b]) apply_raster(config, &s.preset[first_band = b]);
-        first = false;
-    }
-    if (first) {
+    for (char *name = strtok_r(list, ",", &save); name && status == STATUS_OK; name = strtok_r(NULL, ",", &save))
+        status = take_sensor(&s, &first_band, config, name, bands);
+    if (status != STATUS_OK) return status;
+    if (first_band < 0) {
         log_error("replay: sensor.preset: '%s' names no sensor; `none` or names of etc/sensors.csv",
                   config->sensor.preset);
         return STATUS_BAD_VALUE;
     }
-    Status status = one_noise(&s, config);
+    status = one_noise(&s, config);
     if (status == STATUS_OK) status = choose_lens(&s, choices, config, &s.preset[first_band]);
     if (status != STATUS_OK) return status;
     for (int b = 0; b < BAND_COUNT; b++) {
