@@ -67,19 +67,7 @@ static void trace_veils(Scratch *s, const Job *job)
               render_air_bands(block->bands, job->request->optical));
 }
 
-double pixel_cosine3(const View *view, int x, int y)
-{
-    const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
-    const double v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
-    if (view_has_lens(view)) { /* and by how much more of the image an area of directions fills */
-        double at[2];
-        lens_back_within(at, &view->lens, u, v);
-        const double square = 1 / (1 + at[0] * at[0] + at[1] * at[1]);
-        return square * sqrt(square) / lens_area(&view->lens, at[0], at[1]);
-    }
-    const double square = 1 / (1 + u * u + v * v);
-    return square * sqrt(square);
-}
+double pixel_cosine3(const View *view, int x, int y) { return view_pixel_share(view, x, y); }
 
 float *picture_plane(const Picture *picture, int plane)
 {

@@ -167,7 +167,7 @@ const Probe sensor_probes[] = {
      .in = "frames,rows,columns," SIGMAS, .out = "est_tvh,est_tv,est_th,est_vh,est_t,est_v,est_h", .row = noise3d_row},
     {.name = "mrtd", .help = "minimum resolvable temperature difference of four-bar targets (FLIR92's formulation), vertical and "
                              "horizontal bars; first: with their first harmonic alone",
-     .arguments = "[SHEET]", .in = "preset$,f_cyc_px,frame_hz?,eye_s?,snr?,temp_k?",
+     .arguments = "[SHEET]", .in = "preset$?,f_cyc_px,frame_hz?,eye_s?,snr?,temp_k?",
      .out = "f_cyc_mrad,mrtd_v_bars_k,mrtd_h_bars_k,first_v_bars_k,first_h_bars_k,mtf_h,mtf_v", .open = mrtd_open,
      .row = mrtd_row, .close = free},
 };

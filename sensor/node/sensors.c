@@ -51,6 +51,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
     }
     s->has[p.band]    = true;
     s->preset[p.band] = p;
+    if (!name) s->sheet_band = p.band;
     return STATUS_OK;
 }
 
@@ -139,9 +140,10 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
         char         netd[40] = "";
         if (b != BAND_OPTICAL)
             snprintf(netd, sizeof netd, ", NEdT %.3g mK at 300 K", 1e3 * photon_netd_k(&photons, 300, step_e, 0));
-        choice_add(choices, "%s: %s, F/%.3g, %.3g um pitch, %.4g ms%s, %g bits of %.4g electrons%s (sensor.preset)",
+        choice_add(choices, "%s: %s, F/%.3g, %.3g um pitch, %.4g ms%s, %g bits of %.4g electrons%s (%s)",
                    band_name((Band)b), p->name, p->photons.f_number, 1e6 * p->photons.pitch_m,
-                   1e3 * p->photons.integration_s, p->auto_exposure ? " at most" : "", p->bits, step_e, netd);
+                   1e3 * p->photons.integration_s, p->auto_exposure ? " at most" : "", p->bits, step_e, netd,
+                   b > 0 && b == s.sheet_band ? "sensor.table" : "sensor.preset");
     }
     *out = s;
     return STATUS_OK;

@@ -9,6 +9,7 @@
 typedef struct Sensors {
     bool         has[BAND_COUNT];
     SensorPreset preset[BAND_COUNT];
+    int          sheet_band; /* whose sensor is that of sensor.table; 0, optical: none */
     Lens         lens;       /* of the picture, which all bands share: the first sensor's, or as the user says */
     double       lateral[2]; /* RenderRequest */
 } Sensors;

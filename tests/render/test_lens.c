@@ -4,8 +4,6 @@
 
 #include "tests/render/hand_world.h"
 
-#include "render/render_private.h"
-
 typedef long double Real;
 
 static double draw(int index, int axis, double low, double high)
@@ -164,7 +162,7 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
         const View view = distorted_view(320, 240, n % 2 ? 0.9 : 0.1, share[n]);
         double     sum = 0;
         for (int y = 0; y < view.height; y++)
-            for (int x = 0; x < view.width; x++) sum += pixel_cosine3(&view, x, y);
+            for (int x = 0; x < view.width; x++) sum += view_pixel_share(&view, x, y);
         sum /= view.focal_px * view.focal_px;
         enum { side = 4000 };
         Real want = 0, before[3] = {0};

@@ -239,6 +239,8 @@ static int misplaced(const float *plane, const uint32_t *entity, const Real quad
 typedef struct Shot {
     Picture picture;
     Real    quad[4][2], nose_px[2], centre_px[2];
+    Real    box[4]; /* of all corners, through the lens */
+    TargetPixels target;
 } Shot;
 
 static const Glass none;
@@ -276,6 +278,18 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     for (int i = 0; i < 4; i++) {
         for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + corner[i][0] * x[k] + corner[i][1] * y[k] + corner[i][2] * z[k];
         project(shot->quad[i], &c, at);
+    }
+    shot->box[0] = shot->box[1] = 1e30L, shot->box[2] = shot->box[3] = -1e30L;
+    for (int i = 0; i < 8; i++) {
+        const Real half = picture_side / 2, b[3] = {i & 1 ? 2 : -2, i & 2 ? 1 : -1, i & 4 ? -1.5L : 0};
+        Real       px[2], bent[2];
+        for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + b[0] * x[k] + b[1] * y[k] + b[2] * z[k];
+        project(px, &c, at);
+        bend(bent, glass, (px[0] - half) / half, (px[1] - half) / half);
+        for (int k = 0; k < 2; k++) {
+            shot->box[k]     = fminl(shot->box[k], half + half * bent[k]);
+            shot->box[k + 2] = fmaxl(shot->box[k + 2], half + half * bent[k]);
+        }
     }
     for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + 2 * x[k] - 0.75L * z[k];
     project(shot->nose_px, &c, at);
@@ -318,6 +332,7 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     air_even(&air, sun.d_enu, 150, sky, 0, fixture.world.planck_mwir, fixture.world.planck_lwir);
     air.sun_w_m2[AIR_MWIR] = 8;
     assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena), STATUS_OK);
+    shot->target = shot->picture.target[0];
     entity_table_destroy(table);
 }
 
@@ -345,6 +360,11 @@ static void a_lens_moves_the_plate_by_its_formula(void **state)
                 const int wrong = misplaced(plane[b], shot.picture.entity, shot.quad, name);
                 if (wrong != 0) fail_msg("%s: %d pixels on the wrong side", name, wrong);
             }
+            /* its box by its corners, and the mask within it: straight edges bow out of their corners' box by a little */
+            const TargetPixels *t = &shot.target;
+            for (int k = 0; k < 4; k++) CHECK_NEAR(t->projected_box[k], (double)shot.box[k], 0.05);
+            for (int k = 0; k < 2; k++)
+                CHECK(t->box[k] > (double)shot.box[k] - 3 && t->box[k + 2] < (double)shot.box[k + 2] + 3);
         }
     /* and it is no pinhole: with the formula left out the same pictures fail */
     Shot shot;
