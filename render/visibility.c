@@ -490,6 +490,69 @@ bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_en
     return left > 0 && (past_m <= 0 || past_m * past_m < left);
 }
 
+static void grow_image_box(double box_px[4], const double at_px[2])
+{
+    for (int a = 0; a < 2; a++) {
+        box_px[a]     = at_px[a] < box_px[a] ? at_px[a] : box_px[a];
+        box_px[a + 2] = at_px[a] > box_px[a + 2] ? at_px[a] : box_px[a + 2];
+    }
+}
+
+static void project_between(double at_px[2], const View *view, const double a[3], const double b[3], double t)
+{
+    const double p_cam[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+    view_project(at_px, view, p_cam);
+}
+
+/* Through a lens an edge is bowed, and may reach beyond its ends: its extremes by samples and the parabola through the
+ * three about the farthest, good to 0.01 px of a bow of 10 px. */
+static void grow_by_bowed_edge(double box_px[4], const View *view, const double a[3], const double b[3])
+{
+    enum { parts = 16 };
+    double at_px[parts + 1][2], middle_px[2];
+    project_between(at_px[0], view, a, b, 0);
+    project_between(at_px[1], view, a, b, 1);
+    project_between(middle_px, view, a, b, 0.5);
+    bool may = false;
+    for (int c = 0; c < 2; c++) {
+        /* four times how far the middle is from between the ends: more than a smooth bow can reach */
+        const double room_px = 4 * fabs(middle_px[c] - 0.5 * (at_px[0][c] + at_px[1][c]));
+        may |= fmin(at_px[0][c], at_px[1][c]) - room_px < box_px[c] || fmax(at_px[0][c], at_px[1][c]) + room_px > box_px[c + 2];
+    }
+    if (!may) return;
+    for (int n = 0; n <= parts; n++) {
+        project_between(at_px[n], view, a, b, (double)n / parts);
+        grow_image_box(box_px, at_px[n]);
+    }
+    for (int n = 1; n < parts; n++) {
+        double top_px[2] = {at_px[n][0], at_px[n][1]};
+        for (int c = 0; c < 2; c++) {
+            const double before = at_px[n - 1][c] - at_px[n][c], after = at_px[n + 1][c] - at_px[n][c], bend = before + after;
+            if (before * after > 0) top_px[c] -= (after - before) * (after - before) / (8 * bend);
+        }
+        grow_image_box(box_px, top_px);
+    }
+}
+
+static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, const View *view)
+{
+    for (int k = 0; k < entity->node_count; k++) {
+        const PosedNode *node = &entity->node[k];
+        const double   (*triangle)[3];
+        double           r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
+        m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
+        v3_sub(from_eye, node->p_enu, view->p_enu);
+        m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
+        for (int n = 0; (triangle = parts_node_triangle(node, n)); n++) {
+            for (int c = 0; c < 3; c++) {
+                m3_mul_v3(corner[c], r_cam_from_node, triangle[c]);
+                v3_add(corner[c], corner[c], p_cam);
+            }
+            for (int c = 0; c < 3; c++) grow_by_bowed_edge(box_px, view, corner[c], corner[(c + 1) % 3]);
+        }
+    }
+}
+
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
 {
     const PosedEntity *entity = &v->entity[index];
@@ -510,12 +573,10 @@ bool visibility_project_box(double box_px[4], const Visibility *v, const View *v
             if (!(at[2] > 0)) return false;
             double image_px[2];
             view_project(image_px, view, at);
-            for (int a = 0; a < 2; a++) {
-                box[a]     = image_px[a] < box[a] ? image_px[a] : box[a];
-                box[a + 2] = image_px[a] > box[a + 2] ? image_px[a] : box[a + 2];
-            }
+            grow_image_box(box, image_px);
         }
     }
+    if (view_has_lens(view)) grow_by_bowed_edges(box, entity, view);
     memcpy(box_px, box, sizeof box);
     return true;
 }

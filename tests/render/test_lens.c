@@ -193,7 +193,7 @@ static void a_ball_s_intensity_is_the_same_all_over(void **state)
     View         view = distorted_view(320, 240, 0.5, -0.15);
     hand_air_off(up);
     for (int size = 0; size < 2; size++)
-        for (int i = 0; i < 20; i++) {
+        for (int i = 0; i < 12; i++) {
             const double range_m = size ? 900 : 60;
             const double u = draw(i, 0, 0.1, 0.9) * view.width, v = draw(i, 1, 0.12, 0.88) * view.height;
             double       d_enu[3], p_enu[3], box_px[2], p_cam[3], off[3];
@@ -227,10 +227,10 @@ static void skips_change_nothing(void **state)
     const double  sun[3] = {0.3, -0.5, 0.81};
     const double  r_enu_from_body[9] = {0, 1, 0, 1, 0, 0, 0, 0, -1};
     hand_air_on(sun, 1000);
-    for (int n = 0; n < 3; n++) {
-        View view = distorted_view(160, 120, 0.6, n == 0 ? -0.15 : n == 1 ? 0.15 : -0.02);
+    for (int n = 0; n < 2; n++) {
+        View view = distorted_view(128, 96, 0.6, n == 0 ? -0.15 : 0.15);
         hand_clear();
-        for (int i = 0; i < 40; i++) {
+        for (int i = 0; i < 24; i++) {
             double       d_enu[3], p_enu[3];
             const double range_m = exp(draw(i, 0, log(15), log(900)));
             view_ray(d_enu, &view, draw(40 * n + i, 1, -0.1, 1.1) * view.width, draw(40 * n + i, 2, -0.1, 1.1) * view.height);
@@ -247,8 +247,8 @@ static void skips_change_nothing(void **state)
             if (picture_plane(&quick, k)) assert_memory_equal(picture_plane(&quick, k), picture_plane(&plain, k), octets);
         assert_memory_equal(quick.entity, plain.entity, octets);
         assert_memory_equal(quick.range_m, plain.range_m, octets);
-        for (int i = 0; i < 40; i++) seen += quick.target[i].visible > 0;
-        CHECK(seen > 15);
+        for (int i = 0; i < 24; i++) seen += quick.target[i].visible > 0;
+        CHECK(seen > 10);
         arena_reset(hand.arena);
     }
 }
