@@ -85,7 +85,8 @@ static void bound_bend(Lens *l, const double half[2])
             for (int n = 0; n < 9; n++)
                 lens_back_within(at[n / 3][n % 3], l, (i + n % 3 - 1) * hx - half[0], (j + n / 3 - 1) * hy - half[1]);
             for (int c = 0; c < 2; c++) {
-                const double xx = at[1][0][c] - 2 * at[1][1][c] + at[1][2][c], yy = at[0][1][c] - 2 * at[1][1][c] + at[2][1][c];
+                const double xx = at[1][0][c] - 2 * at[1][1][c] + at[1][2][c],
+                             yy = at[0][1][c] - 2 * at[1][1][c] + at[2][1][c];
                 most = fmax(most, fmax(fabs(xx) / (hx * hx), fabs(yy) / (hy * hy)));
             }
         }
@@ -145,7 +146,8 @@ void lens_back(double out[2], const Lens *l, double x_image, double y_image)
         double image[2], s[4];
         if (at[0] * at[0] + at[1] * at[1] <= l->reach * l->reach) { /* the next step must start outside */
             const double out_by = 1.0001 * l->reach / hypot(at[0], at[1]);
-            at[0] = isfinite(out_by) ? at[0] * out_by : 1.0001 * l->reach, at[1] = isfinite(out_by) ? at[1] * out_by : 0;
+            at[0] = isfinite(out_by) ? at[0] * out_by : 1.0001 * l->reach,
+            at[1] = isfinite(out_by) ? at[1] * out_by : 0;
         }
         image_beyond(image, s, l, at[0], at[1]);
         const double dx = x_image - image[0], dy = y_image - image[1], det = s[0] * s[3] - s[1] * s[2];

@@ -21,9 +21,9 @@ typedef struct Lens {
     double bend;       /* bound of the second derivatives of the way back within the picture */
 } Lens;
 
-static const double lens_room = 1.04; /* beyond the picture's outline a lens must still be good; lateral colour uses it */
+static const double lens_room = 1.04; /* how far beyond the picture a lens must be good: room for lateral colour */
 
-/* half: of the picture, tangents on the image. STATUS_BAD_VALUE: folds within the picture, or nearly so; says nothing. */
+/* half: of the picture, tangents on the image. STATUS_BAD_VALUE, not logged: it folds within the picture, or nearly. */
 Status lens_make(Lens *out, const double k[3], const double p[2], const double half[2]);
 
 /* By the polynomial alone. */

@@ -62,11 +62,12 @@ static inline void view_half_tangents(double half[2], const View *view)
     half[1] = view_has_lens(view) ? view->lens.tangent[1] : 0.5 * view->height / view->focal_px;
 }
 
-/* Solid angle of a pixel, at its centre, over 1 / focal_px^2: cos^3 of the angle off the axis, and by how much less of the
- * image a lens gives to an area of directions. tests/render/test_lens.c */
+/* Solid angle of a pixel, at its centre, over 1 / focal_px^2: cos^3 of the angle off the axis, and by how much less of
+ * the image a lens gives to an area of directions. tests/render/test_lens.c */
 static inline double view_pixel_share(const View *view, int x, int y)
 {
-    double at[2] = {(x + 0.5 - 0.5 * view->width) / view->focal_px, (y + 0.5 - 0.5 * view->height) / view->focal_px}, area = 1;
+    double at[2] = {(x + 0.5 - 0.5 * view->width) / view->focal_px, (y + 0.5 - 0.5 * view->height) / view->focal_px},
+           area = 1;
     if (view_has_lens(view)) {
         lens_back_within(at, &view->lens, at[0], at[1]);
         area = lens_area(&view->lens, at[0], at[1]);

@@ -517,7 +517,8 @@ static void grow_by_bowed_edge(double box_px[4], const View *view, const double 
     for (int c = 0; c < 2; c++) {
         /* four times how far the middle is from between the ends: more than a smooth bow can reach */
         const double room_px = 4 * fabs(middle_px[c] - 0.5 * (at_px[0][c] + at_px[1][c]));
-        may |= fmin(at_px[0][c], at_px[1][c]) - room_px < box_px[c] || fmax(at_px[0][c], at_px[1][c]) + room_px > box_px[c + 2];
+        may |= fmin(at_px[0][c], at_px[1][c]) - room_px < box_px[c] ||
+               fmax(at_px[0][c], at_px[1][c]) + room_px > box_px[c + 2];
     }
     if (!may) return;
     for (int n = 0; n <= parts; n++) {
@@ -527,7 +528,8 @@ static void grow_by_bowed_edge(double box_px[4], const View *view, const double 
     for (int n = 1; n < parts; n++) {
         double top_px[2] = {at_px[n][0], at_px[n][1]};
         for (int c = 0; c < 2; c++) {
-            const double before = at_px[n - 1][c] - at_px[n][c], after = at_px[n + 1][c] - at_px[n][c], bend = before + after;
+            const double before = at_px[n - 1][c] - at_px[n][c], after = at_px[n + 1][c] - at_px[n][c],
+                         bend = before + after;
             if (before * after > 0) top_px[c] -= (after - before) * (after - before) / (8 * bend);
         }
         grow_image_box(box_px, top_px);

@@ -2,7 +2,10 @@
 #include "sensor/detector/mrtd.h"
 
 /* Of white noise in square pixels, what a mean over a length leaves; below a pixel, that of the pixel. */
-static double white_left(double length_px) { return length_px > 1 ? (1 - 1 / (3 * length_px)) / length_px : 1 - length_px / 3; }
+static double white_left(double length_px)
+{
+    return length_px > 1 ? (1 - 1 / (3 * length_px)) / length_px : 1 - length_px / 3;
+}
 
 /* Of noise correlated as exp(-x / reach): variance of a mean over a length, and covariance of two such side by side. */
 static double line_left(double length_px, double reach_px)
@@ -40,7 +43,7 @@ void mrtd_predict(Mrtd *out, const SensorPreset *p, double f, const MrtdObserver
 {
     const PhotonDetector d = preset_photons(p);
     double               per_k;
-    const double         signal_e = photon_electrons(&d, observer->temp_k, &per_k), at_300_e = photon_electrons(&d, 300, NULL);
+    const double signal_e = photon_electrons(&d, observer->temp_k, &per_k), at_300_e = photon_electrons(&d, 300, NULL);
     const double         floor_e2 = d.dark_e + d.read_e * d.read_e, step_e = d.well_e / (exp2(p->bits) - 1);
     const double         scale2 = p->noise_scale * p->noise_scale, ref2 = scale2 * (at_300_e + floor_e2);
     const double         gain2 = scale2 * p->prnu * p->prnu * signal_e * signal_e;
@@ -58,7 +61,8 @@ void mrtd_predict(Mrtd *out, const SensorPreset *p, double f, const MrtdObserver
         else if (axis == 1) e2 += gain2 * across; /* a row has one detector's gain */
         const double line2 = ref2 * p->line_noise * p->line_noise / fmin(frames, scan_pool), reach = p->line_noise_px;
         if (line2 > 0 && !(reach > 0)) e2 += line2 * across * along;
-        else if (line2 > 0 && axis == 0) e2 += line2 * (line_left(width_px, reach) - line_shared(width_px, reach)) * along;
+        else if (line2 > 0 && axis == 0)
+            e2 += line2 * (line_left(width_px, reach) - line_shared(width_px, reach)) * along;
         else if (line2 > 0) e2 += line2 * line_left(7 * width_px, reach) * across;
 
         const double noise_k = sqrt(e2) / per_k, all = contrast(p, axis, f, 15), first = contrast(p, axis, f, 1);

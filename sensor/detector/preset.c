@@ -111,7 +111,8 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
         return bad_word(t, row, "exposure", text, "fixed, auto");
     p.auto_exposure = text[0] == 'a';
     text            = table_text(t, row, scan);
-    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0 && strcmp(text, "columns") != 0)
+    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0 &&
+        strcmp(text, "columns") != 0)
         return bad_word(t, row, "scan", text, "stare, lines, both, columns");
     p.scan.bidirectional = text[0] == 'b';
     p.scan.by_columns    = text[0] == 'c';

@@ -64,8 +64,8 @@ static int split(int *phase, double shift)
 enum { before = scan_taps / 2 - 1 };
 
 /* Columns at their own times: along the rows at the time of the column's middle, then down it at each pixel's own. */
-static void resample_columns(float *out, const float *in, int width, int height, const Scan *scan, const double rate_px_s[2],
-                             float *line, const Taps *taps)
+static void resample_columns(float *out, const float *in, int width, int height, const Scan *scan,
+                             const double rate_px_s[2], float *line, const Taps *taps)
 {
     const size_t w = (size_t)width;
     for (int c = 0; c < width; c++) {
@@ -81,7 +81,8 @@ static void resample_columns(float *out, const float *in, int width, int height,
             const int top = r + split(&phase, rate_px_s[1] * scan_time_s(scan, width, height, c + 0.5, r)) - before;
             float     sum = 0;
             for (int k = 0; k < scan_taps; k++)
-                sum += taps->weight[phase][k] * line[top >= 0 && top + scan_taps <= height ? top + k : mirrored(top + k, height)];
+                sum += taps->weight[phase][k] *
+                       line[top >= 0 && top + scan_taps <= height ? top + k : mirrored(top + k, height)];
             out[(size_t)r * w + (size_t)c] = sum > 0 ? sum : 0;
         }
     }

@@ -84,10 +84,12 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
     int  k = 0;
     char wants[120], safe[80];
     while (k < entry_count && strcmp(entries[k].key, key) != 0) k++;
-    if (k == entry_count) k = strcmp(key, "name") == 0 ? name_entry : strcmp(key, "sensor_type") == 0 ? type_entry : all_entries;
+    if (k == entry_count)
+        k = strcmp(key, "name") == 0 ? name_entry : strcmp(key, "sensor_type") == 0 ? type_entry : all_entries;
     if (k == all_entries) {
         text_escape(safe, sizeof safe, key, strnlen(key, 40));
-        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h and the README list them", lines->path, line, safe);
+        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h and the README list them", lines->path, line,
+                  safe);
         return STATUS_BAD_VALUE;
     }
     if (lines->of[k]) {
@@ -96,7 +98,8 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
     }
     lines->of[k] = line;
     if (k == name_entry) {
-        if (!is_name(value) || unit) return bad(lines->path, line, key, unit ? unit : value, "one word of at most 31 letters, digits, _ . -");
+        if (!is_name(value) || unit)
+            return bad(lines->path, line, key, unit ? unit : value, "one word of at most 31 letters, digits, _ . -");
         strcpy(s->name, value);
         return STATUS_OK;
     }
@@ -125,7 +128,8 @@ static Status read_line(Sheet *s, Lines *lines, int line, char *text)
     char *word[4] = {NULL}, *save = NULL;
     int   words = 0;
     text[strcspn(text, "#")] = 0;
-    for (char *w = strtok_r(text, " \t\r", &save); w && words < 4; w = strtok_r(NULL, " \t\r", &save)) word[words++] = w;
+    for (char *w = strtok_r(text, " \t\r", &save); w && words < 4; w = strtok_r(NULL, " \t\r", &save))
+        word[words++] = w;
     if (words == 0) return STATUS_OK;
     if (words == 1) return bad(lines->path, line, word[0], "", "a key and its value");
     if (words == 4) return bad(lines->path, line, word[0], word[3], "expected: key, value, unit");
@@ -143,7 +147,8 @@ static Status check_entries(Sheet *s, const Lines *lines)
     const unsigned not_ours = strcmp(s->sensor_type, "staring") == 0 ? parallel_only : staring_only;
     for (int k = 0; k < entry_count; k++) {
         if (entries[k].flags & not_ours && lines->of[k]) {
-            log_error("sheet: %s:%d: %s does not belong to a %s sensor", lines->path, lines->of[k], entries[k].key, s->sensor_type);
+            log_error("sheet: %s:%d: %s does not belong to a %s sensor", lines->path, lines->of[k], entries[k].key,
+                      s->sensor_type);
             return STATUS_BAD_VALUE;
         }
         if (entries[k].flags & required && !(entries[k].flags & not_ours) && !lines->of[k]) {
@@ -154,7 +159,8 @@ static Status check_entries(Sheet *s, const Lines *lines)
         if (!lines->of[k]) *field(s, k) = entries[k].otherwise;
     }
     if (isnan(s->netd_k) == isnan(s->d_star_1e10)) {
-        log_error("sheet: %s: give one of netd and peak_d_star, not %s", lines->path, isnan(s->netd_k) ? "none" : "both");
+        log_error("sheet: %s: give one of netd and peak_d_star, not %s", lines->path,
+                  isnan(s->netd_k) ? "none" : "both");
         return STATUS_BAD_VALUE;
     }
     if (not_ours == parallel_only && isnan(s->integration_us)) {
@@ -171,8 +177,9 @@ static Status choose_band(Band *band, const Sheet *s, const char *path)
     if (s->cut_on_um < s->cut_off_um && s->cut_on_um >= 7 && s->cut_off_um <= 14) *band = BAND_LWIR;
     else if (s->cut_on_um < s->cut_off_um && s->cut_on_um >= 3 && s->cut_off_um <= 5.5) *band = BAND_MWIR;
     else {
-        log_error("sheet: %s: spectral_cut_on=%g and spectral_cut_off=%g microns lie neither in 7 .. 14 nor in 3 .. 5.5", path,
-                  s->cut_on_um, s->cut_off_um);
+        log_error(
+            "sheet: %s: spectral_cut_on=%g and spectral_cut_off=%g microns lie neither in 7 .. 14 nor in 3 .. 5.5",
+            path, s->cut_on_um, s->cut_off_um);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -181,10 +188,13 @@ static Status choose_band(Band *band, const Sheet *s, const char *path)
 static Status raster(SensorPreset *p, const Sheet *s, const char *path)
 {
     const bool   staring = strcmp(s->sensor_type, "staring") == 0;
-    const double h_um = staring ? s->cell_h_um : s->horz_um / s->per_h, v_um = staring ? s->cell_v_um : s->vert_um / s->per_v;
+    const double h_um = staring ? s->cell_h_um : s->horz_um / s->per_h,
+                 v_um = staring ? s->cell_v_um : s->vert_um / s->per_v;
     if (!(fabs(h_um / v_um - 1) <= 0.01)) {
-        log_error("sheet: %s: pixels of %g x %g microns are not square, which they must be to 1 %%; choose %s", path, h_um, v_um,
-                  staring ? "horz_unit_cell and vert_unit_cell alike" : "samples_per_hifov and samples_per_vifov to make them so");
+        log_error("sheet: %s: pixels of %g x %g microns are not square, which they must be to 1 %%; choose %s", path,
+                  h_um, v_um,
+                  staring ? "horz_unit_cell and vert_unit_cell alike"
+                          : "samples_per_hifov and samples_per_vifov to make them so");
         return STATUS_BAD_VALUE;
     }
     const double pitch_m = 1e-6 * sqrt(h_um * v_um), focal_m = 1e-2 * s->focal_cm;
@@ -193,10 +203,13 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
     p->width_px        = staring ? s->columns : round(2 * focal_m * tan(0.5 * s->fov_deg * rad_per_deg) / pitch_m);
     p->height_px       = staring ? s->rows : round(s->rows * s->per_v);
     if (floor(s->columns) != s->columns && staring) p->width_px = NAN;
-    if (floor(s->rows) != s->rows || !(p->width_px >= 8 && p->width_px <= 8192 && p->height_px >= 8 && p->height_px <= 8192) ||
+    if (floor(s->rows) != s->rows ||
+        !(p->width_px >= 8 && p->width_px <= 8192 && p->height_px >= 8 && p->height_px <= 8192) ||
         !(p->footprint <= 4)) {
-        log_error("sheet: %s: %g x %g pixels of %g microns, with detectors of %g: whole numbers in 8 .. 8192 are wanted, and "
-                  "detectors of at most 4 pixels", path, p->width_px, p->height_px, 1e6 * pitch_m, p->footprint);
+        log_error(
+            "sheet: %s: %g x %g pixels of %g microns, with detectors of %g: whole numbers in 8 .. 8192 are wanted, and "
+            "detectors of at most 4 pixels",
+            path, p->width_px, p->height_px, 1e6 * pitch_m, p->footprint);
         return STATUS_BAD_VALUE;
     }
     p->hfov_deg  = 2 * atan(0.5 * p->width_px * pitch_m / focal_m) / rad_per_deg;
@@ -212,7 +225,8 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
 static double d_star_noise_e(const Sheet *s, double integration_s)
 {
     static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0;
-    const double area_cm2 = 1e-8 * s->horz_um * s->vert_um, nep_w = sqrt(area_cm2 / (2 * integration_s)) / (1e10 * s->d_star_1e10);
+    const double area_cm2 = 1e-8 * s->horz_um * s->vert_um,
+                 nep_w = sqrt(area_cm2 / (2 * integration_s)) / (1e10 * s->d_star_1e10);
     return s->qe * nep_w * integration_s * 1e-6 * s->cut_off_um / (h_j_s * c_mps);
 }
 
@@ -229,7 +243,8 @@ static Status noise_of_reading(SensorPreset *p, const Sheet *s, const char *path
     const double one_e = isnan(s->d_star_1e10) ? NAN : d_star_noise_e(s, p->photons.integration_s);
     const double wanted_e2 = isnan(s->netd_k) ? stages * one_e * one_e : s->netd_k * s->netd_k * per_k * per_k;
     if (!isnan(s->netd_k) && !(wanted_e2 >= open_e2)) {
-        log_error("sheet: %s: netd=%g kelvin is better than photons, dark current and %g bits of %g electrons allow: %.3g kelvin",
+        log_error("sheet: %s: netd=%g kelvin is better than photons, dark current and %g bits of %g electrons allow: "
+                  "%.3g kelvin",
                   path, s->netd_k, p->bits, step_e, sqrt(open_e2) / per_k);
         return STATUS_BAD_VALUE;
     }

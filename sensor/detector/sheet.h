@@ -1,19 +1,19 @@
 /* sensor/detector/sheet.h: a sensor from a data sheet, with the entries that the FLIR92 model is given.
  *
- * Text, a line an entry: key, value, and if one likes its unit, which must then be the one below; # begins a comment. Every
- * key once; unknown ones are refused. The example is etc/sensors/example_flir2.sheet.
+ * Text, a line an entry: key, value, and its unit, which may be left out but must otherwise be the one below; # begins
+ * a comment. Every key once; unknown ones are refused. The example is etc/sensors/example_flir2.sheet.
  *
  *   name                     text          word of letters, digits, _ - .
  *   sensor_type              word          staring; parallel: one column of detectors swept over the picture
- *   spectral_cut_on          microns       the band must be LWIR (7 .. 14) or MWIR (3 .. 5.5), of which our own is taken:
- *   spectral_cut_off         microns       8 .. 12 or 3.4 .. 4.8
+ *   spectral_cut_on          microns       the band must be LWIR (7 .. 14) or MWIR (3 .. 5.5), of which our own
+ *   spectral_cut_off         microns       is taken: 8 .. 12 or 3.4 .. 4.8
  *   f_number                 -             focal length over aperture
  *   obscuration              -             central, share of the diameter; 0
  *   eff_focal_length         cm
  *   avg_optical_trans        -             with what is obscured counted as lost
  *   horz_dimension           microns       of a detector's sensitive area
  *   vert_dimension           microns
- *   horz_unit_cell           microns       staring: from detector to detector; the same as vert_unit_cell (square pixels)
+ *   horz_unit_cell           microns       staring: from detector to detector; both the same (square pixels)
  *   vert_unit_cell           microns
  *   samples_per_hifov        -             parallel: samples a detector's width, 1; and rows a detector's height, 1
  *   samples_per_vifov        -
@@ -25,13 +25,13 @@
  *   detectors_in_tdi         -             parallel: 1
  *   integration_time         microsec      of one stage; parallel: that from column to column
  *   quantum_efficiency       -             of the detector's own area
- *   netd                     kelvin        at 300 K, of a pixel, temporal. This or peak_d_star: what counting photons leaves
- *   peak_d_star              1e10 cm sqrt(Hz)/W   open is noise of the reading; too good for photons is refused
+ *   netd                     kelvin        at 300 K, of a pixel, temporal. This or peak_d_star: what counting photons
+ *   peak_d_star              1e10          leaves open is noise of the reading. In 1e10 cm sqrt(Hz) / W; a netd that
+ *                                          photons do not allow is refused
  *   dark_current             electrons/s   of a stage; 0
  *   well_capacity            electrons     of what is converted; 2.5 times what 300 K gives
  *   adc_bits                 -             14
- *   sigma_tv_tvh ...         -             three-dimensional noise (sigma_th_tvh, sigma_vh_tvh, sigma_t_tvh, sigma_v_tvh,
- *                                          sigma_h_tvh) over that of a pixel; 0
+ *   sigma_tv_tvh ...         -             three-dimensional noise (and th, vh, t, v, h) over that of a pixel; 0
  *   rms_motion               mrad          random image motion, a direction; 0
  *   high_pass_3db_cuton      Hz            parallel: of the AC coupling; 0
  *

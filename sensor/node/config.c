@@ -294,8 +294,10 @@ Status config_check(const Config *config)
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
                                             "detector.line_noise", "detector.smear", "detector.raw"};
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
-        if (strcmp(config->sensor.preset, "none") == 0 && !*config->sensor.table && config_given(config, of_preset[i])) {
-            log_error("config: %s: needs a sensor to change; choose one with sensor.preset or sensor.table", of_preset[i]);
+        if (strcmp(config->sensor.preset, "none") == 0 && !*config->sensor.table &&
+            config_given(config, of_preset[i])) {
+            log_error("config: %s: needs a sensor to change; choose one with sensor.preset or sensor.table",
+                      of_preset[i]);
             return STATUS_BAD_VALUE;
         }
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&

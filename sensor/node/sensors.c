@@ -42,7 +42,8 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
     const Status status = name ? preset_read(&p, path, name) : sheet_read(&p, config->sensor.table);
     if (status != STATUS_OK) return status;
     if (s->has[p.band]) {
-        log_error("replay: %s: %s and %s are both for %s; choose one", key, s->preset[p.band].name, p.name, band_name(p.band));
+        log_error("replay: %s: %s and %s are both for %s; choose one", key, s->preset[p.band].name, p.name,
+                  band_name(p.band));
         return STATUS_BAD_VALUE;
     }
     if (!(bands >> p.band & 1)) {
@@ -81,8 +82,9 @@ static Status one_noise(const Sensors *s, const Config *config)
 /* first: NULL without a preset. */
 static Status choose_lens(Sensors *s, Choices *choices, const Config *config, const SensorPreset *first)
 {
-    const double given[7] = {config->sensor.lens_k1, config->sensor.lens_k2, config->sensor.lens_k3, config->sensor.lens_p1,
-                             config->sensor.lens_p2, config->sensor.lateral_r, config->sensor.lateral_b};
+    const double given[7] = {config->sensor.lens_k1,  config->sensor.lens_k2, config->sensor.lens_k3,
+                             config->sensor.lens_p1,  config->sensor.lens_p2, config->sensor.lateral_r,
+                             config->sensor.lateral_b};
     const double focal_px = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
     const double half[2] = {0.5 * config->sensor.width_px / focal_px, 0.5 * config->sensor.height_px / focal_px};
     double       value[7] = {0};
@@ -91,19 +93,23 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
     for (int k = 0; k < 7; k++) over(&value[k], given[k], 1);
     memcpy(s->lateral, value + 5, sizeof s->lateral);
     if (lens_make(&s->lens, value, value + 3, half) != STATUS_OK) {
-        log_error("replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) folds within a picture of %.4g x "
-                  "%.4g degrees, or squeezes it tenfold; give smaller sensor.lens_k1 .. sensor.lens_p2", value[0], value[1],
-                  value[2], value[3], value[4], 2 * atan(half[0]) / rad_per_deg, 2 * atan(half[1]) / rad_per_deg);
+        log_error(
+            "replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) folds within a picture of %.4g x "
+            "%.4g degrees, or squeezes it tenfold; give smaller sensor.lens_k1 .. sensor.lens_p2",
+            value[0], value[1], value[2], value[3], value[4], 2 * atan(half[0]) / rad_per_deg,
+            2 * atan(half[1]) / rad_per_deg);
         return STATUS_BAD_VALUE;
     }
     double corner[2] = {half[0], half[1]};
     if (s->lens.reach > 0) lens_back(corner, &s->lens, half[0], half[1]);
     if (s->lens.reach > 0)
-        choice_add(choices, "lens: k1=%.4g k2=%.4g k3=%.4g p1=%.4g p2=%.4g: %+.2f %% at the corner (sensor.lens_k1 ...)",
+        choice_add(choices,
+                   "lens: k1=%.4g k2=%.4g k3=%.4g p1=%.4g p2=%.4g: %+.2f %% at the corner (sensor.lens_k1 ...)",
                    value[0], value[1], value[2], value[3], value[4],
                    100 * (hypot(half[0], half[1]) / hypot(corner[0], corner[1]) - 1));
     if (value[5] != 0 || value[6] != 0)
-        choice_add(choices, "lateral colour: R %+.3g px and B %+.3g px against G at the picture's side (sensor.lateral_r)",
+        choice_add(choices,
+                   "lateral colour: R %+.3g px and B %+.3g px against G at the picture's side (sensor.lateral_r)",
                    0.5 * config->sensor.width_px * value[5], 0.5 * config->sensor.width_px * value[6]);
     return STATUS_OK;
 }

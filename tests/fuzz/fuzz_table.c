@@ -64,7 +64,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     SensorPreset sheet;
     if (sheet_read(&sheet, path) == STATUS_OK) {
         /* what the detector's chain builds on */
-        if (!(sheet.width_px >= 8 && sheet.width_px <= 8192 && sheet.height_px >= 8 && sheet.height_px <= 8192)) abort();
+        if (!(sheet.width_px >= 8 && sheet.width_px <= 8192 && sheet.height_px >= 8 && sheet.height_px <= 8192))
+            abort();
         if (!(sheet.photons.read_e >= 0 && isfinite(sheet.photons.read_e) && sheet.photons.well_e >= 100)) abort();
         if (!(sheet.hfov_deg > 0 && sheet.hfov_deg < 180 && sheet.bits >= 8 && sheet.bits <= 16)) abort();
     }

@@ -1,5 +1,5 @@
-/* A lens that distorts: its formula and the way back against long double and OpenCV's numbers, which lenses are refused,
- * culling that never loses anything, boxes, areas and solid angles. */
+/* A lens that distorts: its formula and the way back against long double and OpenCV's numbers, which lenses are
+ * refused, culling that never loses anything, boxes, areas and solid angles. */
 #include "tests/check.h"
 
 #include "tests/render/hand_world.h"
@@ -61,7 +61,8 @@ static void there_and_back(void **state)
         for (int i = 0; i < 200; i++) {
             /* within the picture, and up to four times beyond, where the image runs straight on */
             const double far = i % 4 == 0 ? 4 : 1;
-            const double x = far * half[0] * draw(n * 200 + i, 7, -1, 1), y = far * half[1] * draw(n * 200 + i, 8, -1, 1);
+            const double x = far * half[0] * draw(n * 200 + i, 7, -1, 1),
+                         y = far * half[1] * draw(n * 200 + i, 8, -1, 1);
             double       at[2], image[2];
             lens_back(at, &lens, x, y);
             lens_image(image, &lens, at[0], at[1]);
@@ -130,7 +131,8 @@ static void boxes_hold_what_is_in_them(void **state)
             lens_box(box, &lens, image);
             for (int k = 0; k < 64; k++) {
                 double at[2];
-                lens_back(at, &lens, image[0] + (image[2] - image[0]) * (k % 8) / 7, image[1] + (image[3] - image[1]) * (k / 8) / 7);
+                lens_back(at, &lens, image[0] + (image[2] - image[0]) * (k % 8) / 7,
+                          image[1] + (image[3] - image[1]) * (k / 8) / 7);
                 CHECK(at[0] >= box[0] && at[0] <= box[2] && at[1] >= box[1] && at[1] <= box[3]);
                 if (far == 1) CHECK(fabs(at[0]) <= lens.tangent[0] && fabs(at[1]) <= lens.tangent[1]);
             }
@@ -147,13 +149,15 @@ static View distorted_view(int width, int height, double hfov_rad, double corner
     View         view = hand_view(eye_enu, north, width, height, view_focal_px(width, hfov_rad));
     const double half[2] = {0.5 * width / view.focal_px, 0.5 * height / view.focal_px};
     const double r2 = half[0] * half[0] + half[1] * half[1], r = sqrt(r2);
-    const double k[3] = {corner_share / r2, 0.2 * fabs(corner_share) / (r2 * r2), 0}, p[2] = {0.1 * corner_share / r, -0.07 * corner_share / r};
+    const double k[3] = {corner_share / r2, 0.2 * fabs(corner_share) / (r2 * r2), 0},
+                 p[2] = {0.1 * corner_share / r, -0.07 * corner_share / r};
     assert_int_equal(lens_make(&view.lens, k, p, half), STATUS_OK);
     return view;
 }
 
-/* The solid angle of the picture: pixel by pixel from the renderer, and by Gauss's divergence of the undistorted outline:
- * the sum of spherical triangles from the boresight to 4 x 4000 points of it (Van Oosterom & Strackee, 1983). */
+/* The solid angle of the picture: pixel by pixel from the renderer, and by Gauss's divergence of the undistorted
+ * outline: the sum of spherical triangles from the boresight to 4 x 4000 points of it (Van Oosterom & Strackee, 1983).
+ */
 static void pixels_fill_the_picture_s_solid_angle(void **state)
 {
     (void)state;
@@ -172,8 +176,10 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
             const double column = view.width * (s == 0 ? along : s == 1 ? 1 : s == 2 ? 1 - along : 0);
             const double row = view.height * (s == 0 ? 0 : s == 1 ? along : s == 2 ? 1 : 1 - along);
             double       at[2];
-            lens_back(at, &view.lens, (column - 0.5 * view.width) / view.focal_px, (row - 0.5 * view.height) / view.focal_px);
-            const Real length = sqrtl((Real)at[0] * at[0] + (Real)at[1] * at[1] + 1), d[3] = {at[0] / length, at[1] / length, 1 / length};
+            lens_back(at, &view.lens, (column - 0.5 * view.width) / view.focal_px,
+                      (row - 0.5 * view.height) / view.focal_px);
+            const Real length = sqrtl((Real)at[0] * at[0] + (Real)at[1] * at[1] + 1),
+                       d[3] = {at[0] / length, at[1] / length, 1 / length};
             if (i > 0) {
                 const Real triple = before[0] * d[1] - before[1] * d[0]; /* with (0, 0, 1) */
                 const Real cosines = 1 + before[0] * d[0] + before[1] * d[1] + before[2] * d[2] + before[2] + d[2];
@@ -206,9 +212,11 @@ static void a_ball_s_intensity_is_the_same_all_over(void **state)
             const TargetPixels *t = &p.target[0];
             const double want = hand_emitted(BAND_LWIR) * pi_rad * hand_sphere_m * hand_sphere_m;
             const double got = t->radiance[picture_lwir] / (view.focal_px * view.focal_px) * range_m * range_m;
-            /* sampling, as of a pinhole: cells of a small one, edge pixels of a large one; the lens itself makes 30 % of it */
+            /* sampling, as of a pinhole: cells of a small one, edge pixels of a large one; the lens itself makes 30 %
+             * of it */
             CHECK_NEAR(got / want, 1, size ? 0.01 : 0.003);
-            /* the middle of its box is where the formula puts its middle: a sphere's image leans out by less than 0.1 px */
+            /* the middle of its box is where the formula puts its middle: a sphere's image leans out by less than 0.1
+             * px */
             v3_sub(off, p_enu, view.p_enu);
             m3_tmul_v3(p_cam, view.r_enu_from_cam, off);
             view_project(box_px, &view, p_cam);
@@ -233,7 +241,8 @@ static void skips_change_nothing(void **state)
         for (int i = 0; i < 24; i++) {
             double       d_enu[3], p_enu[3];
             const double range_m = exp(draw(i, 0, log(15), log(900)));
-            view_ray(d_enu, &view, draw(40 * n + i, 1, -0.1, 1.1) * view.width, draw(40 * n + i, 2, -0.1, 1.1) * view.height);
+            view_ray(d_enu, &view, draw(40 * n + i, 1, -0.1, 1.1) * view.width,
+                     draw(40 * n + i, 2, -0.1, 1.1) * view.height);
             v3_add_scaled(p_enu, view.p_enu, range_m, d_enu);
             hand_add(i % hand_models, p_enu, r_enu_from_body);
         }
@@ -244,7 +253,8 @@ static void skips_change_nothing(void **state)
         const size_t  octets = (size_t)view.width * (size_t)view.height * sizeof(float);
         int           seen = 0;
         for (int k = 0; k < picture_plane_count; k++)
-            if (picture_plane(&quick, k)) assert_memory_equal(picture_plane(&quick, k), picture_plane(&plain, k), octets);
+            if (picture_plane(&quick, k))
+                assert_memory_equal(picture_plane(&quick, k), picture_plane(&plain, k), octets);
         assert_memory_equal(quick.entity, plain.entity, octets);
         assert_memory_equal(quick.range_m, plain.range_m, octets);
         for (int i = 0; i < 24; i++) seen += quick.target[i].visible > 0;
@@ -276,7 +286,8 @@ static void no_distortion_is_a_pinhole(void **state)
     CHECK(plain.target[0].radiance[picture_optical] == parted.target[0].radiance[picture_optical]);
     request.lateral[0] = 0.03;
     Picture none;
-    assert_int_equal(render(&none, &hand.world, &hand.snapshot, &request, &hand.air, hand.pool, hand.arena), STATUS_BAD_VALUE);
+    assert_int_equal(render(&none, &hand.world, &hand.snapshot, &request, &hand.air, hand.pool, hand.arena),
+                     STATUS_BAD_VALUE);
     arena_reset(hand.arena);
 }
 

@@ -1,11 +1,12 @@
-/* Minimum resolvable temperature difference: the prediction against four-bar targets that go through the whole detector,
- * noise and converter on, and are looked at in raw counts by the observer that the formula assumes.
+/* Minimum resolvable temperature difference: the prediction against four-bar targets that go through the whole
+ * detector, noise and converter on, and are looked at in raw counts by the observer that the formula assumes.
  *
- * A picture of 300 K holds as many targets as fit, each at a place of its own within a pixel; every pixel has its exact share
- * of bar. Frames are added up as counts, each bar's mean is taken over its own rectangle with the shares of the pixels it lies
- * over, less that of the gap beside it. Signal: the mean of these differences, less that of the same frames without targets.
- * Noise: their deviation over pictures without, of many detectors of a kind, over the root of two: that of one bar's mean.
- * The temperature difference at which the one is 2.5 times the other is looked for, starting from half the prediction. */
+ * A picture of 300 K holds as many targets as fit, each at a place of its own within a pixel; every pixel has its exact
+ * share of bar. Frames are added up as counts, each bar's mean is taken over its own rectangle with the shares of the
+ * pixels it lies over, less that of the gap beside it. Signal: the mean of these differences, less that of the same
+ * frames without targets. Noise: their deviation over pictures without, of many detectors of a kind, over the root of
+ * two: that of one bar's mean. The temperature difference at which the one is 2.5 times the other is looked for,
+ * starting from half the prediction. */
 #include "tests/check.h"
 
 #include "render/planck.h"
@@ -162,9 +163,10 @@ static void bars_are_resolved_where_the_formula_says(void **state)
                     snr = signal_counts(chain, &p, width_px[i], lying, got_k) / noise;
                 }
                 CHECK_NEAR(snr / threshold, 1, 0.02);
-                print_message("%-15s %.3f cycles a pixel, %s bars: %.4f K, predicted %.4f (%+.1f %%), first harmonic %.4f\n", name[s],
-                              0.5 / width_px[i], lying ? "horizontal" : "vertical", got_k, want.all_k[lying],
-                              100 * (got_k / want.all_k[lying] - 1), want.first_k[lying]);
+                print_message(
+                    "%-15s %.3f cycles a pixel, %s bars: %.4f K, predicted %.4f (%+.1f %%), first harmonic %.4f\n",
+                    name[s], 0.5 / width_px[i], lying ? "horizontal" : "vertical", got_k, want.all_k[lying],
+                    100 * (got_k / want.all_k[lying] - 1), want.first_k[lying]);
                 CHECK_NEAR(got_k / want.all_k[lying], 1, 0.1);
             }
         for (int k = 0; k < signal_lots; k++) chain_destroy(chain[k]);
@@ -175,8 +177,15 @@ static void bars_are_resolved_where_the_formula_says(void **state)
 static void by_hand(void **state)
 {
     (void)state;
-    SensorPreset p = {.band = BAND_LWIR, .width_px = 100, .height_px = 100, .hfov_deg = 5, .footprint = 1, .bits = 16, .noise_scale = 1,
-                      .photons = {.f_number = 1e-9, .transmission = 1, .qe = 1, .pitch_m = 1, .integration_s = 1e-20, .well_e = 1}};
+    SensorPreset p = {
+        .band = BAND_LWIR,
+        .width_px = 100,
+        .height_px = 100,
+        .hfov_deg = 5,
+        .footprint = 1,
+        .bits = 16,
+        .noise_scale = 1,
+        .photons = {.f_number = 1e-9, .transmission = 1, .qe = 1, .pitch_m = 1, .integration_s = 1e-20, .well_e = 1}};
     preset_refresh(&p);
     p.photons.read_e = 1e3;
     double per_k;

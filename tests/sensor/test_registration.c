@@ -8,8 +8,8 @@
  * that lies outside by more than 0.05 px may. (The edges cross some thousand pixels at all phases, so a shift
  * of more than that does not pass: the twin below moves the quadrilateral by 0.15 px and must fail.)
  *
- * With a lens that distorts, and colours that are magnified differently, each pixel is first taken back to where a pinhole
- * would have it, by formulas and a Newton's method of this file's own. */
+ * With a lens that distorts, and colours that are magnified differently, each pixel is first taken back to where a
+ * pinhole would have it, by formulas and a Newton's method of this file's own. */
 #include "tests/check.h"
 
 #include "entities/entity_table.h"
@@ -196,7 +196,8 @@ static void measure(const Real quad[4][2])
         for (int k = 0; k < 2; k++) same = same && of_quad[i][k] == quad[i][k], of_quad[i][k] = quad[i][k];
     of_undone = undone;
     for (int y = 0; y < picture_side && !same; y++)
-        for (int x = 0; x < picture_side; x++) inside_of[y][x] = inside_px(quad, pinhole_px[y][x][0], pinhole_px[y][x][1]);
+        for (int x = 0; x < picture_side; x++)
+            inside_of[y][x] = inside_px(quad, pinhole_px[y][x][0], pinhole_px[y][x][1]);
 }
 
 /* Pixels on the wrong side of the quadrilateral in one plane. What the plate looks like is learnt from the
@@ -246,7 +247,8 @@ typedef struct Shot {
 static const Glass none;
 
 /* side +1: seen from the entity's right; -1: from its left. lateral: NULL, or of R and B, for a picture in colours. */
-static void shoot_through(Shot *shot, const Glass *glass, const double *lateral, int where, int how, int side, double range_m)
+static void shoot_through(Shot *shot, const Glass *glass, const double *lateral, int where, int how, int side,
+                          double range_m)
 {
     Real p[3], east[3], north[3], up[3], x[3], y[3], z[3];
     ecef_of(p, east, north, up, place[where].lat_deg, place[where].lon_deg, place[where].h_m);
@@ -285,7 +287,8 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
         const int  axis = i / 4000, sides = i / 1000 % 4;
         const Real half = picture_side / 2, along = (i % 1000) / 999.0L, low[3] = {-2, -1, -1.5L}, high[3] = {2, 1, 0};
         Real       px[2], bent[2], b[3];
-        for (int k = 0, n = 0; k < 3; k++) b[k] = k == axis ? low[k] + along * (high[k] - low[k]) : sides >> n++ & 1 ? high[k] : low[k];
+        for (int k = 0, n = 0; k < 3; k++)
+            b[k] = k == axis ? low[k] + along * (high[k] - low[k]) : sides >> n++ & 1 ? high[k] : low[k];
         for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + b[0] * x[k] + b[1] * y[k] + b[2] * z[k];
         project(px, &c, at);
         bend(bent, glass, (px[0] - half) / half, (px[1] - half) / half);
@@ -356,7 +359,8 @@ static void a_lens_moves_the_plate_by_its_formula(void **state)
         for (int a = w % 2; a < attitudes; a += 2) {
             Shot shot;
             shoot_through(&shot, &distorted[a / 2 % 2], NULL, w, a, 1, range_m[w]);
-            const float *plane[BAND_COUNT] = {shot.picture.optical[0], shot.picture.mwir, shot.picture.lwir, shot.picture.radar};
+            const float *plane[BAND_COUNT] = {shot.picture.optical[0], shot.picture.mwir, shot.picture.lwir,
+                                              shot.picture.radar};
             for (int b = 0; b < BAND_COUNT; b++) {
                 char name[64];
                 snprintf(name, sizeof name, "%s, place %d, attitude %d", band_name((Band)b), w, a);
@@ -367,7 +371,8 @@ static void a_lens_moves_the_plate_by_its_formula(void **state)
             const TargetPixels *t = &shot.target;
             for (int k = 0; k < 4; k++) CHECK_NEAR(t->projected_box[k], (double)shot.box[k], 0.05);
             for (int k = 0; k < 2; k++)
-                CHECK(t->box[k] + 0.5 > (double)shot.box[k] - 0.05 && t->box[k + 2] - 0.5 < (double)shot.box[k + 2] + 0.05);
+                CHECK(t->box[k] + 0.5 > (double)shot.box[k] - 0.05 &&
+                      t->box[k + 2] - 0.5 < (double)shot.box[k + 2] + 0.05);
         }
     /* and it is no pinhole: with the formula left out the same pictures fail */
     Shot shot;

@@ -1,5 +1,5 @@
-/* A sensor's data sheet: what is read from it against its own figures by hand, and what is refused, by file, line, key, value
- * and range. */
+/* A sensor's data sheet: what is read from it against its own figures by hand, and what is refused, by file, line, key,
+ * value and range. */
 #include "tests/check.h"
 
 #include "sensor/detector/sheet.h"
@@ -7,15 +7,17 @@
 #include <stdio.h>
 
 /* A good sheet of each kind. */
-static const char staring[] = "name cam-1\nsensor_type staring\nspectral_cut_on 3.4 microns\nspectral_cut_off 4.8\nf_number 4\n"
-                              "eff_focal_length 10 cm\navg_optical_trans 0.8\nhorz_dimension 13.5\nvert_dimension 13.5\n"
-                              "horz_unit_cell 15\nvert_unit_cell 15\nhorz_detectors 640\nvert_detectors 512\n"
-                              "integration_time 5000 microsec\nquantum_efficiency 0.8\nnetd 0.03 kelvin\n";
-static const char parallel[] = "# by columns\nname line\nsensor_type parallel\r\nspectral_cut_on 7.8\nspectral_cut_off 10.5\nf_number 2.5\n"
-                               "eff_focal_length 10\navg_optical_trans 0.75\nhorz_dimension 25\nvert_dimension 25\n"
-                               "samples_per_hifov 1.25 # finer\nsamples_per_vifov 1.25\nvert_detectors 480\nhorz_fov 9 degrees\n"
-                               "frame_rate 30 Hz\nscan_efficiency 0.7\ndetectors_in_tdi 4\nintegration_time 15\nquantum_efficiency 0.7\n"
-                               "peak_d_star 4\nhigh_pass_3db_cuton 15\nsigma_v_tvh 0.5\nrms_motion 0.1 mrad\n";
+static const char staring[] =
+    "name cam-1\nsensor_type staring\nspectral_cut_on 3.4 microns\nspectral_cut_off 4.8\nf_number 4\n"
+    "eff_focal_length 10 cm\navg_optical_trans 0.8\nhorz_dimension 13.5\nvert_dimension 13.5\n"
+    "horz_unit_cell 15\nvert_unit_cell 15\nhorz_detectors 640\nvert_detectors 512\n"
+    "integration_time 5000 microsec\nquantum_efficiency 0.8\nnetd 0.03 kelvin\n";
+static const char parallel[] =
+    "# by columns\nname line\nsensor_type parallel\r\nspectral_cut_on 7.8\nspectral_cut_off 10.5\nf_number 2.5\n"
+    "eff_focal_length 10\navg_optical_trans 0.75\nhorz_dimension 25\nvert_dimension 25\n"
+    "samples_per_hifov 1.25 # finer\nsamples_per_vifov 1.25\nvert_detectors 480\nhorz_fov 9 degrees\n"
+    "frame_rate 30 Hz\nscan_efficiency 0.7\ndetectors_in_tdi 4\nintegration_time 15\nquantum_efficiency 0.7\n"
+    "peak_d_star 4\nhigh_pass_3db_cuton 15\nsigma_v_tvh 0.5\nrms_motion 0.1 mrad\n";
 
 static Status read_text(SensorPreset *out, const char *text)
 {
@@ -70,8 +72,8 @@ static void a_swept_sensor_has_its_sheet_s_figures(void **state)
     CHECK_NEAR(p.ac_per_line, 15 * 0.7 / 30 / 787, 1e-12);
     CHECK_NEAR(p.jitter_px, 0.1e-3 * 0.1 / 20e-6, 1e-12);
     CHECK(p.ratio.sigma[NOISE_V] == 0.5);
-    /* D* of 4e10 at 10.5 um: NEP = sqrt(6.25e-6 cm2 / 30e-6 s) / 4e10 = 1.1411e-11 W; in 15 us and by 10.5 um x 0.7 / hc
-     * 6331 electrons a stage, 12662 of four: the whole noise of a pixel */
+    /* D* of 4e10 at 10.5 um: NEP = sqrt(6.25e-6 cm2 / 30e-6 s) / 4e10 = 1.1411e-11 W; in 15 us and by 10.5 um x 0.7 /
+     * hc 6331 electrons a stage, 12662 of four: the whole noise of a pixel */
     const PhotonDetector d = preset_photons(&p);
     const double         step_e = p.photons.well_e / (exp2(14) - 1), signal_e = photon_electrons(&d, 300, NULL);
     CHECK_NEAR(sqrt(signal_e + d.read_e * d.read_e + step_e * step_e / 12), 12662, 12);
@@ -80,7 +82,8 @@ static void a_swept_sensor_has_its_sheet_s_figures(void **state)
 static void what_is_wrong_is_named(void **state)
 {
     (void)state;
-    static const struct { const char *text, *from, *to, *says; } slip[] = {
+    static const struct { const char *text, *from, *to, *says;
+    } slip[] = {
         {staring, "f_number 4", "f_number 0.1", ":5: f_number: '0.1' is not a number in 0.5 .. 100"},
         {staring, "f_number 4", "f_number four", ":5: f_number: 'four' is not a number"},
         {staring, "f_number 4", "f_number nan", "f_number: 'nan'"},
@@ -96,7 +99,8 @@ static void what_is_wrong_is_named(void **state)
         {staring, "3.4 microns", "8 microns", "spectral_cut_on=8 and spectral_cut_off=4.8"},
         {staring, "vert_unit_cell 15", "vert_unit_cell 16", "are not square"},
         {staring, "horz_detectors 640", "horz_detectors 640.5", "whole numbers"},
-        {staring, "horz_detectors 640", "horz_detectors 640\nframe_rate 30", "frame_rate does not belong to a staring sensor"},
+        {staring, "horz_detectors 640", "horz_detectors 640\nframe_rate 30",
+         "frame_rate does not belong to a staring sensor"},
         {staring, "netd 0.03 kelvin\n", "", "give one of netd and peak_d_star, not none"},
         {staring, "netd 0.03 kelvin\n", "netd 0.03\npeak_d_star 1\n", "not both"},
         {staring, "netd 0.03 kelvin", "netd 0.0005", "is better than photons"},

@@ -1,6 +1,6 @@
-/* A column of detectors swept over the picture, with stages that are added up (scanning_flir2): when each column is taken, what
- * belongs to a row, and what the stages gain; against kinematics, the sweep by lines turned over, and the square root of their
- * number. */
+/* A column of detectors swept over the picture, with stages that are added up (scanning_flir2): when each column is
+ * taken, what belongs to a row, and what the stages gain; against kinematics, the sweep by lines turned over, and the
+ * square root of their number. */
 #include "tests/check.h"
 
 #include "render/planck.h"
@@ -31,7 +31,8 @@ static void fill(double temp_k)
     for (int i = 0; i < pixels; i++) plane[i] = (float)planck_band(8e-6, 12e-6, temp_k, NULL);
 }
 
-/* A picture with rows and columns exchanged, and its motion, swept by columns: the one swept by lines, exchanged, to the bit. */
+/* A picture with rows and columns exchanged, and its motion, swept by columns: the one swept by lines, exchanged, to
+ * the bit. */
 static void columns_are_lines_turned_over(void **state)
 {
     (void)state;
@@ -41,7 +42,8 @@ static void columns_are_lines_turned_over(void **state)
         for (int c = 0; c < width; c++) turned[c * height + r] = plane[r * width + c];
     for (int n = 0; n < 6; n++) {
         const double *rate = rates[n % 3], exchanged[2] = {rate[1], rate[0]};
-        const Scan    lines = {.line_s = 1e-4, .active = active[n / 3]}, columns = {.line_s = 1e-4, .active = active[n / 3], .by_columns = true};
+        const Scan lines = {.line_s = 1e-4, .active = active[n / 3]},
+                   columns = {.line_s = 1e-4, .active = active[n / 3], .by_columns = true};
         scan_resample(by_lines, turned, height, width, &lines, exchanged, line);
         scan_resample(by_columns, plane, width, height, &columns, rate, line);
         for (int r = 0; r < height; r++)
@@ -49,7 +51,8 @@ static void columns_are_lines_turned_over(void **state)
     }
 }
 
-/* Each column stands where the scene is at its time: a level edge that falls is a slope, of rate x the time of a column. */
+/* Each column stands where the scene is at its time: a level edge that falls is a slope, of rate x the time of a
+ * column. */
 static void each_column_has_its_own_time(void **state)
 {
     (void)state;
@@ -93,8 +96,8 @@ static double netd_k(const SensorPreset *p)
     return sqrt(variance) / (0.5 * (warm - cool));
 }
 
-/* One, four and nine stages, with photons, dark current and reading all at work: noise falls by the root of their number.
- * Steps of the converter are fine here. 40 x 19200 samples: 0.1 % of sigma. */
+/* One, four and nine stages, with photons, dark current and reading all at work: noise falls by the root of their
+ * number. Steps of the converter are fine here. 40 x 19200 samples: 0.1 % of sigma. */
 static void stages_gain_the_root_of_their_number(void **state)
 {
     (void)state;
@@ -134,13 +137,16 @@ static void a_row_has_one_detector(void **state)
     for (int f = 0; f < 64; f++) {
         run_chain(chain, f, still);
         for (int r = 0; r < height; r++)
-            for (int c = 0; c < width; c++) mean[r] += chain_counts(chain, 0)[r * width + c] / (64.0 * width), all += chain_counts(chain, 0)[r * width + c] / (64.0 * pixels);
+            for (int c = 0; c < width; c++)
+                mean[r] += chain_counts(chain, 0)[r * width + c] / (64.0 * width),
+                    all += chain_counts(chain, 0)[r * width + c] / (64.0 * pixels);
     }
     for (int r = 0; r < height; r++) spread += (mean[r] - all) * (mean[r] - all) / (height - 1);
     /* halves of a row differ by temporal noise alone */
     for (int r = 0; r < height; r++) {
         double half = 0;
-        for (int c = 0; c < width; c++) half += (c < width / 2 ? 1 : -1) * (double)chain_counts(chain, 0)[r * width + c] / width;
+        for (int c = 0; c < width; c++)
+            half += (c < width / 2 ? 1 : -1) * (double)chain_counts(chain, 0)[r * width + c] / width;
         along += half * half / height;
     }
     const PhotonDetector d = preset_photons(&p);
@@ -151,8 +157,8 @@ static void a_row_has_one_detector(void **state)
     chain_destroy(chain);
 }
 
-/* Ripples along the rows lose what a detector passes over while a stage looks: sinc(time / column time x f), beside those down
- * the columns; the scene's own motion is smeared over all stages. */
+/* Ripples along the rows lose what a detector passes over while a stage looks: sinc(time / column time x f), beside
+ * those down the columns; the scene's own motion is smeared over all stages. */
 static void the_sweep_blurs_along_the_rows(void **state)
 {
     (void)state;
@@ -167,20 +173,24 @@ static void the_sweep_blurs_along_the_rows(void **state)
     const double moving[2] = {0, 0.25 / (4 * p.photons.integration_s)};
     for (int k = 0; k < 3; k++) {
         for (int r = 0; r < height; r++)
-            for (int c = 0; c < width; c++) plane[r * width + c] = (float)(30 + 10 * cos(2 * pi_rad * ((k == 0 ? c : r) + 0.5) / 5));
+            for (int c = 0; c < width; c++)
+                plane[r * width + c] = (float)(30 + 10 * cos(2 * pi_rad * ((k == 0 ? c : r) + 0.5) / 5));
         run_chain(chain, 0, k == 2 ? moving : still);
         double re = 0, im = 0;
         for (int r = 20; r < 100; r++)
             for (int c = 40; c < 120; c++) {
                 const double a = 2 * pi_rad * (k == 0 ? c : r) / 5;
-                re += chain_counts(chain, 0)[r * width + c] * cos(a), im += chain_counts(chain, 0)[r * width + c] * sin(a);
+                re += chain_counts(chain, 0)[r * width + c] * cos(a),
+                    im += chain_counts(chain, 0)[r * width + c] * sin(a);
             }
         amplitude[k] = hypot(re, im);
     }
     const double x = pi_rad * 0.9 / 5, y = pi_rad * 0.25 / 5;
     CHECK_NEAR(amplitude[0] / amplitude[1], sin(x) / x, 0.002);
-    /* down the columns, each at its own time: the phase runs across the picture, so that 80 columns do not add up whole */
-    const double turn = 2 * pi_rad / 5 * moving[1] * preset_of("scanning_flir2").scan.line_s, lost = sin(40 * turn) / (80 * sin(turn / 2));
+    /* down the columns, each at its own time: the phase runs across the picture, so that 80 columns do not add up whole
+     */
+    const double turn = 2 * pi_rad / 5 * moving[1] * preset_of("scanning_flir2").scan.line_s,
+                 lost = sin(40 * turn) / (80 * sin(turn / 2));
     CHECK_NEAR(amplitude[2] / amplitude[1] / fabs(lost), sin(y) / y, 0.004);
     chain_destroy(chain);
 }
