@@ -31,10 +31,10 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
     v3_sub(offset_enu, centre_enu, view->p_enu);
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
     if (!(p_cam[2] > 2 * radius_m)) return false;
-    const double column = 0.5 * view->width + view->focal_px * p_cam[0] / p_cam[2];
-    const double row    = 0.5 * view->height + view->focal_px * p_cam[1] / p_cam[2];
-    const double half_px = view->focal_px * radius_m / (p_cam[2] - radius_m);
-    box[0] = column - half_px, box[1] = row - half_px, box[2] = column + half_px, box[3] = row + half_px;
+    double at_px[2], half_px = view->focal_px * radius_m / (p_cam[2] - radius_m);
+    view_project(at_px, view, p_cam);
+    if (view_has_lens(view)) half_px *= 1.5; /* what a lens that is taken adds at most, and more */
+    for (int k = 0; k < 2; k++) box[k] = at_px[k] - half_px, box[k + 2] = at_px[k] + half_px;
     return true;
 }
 

@@ -124,9 +124,9 @@ static void shade_group(Placed *first, int count, unsigned bands)
 /* Whether any of it can fall into the picture, or shade what does: a cone about the corners, widened. */
 static bool may_matter(const View *view, const EffectVolume *v)
 {
-    const double reach = 3 * fmax(v->along_m, v->across_m) + 20, half_x = 0.5 * view->width / view->focal_px;
-    const double half_y = 0.5 * view->height / view->focal_px, tangent = sqrt(half_x * half_x + half_y * half_y);
-    double off[3], cam[3];
+    double half[2], off[3], cam[3];
+    view_half_tangents(half, view);
+    const double reach = 3 * fmax(v->along_m, v->across_m) + 20, tangent = sqrt(half[0] * half[0] + half[1] * half[1]);
     v3_sub(off, v->p_enu, view->p_enu);
     m3_tmul_v3(cam, view->r_enu_from_cam, off);
     if (cam[2] < -reach) return false;

@@ -263,6 +263,11 @@ const double (*parts_node_corners(const PosedNode *node, int *count))[3]
     return (const double (*)[3])node->mesh->corner;
 }
 
+const double (*parts_node_triangle(const PosedNode *node, int k))[3]
+{
+    return k < node->mesh->triangle_count ? (const double (*)[3])node->mesh->facet[k].corner : NULL;
+}
+
 /* ---- posing ------------------------------------------------------------------------------- */
 
 static bool pose_is_finite(const double p[3], const double r[9])

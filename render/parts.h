@@ -44,6 +44,9 @@ typedef struct PartHit {
 /* All vertices of a posed node, each once, in its axes. */
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
+/* The three corners of its triangle number k, in its axes; NULL: it has no more. */
+const double (*parts_node_triangle(const PosedNode *node, int k))[3];
+
 /* The most nodes that posing an entity of this model needs room for. */
 int parts_node_count(const Tracer *tracer, int model);
 /* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are

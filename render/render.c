@@ -14,7 +14,8 @@ static int optical_channels(int channel[3], unsigned bands, OpticalChannels opti
         memcpy(channel, rgb, sizeof rgb);
         return 3;
     }
-    channel[0] = optical == OPTICAL_NIR ? optical_channel_nir : optical_channel_pan;
+    channel[0] = optical == OPTICAL_NIR ? optical_channel_nir : optical == OPTICAL_RED ? optical_channel_r
+               : optical == OPTICAL_BLUE ? optical_channel_b : optical_channel_pan;
     return 1;
 }
 
@@ -66,13 +67,7 @@ static void trace_veils(Scratch *s, const Job *job)
               render_air_bands(block->bands, job->request->optical));
 }
 
-double pixel_cosine3(const View *view, int x, int y)
-{
-    const double u = (x + 0.5 - 0.5 * view->width) / view->focal_px;
-    const double v = (y + 0.5 - 0.5 * view->height) / view->focal_px;
-    const double square = 1 / (1 + u * u + v * v);
-    return square * sqrt(square);
-}
+double pixel_cosine3(const View *view, int x, int y) { return view_pixel_share(view, x, y); }
 
 float *picture_plane(const Picture *picture, int plane)
 {
@@ -97,7 +92,17 @@ static void make_rays(Rays *rays, const Block *block, const View *view)
             column_px[i] = block->x[p] + place[k][0];
             row_px[i]    = block->y[p] + place[k][1];
         }
-    for (int i = 0; i < count; i++) {
+    if (view_has_lens(view)) {
+        for (int i = 0; i < count; i++) {
+            double at[2];
+            lens_back_within(at, &view->lens, (column_px[i] - centre_x) / focal_px, (row_px[i] - centre_y) / focal_px);
+            const double n = 1 / sqrt(at[0] * at[0] + at[1] * at[1] + 1), x = n * at[0], y = n * at[1], z = n * 1;
+            dx[i] = r[0] * x + r[1] * y + r[2] * z;
+            dy[i] = r[3] * x + r[4] * y + r[5] * z;
+            dz[i] = r[6] * x + r[7] * y + r[8] * z;
+        }
+    }
+    for (int i = view_has_lens(view) ? count : 0; i < count; i++) {
         const double x_cam = (column_px[i] - centre_x) / focal_px, y_cam = (row_px[i] - centre_y) / focal_px;
         const double n = 1 / sqrt(x_cam * x_cam + y_cam * y_cam + 1), x = n * x_cam, y = n * y_cam, z = n * 1;
         dx[i] = r[0] * x + r[1] * y + r[2] * z;
@@ -659,14 +664,15 @@ static bool request_is_good(const RenderRequest *r)
     return r->samples >= 1 && r->samples <= 16 && r->edge_samples >= 0 && r->edge_samples <= 16 &&
            (r->target_samples == 0 || (r->target_samples >= 8 && r->target_samples <= 256)) && r->view.width >= 1 &&
            r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
-           v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 &&
+           v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 && fabs(r->lateral[0]) <= view_most_lateral &&
+           fabs(r->lateral[1]) <= view_most_lateral &&
            r->sky_samples >= 0 && r->sky_samples <= gather_samples_limit;
 }
 
-Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request, const Air *air,
-              Pool *pool, Arena *arena)
+/* One map of directions to the image for all channels. */
+static Status render_once(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
+                          const Air *air, Pool *pool, Arena *arena)
 {
-    if (!request_is_good(request)) return STATUS_BAD_VALUE;
 
     const double start_s = wall_clock_s();
     const int    workers = pool_threads(pool);
@@ -719,6 +725,39 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     if (!request->truth) forget_truth(&picture);
     *out = picture;
     return STATUS_OK;
+}
+
+static bool has_lateral(const RenderRequest *r)
+{
+    return r->optical == OPTICAL_RGB && has_band(r->bands, BAND_OPTICAL) && (r->lateral[0] != 0 || r->lateral[1] != 0);
+}
+
+Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request, const Air *air,
+              Pool *pool, Arena *arena)
+{
+    Picture picture = {0};
+    if (!request_is_good(request)) return STATUS_BAD_VALUE;
+    Status status = render_once(&picture, world, snapshot, request, air, pool, arena);
+    for (int k = 0; k < 2 && has_lateral(request) && status == STATUS_OK; k++) {
+        /* a colour that is magnified otherwise is a picture of its own: other rays, other edges; truth is green's */
+        RenderRequest one = *request;
+        Picture       colour;
+        if (request->lateral[k] == 0) continue;
+        one.bands   = 1u << BAND_OPTICAL;
+        one.optical = k == 0 ? OPTICAL_RED : OPTICAL_BLUE;
+        one.truth = one.budget = false;
+        one.view.focal_px *= 1 + request->lateral[k];
+        status = render_once(&colour, world, snapshot, &one, air, pool, arena);
+        if (status != STATUS_OK) break;
+        picture.optical[2 * k] = colour.optical[0];
+        render_counters_add(&picture.counters, &colour.counters);
+        picture.times.prepare_ms += colour.times.prepare_ms, picture.times.visibility_ms += colour.times.visibility_ms;
+        picture.times.shadow_ms += colour.times.shadow_ms, picture.times.shade_ms += colour.times.shade_ms;
+        picture.times.footprints_ms += colour.times.footprints_ms, picture.times.base_ms += colour.times.base_ms;
+        picture.times.edges_ms += colour.times.edges_ms;
+    }
+    if (status == STATUS_OK) *out = picture;
+    return status;
 }
 
 /* ---- the world ------------------------------------------------------------------------------ */

@@ -46,7 +46,7 @@ typedef struct TargetPixels {
     double peak_area;             /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
-    double projected_box[4];      /* of all its vertices, px, not clipped to the image; where `projected` */
+    double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
     double occluded_ground;       /* pixels that the ground hides, and other entities */
     double occluded_entity;
     double veiled[BAND_COUNT];    /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */

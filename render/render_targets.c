@@ -23,10 +23,9 @@ void project_target(void *user, int worker, int index)
     if (!(p_cam[2] > -radius_m)) return;
     /* half a picture and the sphere, in the plane of the sphere's far side: generous, never too tight */
     const double depth_m = p_cam[2] + radius_m;
-    if (fabs(p_cam[0]) - radius_m > depth_m * 0.5 * view->width / view->focal_px ||
-        fabs(p_cam[1]) - radius_m > depth_m * 0.5 * view->height / view->focal_px)
-        return;
-    double box[4];
+    double       half[2], box[4];
+    view_half_tangents(half, view);
+    if (fabs(p_cam[0]) - radius_m > depth_m * half[0] || fabs(p_cam[1]) - radius_m > depth_m * half[1]) return;
     if (!visibility_project_box(box, job->visibility, view, index)) return;
     if (!(box[2] > 0 && box[0] < view->width && box[3] > 0 && box[1] < view->height)) return;
     target->projected = true;

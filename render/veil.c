@@ -284,11 +284,19 @@ int veil_block(int *list, const VeilVolume *volume, int count, const View *view,
     /* a cone about the block: its middle, and the widest of its corners */
     const double corner_px[4][2] = {{column0_px, row0_px}, {column1_px, row0_px}, {column0_px, row1_px},
                                     {column1_px, row1_px}};
-    double middle[3], cosine = 1;
+    double middle[3], cosine = 1, tangent[4];
+    if (view_has_lens(view)) /* its sides are bent: the straight box about them */
+        view_box_tangents(tangent, view, (const double[4]){column0_px, row0_px, column1_px, row1_px});
     view_ray(middle, view, 0.5 * (column0_px + column1_px), 0.5 * (row0_px + row1_px));
     for (int c = 0; c < 4; c++) {
         double d[3];
-        view_ray(d, view, corner_px[c][0], corner_px[c][1]);
+        if (view_has_lens(view)) {
+            const double d_cam[3] = {tangent[c % 2 ? 2 : 0], tangent[c / 2 ? 3 : 1], 1};
+            m3_mul_v3(d, view->r_enu_from_cam, d_cam);
+            v3_scale(d, 1 / v3_length(d_cam), d);
+        } else {
+            view_ray(d, view, corner_px[c][0], corner_px[c][1]);
+        }
         cosine = fmin(cosine, v3_dot(middle, d));
     }
     const double sine = sqrt(fmax(1 - cosine * cosine, 0));

@@ -70,8 +70,8 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
  * with it: else it is not in the ray's way at all. True without SKIP_AMODAL. */
 bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
 
-/* Bounding box of an entity's vertices on the image, clipped to nothing: x0, y0, x1, y1 in px. False when any
- * of its box is behind the eye. */
+/* Bounding box of an entity on the image (of its vertices; through a lens, which bows them, of its edges), clipped to
+ * nothing: x0, y0, x1, y1 in px. False when any of its box is behind the eye. */
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index);
 
 #endif

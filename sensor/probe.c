@@ -1,8 +1,9 @@
 #include "sensor/probe.h"
 
-#include "sensor/detector/mtf.h"
+#include "sensor/detector/mrtd.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/photons.h"
+#include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
 
@@ -107,18 +108,83 @@ static const char *noise3d_row(void *state, const ProbeValue *in, ProbeValue *ou
     return NULL;
 }
 
+/* ---- mrtd ------------------------------------------------------------------------------------- */
+
+/* mrtd [SHEET]: of every row, in place of a preset of etc/sensors.csv. */
+static Status mrtd_open(void **state, int argc, char **argv)
+{
+    if (argc > 2) {
+        log_error("mrtd: usage: probe mrtd [SHEET]: a sensor's sheet (sensor.table) in place of the rows' presets");
+        return STATUS_BAD_VALUE;
+    }
+    if (argc < 2) return STATUS_OK;
+    SensorPreset *p = malloc(sizeof *p);
+    if (!p) return STATUS_NO_MEMORY;
+    const Status status = sheet_read(p, argv[1]);
+    if (status == STATUS_OK) *state = p;
+    else free(p);
+    return status;
+}
+
+static const char *mrtd_row(void *state, const ProbeValue *in, ProbeValue *out)
+{
+    char               path[4096];
+    SensorPreset       p;
+    Mrtd               mrtd;
+    const double       f = in[1].number, rate_hz = or_else(&in[2], 30), eye_s = or_else(&in[3], 0.2);
+    const MrtdObserver observer = {
+        .snr = or_else(&in[4], 2.5), .frames = rate_hz * eye_s, .temp_k = or_else(&in[5], 300)};
+    if (state) p = *(const SensorPreset *)state;
+    else if (!etc_path(path, sizeof path, "sensors.csv") || preset_read(&p, path, in[0].text) != STATUS_OK)
+        return "preset is no sensor of etc/sensors.csv";
+    if (p.band == BAND_OPTICAL) return "the sensor sees no warmth";
+    if (!(f > 0 && f <= 0.5)) return "f_cyc_px must be above 0 and at most 0.5";
+    if (!(rate_hz > 0 && rate_hz <= 1e5 && eye_s > 0 && eye_s <= 1e3))
+        return "frame_hz and eye_s must be in 0 .. 100000 and 0 .. 1000";
+    if (!(observer.snr > 0 && observer.temp_k >= 180 && observer.temp_k <= 1500))
+        return "snr must be above 0, temp_k in 180 .. 1500";
+    mrtd_predict(&mrtd, &p, f, &observer);
+    const double pixel_mrad = 1e3 / view_focal_px((int)p.width_px, p.hfov_deg * rad_per_deg);
+    out[0].number = f / pixel_mrad;
+    for (int axis = 0; axis < 2; axis++) {
+        out[1 + axis].number = mrtd.all_k[axis] < INFINITY ? mrtd.all_k[axis] : NAN;
+        out[3 + axis].number = mrtd.first_k[axis] < INFINITY ? mrtd.first_k[axis] : NAN;
+        out[5 + axis].number = mrtd.mtf[axis];
+    }
+    return NULL;
+}
+
 #define SIGMAS "sigma_tvh,sigma_tv?,sigma_th?,sigma_vh?,sigma_t?,sigma_v?,sigma_h?,seed?"
 
 const Probe sensor_probes[] = {
-    {.name = "mtf", .help = "modulation transfer of optics, a pixel's footprint, smear and jitter, along one axis",
+    {.name = "mtf",
+     .help = "modulation transfer of optics, a pixel's footprint, smear and jitter, along one axis",
      .in = "wavelength_um,f_number,obscuration?,pitch_um,smear_px?,jitter_px?,f_cyc_px",
-     .out = "mtf_optics,mtf_detector,mtf_smear,mtf_jitter,mtf", .row = mtf_row},
-    {.name = "netd", .help = "electrons from a black body and the noise equivalent temperature difference of their counting",
+     .out = "mtf_optics,mtf_detector,mtf_smear,mtf_jitter,mtf",
+     .row = mtf_row},
+    {.name = "netd",
+     .help = "electrons from a black body and the noise equivalent temperature difference of their counting",
      .in = "lo_um,hi_um,temp_k,f_number,transmission,qe,pitch_um,integration_ms,dark_e?,read_e?",
-     .out = "electrons,electrons_per_k,netd_mk", .row = netd_row},
-    {.name = "noise", .help = "three-dimensional noise (D'Agostino & Webb) at one place of one frame",
-     .in = "frame,row,column," SIGMAS, .out = "noise", .row = noise_row},
-    {.name = "noise3d", .help = "makes frames of three-dimensional noise and estimates what is in them, unbiased",
-     .in = "frames,rows,columns," SIGMAS, .out = "est_tvh,est_tv,est_th,est_vh,est_t,est_v,est_h", .row = noise3d_row},
+     .out = "electrons,electrons_per_k,netd_mk",
+     .row = netd_row},
+    {.name = "noise",
+     .help = "three-dimensional noise (D'Agostino & Webb) at one place of one frame",
+     .in = "frame,row,column," SIGMAS,
+     .out = "noise",
+     .row = noise_row},
+    {.name = "noise3d",
+     .help = "makes frames of three-dimensional noise and estimates what is in them, unbiased",
+     .in = "frames,rows,columns," SIGMAS,
+     .out = "est_tvh,est_tv,est_th,est_vh,est_t,est_v,est_h",
+     .row = noise3d_row},
+    {.name = "mrtd",
+     .help = "minimum resolvable temperature difference of four-bar targets (FLIR92's formulation), vertical and "
+             "horizontal bars; first: with their first harmonic alone",
+     .arguments = "[SHEET]",
+     .in = "preset$?,f_cyc_px,frame_hz?,eye_s?,snr?,temp_k?",
+     .out = "f_cyc_mrad,mrtd_v_bars_k,mrtd_h_bars_k,first_v_bars_k,first_h_bars_k,mtf_h,mtf_v",
+     .open = mrtd_open,
+     .row = mrtd_row,
+     .close = free},
 };
 const int sensor_probe_count = sizeof sensor_probes / sizeof *sensor_probes;

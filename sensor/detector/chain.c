@@ -60,9 +60,11 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
     if (p->prnu > 0) {
         c->gain = malloc(count * sizeof *c->gain);
         if (!c->gain) return STATUS_NO_MEMORY;
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; i < count; i++) {
+            const size_t detector = p->scan.by_columns ? i / (size_t)w : i; /* a row is one detector's */
             c->gain[i] = (float)fmax(0, 1 + p->noise_scale * p->prnu *
-                                            random_normal(chain->seed, 0x3c000000u + stream, 0, i));
+                                            random_normal(chain->seed, 0x3c000000u + stream, 0, detector));
+        }
     }
     if (p->bad_share > 0) {
         c->bad     = malloc(count);
@@ -78,10 +80,11 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed)
 {
     const size_t          count = (size_t)width * (size_t)height;
-    const PhotonDetector *d     = &preset->photons;
     Chain                *c     = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    c->preset   = *preset;
+    const PhotonDetector *d     = &c->preset.photons;
+    c->preset         = *preset;
+    c->preset.photons = preset_photons(preset);
     c->width    = width;
     c->height   = height;
     c->channels = preset->band == BAND_OPTICAL && preset->optical == OPTICAL_RGB ? 3 : 1;
@@ -98,7 +101,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
                           .jitter_px = preset->jitter_px};
     Status status = blur_create(&c->blur, width, height, &mtf);
     c->work       = calloc(count, sizeof *c->work);
-    c->line       = calloc((size_t)width + scan_taps, sizeof *c->line);
+    c->line       = calloc((size_t)(width > height ? width : height) + scan_taps, sizeof *c->line);
     c->columns    = calloc((size_t)width, sizeof *c->columns);
     if (!c->work || !c->line || !c->columns) status = STATUS_NO_MEMORY;
     if (preset->line_noise > 0 && status == STATUS_OK) {
@@ -208,7 +211,10 @@ static void run_channel(Chain *c, int index, const float *radiance, int frame, c
 
     for (size_t i = 0; i < count; i++) e[i] = (float)(c->exposure * photon_table_electrons(ch->photons, radiance[i]));
 
-    const double moving_px[2] = {p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0,
+    /* the sweep itself passes over a detector while a stage looks; the scene's own motion, which the stages do not
+     * follow, over all of them, that look side by side in time */
+    const double sweep_px = p->scan.by_columns ? c->exposure * d->integration_s / fmax(p->tdi, 1) / p->scan.line_s : 0;
+    const double moving_px[2] = {sweep_px + (p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0),
                                  p->smear ? rate_px_s[1] * c->exposure * d->integration_s : 0};
     blur_apply(c->blur, e, e, moving_px);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
@@ -239,9 +245,9 @@ static void run_channel(Chain *c, int index, const float *radiance, int frame, c
     } else {
         for (size_t i = 0; i < count; i++) e[i] = (float)(e[i] + dark_e);
     }
-    /* the path of the scan passes a column in line_s active / width; cut-off x that time */
+    /* the path of the scan passes a column in line_s active / width, or in line_s; cut-off x that time */
     const double active = p->scan.active > 0 ? p->scan.active : 1;
-    coupling_apply(e, w, h, &p->scan, p->ac_per_line * active / w);
+    coupling_apply(e, w, h, &p->scan, p->scan.by_columns ? p->ac_per_line : p->ac_per_line * active / w);
 
     quantise_counts(ch->count, e, count, c->step_e, c->full);
     if (ch->bad) {

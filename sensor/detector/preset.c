@@ -41,6 +41,14 @@ static const Column columns[] = {
     {"bad_share", FIELD(bad_share), 0, 0.2, 1},
     {"bad_clustered", FIELD(bad_clustered), 0, 1, 1},
     {"bad_patched", FIELD(bad_patched), 0, 1, 1},
+    {"tdi", FIELD(tdi), 1, 1000, 1},
+    {"k1", FIELD(lens[0]), -1e6, 1e6, 1},
+    {"k2", FIELD(lens[1]), -1e9, 1e9, 1},
+    {"k3", FIELD(lens[2]), -1e12, 1e12, 1},
+    {"p1", FIELD(lens[3]), -1e3, 1e3, 1},
+    {"p2", FIELD(lens[4]), -1e3, 1e3, 1},
+    {"lateral_r", FIELD(lateral[0]), -0.02, 0.02, 1},
+    {"lateral_b", FIELD(lateral[1]), -0.02, 0.02, 1},
 };
 enum { column_count = sizeof columns / sizeof columns[0] };
 
@@ -53,6 +61,16 @@ void preset_band(double *low_m, double *high_m, Band band, OpticalChannels optic
     if (band == BAND_OPTICAL && optical == OPTICAL_NIR) air = AIR_NIR;
     if (band == BAND_OPTICAL && optical == OPTICAL_RGB && channel >= 0) air = rgb[channel];
     air_band_edges(low_m, high_m, air);
+}
+
+PhotonDetector preset_photons(const SensorPreset *p)
+{
+    PhotonDetector d = p->photons;
+    const double   stages = p->tdi > 1 ? p->tdi : 1;
+    d.integration_s *= stages;
+    d.dark_e *= stages;
+    d.read_e *= sqrt(stages);
+    return d;
 }
 
 void preset_refresh(SensorPreset *p)
@@ -93,9 +111,11 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
         return bad_word(t, row, "exposure", text, "fixed, auto");
     p.auto_exposure = text[0] == 'a';
     text            = table_text(t, row, scan);
-    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0)
-        return bad_word(t, row, "scan", text, "stare, lines, both");
+    if (strcmp(text, "stare") != 0 && strcmp(text, "lines") != 0 && strcmp(text, "both") != 0 &&
+        strcmp(text, "columns") != 0)
+        return bad_word(t, row, "scan", text, "stare, lines, both, columns");
     p.scan.bidirectional = text[0] == 'b';
+    p.scan.by_columns    = text[0] == 'c';
 
     for (int i = 0; i < column_count; i++) {
         double    value;
@@ -106,10 +126,10 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
         value *= columns[i].unit;
         memcpy((char *)&p + columns[i].offset, &value, sizeof value);
     }
-    if (floor(p.bits) != p.bits || floor(p.width_px) != p.width_px || floor(p.height_px) != p.height_px) {
-        log_error("sensors: %s:%d: bits=%g, width_px=%g and height_px=%g must be whole numbers", t->path,
-                  t->line[row + 1],
-                  p.bits, p.width_px, p.height_px);
+    if (floor(p.bits) != p.bits || floor(p.width_px) != p.width_px || floor(p.height_px) != p.height_px ||
+        floor(p.tdi) != p.tdi) {
+        log_error("sensors: %s:%d: bits=%g, width_px=%g, height_px=%g and tdi=%g must be whole numbers", t->path,
+                  t->line[row + 1], p.bits, p.width_px, p.height_px, p.tdi);
         return STATUS_BAD_VALUE;
     }
     preset_refresh(&p);

@@ -12,7 +12,9 @@ typedef struct SensorPreset {
     Band           band;               /* optical, mwir or lwir */
     OpticalChannels optical;           /* what it sees of the optical band */
     double         width_px, height_px, hfov_deg;
-    PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s */
+    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/lens.h); R and B over G, less 1 */
+    PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
+    double         tdi;                /* stages whose electrons are added; 0 or 1: none are */
     double         obscuration, footprint, jitter_px;
     bool           auto_exposure;
     double         dark_e_s;
@@ -29,6 +31,9 @@ typedef struct SensorPreset {
 /* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there
  * is. */
 Status preset_read(SensorPreset *out, const char *path, const char *name);
+/* What the converter gets: tdi stages look one after another at the same place, so that light and dark current add
+ * up, and the noise of their reading as squares: NEdT is the root of their number better. */
+PhotonDetector preset_photons(const SensorPreset *preset);
 /* After fields were changed by hand. */
 void   preset_refresh(SensorPreset *preset);
 /* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */

@@ -2,6 +2,8 @@
 
 double scan_time_s(const Scan *scan, int width, int height, double column_px, int row)
 {
+    if (scan->by_columns)
+        return scan->line_s * (column_px - 0.5 * width + scan->active * ((row + 0.5) / height - 0.5));
     double along = column_px / width - 0.5;
     if (scan->bidirectional && row % 2) along = -along;
     return scan->line_s * (row + 0.5 - 0.5 * height + scan->active * along);
@@ -59,16 +61,46 @@ static int split(int *phase, double shift)
     return (int)whole;
 }
 
+enum { before = scan_taps / 2 - 1 };
+
+/* Columns at their own times: along the rows at the time of the column's middle, then down it at each pixel's own. */
+static void resample_columns(float *out, const float *in, int width, int height, const Scan *scan,
+                             const double rate_px_s[2], float *line, const Taps *taps)
+{
+    const size_t w = (size_t)width;
+    for (int c = 0; c < width; c++) {
+        int       phase;
+        const int first = c + split(&phase, rate_px_s[0] * (scan->line_s * (c + 0.5 - 0.5 * width))) - before;
+        memset(line, 0, (size_t)height * sizeof *line);
+        for (int k = 0; k < scan_taps; k++) {
+            const float *from = in + mirrored(first + k, width), weight = taps->weight[phase][k];
+            if (weight != 0)
+                for (int r = 0; r < height; r++) line[r] += weight * from[(size_t)r * w];
+        }
+        for (int r = 0; r < height; r++) {
+            const int top = r + split(&phase, rate_px_s[1] * scan_time_s(scan, width, height, c + 0.5, r)) - before;
+            float     sum = 0;
+            for (int k = 0; k < scan_taps; k++)
+                sum += taps->weight[phase][k] *
+                       line[top >= 0 && top + scan_taps <= height ? top + k : mirrored(top + k, height)];
+            out[(size_t)r * w + (size_t)c] = sum > 0 ? sum : 0;
+        }
+    }
+}
+
 void scan_resample(float *out, const float *in, int width, int height, const Scan *scan, const double rate_px_s[2],
                    float *line)
 {
-    enum { before = scan_taps / 2 - 1 };
     Taps taps;
     if (scan->line_s == 0 || (rate_px_s[0] == 0 && rate_px_s[1] == 0)) {
         memcpy(out, in, (size_t)width * (size_t)height * sizeof *out);
         return;
     }
     make_taps(&taps);
+    if (scan->by_columns) {
+        resample_columns(out, in, width, height, scan, rate_px_s, line, &taps);
+        return;
+    }
     for (int r = 0; r < height; r++) {
         /* down the columns at the time of the line's middle, then along the line at each pixel's own */
         int       phase;
@@ -104,7 +136,7 @@ void scan_line_noise(float *out, int width, int height, const Scan *scan, double
             const size_t path   = (size_t)r * (size_t)width + (size_t)k;
             const int    column = scan->bidirectional && r % 2 ? width - 1 - k : k;
             const double normal = random_normal(seed, 0x3e000000u + stream, (uint32_t)index, path);
-            value = path == 0 ? normal : rho * value + fresh * normal;
+            value = path == 0 || (scan->by_columns && k == 0) ? normal : rho * value + fresh * normal;
             out[(size_t)r * (size_t)width + (size_t)column] = (float)value;
         }
 }

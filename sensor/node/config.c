@@ -29,6 +29,17 @@ static const Setting keys[] = {
      "time constant of the tracking loop"},
     {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
      "none, or sensors of etc/sensors.csv, one a band: staring_lwir,staring_mwir,tv"},
+    {"sensor.table", SETTING_TEXT, AT(sensor.table), 0, 0, NULL, "",
+     "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), before those of sensor.preset"},
+    {"sensor.lens_k1", SETTING_DOUBLE, AT(sensor.lens_k1), -1e6, 1e6, NULL, "",
+     "distortion of all bands, as OpenCV has it, tangents off the axis; in place of the first preset's"},
+    {"sensor.lens_k2", SETTING_DOUBLE, AT(sensor.lens_k2), -1e9, 1e9, NULL, "", "its fourth order"},
+    {"sensor.lens_k3", SETTING_DOUBLE, AT(sensor.lens_k3), -1e12, 1e12, NULL, "", "its sixth order"},
+    {"sensor.lens_p1", SETTING_DOUBLE, AT(sensor.lens_p1), -1e3, 1e3, NULL, "", "of a lens off centre"},
+    {"sensor.lens_p2", SETTING_DOUBLE, AT(sensor.lens_p2), -1e3, 1e3, NULL, "", "of a lens off centre, columns"},
+    {"sensor.lateral_r", SETTING_DOUBLE, AT(sensor.lateral_r), -0.02, 0.02, NULL, "",
+     "lateral colour of rgb: magnification of R over G, less 1; three pictures are traced"},
+    {"sensor.lateral_b", SETTING_DOUBLE, AT(sensor.lateral_b), -0.02, 0.02, NULL, "", "the same of B"},
     {"detector.bits", SETTING_INT, AT(detector.bits), 8, 16, NULL, "", "8 or 16, of the PNG pictures"},
     {"detector.level", SETTING_TEXT, AT(detector.level), 0, 0, "auto|manual", "",
      "gain and level from the picture, or as set"},
@@ -188,6 +199,8 @@ Config config_default(void)
     c.detector.lwir_high_k          = 330;
     c.detector.optical_high_w_m2_sr = 40;
     strcpy(c.sensor.preset, "none");
+    c.sensor.lens_k1 = c.sensor.lens_k2 = c.sensor.lens_k3 = c.sensor.lens_p1 = c.sensor.lens_p2 = NAN;
+    c.sensor.lateral_r = c.sensor.lateral_b = NAN;
     c.detector.noise                = 1;
     c.detector.f_number = c.detector.obscuration = c.detector.integration_ms = c.detector.jitter_px = NAN;
     c.detector.bad_share = c.detector.ac_per_line = c.detector.line_noise = NAN;
@@ -281,8 +294,10 @@ Status config_check(const Config *config)
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
                                             "detector.line_noise", "detector.smear", "detector.raw"};
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
-        if (strcmp(config->sensor.preset, "none") == 0 && config_given(config, of_preset[i])) {
-            log_error("config: %s: needs a sensor to change; choose one with sensor.preset", of_preset[i]);
+        if (strcmp(config->sensor.preset, "none") == 0 && !*config->sensor.table &&
+            config_given(config, of_preset[i])) {
+            log_error("config: %s: needs a sensor to change; choose one with sensor.preset or sensor.table",
+                      of_preset[i]);
             return STATUS_BAD_VALUE;
         }
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&

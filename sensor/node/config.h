@@ -22,6 +22,10 @@ typedef struct Config {
         int    sky_samples;        /* directions a hit; 0: the quick form */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
+        char   table[1024];        /* a sensor's sheet (sensor/detector/sheet.h); empty: none */
+        double lens_k1, lens_k2, lens_k3, lens_p1,
+            lens_p2; /* of the picture (render/lens.h); NaN: as the preset says */
+        double lateral_r, lateral_b;
     } sensor;
     struct {
         int    bits;

@@ -69,7 +69,9 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
 {
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
-                               .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
+                               .optical = config_optical(config),
+                               .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
+                               .sky_samples = config->sensor.sky_samples,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};

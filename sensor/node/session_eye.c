@@ -110,6 +110,7 @@ static void finish_eye(Eye *eye, const Session *s)
     eye->view.width          = config->sensor.width_px;
     eye->view.height         = config->sensor.height_px;
     eye->view.focal_px       = view_focal_px(config->sensor.width_px, config->sensor.hfov_deg * rad_per_deg);
+    eye->view.lens           = s->shared->sensors->lens;
     enu_from_ecef(eye->view.p_enu, frame, eye->state.p_ecef);
     m3_mul(eye->state.r_ecef_from_cam, frame->r_ecef_from_enu, eye->view.r_enu_from_cam);
 }

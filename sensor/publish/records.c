@@ -75,6 +75,13 @@ static json_t *sensor_json(const FrameRecord *r)
     json_object_set_new(sensor, "height_px", json_integer(view->height));
     set_number(sensor, "hfov_deg", r->hfov_rad / rad_per_deg);
     set_number(sensor, "vfov_deg", 2 * atan(0.5 * view->height / view->focal_px) / rad_per_deg);
+    if (view_has_lens(view)) {
+        const Lens  *l = &view->lens;
+        const double opencv[5] = {l->k[0], l->k[1], l->p[0], l->p[1], l->k[2]};
+        json_object_set_new(sensor, "distortion", numbers(opencv, 5));
+    }
+    if (r->request->lateral[0] != 0 || r->request->lateral[1] != 0)
+        json_object_set_new(sensor, "lateral_colour", numbers(r->request->lateral, 2));
     json_object_set_new(sensor, "ecef_from_cam", numbers(r->r_ecef_from_cam, 9));
     json_object_set_new(sensor, "gimbal_at_limit", json_boolean(r->gimbal_at_limit));
     return sensor;

@@ -1,4 +1,5 @@
-/* tests/fuzz/fuzz_table.c: any octets as a table of CSV, and as every table of etc/ itself whose columns it has.
+/* tests/fuzz/fuzz_table.c: any octets as a table of CSV, as every table of etc/ itself whose columns it has, and as a
+ * sensor's sheet.
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
@@ -6,7 +7,7 @@
 #include "entities/effects.h"
 #include "entities/heat.h"
 #include "render/materials.h"
-#include "sensor/detector/preset.h"
+#include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
 
@@ -16,7 +17,7 @@ const int fuzz_rounds = 1500;
 size_t fuzz_seed(uint8_t *out, uint32_t index)
 {
     static const char *const name[] = {"catalog.csv",  "heat.csv",     "effects.csv",
-                                       "materials.csv", "surfaces.csv", "sensors.csv"};
+                                       "materials.csv", "surfaces.csv", "sensors.csv", "sensors/example_flir2.sheet"};
     enum { names = sizeof name / sizeof *name };
     char path[1024];
     switch (index % (names + 1)) {
@@ -60,6 +61,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int file = fuzz_file(path, data, size);
     if (file < 0) return 0;
 
+    SensorPreset sheet;
+    if (sheet_read(&sheet, path) == STATUS_OK) {
+        /* what the detector's chain builds on */
+        if (!(sheet.width_px >= 8 && sheet.width_px <= 8192 && sheet.height_px >= 8 && sheet.height_px <= 8192))
+            abort();
+        if (!(sheet.photons.read_e >= 0 && isfinite(sheet.photons.read_e) && sheet.photons.well_e >= 100)) abort();
+        if (!(sheet.hfov_deg > 0 && sheet.hfov_deg < 180 && sheet.bits >= 8 && sheet.bits <= 16)) abort();
+    }
     Table table;
     if (table_open(&table, path) == STATUS_OK) {
         walk(&table);

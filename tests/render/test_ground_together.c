@@ -157,6 +157,12 @@ static void random_view(View *view, const Elevation *e)
     }
     view->focal_px = view_focal_px(view->width, exp(uniform(log(0.01), log(120))) * rad_per_deg);
     turn(view->r_enu_from_cam, yaw_rad, pitch_rad, pick_of(3) ? roll_rad : 0);
+    view->lens = (Lens){0};
+    if (pick_of(16) == 0) { /* whose columns and rows are no planes */
+        const double half[2] = {0.5 * view->width / view->focal_px, 0.5 * view->height / view->focal_px}, p[2] = {0, 0};
+        const double r2 = half[0] * half[0] + half[1] * half[1], k[3] = {uniform(-0.1, 0.2) / r2, 0.02 / (r2 * r2), 0};
+        assert_int_equal(lens_make(&view->lens, k, p, half), STATUS_OK);
+    }
 }
 
 /* A tile of the view, or pixels here and there. */

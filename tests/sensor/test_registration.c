@@ -6,7 +6,10 @@
  * angles to ECEF, ECEF to the camera, camera to the image. Then every pixel whose centre lies in that
  * quadrilateral by more than 0.05 px must show the plate, in each band by that band's own values, and none
  * that lies outside by more than 0.05 px may. (The edges cross some thousand pixels at all phases, so a shift
- * of more than that does not pass: the twin below moves the quadrilateral by 0.15 px and must fail.) */
+ * of more than that does not pass: the twin below moves the quadrilateral by 0.15 px and must fail.)
+ *
+ * With a lens that distorts, and colours that are magnified differently, each pixel is first taken back to where a
+ * pinhole would have it, by formulas and a Newton's method of this file's own. */
 #include "tests/check.h"
 
 #include "entities/entity_table.h"
@@ -65,6 +68,47 @@ static void cross(Real out[3], const Real a[3], const Real b[3])
 typedef struct Camera {
     Real p[3], right[3], down[3], ahead[3], focal_px;
 } Camera;
+
+/* Distortion k1 k2 k3 p1 p2 in units of half a picture, and how much larger this colour's image is. */
+typedef struct Glass {
+    double k1, k2, k3, p1, p2, larger;
+} Glass;
+
+/* By OpenCV's documentation. */
+static void bend(Real out[2], const Glass *g, Real x, Real y)
+{
+    const Real r2 = x * x + y * y, radial = 1 + g->k1 * r2 + g->k2 * r2 * r2 + g->k3 * r2 * r2 * r2;
+    out[0] = x * radial + 2 * g->p1 * x * y + g->p2 * (r2 + 2 * x * x);
+    out[1] = y * radial + g->p1 * (r2 + 2 * y * y) + 2 * g->p2 * x * y;
+}
+
+/* Where a pinhole has what the lens shows at each pixel's centre. */
+static Real pinhole_px[picture_side][picture_side][2];
+static int  undone; /* how often it was made */
+
+static void undo(const Glass *g)
+{
+    const Real half = picture_side / 2, step = 1e-7L;
+    undone++;
+    for (int y = 0; y < picture_side; y++)
+        for (int x = 0; x < picture_side; x++) {
+            const Real to[2] = {(x + 0.5L - half) / half / (1 + g->larger), (y + 0.5L - half) / half / (1 + g->larger)};
+            Real       at[2] = {to[0], to[1]}, f[2], fx[2], fy[2];
+            for (int n = 0; n < 20; n++) {
+                bend(f, g, at[0], at[1]);
+                if (fabsl(f[0] - to[0]) + fabsl(f[1] - to[1]) < 1e-13L) break;
+                bend(fx, g, at[0] + step, at[1]);
+                bend(fy, g, at[0], at[1] + step);
+                const Real a = (fx[0] - f[0]) / step, b = (fy[0] - f[0]) / step, c = (fx[1] - f[1]) / step,
+                           d = (fy[1] - f[1]) / step, u = to[0] - f[0], v = to[1] - f[1];
+                at[0] += (d * u - b * v) / (a * d - b * c);
+                at[1] += (a * v - c * u) / (a * d - b * c);
+            }
+            bend(f, g, at[0], at[1]);
+            CHECK(fabsl(f[0] - to[0]) + fabsl(f[1] - to[1]) < 1e-12L);
+            for (int k = 0; k < 2; k++) pinhole_px[y][x][k] = half + half * at[k];
+        }
+}
 
 static void project(Real px[2], const Camera *c, const Real p[3])
 {
@@ -140,35 +184,55 @@ static void hear(Snapshot *snapshot, EntityTable **table, const DisEntityState *
     assert_int_equal(snapshot->count, 1);
 }
 
+/* Of every pixel's centre; the same for all bands of a shot. */
+static Real inside_of[picture_side][picture_side];
+
+static void measure(const Real quad[4][2])
+{
+    static Real of_quad[4][2];
+    static int  of_undone = -1;
+    bool        same = of_undone == undone;
+    for (int i = 0; i < 4; i++)
+        for (int k = 0; k < 2; k++) same = same && of_quad[i][k] == quad[i][k], of_quad[i][k] = quad[i][k];
+    of_undone = undone;
+    for (int y = 0; y < picture_side && !same; y++)
+        for (int x = 0; x < picture_side; x++)
+            inside_of[y][x] = inside_px(quad, pinhole_px[y][x][0], pinhole_px[y][x][1]);
+}
+
 /* Pixels on the wrong side of the quadrilateral in one plane. What the plate looks like is learnt from the
  * pixels deep inside it, what the block looks like from its pixels far outside; the plate's edges meet the
- * block alone, so the sky, which may look like either, is left out. */
+ * block alone, so the sky, which may look like either, is left out. shrinks: a distance on the image is at most so many
+ * times that of the pinhole's, so that nothing beyond 0.05 px is excused. */
+static Real shrinks = 1;
 static int misplaced(const float *plane, const uint32_t *entity, const Real quad[4][2], const char *band)
 {
+    measure(quad);
     float plate_low = INFINITY, plate_high = -INFINITY, low_gap = INFINITY;
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++)
-            if (inside_px(quad, x + 0.5L, y + 0.5L) > 2) {
+            if (inside_of[y][x] > 2) {
                 plate_low  = fminf(plate_low, plane[y * picture_side + x]);
                 plate_high = fmaxf(plate_high, plane[y * picture_side + x]);
             }
     if (!(plate_low <= plate_high)) fail_msg("%s: the plate is not in the picture", band);
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++)
-            if (entity[y * picture_side + x] && inside_px(quad, x + 0.5L, y + 0.5L) < -2) {
+            if (entity[y * picture_side + x] && inside_of[y][x] < -2) {
                 const float v = plane[y * picture_side + x];
                 low_gap       = fminf(low_gap, v < plate_low ? plate_low - v : v > plate_high ? v - plate_high : -1);
             }
     if (!(low_gap > 0)) fail_msg("%s: something else looks like the plate (%g .. %g)", band, plate_low, plate_high);
 
-    int wrong = 0;
+    int        wrong = 0;
+    const Real clear = clear_px / shrinks;
     for (int y = 0; y < picture_side; y++)
         for (int x = 0; x < picture_side; x++) {
-            const Real  in_px = inside_px(quad, x + 0.5L, y + 0.5L);
+            const Real  in_px = inside_of[y][x];
             const float v     = plane[y * picture_side + x];
             const bool  shows = v > plate_low - 0.5f * low_gap && v < plate_high + 0.5f * low_gap;
             if (!entity[y * picture_side + x]) continue;
-            wrong += (in_px > clear_px && !shows) || (in_px < -clear_px && shows);
+            wrong += (in_px > clear && !shows) || (in_px < -clear && shows);
         }
     return wrong;
 }
@@ -176,10 +240,15 @@ static int misplaced(const float *plane, const uint32_t *entity, const Real quad
 typedef struct Shot {
     Picture picture;
     Real    quad[4][2], nose_px[2], centre_px[2];
+    Real    box[4]; /* of all edges, through the lens */
+    TargetPixels target;
 } Shot;
 
-/* side +1: seen from the entity's right; -1: from its left. */
-static void shoot(Shot *shot, int where, int how, int side, double range_m)
+static const Glass none;
+
+/* side +1: seen from the entity's right; -1: from its left. lateral: NULL, or of R and B, for a picture in colours. */
+static void shoot_through(Shot *shot, const Glass *glass, const double *lateral, int where, int how, int side,
+                          double range_m)
 {
     Real p[3], east[3], north[3], up[3], x[3], y[3], z[3];
     ecef_of(p, east, north, up, place[where].lat_deg, place[where].lon_deg, place[where].h_m);
@@ -212,6 +281,22 @@ static void shoot(Shot *shot, int where, int how, int side, double range_m)
         for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + corner[i][0] * x[k] + corner[i][1] * y[k] + corner[i][2] * z[k];
         project(shot->quad[i], &c, at);
     }
+    shot->box[0] = shot->box[1] = 1e30L, shot->box[2] = shot->box[3] = -1e30L;
+    /* the block's twelve edges, which the lens bows: 1000 places on each */
+    for (int i = 0; i < 12000; i++) {
+        const int  axis = i / 4000, sides = i / 1000 % 4;
+        const Real half = picture_side / 2, along = (i % 1000) / 999.0L, low[3] = {-2, -1, -1.5L}, high[3] = {2, 1, 0};
+        Real       px[2], bent[2], b[3];
+        for (int k = 0, n = 0; k < 3; k++)
+            b[k] = k == axis ? low[k] + along * (high[k] - low[k]) : sides >> n++ & 1 ? high[k] : low[k];
+        for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + b[0] * x[k] + b[1] * y[k] + b[2] * z[k];
+        project(px, &c, at);
+        bend(bent, glass, (px[0] - half) / half, (px[1] - half) / half);
+        for (int k = 0; k < 2; k++) {
+            shot->box[k]     = fminl(shot->box[k], half + half * bent[k]);
+            shot->box[k + 2] = fmaxl(shot->box[k + 2], half + half * bent[k]);
+        }
+    }
     for (int k = 0; k < 3; k++) at[k] = (Real)pdu.p_ecef[k] + 2 * x[k] - 0.75L * z[k];
     project(shot->nose_px, &c, at);
     project(shot->centre_px, &c, centre);
@@ -227,6 +312,12 @@ static void shoot(Shot *shot, int where, int how, int side, double range_m)
 
     RenderRequest request = {.view = {.width = picture_side, .height = picture_side, .focal_px = (double)c.focal_px},
                              .bands = 15, .truth = true, .samples = 1, .hidden_entity = -1};
+    const double half = 0.5 * picture_side / (double)c.focal_px, h2 = half * half;
+    const double k123[3] = {glass->k1 / h2, glass->k2 / (h2 * h2), glass->k3 / (h2 * h2 * h2)};
+    const double p12[2] = {glass->p1 / half, glass->p2 / half}, halves[2] = {half, half};
+    assert_int_equal(lens_make(&request.view.lens, k123, p12, halves), STATUS_OK);
+    undo(glass);
+    if (lateral) request.optical = OPTICAL_RGB, memcpy(request.lateral, lateral, sizeof request.lateral);
     double eye_ecef[3], r_ecef_from_cam[9];
     for (int k = 0; k < 3; k++) {
         eye_ecef[k]                = (double)c.p[k];
@@ -247,7 +338,72 @@ static void shoot(Shot *shot, int where, int how, int side, double range_m)
     air_even(&air, sun.d_enu, 150, sky, 0, fixture.world.planck_mwir, fixture.world.planck_lwir);
     air.sun_w_m2[AIR_MWIR] = 8;
     assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena), STATUS_OK);
+    shot->target = shot->picture.target[0];
     entity_table_destroy(table);
+}
+
+static void shoot(Shot *shot, int where, int how, int side, double range_m)
+{
+    shoot_through(shot, &none, NULL, where, how, side, range_m);
+}
+
+/* What a wide zoom does at its worst, both ways, and a lens off its centre. At the corners, r2 = 2: -9 %, +8 %. */
+static const Glass distorted[] = {{-0.05, 0.002, 0.0005, 0.008, -0.012, 0}, {0.03, 0.004, -0.0005, -0.01, 0.006, 0}};
+
+static void a_lens_moves_the_plate_by_its_formula(void **state)
+{
+    (void)state;
+    static const double range_m[places] = {40, 900, 15, 4000, 120};
+    shrinks = 1.3L;
+    for (int w = 0; w < places; w++)
+        for (int a = w % 2; a < attitudes; a += 2) {
+            Shot shot;
+            shoot_through(&shot, &distorted[a / 2 % 2], NULL, w, a, 1, range_m[w]);
+            const float *plane[BAND_COUNT] = {shot.picture.optical[0], shot.picture.mwir, shot.picture.lwir,
+                                              shot.picture.radar};
+            for (int b = 0; b < BAND_COUNT; b++) {
+                char name[64];
+                snprintf(name, sizeof name, "%s, place %d, attitude %d", band_name((Band)b), w, a);
+                const int wrong = misplaced(plane[b], shot.picture.entity, shot.quad, name);
+                if (wrong != 0) fail_msg("%s: %d pixels on the wrong side", name, wrong);
+            }
+            /* its box, and the mask within it (where the picture ends, the mask does) */
+            const TargetPixels *t = &shot.target;
+            for (int k = 0; k < 4; k++) CHECK_NEAR(t->projected_box[k], (double)shot.box[k], 0.05);
+            for (int k = 0; k < 2; k++)
+                CHECK(t->box[k] + 0.5 > (double)shot.box[k] - 0.05 &&
+                      t->box[k + 2] - 0.5 < (double)shot.box[k + 2] + 0.05);
+        }
+    /* and it is no pinhole: with the formula left out the same pictures fail */
+    Shot shot;
+    shoot_through(&shot, &distorted[0], NULL, 0, 1, 1, 40);
+    undo(&none);
+    CHECK(misplaced(shot.picture.lwir, shot.picture.entity, shot.quad, "lwir") > 100);
+    shrinks = 1;
+}
+
+/* Each colour by its own magnification: 0.004 is 0.8 px at the side. */
+static void colours_part_as_they_are_told_to(void **state)
+{
+    (void)state;
+    static const double lateral[2] = {0.004, -0.003}, range_m[places] = {40, 900, 15, 4000, 120};
+    shrinks = 1.3L;
+    for (int w = 0; w < places; w++) {
+        Shot shot;
+        shoot_through(&shot, &distorted[w % 2], lateral, w, (w + 1) % attitudes, 1, range_m[w]);
+        for (int c = 0; c < 3; c++) {
+            Glass glass = distorted[w % 2];
+            char  name[64];
+            glass.larger = c == 0 ? lateral[0] : c == 2 ? lateral[1] : 0;
+            undo(&glass);
+            snprintf(name, sizeof name, "channel %d, place %d", c, w);
+            const int wrong = misplaced(shot.picture.optical[c], shot.picture.entity, shot.quad, name);
+            if (wrong != 0) fail_msg("%s: %d pixels on the wrong side", name, wrong);
+            undo(&distorted[w % 2]);
+            if (c != 1) CHECK(misplaced(shot.picture.optical[c], shot.picture.entity, shot.quad, name) > 0);
+        }
+    }
+    shrinks = 1;
 }
 
 static void the_plate_is_where_it_should_be_in_every_band(void **state)
@@ -323,6 +479,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_plate_is_where_it_should_be_in_every_band),
+        cmocka_unit_test(a_lens_moves_the_plate_by_its_formula),
+        cmocka_unit_test(colours_part_as_they_are_told_to),
         cmocka_unit_test(from_the_left_no_plate_is_seen),
         cmocka_unit_test(a_shift_a_mirror_and_a_roll_are_caught),
     };

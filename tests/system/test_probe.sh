@@ -66,4 +66,13 @@ near "FVW x" "$(cell 3 dr_x_m)" 6378185 1e-8
 near "FPB goes where it points" "$(cell 4 dr_y_m)" 30 1e-8
 check "there is no algorithm 10" test -n "$(cell 5 error)"
 
+# four-bar targets: the example's row noise hides horizontal bars, and f is told by the field of view (250 urad a pixel)
+probe mrtd etc/sensors/example_flir2.sheet < <(printf 'f_cyc_px\n0.1\n0.3\n')
+near "mrtd: cycles a milliradian" "$(cell 1 f_cyc_mrad)" 0.4 0.001
+check "mrtd grows with frequency" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cell 2 mrtd_v_bars_k)" 'BEGIN { exit !(a > 0 && b > 2 * a) }'
+check "row noise hides horizontal bars" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cell 1 mrtd_h_bars_k)" 'BEGIN { exit !(b > 2 * a) }'
+probe mrtd < <(printf 'preset,f_cyc_px\nhubble,0.1\ntv,0.1\n')
+check "mrtd: an unknown sensor is named in its row" grep -q 'preset is no sensor' "$tmp/stdout"
+check "mrtd: a camera of daylight sees no warmth" grep -q 'sees no warmth' "$tmp/stdout"
+
 finish

@@ -58,4 +58,27 @@ slip "key of no sensor" "detector.f_number: needs a sensor" --set detector.f_num
 slip "noise beside a sensor's" "detector.netd_lwir_k: the noise of lwir is that of its sensor, staring_lwir" --set sensor.preset=staring_lwir --set detector.netd_lwir_k=0.1
 slip "empty list" "names no sensor" --set sensor.preset=,
 slip "out of range" "detector.bad_share: '0.9' is not a number in 0 .. 0.2" --set sensor.preset=tv --set detector.bad_share=0.9
+slip "a lens that folds" "folds within a picture" --set sensor.hfov_deg=20 --set sensor.lens_k1=-60
+slip "a lens out of range" "sensor.lateral_r: '0.5' is not a number in -0.02 .. 0.02" --set sensor.lateral_r=0.5
+slip "no such sheet" "cannot open $tmp/none.sheet" --set sensor.table="$tmp/none.sheet"
+sed 's/^f_number .*/f_number 0/' etc/sensors/example_flir2.sheet >"$tmp/bad.sheet"
+slip "a sheet's slip" "bad.sheet:[0-9]*: f_number: '0' is not a number in 0.5 .. 100" --set sensor.table="$tmp/bad.sheet"
+slip "a sheet beside a preset of its band" "example_flir2 and staring_lwir are both for lwir" --set sensor.table=etc/sensors/example_flir2.sheet --set sensor.preset=staring_lwir
+
+# a lens: truth says which, boxes follow it, any number of threads gives the same; and a sheet is a sensor
+lens=(--set sensor.lens_k1=-6 --set sensor.lens_k2=60 --set sensor.lateral_r=0.01 --set sensor.lateral_b=-0.01 --set sensor.hfov_deg=20)
+run replay "$tmp/demo.pcap" --out "$tmp/lens" "${small[@]}" --threads 2 "${lens[@]}"
+check "a lens: replay ends well" [ $code -eq 0 ]
+check "the lens is said" said 'lens: k1=-6 k2=60 .*sensor.lens_k1'
+check "and in truth" grep -q '"distortion":\[-6.0,60.0,0.0,0.0,0.0\]' "$tmp/lens/truth.jsonl"
+run replay "$tmp/demo.pcap" --out "$tmp/lens1" "${small[@]}" --threads 1 "${lens[@]}"
+check "a lens: one thread or two" same_hashes "$tmp/lens" "$tmp/lens1"
+run replay "$tmp/demo.pcap" --out "$tmp/plain" "${small[@]}" --threads 2 --set sensor.hfov_deg=20 --no-skip
+run replay "$tmp/demo.pcap" --out "$tmp/lens2" "${small[@]}" --threads 2 "${lens[@]}" --no-skip
+check "a lens: with nothing skipped" same_hashes "$tmp/lens" "$tmp/lens2"
+check "a lens is no pinhole" test "$(sha256sum <"$tmp/lens/truth.jsonl")" != "$(sha256sum <"$tmp/plain/truth.jsonl")"
+run replay "$tmp/demo.pcap" --out "$tmp/sheet" --rate 0.2 --size 96x64 --bands lwir --set sensor.table=etc/sensors/example_flir2.sheet
+check "a sheet: replay ends well" [ $code -eq 0 ]
+check "a sheet is a sensor" said 'lwir: example_flir2, .*NEdT 50 mK.*sensor.table'
+check "of raw counts" [ -e "$tmp/sheet/raw/lwir" ]
 finish
