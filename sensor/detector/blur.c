@@ -4,8 +4,10 @@
 #include <pthread.h>
 #include <stdlib.h>
 
-/* FFTW's planner is not safe for threads; executing is. */
 static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+
+void blur_planner_lock(void) { pthread_mutex_lock(&planner); }
+void blur_planner_unlock(void) { pthread_mutex_unlock(&planner); }
 
 struct Blur {
     int       width, height;
@@ -23,11 +25,11 @@ static const unsigned plan_flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
  * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside
  * an exhaust is stripes all over the vehicle. Bent, the point spread of a chain with optics is positive but for a
  * hair, as a real one is. */
-static double bent(double f)
+double blur_bent(double f_cyc_px)
 {
     static const double from = 0.4, width = 0.1;
-    const double u = (f - from) / width;
-    return u <= 0 ? f : from + width * u * (1 - u * u * (1 - 0.5 * u));
+    const double f = fabs(f_cyc_px), u = (f - from) / width;
+    return u <= 0 ? f_cyc_px : copysign(from + width * u * (1 - u * u * (1 - 0.5 * u)), f_cyc_px);
 }
 
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
@@ -57,7 +59,7 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++)
             b->pass[(size_t)r * (size_t)width + (size_t)c] =
-                mtf_chain(&still, bent(0.5 * c / width), bent(0.5 * r / height)) / (4.0 * (double)count);
+                mtf_chain(&still, blur_bent(0.5 * c / width), blur_bent(0.5 * r / height)) / (4.0 * (double)count);
     *out = b;
     return STATUS_OK;
 }
@@ -83,9 +85,9 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
 {
     const int w = b->width, h = b->height;
     if (oblique) memset(b->odd, 0, (size_t)w * (size_t)h * sizeof *b->odd);
-    for (int c = 0; c < w; c++) b->along[c] = smear_px[0] * bent(0.5 * c / w);
+    for (int c = 0; c < w; c++) b->along[c] = smear_px[0] * blur_bent(0.5 * c / w);
     for (int r = 0; r < h; r++) {
-        const double down = smear_px[1] * bent(0.5 * r / h);
+        const double down = smear_px[1] * blur_bent(0.5 * r / h);
         for (int c = 0; c < w; c++) {
             const size_t at = (size_t)r * (size_t)w + (size_t)c;
             const double along = b->along[c];
@@ -98,6 +100,11 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
 
 void blur_apply(Blur *b, float *out, const float *in, const double smear_px[2])
 {
+    blur_apply_with(b, out, in, smear_px, NULL);
+}
+
+void blur_apply_with(Blur *b, float *out, const float *in, const double smear_px[2], const double *more)
+{
     const size_t count   = (size_t)b->width * (size_t)b->height;
     const bool   oblique = smear_px[0] != 0 && smear_px[1] != 0;
     for (size_t i = 0; i < count; i++) b->value[i] = isfinite(in[i]) ? in[i] : 0;
@@ -109,6 +116,7 @@ void blur_apply(Blur *b, float *out, const float *in, const double smear_px[2])
         fftw_execute(b->back_odd);
         for (size_t i = 0; i < count; i++) b->value[i] += b->odd[i];
     }
+    for (size_t i = 0; more && i < count; i++) b->value[i] += more[i];
     for (size_t i = 0; i < count; i++)
         out[i] = isfinite(in[i]) ? (float)(b->value[i] > 0 ? b->value[i] : 0) : in[i];
 }

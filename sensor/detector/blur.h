@@ -19,8 +19,15 @@ typedef struct Blur Blur;
 
 /* chain's smear is left out here: it changes by frame. STATUS_NO_MEMORY. One user at a time. */
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
+/* The frequency at which the chain is read for frequency f of a row or column, -0.5 .. 0.5. */
+double blur_bent(double f_cyc_px);
+/* FFTW's planner is not safe for threads (executing is): whoever plans or destroys a plan holds this. */
+void   blur_planner_lock(void);
+void   blur_planner_unlock(void);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
 void   blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
+/* The same with a plane added before what is negative becomes 0; more: NULL, nothing. */
+void   blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
 
 #endif
