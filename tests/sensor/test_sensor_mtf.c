@@ -5,7 +5,7 @@
 #include "sensor/detector/chain.h"
 #include "sensor/detector/mtf.h"
 
-enum { wide_px = 256, high_px = 160, bins_per_px = 16 };
+enum { wide_px = 256, high_px = 160, bins_per_px = 32 };
 static const double eye_enu[3] = {0, 0, 3000}, focal_px = 2250, slant_rad = 5 * rad_per_deg;
 
 static int open_world(void **state)
@@ -41,7 +41,9 @@ static Picture shoot_edge(bool upper, double behind_lwir, double behind_mwir)
     return hand_render(&request, hand.pool);
 }
 
-/* Spread of the edge in bins across it, its slope, and the slope's transform at f; bins and slope by bin have their own
+/* 32 bins a pixel: rays at an edge stand in 16 steps, which finer bins do not mix (with 4 bins a pixel the same edge of
+ * exact 4 x 4 rays measures 0.011 low at 0.4 cycles a pixel, with 32 right to 0.0001).
+ * Spread of the edge in bins across it, its slope, and the slope's transform at f; bins and slope by bin have their own
  * sinc, taken out. */
 static double measured(const double *value, int width, int height, bool upper, double f)
 {
@@ -135,8 +137,12 @@ static void check_edge(const Picture *picture, bool upper, const char *what)
                                     exp(-2 * pow(pi_rad * p.jitter_px * f, 2));
                 const double want = optics(&p, low_m, high_m, temp_k, f) * rest, got = measured(value, w, h, upper, f);
                 if (fabs(got - want) > fabs(worst)) worst = got - want;
-                if (fabs(optics(&p, low_m, high_m, 0, f) * rest - want) > fabs(middle)) middle = optics(&p, low_m, high_m, 0, f) * rest - want;
+                const double off = optics(&p, low_m, high_m, 0, f) * rest - want;
+                if (fabs(off) > fabs(middle)) middle = off;
             }
+            CHECK_NEAR(worst, 0, 0.005);
+            /* the twin: what one wavelength in the middle would give is seen */
+            if (p.band == BAND_MWIR) CHECK(fabs(middle) > 0.02);
             print_message("%s, %s edge, %s channel %d: %+.4f; the middle of the band: %+.4f\n", what, upper ? "upper" : "left",
                           p.name, c, worst, middle);
         }
