@@ -1,24 +1,16 @@
 #include "sensor/detector/blur.h"
 
-#include <fftw3.h>
-#include <pthread.h>
+#include "sensor/detector/transform.h"
+
 #include <stdlib.h>
-
-static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
-
-void blur_planner_lock(void) { pthread_mutex_lock(&planner); }
-void blur_planner_unlock(void) { pthread_mutex_unlock(&planner); }
 
 struct Blur {
     int       width, height;
     double   *value, *odd;   /* [height][width]: plane or cosine coefficients; coefficients of the odd part */
     double   *pass;          /* [height][width]: the chain without smear, over 4 width height */
     double   *along;         /* [width] */
-    fftw_plan cosines, back, back_odd;
+    Transform *cosines, *back, *back_odd;
 };
-
-/* Plain code, whatever vectors a processor has: the same bits on every one. */
-static const unsigned plan_flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
 
 /* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a
  * level end at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins
@@ -41,20 +33,20 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     still.smear_px[0] = still.smear_px[1] = 0;
     b->width  = width;
     b->height = height;
-    b->value  = fftw_alloc_real(count);
-    b->odd    = fftw_alloc_real(count);
-    b->pass   = fftw_alloc_real(count);
-    b->along  = fftw_alloc_real((size_t)width);
-    if (b->value && b->odd && b->pass && b->along) {
-        pthread_mutex_lock(&planner);
-        b->cosines  = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT10, FFTW_REDFT10, plan_flags);
-        b->back     = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT01, FFTW_REDFT01, plan_flags);
-        b->back_odd = fftw_plan_r2r_2d(height, width, b->odd, b->odd, FFTW_RODFT01, FFTW_RODFT01, plan_flags);
-        pthread_mutex_unlock(&planner);
-    }
-    if (!b->cosines || !b->back || !b->back_odd) {
+    b->value  = transform_alloc(count);
+    b->odd    = transform_alloc(count);
+    b->pass   = transform_alloc(count);
+    b->along  = transform_alloc((size_t)width);
+    Status status = b->value && b->odd && b->pass && b->along ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK)
+        status = transform_create(&b->cosines, TRANSFORM_COSINES, height, width, b->value, b->value);
+    if (status == STATUS_OK)
+        status = transform_create(&b->back, TRANSFORM_COSINES_BACK, height, width, b->value, b->value);
+    if (status == STATUS_OK)
+        status = transform_create(&b->back_odd, TRANSFORM_SINES_BACK, height, width, b->odd, b->odd);
+    if (status != STATUS_OK) {
         blur_destroy(b);
-        return STATUS_NO_MEMORY;
+        return status;
     }
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++)
@@ -67,15 +59,13 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
 void blur_destroy(Blur *b)
 {
     if (!b) return;
-    pthread_mutex_lock(&planner);
-    if (b->cosines) fftw_destroy_plan(b->cosines);
-    if (b->back) fftw_destroy_plan(b->back);
-    if (b->back_odd) fftw_destroy_plan(b->back_odd);
-    pthread_mutex_unlock(&planner);
-    fftw_free(b->value);
-    fftw_free(b->odd);
-    fftw_free(b->pass);
-    fftw_free(b->along);
+    transform_destroy(b->cosines);
+    transform_destroy(b->back);
+    transform_destroy(b->back_odd);
+    transform_free(b->value);
+    transform_free(b->odd);
+    transform_free(b->pass);
+    transform_free(b->along);
     free(b);
 }
 
@@ -108,12 +98,12 @@ void blur_apply_with(Blur *b, float *out, const float *in, const double smear_px
     const size_t count   = (size_t)b->width * (size_t)b->height;
     const bool   oblique = smear_px[0] != 0 && smear_px[1] != 0;
     for (size_t i = 0; i < count; i++) b->value[i] = isfinite(in[i]) ? in[i] : 0;
-    fftw_execute(b->cosines);
+    transform_run(b->cosines);
     for (size_t i = 0; i < count; i++) b->value[i] *= b->pass[i];
     if (smear_px[0] != 0 || smear_px[1] != 0) smear(b, smear_px, oblique);
-    fftw_execute(b->back);
+    transform_run(b->back);
     if (oblique) {
-        fftw_execute(b->back_odd);
+        transform_run(b->back_odd);
         for (size_t i = 0; i < count; i++) b->value[i] += b->odd[i];
     }
     for (size_t i = 0; more && i < count; i++) b->value[i] += more[i];

@@ -2,9 +2,9 @@
 #include "sensor/detector/subpixel.h"
 
 #include "sensor/detector/blur.h"
+#include "sensor/detector/transform.h"
 
 #include <assert.h>
-#include <fftw3.h>
 #include <stdlib.h>
 
 enum {
@@ -30,8 +30,8 @@ struct SubPixel {
     double       *pixel_pass;    /* [period_px][coarse_half]: what the blur passes without smear, over the period */
     double       *fine_value;    /* [fine][fine]: continuous point spread, px^-2 */
     double       *coarse_value;  /* [period_px][period_px] */
-    fftw_complex *fine_wave, *coarse_wave;
-    fftw_plan     to_fine, to_coarse;
+    double       *fine_wave, *coarse_wave; /* spectra, in pairs */
+    Transform    *to_fine, *to_coarse;
     Kernel       *kernel;        /* [phases]: node's row, column within its pixel */
     double       *node;          /* [most_nodes] */
 };
@@ -73,23 +73,22 @@ Status subpixel_create(SubPixel **out, const MtfChain *chain)
     s->smear_px[0]  = s->smear_px[1] = NAN;
     s->true_pass    = malloc(sizeof(double) * fine * fine_half);
     s->pixel_pass   = malloc(sizeof(double) * period_px * coarse_half);
-    s->fine_value   = fftw_alloc_real(fine * fine);
-    s->coarse_value = fftw_alloc_real(period_px * period_px);
-    s->fine_wave    = fftw_alloc_complex(fine * fine_half);
-    s->coarse_wave  = fftw_alloc_complex(period_px * coarse_half);
+    s->fine_value   = transform_alloc(fine * fine);
+    s->coarse_value = transform_alloc(period_px * period_px);
+    s->fine_wave    = transform_alloc(2 * fine * fine_half);
+    s->coarse_wave  = transform_alloc(2 * period_px * coarse_half);
     s->kernel       = malloc(phases * sizeof *s->kernel);
     s->node         = malloc(most_nodes * sizeof *s->node);
-    if (s->true_pass && s->pixel_pass && s->fine_value && s->coarse_value && s->fine_wave && s->coarse_wave) {
-        blur_planner_lock();
-        /* plain code, whatever vectors a processor has: the same bits on every one */
-        s->to_fine   = fftw_plan_dft_c2r_2d(fine, fine, s->fine_wave, s->fine_value, FFTW_ESTIMATE | FFTW_NO_SIMD);
-        s->to_coarse = fftw_plan_dft_c2r_2d(period_px, period_px, s->coarse_wave, s->coarse_value,
-                                            FFTW_ESTIMATE | FFTW_NO_SIMD);
-        blur_planner_unlock();
-    }
-    if (!s->to_fine || !s->to_coarse || !s->kernel || !s->node) {
+    Status status = STATUS_NO_MEMORY;
+    if (s->true_pass && s->pixel_pass && s->fine_value && s->coarse_value && s->fine_wave && s->coarse_wave && s->kernel &&
+        s->node)
+        status = transform_create(&s->to_fine, TRANSFORM_WAVES_BACK, fine, fine, s->fine_wave, s->fine_value);
+    if (status == STATUS_OK)
+        status = transform_create(&s->to_coarse, TRANSFORM_WAVES_BACK, period_px, period_px, s->coarse_wave,
+                                  s->coarse_value);
+    if (status != STATUS_OK) {
         subpixel_destroy(s);
-        return STATUS_NO_MEMORY;
+        return status;
     }
     make_passes(s);
     *out = s;
@@ -99,16 +98,14 @@ Status subpixel_create(SubPixel **out, const MtfChain *chain)
 void subpixel_destroy(SubPixel *s)
 {
     if (!s) return;
-    blur_planner_lock();
-    if (s->to_fine) fftw_destroy_plan(s->to_fine);
-    if (s->to_coarse) fftw_destroy_plan(s->to_coarse);
-    blur_planner_unlock();
+    transform_destroy(s->to_fine);
+    transform_destroy(s->to_coarse);
     free(s->true_pass);
     free(s->pixel_pass);
-    fftw_free(s->fine_value);
-    fftw_free(s->coarse_value);
-    fftw_free(s->fine_wave);
-    fftw_free(s->coarse_wave);
+    transform_free(s->fine_value);
+    transform_free(s->coarse_value);
+    transform_free(s->fine_wave);
+    transform_free(s->coarse_wave);
     free(s->kernel);
     free(s->node);
     free(s);
@@ -129,17 +126,17 @@ static void make_kernels(SubPixel *s, const double smear_px[2])
     memcpy(s->smear_px, smear_px, sizeof s->smear_px);
     for (int j = 0, i = 0; j < fine; j++)
         for (int k = 0; k < fine_half; k++, i++) {
-            s->fine_wave[i][0] = s->true_pass[i] * smear_pass(smear_px, frequency(k, fine), frequency(j, fine));
-            s->fine_wave[i][1] = 0;
+            s->fine_wave[2 * i] = s->true_pass[i] * smear_pass(smear_px, frequency(k, fine), frequency(j, fine));
+            s->fine_wave[2 * i + 1] = 0;
         }
     for (int j = 0, i = 0; j < period_px; j++)
         for (int k = 0; k < coarse_half; k++, i++) {
-            s->coarse_wave[i][0] = s->pixel_pass[i] * smear_pass(smear_px, blur_bent(frequency(k, period_px)),
+            s->coarse_wave[2 * i] = s->pixel_pass[i] * smear_pass(smear_px, blur_bent(frequency(k, period_px)),
                                                                  blur_bent(frequency(j, period_px)));
-            s->coarse_wave[i][1] = 0;
+            s->coarse_wave[2 * i + 1] = 0;
         }
-    fftw_execute(s->to_fine);
-    fftw_execute(s->to_coarse);
+    transform_run(s->to_fine);
+    transform_run(s->to_coarse);
     for (int phase = 0; phase < phases; phase++)
         for (int y = -reach_px; y <= reach_px; y++)
             for (int x = -reach_px; x <= reach_px; x++) {
