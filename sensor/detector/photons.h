@@ -10,7 +10,7 @@
 double photon_band(double low_m, double high_m, double temp_k, double *derivative);
 
 /* Mean wavelength of the photons that a black body sends in band, m: what a single wavelength for the whole band must
- * be. 4.40 um for 3.4 .. 4.8 um at 300 K, where the middle is 4.1. Ranges and error as photon_band. */
+ * be. 4.36 um for 3.4 .. 4.8 um at 300 K, where the middle is 4.1. Ranges and error as photon_band. */
 double photon_mean_wavelength_m(double low_m, double high_m, double temp_k);
 
 typedef struct PhotonDetector {
