@@ -15,8 +15,10 @@ enum {
     fine = period_px * nodes_per_px,     /* samples of the continuous one */
     fine_half = fine / 2 + 1, coarse_half = period_px / 2 + 1,
     phases = nodes_per_px * nodes_per_px,
-    /* nodes of the largest small target, and of the pixels that it touches */
-    most_nodes = (small_target_px + 2) * (small_target_long_px + 2) * phases,
+    /* nodes of the pixels that the largest small target touches, which is one more than its length, and one beyond each
+     * end */
+    most_nodes = (small_target_px + 3) * (small_target_long_px + 3) * phases,
+    most_shares = nodes_per_px + 2,      /* nodes that share what lies within one pixel */
 };
 
 typedef struct Kernel {
@@ -159,14 +161,12 @@ static double hat_below(double t)
     return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
 }
 
-enum { most_shares = small_target_long_px * nodes_per_px + 4 };
-
 typedef struct Shares {
     int    first, count;
     double share[most_shares]; /* px that go to each node */
 } Shares;
 
-/* What each node gets of from .. to, px. Nodes are at whole multiples of 1 / nodes_per_px; those beyond the picture's edge
+/* What each node gets of from .. to, px, within one pixel. Nodes are at whole multiples of 1 / nodes_per_px; those beyond the picture's edge
  * leave theirs to the last within. */
 static void share_out(Shares *s, double from_px, double to_px, int size_px)
 {

@@ -494,6 +494,47 @@ static void hot_points_count_their_own_photons(void **state)
     chain_destroy(chain);
 }
 
+/* The largest that is still small, across as many pixels as it can touch, here and at the picture's corner: all its
+ * electrons are there. One cell: the plane is its box. */
+static void the_largest_small_target_fits(void **state)
+{
+    (void)state;
+    enum { w = 160, h = 160 };
+    static float  plane[w * h], behind[w * h];
+    static double area[w * h];
+    static const double box[3][4] = {{40.6, 50.7, 104.55, 66.65}, {40.6, 50.7, 56.55, 114.65}, {99.7, 147.7, 163.6, 163.6}};
+    const bool    met[1] = {true};
+    const float   hot = 60, ground = 30;
+    SensorPreset  p = preset_of("staring_lwir");
+    Chain        *chain;
+    p.photons.integration_s = 5e-5;
+    p.footprint             = 1;
+    preset_refresh(&p);
+    assert_int_equal(chain_create(&chain, &p, w, h, 16, 1), STATUS_OK);
+    for (int n = 0; n < 3; n++) {
+        SmallTarget t = {.columns = 1, .rows = 1, .x0 = (int)box[n][0], .y0 = (int)box[n][1],
+                         .x1 = (int)fmin(w, ceil(box[n][2])), .y1 = (int)fmin(h, ceil(box[n][3])), .met = met,
+                         .cell[picture_lwir] = &hot, .behind[picture_lwir] = behind, .area = area};
+        double      all = 0, sum = 0;
+        memcpy(t.box_px, box[n], sizeof t.box_px);
+        for (int i = 0; i < w * h; i++) plane[i] = behind[i] = ground;
+        for (int y = t.y0, k = 0; y < t.y1; y++)
+            for (int x = t.x0; x < t.x1; x++, k++) {
+                area[k] = (fmin(x + 1, box[n][2]) - fmax(x, box[n][0])) * (fmin(y + 1, box[n][3]) - fmax(y, box[n][1]));
+                plane[y * w + x] = (float)(ground + area[k] * (hot - ground));
+                all += area[k];
+            }
+        const SmallTargets small = {1, &t};
+        const float       *in[1] = {plane};
+        chain_run(chain, in, &small, 0, still);
+        for (int i = 0; i < w * h; i++) sum += chain_counts(chain, 0)[i] - chain_counts_at(chain, 0, (double)ground);
+        const double want = all * (chain_counts_at(chain, 0, (double)hot) - chain_counts_at(chain, 0, (double)ground));
+        print_message("target of %.1f px: %.5f of its electrons\n", all, sum / want);
+        CHECK_NEAR(sum / want, 1, n < 2 ? 0.002 : 0.01); /* at the corner it is mirrored */
+    }
+    chain_destroy(chain);
+}
+
 int main(void)
 {
     thread_flush_denormals();
@@ -505,6 +546,7 @@ int main(void)
         cmocka_unit_test(planes_do_not_know_of_cells),
         cmocka_unit_test(light_is_kept),
         cmocka_unit_test(hot_points_count_their_own_photons),
+        cmocka_unit_test(the_largest_small_target_fits),
         cmocka_unit_test(without_cells_it_stands_in_its_pixel_s_middle),
     };
     return cmocka_run_group_tests(tests, open_world, hand_close);
