@@ -21,6 +21,8 @@ typedef struct Blur Blur;
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
 /* The frequency at which the chain is read for frequency f of a row or column, -0.5 .. 0.5. */
 double blur_bent(double f_cyc_px);
+/* What it passes of a smear at (fx, fy), bent; what differs between fx and -fx fades from 0.4 to 0.5. */
+double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
 void   blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);

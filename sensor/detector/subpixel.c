@@ -115,9 +115,11 @@ void subpixel_destroy(SubPixel *s)
 
 /* ---- the kernels of a smear -------------------------------------------------------------------- */
 
-static double smear_pass(const double smear_px[2], double fx, double fy)
+/* At half the rate of samples the frequencies f and -f are one: what an oblique smear passes of the two is averaged. */
+static double smear_pass(const double smear_px[2], double fx, double fy, bool both)
 {
-    return mtf_sinc(smear_px[0] * fx + smear_px[1] * fy);
+    const double along = smear_px[0] * fx, down = smear_px[1] * fy;
+    return both ? 0.5 * (mtf_sinc(along + down) + mtf_sinc(along - down)) : mtf_sinc(along + down);
 }
 
 static int wrapped(int i, int n) { return (i % n + n) % n; }
@@ -128,13 +130,14 @@ static void make_kernels(SubPixel *s, const double smear_px[2])
     memcpy(s->smear_px, smear_px, sizeof s->smear_px);
     for (int j = 0, i = 0; j < fine; j++)
         for (int k = 0; k < fine_half; k++, i++) {
-            s->fine_wave[2 * i] = s->true_pass[i] * smear_pass(smear_px, frequency(k, fine), frequency(j, fine));
+            s->fine_wave[2 * i] = s->true_pass[i] * smear_pass(smear_px, frequency(k, fine), frequency(j, fine),
+                                                                   2 * k == fine || 2 * j == fine);
             s->fine_wave[2 * i + 1] = 0;
         }
     for (int j = 0, i = 0; j < period_px; j++)
         for (int k = 0; k < coarse_half; k++, i++) {
-            s->coarse_wave[2 * i] = s->pixel_pass[i] * smear_pass(smear_px, blur_bent(frequency(k, period_px)),
-                                                                 blur_bent(frequency(j, period_px)));
+            s->coarse_wave[2 * i] =
+                s->pixel_pass[i] * blur_smear_pass(smear_px, frequency(k, period_px), frequency(j, period_px));
             s->coarse_wave[2 * i + 1] = 0;
         }
     transform_run(s->to_fine);
