@@ -63,7 +63,8 @@ static void look(void *user)
     for (int i = 0; i < size_px * size_px; i++) plane[i] = (float)photon_table_electrons(w->photons, (double)w->ground);
     for (int y = t.y0, k = 0; y < t.y1; y++)
         for (int x = t.x0; x < t.x1; x++, k++) {
-            area[k] = (fmin(x + 1, t.box_px[2]) - fmax(x, t.box_px[0])) * (fmin(y + 1, t.box_px[3]) - fmax(y, t.box_px[1]));
+            area[k] = (fmin(x + 1, t.box_px[2]) - fmax(x, t.box_px[0])) *
+                      (fmin(y + 1, t.box_px[3]) - fmax(y, t.box_px[1]));
             behind[k] = w->ground;
             const double radiance = (double)w->ground + area[k] * (double)(w->hot - w->ground);
             plane[y * size_px + x] = (float)photon_table_electrons(w->photons, radiance);
@@ -114,8 +115,8 @@ Status precision_small_target(Bench *bench)
     if (status == STATUS_OK) status = blur_create(&blur, size_px, size_px, &chain);
     if (status == STATUS_OK) status = subpixel_create(&sub, &chain);
     for (int k = 0; k < settings && status == STATUS_OK; k++) {
-        way[k] = (SmallWay){.cells = k == 1, .sums = k == 2, .blur = blur, .sub = sub, .photons = photons, .chain = &chain,
-                            .hot = (float)planck_band(d.low_m, d.high_m, 400, NULL),
+        way[k] = (SmallWay){.cells = k == 1, .sums = k == 2, .blur = blur, .sub = sub, .photons = photons,
+                            .chain = &chain, .hot = (float)planck_band(d.low_m, d.high_m, 400, NULL),
                             .ground = (float)planck_band(d.low_m, d.high_m, 280, NULL),
                             .at = {size_px / 2 + 0.3, size_px / 2 + 0.8}};
         work[k]  = (BenchWork){look, &way[k], 1};

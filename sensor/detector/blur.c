@@ -24,8 +24,8 @@ double blur_bent(double f_cyc_px)
     return u <= 0 ? f_cyc_px : copysign(from + width * u * (1 - u * u * (1 - 0.5 * u)), f_cyc_px);
 }
 
-/* An oblique smear passes other shares of fx and -fx, which are one at 0.5: without this the step there rings on with 1 / n
- * along rows and columns. */
+/* An oblique smear passes other shares of fx and -fx, which are one at 0.5: without this the step there rings on with
+ * 1 / n along rows and columns. */
 static double odd_share(double f_cyc_px)
 {
     const double u = clamp((fabs(f_cyc_px) - 0.4) / 0.1, 0, 1);
@@ -102,7 +102,8 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
             const size_t at = (size_t)r * (size_t)w + (size_t)c;
             const double along = b->along[c];
             const double plus = mtf_sinc(along + down), minus = oblique ? mtf_sinc(along - down) : plus;
-            if (oblique && r > 0 && c > 0) b->odd[at - (size_t)w - 1] = 0.5 * (minus - plus) * share * b->odd_along[c] * b->value[at];
+            if (oblique && r > 0 && c > 0)
+                b->odd[at - (size_t)w - 1] = 0.5 * (minus - plus) * share * b->odd_along[c] * b->value[at];
             b->value[at] *= 0.5 * (plus + minus);
         }
     }

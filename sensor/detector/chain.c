@@ -60,8 +60,9 @@ static Status channel_create(Channel *c, const Chain *chain, int index, int plac
     if (chain->channels == 3) preset_band(&photons.low_m, &photons.high_m, p->band, p->optical, index);
     Status status = photon_table_create(&c->photons, &photons, p->band != BAND_OPTICAL);
     if (status != STATUS_OK) return status;
+    const double   wavelength_m = chain_wavelength_m(p, chain->channels == 3 ? index : -1);
     const MtfChain mtf = {
-        .cutoff_cyc_px = p->photons.pitch_m / (chain_wavelength_m(p, chain->channels == 3 ? index : -1) * p->photons.f_number),
+        .cutoff_cyc_px = p->photons.pitch_m / (wavelength_m * p->photons.f_number),
         .obscuration = p->obscuration, .footprint_px = p->footprint, .places = places, .jitter_px = p->jitter_px};
     status = blur_create(&c->blur, w, h, &mtf);
     if (status == STATUS_OK) status = subpixel_create(&c->sub, &mtf);
@@ -227,9 +228,12 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
 
     const double moving_px[2] = {p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0,
                                  p->smear ? rate_px_s[1] * c->exposure * d->integration_s : 0};
-    const int plane = p->band == BAND_MWIR ? picture_mwir : p->band == BAND_LWIR ? picture_lwir : picture_optical + index;
+    const int  plane = p->band == BAND_MWIR   ? picture_mwir
+                       : p->band == BAND_LWIR ? picture_lwir
+                                              : picture_optical + index;
     const bool few = small && small->count > 0;
-    if (few) subpixel_targets(ch->sub, e, c->more, w, h, small, plane, ch->photons, c->exposure, moving_px);
+    if (few)
+        subpixel_targets(ch->sub, e, c->more, w, h, small, plane, ch->photons, c->exposure, moving_px);
     blur_apply_with(ch->blur, e, e, moving_px, few ? c->more : NULL);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
         scan_resample(c->work, e, w, h, &p->scan, rate_px_s, c->line);

@@ -82,8 +82,8 @@ Status subpixel_create(SubPixel **out, const MtfChain *chain)
     s->kernel       = malloc(phases * sizeof *s->kernel);
     s->node         = malloc(most_nodes * sizeof *s->node);
     Status status = STATUS_NO_MEMORY;
-    if (s->true_pass && s->pixel_pass && s->fine_value && s->coarse_value && s->fine_wave && s->coarse_wave && s->kernel &&
-        s->node)
+    if (s->true_pass && s->pixel_pass && s->fine_value && s->coarse_value && s->fine_wave && s->coarse_wave &&
+        s->kernel && s->node)
         status = transform_create(&s->to_fine, TRANSFORM_WAVES_BACK, fine, fine, s->fine_wave, s->fine_value);
     if (status == STATUS_OK)
         status = transform_create(&s->to_coarse, TRANSFORM_WAVES_BACK, period_px, period_px, s->coarse_wave,
@@ -169,8 +169,8 @@ typedef struct Shares {
     double share[most_shares]; /* px that go to each node */
 } Shares;
 
-/* What each node gets of from .. to, px, within one pixel. Nodes are at whole multiples of 1 / nodes_per_px; those beyond the picture's edge
- * leave theirs to the last within. */
+/* What each node gets of from .. to, px, within one pixel. Nodes are at whole multiples of 1 / nodes_per_px; those beyond
+ * the picture's edge leave theirs to the last within. */
 static void share_out(Shares *s, double from_px, double to_px, int size_px)
 {
     const double from = from_px * nodes_per_px, to = to_px * nodes_per_px;
@@ -217,7 +217,8 @@ static void share_target(SubPixel *s, const Grid *g, const SmallTarget *t, int p
         const double x = box[0] + cell_x * (cell % t->columns), y = box[1] + cell_y * (cell / t->columns);
         for (int row = (int)fmax(t->y0, floor(y)); row < t->y1 && row < y + cell_y; row++)
             for (int column = (int)fmax(t->x0, floor(x)); column < t->x1 && column < x + cell_x; column++) {
-                const double span[4] = {fmax(x, column), fmax(y, row), fmin(x + cell_x, column + 1), fmin(y + cell_y, row + 1)};
+                const double span[4] = {fmax(x, column), fmax(y, row), fmin(x + cell_x, column + 1),
+                                        fmin(y + cell_y, row + 1)};
                 if (!(span[2] > span[0] && span[3] > span[1])) continue;
                 const float behind = t->behind[plane][(row - t->y0) * (t->x1 - t->x0) + column - t->x0];
                 share_cell(s, g, span, width, height, own - electrons_of(photons, exposure, behind));
@@ -239,8 +240,8 @@ static void add_kernel(double *more, int width, int height, int column, int row,
     }
 }
 
-static void add_target(SubPixel *s, float *electrons, double *more, int width, int height, const SmallTarget *t, int plane,
-                       const PhotonTable *photons, double exposure)
+static void add_target(SubPixel *s, float *electrons, double *more, int width, int height, const SmallTarget *t,
+                       int plane, const PhotonTable *photons, double exposure)
 {
     /* pixels that nodes may belong to: a hat at the target's edge reaches one node further */
     const int x0 = t->x0 > 0 ? t->x0 - 1 : 0, x1 = t->x1 < width ? t->x1 + 1 : width;

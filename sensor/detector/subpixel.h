@@ -1,15 +1,17 @@
 /* sensor/detector/subpixel.h: small targets through the optics and the footprint from where they lie within a pixel.
  *
- * A picture's pixel holds a target's light, but not where in the pixel it lies, and no blur afterwards knows: a target of
- * 0.44 px seemed to stand in the middle of a pixel, whatever the optics (centroid wrong by 0.17 px rms). So small targets
- * come with their cells (SmallTarget), and each adds what the plane's own way - whole pixels, then blur.h - gets wrong:
+ * A picture's pixel holds a target's light, but not where in the pixel it lies, and no blur afterwards knows: a target
+ * of 0.44 px would stand in the middle of a pixel, whatever the optics (centroid wrong by 0.17 px rms). So small
+ * targets come with their cells (SmallTarget), and each adds what the plane's own way - whole pixels, then blur.h -
+ * gets wrong:
  *
  *     electrons of the cells, less those of what they hide, onto nodes of 1/8 px; to both neighbours by distance, which
  *     keeps the centroid
- *     a node's electrons x (continuous point spread from the node to each pixel's centre - what the plane makes of them)
+ *     a node's electrons x (continuous point spread from the node to each pixel's centre, less what the plane makes of
+ *     them)
  *
- * The difference of the two dies away within a few pixels, tails and all, so that 17 x 17 pixels about a node are enough;
- * the continuous one has the optics, the true footprint, smear and jitter with all frequencies to 4 cycles a pixel, and
+ * The difference of the two dies away within a few pixels, tails and all, so that 17 x 17 pixels about a node are
+ * enough; the continuous one has the optics, the true footprint, smear and jitter with all frequencies to 4 cycles a pixel, and
  * so aliases as the samples of a real detector do. What cells and what is behind them give is turned into electrons
  * each by itself: a hot target of a hundredth of a pixel is counted as hot, not as a pixel that is a little warmer.
  *
@@ -24,7 +26,8 @@
 
 typedef struct SubPixel SubPixel;
 
-/* chain: as the plane's blur has it; its smear is left out, it changes by frame. STATUS_NO_MEMORY. One user at a time. */
+/* chain: as the plane's blur has it; its smear is left out, it changes by frame. STATUS_NO_MEMORY. One user at a
+ * time. */
 Status subpixel_create(SubPixel **out, const MtfChain *chain);
 void   subpixel_destroy(SubPixel *s);
 
