@@ -10,10 +10,6 @@
  * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
 #include "render/render_private.h"
 
-/* Below this both ways (or this one way and four times as much the other) the footprint is the better of the two: edge
- * samples, 1 / 16 px apart along an axis, are wrong by up to 1 / 16 px of width, 0.4 % of 16 px. */
-static const double small_px = 16;
-
 /* The target's sample nearest the centre of a pixel. */
 typedef struct FootprintTruth {
     double   square_px; /* of its distance */
@@ -34,17 +30,20 @@ struct Footprint {
     double  veiled[BAND_COUNT];          /* area x what the veil takes */
     double  square[picture_plane_count]; /* area x radiance^2 */
     double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
-    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget */
+    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
+    float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
     bool   *met;                       /* cells that show the target */
     int     amodal_box[4];
 };
 
 /* ---- planning ------------------------------------------------------------------------------- */
 
+/* Below this both ways (or this one way and four times as much the other) the footprint is the better of the two: edge
+ * samples, 1 / 16 px apart along an axis, are wrong by up to 1 / 16 px of width, 0.4 % of 16 px. */
 static bool is_small(const TargetPixels *t)
 {
     const double w = t->projected_box[2] - t->projected_box[0], h = t->projected_box[3] - t->projected_box[1];
-    return t->projected && fmin(w, h) < small_px && fmax(w, h) < 4 * small_px;
+    return t->projected && fmin(w, h) < small_target_px && fmax(w, h) < small_target_long_px;
 }
 
 static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
@@ -70,10 +69,13 @@ static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
         for (size_t i = 0; ok && i < pixels; i++) f->truth[i].square_px = INFINITY;
     }
     const size_t cells = (size_t)f->columns * (size_t)f->rows;
-    if (job->request->budget) {
-        ok = (f->met = arena_alloc(arena, cells, sizeof *f->met)) && ok;
-        for (int k = 0; k < picture_plane_count; k++)
-            if (picture_plane(job->picture, k)) ok = (f->cell[k] = arena_alloc(arena, cells, sizeof(float))) && ok;
+    const bool   budget = job->request->budget, handed = job->request->hand_over_cells;
+    if (budget || handed) ok = (f->met = arena_alloc(arena, cells, sizeof *f->met)) && ok;
+    for (int k = 0; k < picture_plane_count; k++) {
+        const bool handed_plane = handed && k != picture_radar;
+        if (!picture_plane(job->picture, k)) continue;
+        if (budget || handed_plane) ok = (f->cell[k] = arena_alloc(arena, cells, sizeof(float))) && ok;
+        if (handed_plane) ok = (f->behind[k] = arena_alloc(arena, pixels, sizeof(float))) && ok;
     }
     if (job->picture->target)
         ok = (f->hidden_by = arena_alloc(arena, (size_t)job->snapshot->count, sizeof(double))) && ok;
@@ -94,6 +96,10 @@ Status footprints_plan(Job *job, Arena *arena)
     Status status = STATUS_OK;
     for (int i = 0; i < job->snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
+    if (job->request->hand_over_cells) {
+        job->picture->small.target = arena_alloc(arena, (size_t)count, sizeof *job->picture->small.target);
+        if (!job->picture->small.target) return STATUS_NO_MEMORY;
+    }
     /* the largest first, so that no worker is left with one when the others are done */
     for (int n = 0; n < job->footprints; n++) {
         const Footprint *f = &job->footprint[n];
@@ -181,7 +187,7 @@ void footprint_splat(Scratch *s, int plane)
     for (int i = 0; i < s->hits.count; i++) {
         Splat splat = {f->sum[plane], s->out[i]};
         over_pixels(f, s->block.cell[i], splat_pixel, &splat);
-        if (f->met) f->cell[plane][s->block.cell[i]] = s->out[i], f->met[s->block.cell[i]] = true;
+        if (f->cell[plane]) f->cell[plane][s->block.cell[i]] = s->out[i], f->met[s->block.cell[i]] = true;
         f->square[plane] += footprint_area(f, s->block.cell[i]) * s->out[i] * s->out[i];
     }
 }
@@ -442,8 +448,28 @@ static void put_truth_on(const Job *job, const Footprint *f, int k, size_t px)
     for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
 }
 
+/* The cells and the pixels behind them, as they are before anything is put on. */
+static void hand_over(const Job *job, Footprint *f)
+{
+    SmallTargets *small = &job->picture->small;
+    if (!(f->visible > 0)) return;
+    SmallTarget *t = &small->target[small->count++];
+    *t = (SmallTarget){.columns = f->columns, .rows = f->rows, .x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1,
+                       .met = f->met, .area = f->area};
+    memcpy(t->box_px, f->box, sizeof t->box_px);
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = picture_plane(job->picture, plane);
+        if (!f->behind[plane]) continue;
+        for (int y = f->y0, k = 0; y < f->y1; y++)
+            for (int x = f->x0; x < f->x1; x++, k++) f->behind[plane][k] = value[pixel_index(job, x, y)];
+        t->cell[plane]   = f->cell[plane];
+        t->behind[plane] = f->behind[plane];
+    }
+}
+
 void footprints_put_on(Job *job)
 {
+    for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
     /* first all that they hide, then all that they show: a pixel may hold parts of several */
     for (int show = 0; show < 2; show++)
         for (int n = 0; n < job->footprints; n++) {

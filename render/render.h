@@ -53,6 +53,26 @@ typedef struct TargetPixels {
     int    occluder;              /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
 
+/* Smaller than this one way, and than the other the other way, a target is sampled over its own box. */
+enum { small_target_px = 16, small_target_long_px = 4 * small_target_px };
+
+/* A small target as it was sampled, for what must know where within a pixel its light lies: a detector behind optics
+ * (sensor/detector/subpixel.h). The cells fill the box evenly, row by row; their radiance is that at the aperture. */
+typedef struct SmallTarget {
+    double        box_px[4];                   /* columns and rows from, to; may reach beyond the picture */
+    int           columns, rows;               /* cells */
+    int           x0, y0, x1, y1;              /* pixels that it may touch, within the picture */
+    const bool   *met;                         /* [rows][columns]: cells that show the target */
+    const float  *cell[picture_plane_count];   /* [rows][columns], where met; NULL: no such plane */
+    const float  *behind[picture_plane_count]; /* [y1 - y0][x1 - x0]: the pixels as they were without small targets */
+    const double *area;                        /* [y1 - y0][x1 - x0]: share of the pixel that shows the target */
+} SmallTarget;
+
+typedef struct SmallTargets {
+    int          count;
+    SmallTarget *target; /* in order of entity */
+} SmallTargets;
+
 typedef struct RenderCounters {
     VisibilityCounters visibility;
     uint64_t rays_primary;                 /* all from the eye; of these: */
@@ -85,6 +105,7 @@ typedef struct Picture {
     float    *normal[3];            /* ENU of the terrain origin */
     float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels *target;           /* [snapshot count]; NULL without truth */
+    SmallTargets  small;            /* none: not asked for */
     ErrorBudget  *budget;           /* NULL: not asked for */
     RenderCounters counters;
     RenderTimes    times;

@@ -97,6 +97,7 @@ typedef struct RenderRequest {
     int      hidden_entity;  /* snapshot index whose parts the eye does not see (they cast shadows); -1: none */
     unsigned skips_off;      /* 1 << Skip (render/skip.h): not left out but computed; must give the same bits */
     bool     budget;         /* estimate how wrong the planes are: Picture.budget */
+    bool     hand_over_cells; /* of small targets, to a detector behind optics: Picture.small */
     double   profile_near_m, profile_bin_m; /* radar range profile */
     int      profile_bins;
 } RenderRequest;

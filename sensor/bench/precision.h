@@ -37,5 +37,6 @@ double precision_rms_k(const Picture *got, const Picture *want, const PlanckTabl
 Status bench_precision(Bench *bench);
 Status precision_models(Precision *p);
 Status precision_detectors(Bench *bench);
+Status precision_small_target(Bench *bench);
 
 #endif

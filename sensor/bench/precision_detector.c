@@ -376,6 +376,7 @@ static void knob_curve(Bench *bench)
 Status precision_detectors(Bench *bench)
 {
     Status status = knob_blur(bench);
+    if (status == STATUS_OK) status = precision_small_target(bench);
     if (status == STATUS_OK) status = knob_photons(bench);
     if (status != STATUS_OK) return status;
     knob_counts(bench, true);

@@ -59,7 +59,7 @@ static double counts_in_scale(void *user, bool quick)
                 const double       rate_px_s[2] = {kind % 2 ? 0 : 100, kind % 3 ? 0 : -1e4};
                 for (int c = 0; c < 3; c++) fill_plane(plane[c], kind, &dice);
                 chain_expose(chain, in);
-                chain_run(chain, in, kind, rate_px_s);
+                chain_run(chain, in, NULL, kind, rate_px_s);
                 for (int c = 0; c < channels; c++)
                     for (int i = 0; i < pixels; i++)
                         wrong += chain_counts(chain, c)[i] >= 1 << bits ||
@@ -95,7 +95,7 @@ static double even_planes(void *user, bool quick)
                 const float *const in[1] = {plane};
                 for (int i = 0; i < pixels; i++) plane[i] = (float)radiance;
                 chain_expose(chain, in);
-                chain_run(chain, in, 0, still);
+                chain_run(chain, in, NULL, 0, still);
                 for (int i = 0; i < pixels; i++)
                     worst = fmax(worst, fabs(chain_counts(chain, 0)[i] - fmin(exact, full)));
             }
@@ -126,7 +126,7 @@ static double one_bad_pixel(void *user, bool quick)
             for (int i = 0; i < pixels; i++) plane[i] = 20 + (float)(i % width);
             plane[at] = o < 0 ? 0 : odd[o];
             chain_expose(chain, in);
-            chain_run(chain, in, 0, still);
+            chain_run(chain, in, NULL, 0, still);
             if (o < 0) memcpy(kept, chain_counts(chain, 0), sizeof kept);
             for (int i = 0; i < pixels; i++) changed += i != at && chain_counts(chain, 0)[i] != kept[i];
             /* no number is 0 counts, without end full scale, less than nothing dark */

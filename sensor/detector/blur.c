@@ -1,33 +1,42 @@
 #include "sensor/detector/blur.h"
 
-#include <fftw3.h>
-#include <pthread.h>
-#include <stdlib.h>
+#include "sensor/detector/transform.h"
 
-/* FFTW's planner is not safe for threads; executing is. */
-static pthread_mutex_t planner = PTHREAD_MUTEX_INITIALIZER;
+#include <stdlib.h>
 
 struct Blur {
     int       width, height;
     double   *value, *odd;   /* [height][width]: plane or cosine coefficients; coefficients of the odd part */
     double   *pass;          /* [height][width]: the chain without smear, over 4 width height */
-    double   *along;         /* [width] */
-    fftw_plan cosines, back, back_odd;
+    double   *along, *odd_along; /* [width] */
+    Transform *cosines, *back, *back_odd;
 };
-
-/* Plain code, whatever vectors a processor has: the same bits on every one. */
-static const unsigned plan_flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
 
 /* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a
  * level end at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins
  * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside
  * an exhaust is stripes all over the vehicle. Bent, the point spread of a chain with optics is positive but for a
  * hair, as a real one is. */
-static double bent(double f)
+double blur_bent(double f_cyc_px)
 {
     static const double from = 0.4, width = 0.1;
-    const double u = (f - from) / width;
-    return u <= 0 ? f : from + width * u * (1 - u * u * (1 - 0.5 * u));
+    const double f = fabs(f_cyc_px), u = (f - from) / width;
+    return u <= 0 ? f_cyc_px : copysign(from + width * u * (1 - u * u * (1 - 0.5 * u)), f_cyc_px);
+}
+
+/* An oblique smear passes other shares of fx and -fx, which are one at 0.5: without this the step there rings on with
+ * 1 / n along rows and columns. */
+static double odd_share(double f_cyc_px)
+{
+    const double u = clamp((fabs(f_cyc_px) - 0.4) / 0.1, 0, 1);
+    return 1 - u * u * u * (10 - u * (15 - 6 * u));
+}
+
+double blur_smear_pass(const double smear_px[2], double fx, double fy)
+{
+    const double along = smear_px[0] * blur_bent(fx), down = smear_px[1] * blur_bent(fy);
+    const double plus = mtf_sinc(along + down), minus = mtf_sinc(along - down);
+    return 0.5 * (plus + minus) + 0.5 * (plus - minus) * odd_share(fx) * odd_share(fy);
 }
 
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
@@ -39,25 +48,26 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     still.smear_px[0] = still.smear_px[1] = 0;
     b->width  = width;
     b->height = height;
-    b->value  = fftw_alloc_real(count);
-    b->odd    = fftw_alloc_real(count);
-    b->pass   = fftw_alloc_real(count);
-    b->along  = fftw_alloc_real((size_t)width);
-    if (b->value && b->odd && b->pass && b->along) {
-        pthread_mutex_lock(&planner);
-        b->cosines  = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT10, FFTW_REDFT10, plan_flags);
-        b->back     = fftw_plan_r2r_2d(height, width, b->value, b->value, FFTW_REDFT01, FFTW_REDFT01, plan_flags);
-        b->back_odd = fftw_plan_r2r_2d(height, width, b->odd, b->odd, FFTW_RODFT01, FFTW_RODFT01, plan_flags);
-        pthread_mutex_unlock(&planner);
-    }
-    if (!b->cosines || !b->back || !b->back_odd) {
+    b->value  = transform_alloc(count);
+    b->odd    = transform_alloc(count);
+    b->pass   = transform_alloc(count);
+    b->along  = transform_alloc((size_t)width);
+    b->odd_along  = transform_alloc((size_t)width);
+    Status status = b->value && b->odd && b->pass && b->along && b->odd_along ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK)
+        status = transform_create(&b->cosines, TRANSFORM_COSINES, height, width, b->value, b->value);
+    if (status == STATUS_OK)
+        status = transform_create(&b->back, TRANSFORM_COSINES_BACK, height, width, b->value, b->value);
+    if (status == STATUS_OK)
+        status = transform_create(&b->back_odd, TRANSFORM_SINES_BACK, height, width, b->odd, b->odd);
+    if (status != STATUS_OK) {
         blur_destroy(b);
-        return STATUS_NO_MEMORY;
+        return status;
     }
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++)
             b->pass[(size_t)r * (size_t)width + (size_t)c] =
-                mtf_chain(&still, bent(0.5 * c / width), bent(0.5 * r / height)) / (4.0 * (double)count);
+                mtf_chain(&still, blur_bent(0.5 * c / width), blur_bent(0.5 * r / height)) / (4.0 * (double)count);
     *out = b;
     return STATUS_OK;
 }
@@ -65,15 +75,14 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
 void blur_destroy(Blur *b)
 {
     if (!b) return;
-    pthread_mutex_lock(&planner);
-    if (b->cosines) fftw_destroy_plan(b->cosines);
-    if (b->back) fftw_destroy_plan(b->back);
-    if (b->back_odd) fftw_destroy_plan(b->back_odd);
-    pthread_mutex_unlock(&planner);
-    fftw_free(b->value);
-    fftw_free(b->odd);
-    fftw_free(b->pass);
-    fftw_free(b->along);
+    transform_destroy(b->cosines);
+    transform_destroy(b->back);
+    transform_destroy(b->back_odd);
+    transform_free(b->value);
+    transform_free(b->odd);
+    transform_free(b->pass);
+    transform_free(b->along);
+    transform_free(b->odd_along);
     free(b);
 }
 
@@ -83,14 +92,18 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
 {
     const int w = b->width, h = b->height;
     if (oblique) memset(b->odd, 0, (size_t)w * (size_t)h * sizeof *b->odd);
-    for (int c = 0; c < w; c++) b->along[c] = smear_px[0] * bent(0.5 * c / w);
+    for (int c = 0; c < w; c++) {
+        b->along[c]     = smear_px[0] * blur_bent(0.5 * c / w);
+        b->odd_along[c] = odd_share(0.5 * c / w);
+    }
     for (int r = 0; r < h; r++) {
-        const double down = smear_px[1] * bent(0.5 * r / h);
+        const double down = smear_px[1] * blur_bent(0.5 * r / h), share = odd_share(0.5 * r / h);
         for (int c = 0; c < w; c++) {
             const size_t at = (size_t)r * (size_t)w + (size_t)c;
             const double along = b->along[c];
             const double plus = mtf_sinc(along + down), minus = oblique ? mtf_sinc(along - down) : plus;
-            if (oblique && r > 0 && c > 0) b->odd[at - (size_t)w - 1] = 0.5 * (minus - plus) * b->value[at];
+            if (oblique && r > 0 && c > 0)
+                b->odd[at - (size_t)w - 1] = 0.5 * (minus - plus) * share * b->odd_along[c] * b->value[at];
             b->value[at] *= 0.5 * (plus + minus);
         }
     }
@@ -98,17 +111,23 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
 
 void blur_apply(Blur *b, float *out, const float *in, const double smear_px[2])
 {
+    blur_apply_with(b, out, in, smear_px, NULL);
+}
+
+void blur_apply_with(Blur *b, float *out, const float *in, const double smear_px[2], const double *more)
+{
     const size_t count   = (size_t)b->width * (size_t)b->height;
     const bool   oblique = smear_px[0] != 0 && smear_px[1] != 0;
     for (size_t i = 0; i < count; i++) b->value[i] = isfinite(in[i]) ? in[i] : 0;
-    fftw_execute(b->cosines);
+    transform_run(b->cosines);
     for (size_t i = 0; i < count; i++) b->value[i] *= b->pass[i];
     if (smear_px[0] != 0 || smear_px[1] != 0) smear(b, smear_px, oblique);
-    fftw_execute(b->back);
+    transform_run(b->back);
     if (oblique) {
-        fftw_execute(b->back_odd);
+        transform_run(b->back_odd);
         for (size_t i = 0; i < count; i++) b->value[i] += b->odd[i];
     }
+    for (size_t i = 0; more && i < count; i++) b->value[i] += more[i];
     for (size_t i = 0; i < count; i++)
         out[i] = isfinite(in[i]) ? (float)(b->value[i] > 0 ? b->value[i] : 0) : in[i];
 }

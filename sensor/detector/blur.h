@@ -3,7 +3,7 @@
  * A convolution with mirrored edges is a product in the cosine transform (half-sample symmetry), so no padding is
  * needed and a plane costs two transforms of its own size. A smear that is oblique to the rows is not even in each
  * axis; its odd part goes through the sine transforms of the same cosine coefficients, which a third transform
- * gives. In double, FFTW, plans by estimate, without vector code: same bits for any thread count and processor.
+ * gives (transform.h).
  *
  * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the
  * chain levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge overshoots
@@ -19,8 +19,14 @@ typedef struct Blur Blur;
 
 /* chain's smear is left out here: it changes by frame. STATUS_NO_MEMORY. One user at a time. */
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
+/* The frequency at which the chain is read for frequency f of a row or column, -0.5 .. 0.5. */
+double blur_bent(double f_cyc_px);
+/* What it passes of a smear at (fx, fy), bent; what differs between fx and -fx fades from 0.4 to 0.5. */
+double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
 void   blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
+/* The same with a plane added before what is negative becomes 0; more: NULL, nothing. */
+void   blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
 
 #endif

@@ -5,6 +5,7 @@
 #include "sensor/detector/blur.h"
 #include "sensor/detector/coupling.h"
 #include "sensor/detector/quantise.h"
+#include "sensor/detector/subpixel.h"
 
 #include <stdlib.h>
 
@@ -18,6 +19,8 @@ typedef struct Channel {
     uint8_t     *bad, *patched;
     uint16_t    *count;
     float       *value;
+    Blur        *blur;
+    SubPixel    *sub;
 } Channel;
 
 struct Chain {
@@ -28,8 +31,8 @@ struct Chain {
     double       sigma_ref_e;  /* rms temporal noise that the ratios refer to */
     double       step_e;
     uint16_t     full;
-    Blur        *blur;
     Channel      channel[3];
+    double      *more;    /* [height][width]: what small targets add to a channel */
     float       *work, *line, *pool; /* pool: [scan_pool][height][width], or NULL */
     double      *columns;
 };
@@ -39,7 +42,15 @@ static bool has_fixed(const SensorPreset *p)
     return p->ratio.sigma[NOISE_V] > 0 || p->ratio.sigma[NOISE_H] > 0 || p->ratio.sigma[NOISE_VH] > 0;
 }
 
-static Status channel_create(Channel *c, const Chain *chain, int index)
+double chain_wavelength_m(const SensorPreset *p, int channel)
+{
+    static const double ground_k = 300, sun_k = 5772; /* the sun: IAU 2015 resolution B3 */
+    double              low_m, high_m;
+    preset_band(&low_m, &high_m, p->band, p->optical, channel);
+    return photon_mean_wavelength_m(low_m, high_m, p->band == BAND_OPTICAL ? sun_k : ground_k);
+}
+
+static Status channel_create(Channel *c, const Chain *chain, int index, int places)
 {
     const SensorPreset *p     = &chain->preset;
     const int           w     = chain->width, h = chain->height;
@@ -48,6 +59,13 @@ static Status channel_create(Channel *c, const Chain *chain, int index)
     PhotonDetector      photons = p->photons;
     if (chain->channels == 3) preset_band(&photons.low_m, &photons.high_m, p->band, p->optical, index);
     Status status = photon_table_create(&c->photons, &photons, p->band != BAND_OPTICAL);
+    if (status != STATUS_OK) return status;
+    const double   wavelength_m = chain_wavelength_m(p, chain->channels == 3 ? index : -1);
+    const MtfChain mtf = {
+        .cutoff_cyc_px = p->photons.pitch_m / (wavelength_m * p->photons.f_number),
+        .obscuration = p->obscuration, .footprint_px = p->footprint, .places = places, .jitter_px = p->jitter_px};
+    status = blur_create(&c->blur, w, h, &mtf);
+    if (status == STATUS_OK) status = subpixel_create(&c->sub, &mtf);
     if (status != STATUS_OK) return status;
     c->count = calloc(count, sizeof *c->count);
     c->value = calloc(count, sizeof *c->value);
@@ -95,15 +113,12 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
     const double level_e = preset->auto_exposure ? exposed_share * d->well_e : photon_electrons(d, 300, NULL);
     c->sigma_ref_e       = sqrt(level_e + d->dark_e + d->read_e * d->read_e);
 
-    /* diffraction at the middle of the band */
-    const MtfChain mtf = {.cutoff_cyc_px = d->pitch_m / (0.5 * (d->low_m + d->high_m) * d->f_number),
-                          .obscuration = preset->obscuration, .footprint_px = preset->footprint, .places = places,
-                          .jitter_px = preset->jitter_px};
-    Status status = blur_create(&c->blur, width, height, &mtf);
+    Status status = STATUS_OK;
     c->work       = calloc(count, sizeof *c->work);
     c->line       = calloc((size_t)(width > height ? width : height) + scan_taps, sizeof *c->line);
     c->columns    = calloc((size_t)width, sizeof *c->columns);
-    if (!c->work || !c->line || !c->columns) status = STATUS_NO_MEMORY;
+    c->more       = calloc(count, sizeof *c->more);
+    if (!c->work || !c->line || !c->columns || !c->more) status = STATUS_NO_MEMORY;
     if (preset->line_noise > 0 && status == STATUS_OK) {
         c->pool = malloc(scan_pool * count * sizeof *c->pool);
         if (!c->pool) status = STATUS_NO_MEMORY;
@@ -111,7 +126,7 @@ Status chain_create(Chain **out, const SensorPreset *preset, int width, int heig
             scan_line_noise(c->pool + (size_t)k * count, width, height, &preset->scan, preset->line_noise_px, seed,
                             (uint32_t)preset->band, k);
     }
-    for (int k = 0; k < c->channels && status == STATUS_OK; k++) status = channel_create(&c->channel[k], c, k);
+    for (int k = 0; k < c->channels && status == STATUS_OK; k++) status = channel_create(&c->channel[k], c, k, places);
     if (status != STATUS_OK) {
         chain_destroy(c);
         return status;
@@ -131,9 +146,11 @@ void chain_destroy(Chain *c)
         free(c->channel[k].patched);
         free(c->channel[k].count);
         free(c->channel[k].value);
+        blur_destroy(c->channel[k].blur);
+        subpixel_destroy(c->channel[k].sub);
     }
-    blur_destroy(c->blur);
     free(c->work);
+    free(c->more);
     free(c->line);
     free(c->pool);
     free(c->columns);
@@ -199,7 +216,8 @@ void chain_expose(Chain *c, const float *const radiance[])
     if (most > exposed_share * d->well_e) c->exposure = exposed_share * d->well_e / most;
 }
 
-static void run_channel(Chain *c, int index, const float *radiance, int frame, const double rate_px_s[2])
+static void run_channel(Chain *c, int index, const float *radiance, const SmallTargets *small, int frame,
+                        const double rate_px_s[2])
 {
     const SensorPreset   *p      = &c->preset;
     const PhotonDetector *d      = &p->photons;
@@ -216,7 +234,13 @@ static void run_channel(Chain *c, int index, const float *radiance, int frame, c
     const double sweep_px = p->scan.by_columns ? c->exposure * d->integration_s / fmax(p->tdi, 1) / p->scan.line_s : 0;
     const double moving_px[2] = {sweep_px + (p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0),
                                  p->smear ? rate_px_s[1] * c->exposure * d->integration_s : 0};
-    blur_apply(c->blur, e, e, moving_px);
+    const int  plane = p->band == BAND_MWIR   ? picture_mwir
+                       : p->band == BAND_LWIR ? picture_lwir
+                                              : picture_optical + index;
+    const bool few = small && small->count > 0;
+    if (few)
+        subpixel_targets(ch->sub, e, c->more, w, h, small, plane, ch->photons, c->exposure, moving_px);
+    blur_apply_with(ch->blur, e, e, moving_px, few ? c->more : NULL);
     if (p->smear && p->scan.line_s > 0 && (rate_px_s[0] != 0 || rate_px_s[1] != 0)) {
         scan_resample(c->work, e, w, h, &p->scan, rate_px_s, c->line);
         memcpy(e, c->work, count * sizeof *e);
@@ -257,7 +281,7 @@ static void run_channel(Chain *c, int index, const float *radiance, int frame, c
     for (size_t i = 0; i < count; i++) ch->value[i] = ch->count[i];
 }
 
-void chain_run(Chain *c, const float *const radiance[], int frame, const double rate_px_s[2])
+void chain_run(Chain *c, const float *const radiance[], const SmallTargets *small, int frame, const double rate_px_s[2])
 {
-    for (int k = 0; k < c->channels; k++) run_channel(c, k, radiance[k], frame, rate_px_s);
+    for (int k = 0; k < c->channels; k++) run_channel(c, k, radiance[k], small, frame, rate_px_s);
 }

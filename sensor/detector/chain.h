@@ -8,9 +8,15 @@
 #ifndef SENSOR_DETECTOR_CHAIN_H
 #define SENSOR_DETECTOR_CHAIN_H
 
+#include "render/render.h"
 #include "sensor/detector/preset.h"
 
 typedef struct Chain Chain;
+
+/* The one wavelength that diffraction is computed for, m: the photons' mean over the band, of a black body of 300 K in
+ * MWIR and LWIR and of 5772 K, the sun's, in the optical channels; channel as preset_band's. Against the OTF of all
+ * wavelengths: within 0.001 (tests/sensor/test_sensor_mtf.c). */
+double chain_wavelength_m(const SensorPreset *preset, int channel);
 
 /* places: along a row of a pixel, which the picture has averaged (MtfChain, render_places). Of the optical band there
  * are three channels, R G B, or one, as preset->optical says; else one. */
@@ -19,8 +25,10 @@ void   chain_destroy(Chain *chain);
 
 /* Sets the exposure for these planes, [channels], in-band W/(m2 sr). Before the calls below. */
 void chain_expose(Chain *chain, const float *const radiance[]);
-/* rate_px_s: how the scene moves over the picture, column and row. */
-void chain_run(Chain *chain, const float *const radiance[], int frame, const double rate_px_s[2]);
+/* small: the picture's targets of few pixels, whose cells go through the optics from where they lie (subpixel.h); NULL:
+ * they stay in whole pixels. rate_px_s: how the scene moves over the picture, column and row. */
+void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *small, int frame,
+               const double rate_px_s[2]);
 /* Of the last run: [height][width], 0 .. 2^bits - 1; as numbers for levels and displays, the same. */
 const uint16_t *chain_counts(const Chain *chain, int channel);
 const float    *chain_values(const Chain *chain, int channel);

@@ -34,6 +34,23 @@ double photon_band(double low_m, double high_m, double temp_k, double *derivativ
     return sum;
 }
 
+double photon_mean_wavelength_m(double low_m, double high_m, double temp_k)
+{
+    /* a photon's energy is hc / wavelength: ratio of photons times wavelength to photons, each by the same nodes */
+    enum { panels = 16 };
+    if (!(low_m > 0 && high_m > low_m && isfinite(high_m) && temp_k > 0)) return NAN;
+    const double half_m = 0.5 * (high_m - low_m) / panels;
+    double       photons = 0, moment = 0;
+    for (int p = 0; p < panels; p++)
+        for (int i = 0; i < 8; i++) {
+            const double at = i < 4 ? -gauss_node[i] : gauss_node[i - 4], w_m = low_m + half_m * (2 * p + 1 + at);
+            const double q = gauss_weight[i & 3] * planck_radiance(w_m, temp_k) * w_m;
+            photons += q;
+            moment += q * w_m;
+        }
+    return moment / photons;
+}
+
 double photon_etendue(const PhotonDetector *d)
 {
     const double solid_angle_sr = pi_rad / (4 * d->f_number * d->f_number + 1);

@@ -427,7 +427,7 @@ static Status write_png(const FrameFiles *frame, int band)
         const int            planes   = band_radiance(in, p, band);
         const DetectorConfig detector = detector_of(frame, band);
         if (chain) {
-            chain_run(chain, in, frame->frame, frame->rate_px_s);
+            chain_run(chain, in, &p->small, frame->frame, frame->rate_px_s);
             for (int c = 0; c < planes; c++) out[c] = chain_values(chain, c);
             if (frame->config->detector.raw) status = write_raw(frame, band, planes);
         } else {

@@ -75,6 +75,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
+    for (int b = 0; b < BAND_COUNT; b++) request->hand_over_cells |= s->shared->sensors->has[b];
     if (config_adaptive(config)) {
         request->edge_samples   = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;

@@ -45,7 +45,7 @@ wrapped() {
         embree*) echo 'render/*' ;;
         pcap*) echo 'dis/*' ;;
         assimp/*) echo 'entities/model_import_assimp.c' ;;
-        fftw3.h) echo 'sensor/detector/blur.c' ;;
+        fftw3.h) echo 'sensor/detector/transform.c' ;;
         jansson.h) echo 'sensor/publish/*' ;;
         *) echo '*' ;;
     esac

@@ -38,7 +38,7 @@ static double mean_counts(Chain *chain, int frame)
     const float *in[1] = {plane};
     double       sum   = 0;
     chain_expose(chain, in);
-    chain_run(chain, in, frame, still);
+    chain_run(chain, in, NULL, frame, still);
     for (int i = 0; i < pixels; i++) sum += chain_counts(chain, 0)[i];
     return sum / pixels;
 }
@@ -67,7 +67,7 @@ static void netd_is_what_electrons_make_it(void **state)
         memset(sum, 0, sizeof sum);
         memset(sum2, 0, sizeof sum2);
         for (int f = 0; f < frames; f++) {
-            chain_run(chain, in, f, still);
+            chain_run(chain, in, NULL, f, still);
             for (int i = 0; i < pixels; i++) {
                 const double x = chain_counts(chain, 0)[i];
                 sum[i] += x;
@@ -97,7 +97,7 @@ static void three_dimensional_noise_is_as_the_table_says(void **state)
     fill(BAND_MWIR, 300);
     chain_expose(chain, in);
     for (int f = 0; f < frames; f++) {
-        chain_run(chain, in, f, still);
+        chain_run(chain, in, NULL, f, still);
         memcpy(cube + (size_t)f * pixels, chain_values(chain, 0), sizeof plane);
     }
     assert_int_equal(noise3d_estimate(&got, cube, frames, height, width), STATUS_OK);
@@ -133,11 +133,11 @@ static void frames_need_no_other(void **state)
         for (int i = 0; i < pixels; i++) plane[i] *= 1 + 0.1f * (float)((i / 7) % 3);
         chain_expose(a, in);
         chain_expose(b, in);
-        chain_run(a, in, 9, moving);
+        chain_run(a, in, NULL, 9, moving);
         memcpy(ninth, chain_counts(a, 0), sizeof ninth);
-        for (int f = 7; f <= 9; f++) chain_run(b, in, f, moving);
+        for (int f = 7; f <= 9; f++) chain_run(b, in, NULL, f, moving);
         assert_memory_equal(ninth, chain_counts(b, 0), sizeof ninth);
-        chain_run(b, in, 10, moving);
+        chain_run(b, in, NULL, 10, moving);
         CHECK(memcmp(ninth, chain_counts(b, 0), sizeof ninth) != 0);
         chain_destroy(a);
         chain_destroy(b);

@@ -85,12 +85,24 @@ static void table_agrees_with_the_integral(void **state)
     photon_table_destroy(table);
 }
 
+/* Simpson's sum over 2 million points, elsewhere, of wavelength^-4 / (exp(c2 / wavelength T) - 1). */
+static void mean_wavelengths_are_those_of_the_photons(void **state)
+{
+    (void)state;
+    static const double low_um[4] = {3.4, 8, 0.4, 3.4}, high_um[4] = {4.8, 12, 0.7, 4.8}, temp_k[4] = {300, 300, 5772, 1000};
+    static const double want_um[4] = {4.364478931296, 10.118813834165, 0.559410531402, 4.086442309890};
+    for (int k = 0; k < 4; k++)
+        CHECK_NEAR(1e6 * photon_mean_wavelength_m(1e-6 * low_um[k], 1e-6 * high_um[k], temp_k[k]) / want_um[k], 1, 1e-10);
+    CHECK(isnan(photon_mean_wavelength_m(5e-6, 4e-6, 300)) && isnan(photon_mean_wavelength_m(3e-6, 4e-6, 0)));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(photons_agree_with_25_digits),
         cmocka_unit_test(netd_from_first_principles),
         cmocka_unit_test(table_agrees_with_the_integral),
+        cmocka_unit_test(mean_wavelengths_are_those_of_the_photons),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

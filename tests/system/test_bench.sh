@@ -66,7 +66,7 @@ for knob in "Earth to local frame" "latitude. longitude. height" "geoid between 
             "light on the ground" "smoke along a ray" "air before a pixel. visible" "air before a pixel. thermal" \
             "radiance of the sky" "light of the sky on a plane" "range to the ground" "range to a part" "rays a pixel" \
             "rays a pixel. 8-12 um" "rays over a small target" "light from all around" "mirrors of a radar path" \
-            "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "electrons of a radiance" \
+            "rays a pixel. radar" "facets" "facets. silhouette" "optics' blur" "a small target's place" "electrons of a radiance" \
             "display" "converter" \
             "display's curve"; do
     check "precision has one default of: $knob" \
