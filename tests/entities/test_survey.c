@@ -121,7 +121,7 @@ static void tracks_are_sorted_and_in_world_axes(void **state)
                                    .phi_rad = 2};
     filled(m, dis_encode_entity_state_update(room(m, 13), 150, &update));
     update.id = id_of(77); /* never introduced */
-    filled(m, dis_encode_entity_state_update(room(m, 13.5), 150, &update));
+    filled(m, dis_encode_entity_state_update(room(m, 13.1), 150, &update));
     say_state(m, 12.5, body); /* late */
 
     Survey s = survey_of(m);
