@@ -214,6 +214,7 @@ static void note_doubted(ExerciseClock *clock, const Sender *sender, Moment now)
     d->by_arrival++;
     d->pdus = sender->pdus;
     if (!(passed_s > 0)) return;
+    d->passed_s = passed_s;
     d->raw_hz = (uint32_t)(now.stamp - sender->first.stamp) / passed_s;
     d->rate   = dis_timestamp_step_s(sender->first.stamp, now.stamp) / passed_s;
     d->counted = (uint32_t)(now.stamp - sender->first.stamp) / fmax((double)(sender->pdus - 1), 1);
@@ -270,7 +271,11 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
 
 /* ---- saying --------------------------------------------------------------------------------------- */
 
-static bool near_rate(double hz, double of_hz) { return fabs(hz / of_hz - 1) <= 0.03; }
+/* Whether something counted at about a rate; whole counts at both ends. */
+static bool near_rate(double hz, double of_hz, double passed_s)
+{
+    return fabs(hz - of_hz) <= 0.03 * of_hz + 1 / fmax(passed_s, 1);
+}
 
 void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *d)
 {
@@ -284,8 +289,8 @@ void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt 
         what = d->raw_hz == 0 ? "stand still" : rate;
         if (d->raw_hz > 0 && fabs(d->rate) <= still_rate) what = "count something else than time";
         for (size_t i = 0; i < sizeof unit / sizeof unit[0]; i++)
-            if (near_rate(d->raw_hz, unit[i].hz)) what = unit[i].what;
-        if (d->counted >= 1 && (near_rate(d->counted, 1) || near_rate(d->counted, 2))) what = "count its PDUs";
+            if (near_rate(d->raw_hz, unit[i].hz, d->passed_s)) what = unit[i].what;
+        if (d->counted >= 1 && (near_rate(d->counted, 1, INFINITY) || near_rate(d->counted, 2, INFINITY))) what = "count its PDUs";
     }
     snprintf(out, size, "time stamps of %u:%u %s: %llu of its %llu PDUs count from their arrival", d->site,
              d->application, what, (unsigned long long)d->by_arrival, (unsigned long long)d->pdus);

@@ -58,7 +58,8 @@ typedef struct ExerciseClockDoubt {
     uint16_t            site, application;
     ExerciseClockReason reason;           /* of the first doubt */
     uint64_t            pdus, by_arrival; /* stamped ones heard; of them, how many count from their arrival */
-    double              rate, raw_hz;     /* since its first PDU: seconds of stamp, and units of the field, per second */
+    double              passed_s;         /* since its first PDU */
+    double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
     double              counted;          /* units of the field a PDU */
 } ExerciseClockDoubt;
 
