@@ -274,7 +274,7 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
 /* Whether something counted at about a rate; whole counts at both ends. */
 static bool near_rate(double hz, double of_hz, double passed_s)
 {
-    return fabs(hz - of_hz) <= 0.03 * of_hz + 1 / fmax(passed_s, 1);
+    return hz > 0 && passed_s >= 4 && fabs(hz - of_hz) <= 0.03 * of_hz + 1 / passed_s;
 }
 
 void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *d)

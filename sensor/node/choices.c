@@ -1,6 +1,8 @@
 #include "sensor/node/choices.h"
 
 #include "dis/enumerations.h"
+#include "render/view.h"
+#include "terrain/sun.h"
 #include "sensor/node/opening.h"
 
 #include <stdarg.h>
@@ -338,6 +340,22 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
                    survey->absolute_stamps > 0 ? "the absolute stamps of the log do not agree" : "the log does not say");
     }
     return STATUS_OK;
+}
+
+void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame)
+{
+    static const double dark_deg = -6;
+    const double        at_s[2] = {plan->start_s, plan->end_s};
+    double              lowest_deg = INFINITY;
+    if (!(bands >> BAND_OPTICAL & 1)) return;
+    for (int k = 0; k < 2; k++) {
+        Sun sun;
+        if (!isfinite(at_s[k]) || sun_at(&sun, unix_s + at_s[k], &frame->origin, 1013.25, 15, NAN) != STATUS_OK) continue;
+        lowest_deg = fmin(lowest_deg, sun.elevation_rad / rad_per_deg);
+    }
+    if (lowest_deg < dark_deg)
+        choice_add(choices, "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
+                   "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)", -lowest_deg);
 }
 
 /* ---- ground --------------------------------------------------------------------------------- */
