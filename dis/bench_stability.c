@@ -134,7 +134,8 @@ static void second_sender(Bench *bench)
         const double t_s = 3500 + 5.0 * n, own_s = 0.25 * tick_s + 1700 + 5.0 * n;
         exercise_clock_time(clock, 1, 1, dis_timestamp(t_s, false), 1e9 + t_s + uniform(3, (uint64_t)n, -0.03, 0.03));
         const uint32_t stamp = dis_timestamp(own_s, false);
-        const double off_s = exercise_clock_time(clock, 2, 1, stamp, 1e9 + t_s + uniform(4, (uint64_t)n, -0.03, 0.03)) - t_s;
+        const double heard_s = 1e9 + t_s + uniform(4, (uint64_t)n, -0.03, 0.03);
+        const double off_s = exercise_clock_time(clock, 2, 1, stamp, heard_s) - t_s;
         if (stamp == 0) continue;
         if (!(off_s >= low)) low = off_s;
         if (!(off_s <= high)) high = off_s;

@@ -119,7 +119,8 @@ static void tie(Sender *sender, Moment now, double t_s)
     sender->mark       = now;
     sender->agree = sender->odd = 0;
     sender->disagrees  = false;
-    sender->next_vote_s = now.capture_s + vote_s * (sender->standing == SENDER_DOUBTED ? 1 << (sender->failures - 1) : 1);
+    const int times = sender->standing == SENDER_DOUBTED ? 1 << (sender->failures - 1) : 1;
+    sender->next_vote_s = now.capture_s + vote_s * times;
 }
 
 static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
@@ -251,7 +252,8 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
     const double t_s = stamped_time(sender, timestamp, ruler_s), off_s = t_s - ruler_s;
     const bool   leaves = !(fabs(off_s) <= leave_s);
-    const ExerciseClockReason reason = stands ? EXERCISE_CLOCK_STILL : leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_RATE;
+    const ExerciseClockReason reason =
+        stands ? EXERCISE_CLOCK_STILL : leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_RATE;
 
     if (sender->standing == SENDER_PROVEN) {
         sender->odd = stands || leaves ? sender->odd + 1 : 0;
@@ -290,7 +292,7 @@ void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt 
         if (d->raw_hz > 0 && fabs(d->rate) <= still_rate) what = "count something else than time";
         for (size_t i = 0; i < sizeof unit / sizeof unit[0]; i++)
             if (near_rate(d->raw_hz, unit[i].hz, d->passed_s)) what = unit[i].what;
-        if (d->counted >= 1 && (near_rate(d->counted, 1, INFINITY) || near_rate(d->counted, 2, INFINITY))) what = "count its PDUs";
+        if (near_rate(d->counted, 1, INFINITY) || near_rate(d->counted, 2, INFINITY)) what = "count its PDUs";
     }
     snprintf(out, size, "time stamps of %u:%u %s: %llu of its %llu PDUs count from their arrival", d->site,
              d->application, what, (unsigned long long)d->by_arrival, (unsigned long long)d->pdus);

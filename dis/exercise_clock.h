@@ -25,8 +25,8 @@ typedef struct ExerciseClock ExerciseClock;
 
 Status exercise_clock_create(ExerciseClock **out);
 void   exercise_clock_destroy(ExerciseClock *clock);
-/* Exercise time of a PDU, s. capture_s: when the datagram was captured or received (Unix time, s). entity: of which of the
- * sender's entities it is a report; -1: of none. */
+/* Exercise time of a PDU, s. capture_s: when the datagram was captured or received (Unix time, s). entity: of which of
+ * the sender's entities it is a report; -1: of none. */
 double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
                                   uint32_t timestamp, double capture_s);
 /* The same for a sender that speaks of one entity only. */

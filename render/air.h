@@ -88,7 +88,8 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
               double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir);
 
-static const double air_warmer_step_m = 500, air_warmer_low = -4; /* steps below zero that the first one is drawn on to */
+/* low: steps below zero that the first one is drawn on to */
+static const double air_warmer_step_m = 500, air_warmer_low = -4;
 
 /* Height of a place above the model's 0 km: the tangent plane leaves the Earth. */
 static inline double air_height(const Air *air, const double p_enu[3])

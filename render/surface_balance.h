@@ -27,7 +27,8 @@ static inline double daily_wave_w_m2_k(double conductivity_w_mk, double density_
     return sqrt(conductivity_w_mk * density_kg_m3 * heat_capacity_j_kgk * per_day_rad_s);
 }
 
-/* Excess of ground over the air in this wind, over that at ground_heat_wind_mps. other_w_m2_k: emission and conduction. */
+/* Excess of ground over the air in this wind, over that at ground_heat_wind_mps. other_w_m2_k: of emission and
+ * conduction. */
 static inline double ground_heat_share(double wind_mps, double other_w_m2_k)
 {
     return (film_w_m2_k(ground_heat_wind_mps) + other_w_m2_k) / (film_w_m2_k(wind_mps) + other_w_m2_k);

@@ -337,7 +337,8 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
         text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
         *unix_s = ten_local_s - frame->origin.lon_rad / (2 * pi_rad) * 86400 - survey->first_s;
         choice_add(choices, "time of day: local solar 10:00 on 21 June, %s (exercise.utc)",
-                   survey->absolute_stamps > 0 ? "the absolute stamps of the log do not agree" : "the log does not say");
+                   survey->absolute_stamps > 0 ? "the absolute stamps of the log do not agree"
+                                               : "the log does not say");
     }
     return STATUS_OK;
 }
