@@ -143,13 +143,13 @@ static double worst_m(Kind kind, double heartbeat_s, bool beside, bool causal)
 static void a_mover_stays_where_it_is(void **state)
 {
     (void)state;
-    static const double heartbeat_s[] = {0.2, 1, 5};
+    static const double heartbeat_s[] = {0.12, 0.2, 1, 5};
     const bool          show = getenv("PITVIPER_SHOW") != NULL;
     for (int kind = 0; kind < KIND_COUNT; kind++) {
         const bool   runs = kind == STAMP_US || kind == STAMP_US_SHIFTED || kind == STAMP_HALF || kind == STAMP_DOUBLE;
         const double allowed_s = runs ? 0.15 : kind == STAMP_JITTER ? 0.1 : 0;
         if (show) printf("%-28s", kind_name[kind]);
-        for (int h = 0; h < 3; h++)
+        for (int h = 0; h < 4; h++)
             for (int way = 0; way < 4; way++) {
                 const double m = worst_m((Kind)kind, heartbeat_s[h], way & 1, way & 2);
                 if (show) printf(" %8.1f%s", m, way == 3 ? " |" : "");
