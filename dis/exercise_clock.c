@@ -1,38 +1,75 @@
 /* dis/exercise_clock.c: a clock per sender, all on one exercise time.
  *
  * The capture clock is the ruler: capture time shifted so that the first PDU has its own stamp's seconds. A
- * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the ruler only
- * chooses the hour a stamp belongs to and notices when a sender has left it. So neither network jitter nor a
- * half hour of silence enters the times. */
+ * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the ruler chooses the hour
+ * a stamp belongs to and is what the stamps are judged by. So neither network jitter nor a half hour of silence enters
+ * the times of a sender whose stamps are a clock. */
 #include "dis/exercise_clock.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum {
-    sender_limit = 4096,      /* beyond that capture time is used */
-    slot_count = 8192,        /* a power of two, at most half full */
-    ties_before_distrust = 3, /* after the first: dis/exercise_clock.h */
+    sender_limit = 4096,  /* beyond that capture time is used */
+    slot_count   = 8192,  /* a power of two, at most half full */
+    memory_slots = 16384, /* entities remembered for the judgement; a later one takes the place of an earlier one */
+    odd_limit    = 2,     /* reports in a row against a proven sender */
+    votes_needed = 2,     /* in a row, for a sender in doubt */
+    most_failures = 5,    /* the time to prove itself is doubled so many times: 2 minutes */
 };
 
 static const double hour_s = 3600.0;
 static const double leave_s = 5.0;         /* stamps ahead or behind: IEEE 1278.1, timestamp ahead/behind */
 static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double no longer resolves 0.02 ms */
 
+/* What is expected of a network: datagrams bundled or delayed by some 100 ms, both ways about the first one's delay. */
+static const double jitter_s = 0.15, drift = 1e-4; /* and of clocks: s a second */
+/* A stamp that far behind its sender's latest is of a datagram that was overtaken: nothing that counts goes back so. */
+static const double overtaken_s = 0.1;
+static const double settled_s = 1.0;       /* a proven sender may drift so far before its stamps are placed anew */
+static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is judged */
+/* Two reports of one entity that far apart, and stamps that went less than a twentieth of it: they stand still. */
+static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05;
+
+typedef struct Moment {
+    uint32_t stamp;
+    double   capture_s;
+} Moment;
+
+typedef enum Standing { SENDER_NEW, SENDER_PROVEN, SENDER_DOUBTED } Standing;
+
 typedef struct Sender {
     uint32_t key; /* site, application */
-    bool     used, distrusted;
-    int      ties;
-    uint32_t tied_stamp;
-    double   tied_s;     /* exercise time of it */
+    bool     used;
+    uint8_t  standing;
+    uint8_t  failures; /* how often it was doubted, most_failures at most */
+    uint8_t  odd;      /* reports in a row that leave the ruler or stand still */
+    uint8_t  agree;    /* votes in a row, votes_needed at most */
+    bool     disagrees; /* the last vote */
+    int      doubt;    /* index into the clock's doubts; -1: never doubted, or too many before it */
+    uint32_t tied_stamp, latest_stamp;
+    double   tied_s;   /* exercise time of the tied one */
+    Moment   mark;     /* where the span of the next vote begins */
+    double   next_vote_s; /* capture time from which on there is one */
+    Moment   first;
+    uint64_t pdus;
 } Sender;
 
+/* The last report of an entity that is still_least_s after the one kept before it. */
+typedef struct Memory {
+    uint64_t key_plus_1; /* 0: none */
+    Moment   last;
+} Memory;
+
 struct ExerciseClock {
-    bool   started, first_is_absolute;
-    double start_s;         /* exercise time of the first PDU */
-    double start_capture_s; /* and when it was captured */
-    double last_capture_s;
-    int    senders;
-    Sender slot[slot_count];
+    bool    started, first_is_absolute;
+    double  start_s;         /* exercise time of the first PDU */
+    double  start_capture_s; /* and when it was captured */
+    double  last_capture_s;
+    int     senders;
+    ExerciseClockDoubts doubts;
+    Sender  slot[slot_count];
+    Memory  memory[memory_slots];
 };
 
 Status exercise_clock_create(ExerciseClock **out)
@@ -45,22 +82,28 @@ Status exercise_clock_create(ExerciseClock **out)
 
 void exercise_clock_destroy(ExerciseClock *clock) { free(clock); }
 
+const ExerciseClockDoubts *exercise_clock_doubts(const ExerciseClock *clock) { return &clock->doubts; }
+
 /* NULL when the table is full and this one is not in it. */
-static Sender *find_sender(ExerciseClock *clock, uint32_t key)
+static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
 {
     /* multiplicative hashing: 2^32 / golden ratio */
     uint32_t i = (key * 2654435769u) >> 19;
     _Static_assert(slot_count == 1 << (32 - 19), "the hash has as many bits as there are slots");
+    *is_new = false;
     for (;; i = (i + 1) % slot_count) {
         Sender *sender = &clock->slot[i];
         if (sender->used && sender->key == key) return sender;
         if (sender->used) continue;
         if (clock->senders == sender_limit) return NULL;
         clock->senders++;
-        *sender = (Sender){.key = key, .used = true, .ties = -1};
+        *sender = (Sender){.key = key, .used = true, .doubt = -1};
+        *is_new = true;
         return sender;
     }
 }
+
+/* ---- placing -------------------------------------------------------------------------------------- */
 
 /* Time of a stamp by the sender's own tie: the short way round the hour, then whole hours towards the ruler. */
 static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
@@ -69,17 +112,121 @@ static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
     return t_s + hour_s * round((ruler_s - t_s) / hour_s);
 }
 
-static void tie(Sender *sender, uint32_t stamp, double t_s)
+static void tie(Sender *sender, Moment now, double t_s)
 {
-    sender->ties++;
-    sender->tied_stamp = stamp;
-    sender->tied_s = t_s;
+    sender->tied_stamp = now.stamp;
+    sender->tied_s     = t_s;
+    sender->mark       = now;
+    sender->agree = sender->odd = 0;
+    sender->disagrees  = false;
+    const int times = sender->standing == SENDER_DOUBTED ? 1 << (sender->failures - 1) : 1;
+    sender->next_vote_s = now.capture_s + vote_s * times;
 }
 
-double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
-                           double capture_s)
+static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
+{
+    tie(sender, now, ruler_s);
+    sender->first        = now;
+    sender->latest_stamp = now.stamp;
+    if (!absolute) return;
+    /* UTC on both sides: the stamp itself, in the hour of the ruler */
+    const double past_s = dis_timestamp_seconds(now.stamp);
+    const double t_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
+    if (fabs(t_s - ruler_s) <= leave_s) sender->tied_s = t_s;
+}
+
+/* ---- judging -------------------------------------------------------------------------------------- */
+
+/* Seconds that the stamps went further than the arrivals since a moment; whole hours do not count. */
+static double gained_s(Moment since, Moment now)
+{
+    const double gain_s = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
+    return gain_s - hour_s * round(gain_s / hour_s);
+}
+
+/* Whether stamps and arrivals went equally far since a moment. */
+static bool keeps_pace(Moment since, Moment now)
+{
+    return fabs(gained_s(since, now)) <= jitter_s + drift * fabs(now.capture_s - since.capture_s);
+}
+
+/* Whether an entity's stamps stand still between two of its reports; remembers this one. */
+static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
+{
+    Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
+    _Static_assert(memory_slots == 1 << (64 - 50), "the hash has as many bits as there are slots");
+    const double passed_s = now.capture_s - memory->last.capture_s;
+    const bool   known = memory->key_plus_1 == entity_key + 1;
+    if (known && passed_s >= 0 && passed_s < still_least_s) return false;
+    const bool   stands = known && passed_s >= 0 && passed_s < still_most_s &&
+                          fabs(dis_timestamp_step_s(memory->last.stamp, now.stamp)) <= still_rate * passed_s;
+    *memory = (Memory){entity_key + 1, now};
+    return stands;
+}
+
+static bool is_overtaken(const Sender *sender, uint32_t stamp)
+{
+    const double step_s = dis_timestamp_step_s(sender->latest_stamp, stamp);
+    return step_s <= -overtaken_s && step_s >= -leave_s;
+}
+
+static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, ExerciseClockReason reason)
+{
+    if (sender->standing != SENDER_DOUBTED && sender->failures < most_failures) sender->failures++;
+    if (sender->standing != SENDER_DOUBTED && sender->doubt < 0 && clock->doubts.count < exercise_clock_doubts_listed) {
+        sender->doubt = clock->doubts.count++;
+        clock->doubts.sender[sender->doubt] = (ExerciseClockDoubt){
+            .site = (uint16_t)(sender->key >> 16), .application = (uint16_t)sender->key, .reason = reason};
+    }
+    sender->standing = SENDER_DOUBTED;
+    tie(sender, now, ruler_s);
+}
+
+/* A vote over the span since the mark: have stamps and arrivals gone equally far? After one that says no, the first PDU
+ * that says yes takes it back; none for two seconds: that is the answer. */
+static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s, double ruler_s)
+{
+    if (now.capture_s < sender->mark.capture_s) { /* the capture's clock went back */
+        sender->mark        = now;
+        sender->next_vote_s = now.capture_s + vote_s;
+    }
+    const bool due = now.capture_s >= sender->next_vote_s;
+    if (!due && !sender->disagrees) return;
+    if (!(keeps_pace(sender->mark, now) && fabs(off_s) <= settled_s)) {
+        if (!due) return;
+        if (sender->disagrees) doubt(clock, sender, now, ruler_s, EXERCISE_CLOCK_RATE);
+        else sender->disagrees = true, sender->agree = 0, sender->next_vote_s = now.capture_s + vote_s;
+        return;
+    }
+    const double span_s = now.capture_s - sender->mark.capture_s;
+    sender->disagrees = false;
+    if (sender->agree < votes_needed) sender->agree++;
+    if (sender->agree == votes_needed) sender->standing = SENDER_PROVEN;
+    if (span_s >= longest_vote_s) sender->mark = now;
+    sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
+}
+
+static void note_doubted(ExerciseClock *clock, const Sender *sender, Moment now)
+{
+    clock->doubts.by_arrival++;
+    if (sender->doubt < 0) return;
+    ExerciseClockDoubt *d = &clock->doubts.sender[sender->doubt];
+    const double        passed_s = now.capture_s - sender->first.capture_s;
+    d->by_arrival++;
+    d->pdus = sender->pdus;
+    if (!(passed_s > 0)) return;
+    d->passed_s = passed_s;
+    d->raw_hz = (uint32_t)(now.stamp - sender->first.stamp) / passed_s;
+    d->rate   = dis_timestamp_step_s(sender->first.stamp, now.stamp) / passed_s;
+    d->counted = (uint32_t)(now.stamp - sender->first.stamp) / fmax((double)(sender->pdus - 1), 1);
+}
+
+double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
+                                  uint32_t timestamp, double capture_s)
 {
     const bool     absolute = dis_timestamp_is_absolute(timestamp);
+    const uint32_t key = (uint32_t)site << 16 | application;
+    bool           is_new;
     if (!(fabs(capture_s) <= capture_limit_s)) capture_s = clock->last_capture_s; /* NaN too */
     clock->last_capture_s = capture_s;
 
@@ -90,26 +237,63 @@ double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t applica
         clock->start_capture_s = capture_s;
     }
     const double ruler_s = clock->start_s + (capture_s - clock->start_capture_s);
+    const Moment now = {timestamp, capture_s};
 
-    /* All bits zero: a sender that does not stamp. It must not be held still until it is distrusted. */
+    /* All bits zero: a sender that does not stamp. */
     if (timestamp == 0) return ruler_s;
 
-    Sender *sender = find_sender(clock, (uint32_t)site << 16 | application);
-    if (!sender || sender->distrusted) return ruler_s;
+    Sender *sender = find_sender(&is_new, clock, key);
+    if (!sender) return ruler_s;
+    if (is_new) tie_first(sender, now, ruler_s, absolute && clock->first_is_absolute);
+    sender->pdus++;
+    const bool overtaken = is_overtaken(sender, timestamp);
+    if (!overtaken) sender->latest_stamp = timestamp;
 
-    if (sender->ties < 0) {
-        tie(sender, timestamp, ruler_s);
-        if (absolute && clock->first_is_absolute) {
-            /* UTC on both sides: the stamp itself, in the hour of the ruler */
-            const double past_s = dis_timestamp_seconds(timestamp);
-            sender->tied_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
-        }
+    const bool   stands = entity >= 0 && stands_still(clock, (uint64_t)key << 16 | (uint16_t)entity, now);
+    const double t_s = stamped_time(sender, timestamp, ruler_s), off_s = t_s - ruler_s;
+    const bool   leaves = !(fabs(off_s) <= leave_s);
+    const ExerciseClockReason reason =
+        stands ? EXERCISE_CLOCK_STILL : leaves ? EXERCISE_CLOCK_JUMP : EXERCISE_CLOCK_RATE;
+
+    if (sender->standing == SENDER_PROVEN) {
+        sender->odd = stands || leaves ? sender->odd + 1 : 0;
+        if (sender->odd >= odd_limit) doubt(clock, sender, now, ruler_s, reason);
+        else if (!sender->odd) vote(clock, sender, now, off_s, ruler_s);
+    } else if (sender->standing == SENDER_NEW && !stands && !leaves && overtaken) {
+        return t_s;
+    } else if (stands || !keeps_pace(sender->mark, now)) {
+        doubt(clock, sender, now, ruler_s, reason);
+    } else {
+        vote(clock, sender, now, off_s, ruler_s);
     }
-    double t_s = stamped_time(sender, timestamp, ruler_s);
-    if (!(fabs(t_s - ruler_s) <= leave_s)) {
-        tie(sender, timestamp, ruler_s);
-        if (sender->ties >= ties_before_distrust) sender->distrusted = true;
-        t_s = ruler_s;
+    if (sender->standing != SENDER_DOUBTED) return leaves ? ruler_s : stamped_time(sender, timestamp, ruler_s);
+    note_doubted(clock, sender, now);
+    return ruler_s;
+}
+
+/* ---- saying --------------------------------------------------------------------------------------- */
+
+/* Whether something counted at about a rate; whole counts at both ends. */
+static bool near_rate(double hz, double of_hz, double passed_s)
+{
+    return hz > 0 && passed_s >= 4 && fabs(hz - of_hz) <= 0.03 * of_hz + 1 / passed_s;
+}
+
+void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *d)
+{
+    static const struct { double hz; const char *what; } unit[] = {
+        {1e6, "look like microseconds"}, {2e6, "look like microseconds"}, {1e3, "look like milliseconds"},
+        {2e3, "look like milliseconds"}, {1, "look like seconds"}, {2, "look like seconds"}};
+    char        rate[64];
+    const char *what = "jump about";
+    if (d->reason != EXERCISE_CLOCK_JUMP) {
+        snprintf(rate, sizeof rate, "run at %.3g times the rate of their arrivals", d->rate);
+        what = d->raw_hz == 0 ? "stand still" : rate;
+        if (d->raw_hz > 0 && fabs(d->rate) <= still_rate) what = "count something else than time";
+        for (size_t i = 0; i < sizeof unit / sizeof unit[0]; i++)
+            if (near_rate(d->raw_hz, unit[i].hz, d->passed_s)) what = unit[i].what;
+        if (near_rate(d->counted, 1, INFINITY) || near_rate(d->counted, 2, INFINITY)) what = "count its PDUs";
     }
-    return t_s;
+    snprintf(out, size, "time stamps of %u:%u %s: %llu of its %llu PDUs count from their arrival", d->site,
+             d->application, what, (unsigned long long)d->by_arrival, (unsigned long long)d->pdus);
 }

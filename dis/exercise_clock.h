@@ -3,9 +3,19 @@
  * A sender is (site, application). A stamp counts 3600 s / 2^31 past the hour, in the upper 31 bits; the
  * lowest bit says absolute (UTC). The first sender heard with a stamp sets the exercise epoch: exercise
  * time = its seconds past the hour, unwrapped. Absolute senders share that scale when the first is
- * absolute too; every other sender is tied to it by capture time at its first PDU. A sender whose stamp
- * leaves capture time by more than 5 s (restart, frame counter) is tied again, and after three of those
- * its stamps are ignored and capture time is used. Depends on the order of PDUs only. */
+ * absolute too; every other sender is tied to it by capture time at its first PDU. Depends on the order of PDUs only.
+ *
+ * Not every sender writes the time into the stamp: some leave a constant there, count milliseconds, microseconds,
+ * Unix seconds or PDUs. Stamps are judged by arrival times from a sender's second PDU on. They are doubted, and the
+ * arrival time is used instead, when
+ *   - an entity's stamps stand still between two reports at least 0.1 s apart;
+ *   - a sender not yet proven has left arrivals by more than 0.15 s since it was placed: what a network bundles and
+ *     delays is expected to be less. Until then stamps count: so large is the error of stamps that run at another rate;
+ *   - a proven sender leaves them by 5 s in two PDUs in a row (restart), or over two seconds in every PDU by
+ *     0.15 s since the mark of a vote, or by 1 s altogether.
+ * Votes compare how far stamps and arrivals went over 2 s, 4 s, .. 32 s; two in a row that agree prove a sender, new
+ * or doubted; its stamps then count again from a new tie. A proven sender's datagram that is seconds late keeps its
+ * stamp. Clocks may drift by 1e-4. */
 #ifndef DIS_EXERCISE_CLOCK_H
 #define DIS_EXERCISE_CLOCK_H
 
@@ -15,18 +25,55 @@ typedef struct ExerciseClock ExerciseClock;
 
 Status exercise_clock_create(ExerciseClock **out);
 void   exercise_clock_destroy(ExerciseClock *clock);
-/* Exercise time of a PDU, s. capture_s: when the datagram was captured or received (Unix time, s). */
-double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
-                           double capture_s);
+/* Exercise time of a PDU, s. capture_s: when the datagram was captured or received (Unix time, s). entity: of which of
+ * the sender's entities it is a report; -1: of none. */
+double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
+                                  uint32_t timestamp, double capture_s);
+/* The same for a sender that speaks of one entity only. */
+static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
+                                         double capture_s)
+{
+    return exercise_clock_report_time(clock, site, application, 0, timestamp, capture_s);
+}
 
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 static inline double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
                                              double capture_s)
 {
-    uint16_t sender[2];
+    enum { entity_octet = 16, entity_state = 1, entity_state_update = 67 };
+    const bool reports = (header->type == entity_state || header->type == entity_state_update) &&
+                         header->length >= entity_octet + 2;
+    uint16_t   sender[2];
     if (!dis_pdu_sender(sender, header, pdu)) return NAN;
-    return exercise_clock_time(clock, sender[0], sender[1], header->timestamp, capture_s);
+    return exercise_clock_report_time(clock, sender[0], sender[1],
+                                      reports ? pdu[entity_octet] << 8 | pdu[entity_octet + 1] : -1, header->timestamp,
+                                      capture_s);
 }
+
+/* ---- senders whose stamps were doubted ------------------------------------------------------------- */
+
+typedef enum ExerciseClockReason { EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP } ExerciseClockReason;
+
+typedef struct ExerciseClockDoubt {
+    uint16_t            site, application;
+    ExerciseClockReason reason;           /* of the first doubt */
+    uint64_t            pdus, by_arrival; /* stamped ones heard; of them, how many count from their arrival */
+    double              passed_s;         /* since its first PDU */
+    double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
+    double              counted;          /* units of the field a PDU */
+} ExerciseClockDoubt;
+
+enum { exercise_clock_doubts_listed = 16, exercise_clock_doubt_text_size = 160 };
+
+typedef struct ExerciseClockDoubts {
+    uint64_t           by_arrival; /* PDUs of all senders that count from their arrival, though stamped */
+    int                count;      /* senders below, in the order of their first doubt; later ones are not listed */
+    ExerciseClockDoubt sender[exercise_clock_doubts_listed];
+} ExerciseClockDoubts;
+
+const ExerciseClockDoubts *exercise_clock_doubts(const ExerciseClock *clock);
+/* "time stamps of 1:2 stand still: 98 of its 99 PDUs count from their arrival" */
+void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *doubt);
 
 /* Of an instant in seconds, >= 0, from any full hour; towards the past. */
 static inline uint32_t dis_timestamp(double t_s, bool absolute)

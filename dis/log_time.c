@@ -2,17 +2,22 @@
  *
  * A capture made out of a text log, or of a playback at another speed, has packet times that are equal,
  * compressed or stretched; the stamps inside are then the better clock. They are believed only when they
- * behave like one. */
+ * behave like one, and when what the reports say of motion does not contradict them: an entity goes its speed times
+ * the seconds that passed by the right clock. */
 #include "dis/log.h"
 
+#include "dis/entity_state.h"
 #include "dis/exercise_clock.h"
 
-enum { sender_limit = 256, least_pdus = 10 };
+#include <stdlib.h>
+
+enum { sender_limit = 256, least_pdus = 10, entity_slots = 4096 };
 
 static const double least_span_s = 5;      /* shorter logs say nothing about their clock */
 static const double pace_low = 0.8, pace_high = 1.25; /* capture time over stamp time that is left alone */
 static const double counter_pace = 20;     /* stamps this much slower than packets count something else */
 static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */
+static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2, longest_step_s = 60; /* of what moves */
 static const double gap_s = 1500;          /* a silence that the hour of a stamp cannot bridge */
 
 typedef struct Voice {
@@ -82,6 +87,51 @@ static bool walk(DisLog *log, const uint16_t sender[2], bool write, double *stam
     return begun;
 }
 
+typedef struct Seen {
+    bool     used;
+    uint16_t entity;
+    uint32_t stamp;
+    double   capture_s, p_ecef[3], speed_mps;
+} Seen;
+
+/* Whether what moves has gone its speed times the time between packets, and not its speed times that between stamps. */
+static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2])
+{
+    double path_m = 0, by_stamps_m = 0, by_packets_m = 0;
+    Seen  *seen = calloc(entity_slots, sizeof *seen);
+    for (int i = 0; seen && i < log->count; i++) {
+        DisCounters    ignored = {0};
+        DisHeader      header;
+        DisEntityState state;
+        uint16_t       who[2];
+        const uint8_t *at = log->datagram[i].bytes, *pdu, *end = at + log->datagram[i].octets;
+        while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) {
+            if (header.type != dis_pdu_entity_state || !dis_pdu_sender(who, &header, pdu) || who[0] != sender[0] ||
+                who[1] != sender[1] || dis_decode_entity_state(&state, pdu, header.length) != STATUS_OK)
+                continue;
+            const double *p = state.p_ecef, capture_s = log->datagram[i].capture_s;
+            Seen         *s = &seen[state.id.entity % entity_slots], now = {true, state.id.entity, header.timestamp,
+                                                                            capture_s, {p[0], p[1], p[2]}, 0};
+            const double  v[3] = {state.velocity_mps[0], state.velocity_mps[1], state.velocity_mps[2]};
+            const double  stamps_s = dis_timestamp_step_s(s->stamp, now.stamp), packets_s = capture_s - s->capture_s;
+            double        moved[3];
+            now.speed_mps = v3_length(v);
+            v3_sub(moved, now.p_ecef, s->p_ecef);
+            if (s->used && s->entity == now.entity && stamps_s > 0 && stamps_s <= longest_step_s && packets_s >= 0 &&
+                packets_s <= longest_step_s && fmin(s->speed_mps, now.speed_mps) >= least_speed_mps &&
+                v3_length(moved) < 1e5 && now.speed_mps < 2e4) { /* false for NaN */
+                path_m += v3_length(moved);
+                by_stamps_m += 0.5 * (s->speed_mps + now.speed_mps) * stamps_s;
+                by_packets_m += 0.5 * (s->speed_mps + now.speed_mps) * packets_s;
+            }
+            *s = now;
+        }
+    }
+    free(seen);
+    return path_m >= least_path_m && fabs(by_packets_m / path_m - 1) <= motion_pace &&
+           fabs(by_packets_m - path_m) < fabs(by_stamps_m - path_m);
+}
+
 bool dis_log_retime(DisLog *log)
 {
     uint16_t sender[2];
@@ -89,6 +139,7 @@ bool dis_log_retime(DisLog *log)
     if (!loudest_sender(sender, log) || !walk(log, sender, false, &stamps_s, &packets_s)) return false;
     if (!(stamps_s >= least_span_s) || !(stamps_s * counter_pace >= packets_s)) return false;
     if (packets_s >= pace_low * stamps_s && packets_s <= pace_high * stamps_s) return false;
+    if (motion_is_at_packet_pace(log, sender)) return false;
     walk(log, sender, true, &stamps_s, &packets_s);
     return true;
 }

@@ -76,6 +76,7 @@ typedef struct DisCounters {
     uint64_t datagrams;
     uint64_t pdus[256];    /* by type, every well-formed header */
     uint64_t dropped[DIS_DROP_COUNT];
+    uint64_t stamps_doubted; /* PDUs that count from their arrival although they are stamped: exercise_clock.h */
 } DisCounters;
 
 typedef struct DisReader DisReader;

@@ -56,7 +56,7 @@ typedef struct Scenario {
     struct {
         int    site, application, exercise, version, mtu, dead_reckoning;
         bool   bundle, fillers, updates;
-        char   stamps[12], clock[32], date[32];
+        char   stamps[16], clock[32], date[32];
         double stamp_s, heartbeat_s, threshold_m, threshold_deg, rate_hz, announce_per_s;
     } dis;
     struct {

@@ -12,10 +12,12 @@ enum {
     most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
     most_tracks = 1 << 20,
     most_warfare = 4000000,
+    most_absolute = 65536, /* absolute stamps that are compared; the first ones */
 };
 
 static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
 static const double year_1990_s = 631152000, year_2100_s = 4102444800;
+static const double absolute_agree_s = 10; /* clocks of one exercise, and what a network delays */
 static const double invented_epoch_s = 1e9; /* captures made out of logs without dates start here */
 
 typedef struct TrackBuild {
@@ -33,6 +35,8 @@ typedef struct Building {
     int            warfare_count, warfare_capacity;
     uint64_t       points;
     bool           date_is_credible;
+    double        *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order heard */
+    int            absolute_capacity;
 } Building;
 
 /* ---- tracks ------------------------------------------------------------------------------- */
@@ -175,12 +179,46 @@ static void hear_start(Building *b, const DisStartResume *pdu, double t_s)
 }
 
 /* An absolute stamp gives the second of the hour; the capture date gives the hour. */
-static void hear_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
+static Status hear_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
 {
-    if (!dis_timestamp_is_absolute(timestamp) || !b->date_is_credible || !isnan(b->survey->absolute_unix_s)) return;
-    if (!(capture_s >= year_1990_s && capture_s < year_2100_s)) return;
+    if (!dis_timestamp_is_absolute(timestamp) || !b->date_is_credible) return STATUS_OK;
+    if (!(capture_s >= year_1990_s && capture_s < year_2100_s)) return STATUS_OK;
+    if (b->survey->absolute_stamps == most_absolute) return STATUS_OK;
+    const Status status = grow((void **)&b->absolute_unix_s, &b->absolute_capacity, sizeof *b->absolute_unix_s,
+                               b->survey->absolute_stamps + 1);
+    if (status != STATUS_OK) return status;
     const double past_s = dis_timestamp_seconds(timestamp);
-    b->survey->absolute_unix_s = past_s + 3600 * round((capture_s - past_s) / 3600) - t_s;
+    b->absolute_unix_s[b->survey->absolute_stamps++] = past_s + 3600 * round((capture_s - past_s) / 3600) - t_s;
+    return STATUS_OK;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double p = *(const double *)a, q = *(const double *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* What most absolute stamps agree on, as the first of those said it: a single absurd one does not choose the date. */
+static Status settle_date(Building *b)
+{
+    Survey      *survey = b->survey;
+    const int    count  = survey->absolute_stamps;
+    if (count == 0) return STATUS_OK;
+    double *sorted = malloc((size_t)count * sizeof *sorted);
+    if (!sorted) return STATUS_NO_MEMORY;
+    memcpy(sorted, b->absolute_unix_s, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_doubles);
+    int most = 0, from = 0;
+    for (int low = 0, high = 0; high < count; high++) {
+        while (sorted[high] - sorted[low] > absolute_agree_s) low++;
+        if (high - low + 1 > most) most = high - low + 1, from = low;
+    }
+    survey->absolute_left_out = count - most;
+    for (int i = 0; most >= 2 && 2 * most > count && isnan(survey->absolute_unix_s); i++)
+        if (b->absolute_unix_s[i] >= sorted[from] && b->absolute_unix_s[i] <= sorted[from + most - 1])
+            survey->absolute_unix_s = b->absolute_unix_s[i];
+    free(sorted);
+    return STATUS_OK;
 }
 
 /* ---- the pass ----------------------------------------------------------------------------- */
@@ -238,13 +276,16 @@ static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int
             survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        const double t_s = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
+        const uint64_t doubted = exercise_clock_doubts(b->clock)->by_arrival;
+        const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
         if (isnan(t_s)) continue; /* of no type that we know, and from nobody */
         if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
-        hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
-        const Status status = hear(b, &header, pdu, t_s);
+        Status status = STATUS_OK;
+        if (exercise_clock_doubts(b->clock)->by_arrival == doubted)
+            status = hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
+        if (status == STATUS_OK) status = hear(b, &header, pdu, t_s);
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
@@ -310,7 +351,10 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
     if (status == STATUS_OK) status = end_flights(&b);
+    if (status == STATUS_OK) status = settle_date(&b);
     if (status == STATUS_OK) {
+        survey.doubts                  = *exercise_clock_doubts(b.clock);
+        survey.counters.stamps_doubted = survey.doubts.by_arrival;
         drop_empty_tracks(&survey);
         if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);
         *out = survey;
@@ -323,6 +367,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
     entity_index_destroy(&b.index);
     free(b.build);
     free(b.warfare);
+    free(b.absolute_unix_s);
     return status;
 }
 

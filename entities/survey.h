@@ -41,7 +41,10 @@ typedef struct Survey {
     double    first_s, last_s;            /* exercise time of the first and last PDU; NaN: none */
     double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none heard */
     double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
-                                           * (1990 .. 2100, not 2001-09-09's round 1e9 s); NaN: none */
+                                           * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
+                                           * 10 s, when they are two at least and more than half; NaN: none */
+    int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
+    ExerciseClockDoubts doubts;           /* senders whose stamps are no clock */
     DisCounters counters;                 /* everything heard and dropped, whole log */
     double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
     uint64_t  refused;                    /* track points dropped because they exceed the memory bound */

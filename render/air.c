@@ -5,6 +5,8 @@
  * brightness as twilight does. */
 #include "render/air_private.h"
 
+#include "render/surface_balance.h"
+
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
  * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
  * nautical, 3e-7 (airglow and stars) of astronomical twilight. Right within a factor of two. */
@@ -436,8 +438,9 @@ static void heat_balance(Air *air, const Atmosphere *atmosphere, double model_te
     air->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
 
     /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
+    const double share = ground_heat_share(air->weather.wind_mps, emission_w_m2_k(1, t_k));
     const double ground_temp_k =
-        t_k + 0.018 * (air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2);
+        t_k + share * 0.018 * (air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2);
     air->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(air->planck_mwir, ground_temp_k);
     air->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air->planck_lwir, ground_temp_k);
 }
@@ -479,6 +482,10 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
                  .eye_height_m = clamp(eye->height_m, 0, air_top_m)};
     memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
     if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
+
+    if (eye->view) out->zero_z_m = air_height(out, eye->view->p_enu) - eye->height_m;
+    for (int i = 0; i < air_warmer_nodes; i++)
+        out->warmer_k[i] = (float)(atmosphere_temp_k(atmosphere, i * air_warmer_step_m) - model_temp_k);
 
     SkyJob *job = arena_alloc(arena, 1, sizeof *job);
     if (!job) return STATUS_NO_MEMORY;

@@ -7,7 +7,7 @@
  * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
  * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. Wind cools surfaces and nothing else here. */
+ * model's. Wind cools surfaces and nothing else here. With height the air's temperature changes as the model's does. */
 #ifndef RENDER_AIR_H
 #define RENDER_AIR_H
 
@@ -31,6 +31,9 @@ typedef struct AirSky {
     float thermal_w_m2_sr[air_sky_ups + 1], scattered_w_m2_sr[air_sky_ups + 1][air_sky_azimuths + 1];
     float around_sun[air_sky_angles + 2]; /* one to spare at the end */
 } AirSky;
+
+/* Air temperature by height: 0 .. 16 km in steps of 500 m; as at 16 km above. */
+enum { air_warmer_nodes = 33 };
 
 typedef struct AirTable AirTable; /* paths from this eye */
 
@@ -58,6 +61,8 @@ typedef struct Air {
     double    even_per_m;                  /* extinction of even air, whose radiance is that of its sky */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
     double    solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
+    double    zero_z_m;                    /* ENU z of the model's 0 km; heights bend with the Earth: air_height */
+    float     warmer_k[air_warmer_nodes];  /* of the air every 500 m up from there, against weather.air_temp_k */
 } Air;
 
 /* What does not change between frames. */
@@ -82,6 +87,23 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
  * sky_w_m2_sr[band]; even_per_m 0: nothing in between. No tables, no arena. */
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
               double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir);
+
+/* low: steps below zero that the first one is drawn on to */
+static const double air_warmer_step_m = 500, air_warmer_low = -4;
+
+/* Height of a place above the model's 0 km: the tangent plane leaves the Earth. */
+static inline double air_height(const Air *air, const double p_enu[3])
+{
+    return p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3) - air->zero_z_m;
+}
+/* Air temperature there, K. */
+static inline double air_temp_at(const Air *air, const double p_enu[3])
+{
+    const double at = clamp(air_height(air, p_enu) / air_warmer_step_m, air_warmer_low, air_warmer_nodes - 1);
+    const int    i  = at < 0 ? 0 : at < air_warmer_nodes - 2 ? (int)at : air_warmer_nodes - 2;
+    const double low_k = (double)air->warmer_k[i], high_k = (double)air->warmer_k[i + 1];
+    return air->weather.air_temp_k + low_k + (at - i) * (high_k - low_k);
+}
 
 /* Where a direction lies in the tables of the sky, and a plane's normal in those of the light on it: the same for every
  * band, so that who asks for several finds it once. */

@@ -164,7 +164,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
         v->pattern[2] -= 0.25 * puff->age_s; /* it rolls upwards through its own outline */
         placed[count].law    = law;
-        placed[count].temp_k = volume.temp_k;
+        placed[count].temp_k = volume.temp_k + air_temp_at(air, volume.p_enu) - air->weather.air_temp_k;
         placed[count].group  = puff->group;
         placed[count].index  = i;
         count++;

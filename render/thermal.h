@@ -8,7 +8,8 @@
 #include "render/view.h"
 
 /* Temperature of each hit, K: parts from the snapshot's heat by role over a passive temperature, ground by
- * class, slope and texture. No present sun ray enters: no instant thermal shadows. Sky: NaN. */
+ * class, slope, texture and wind, all over the air of their own height; snow no warmer than 273.15 K, water no colder
+ * than 271.35 K. No present sun ray enters: no instant thermal shadows. Sky: NaN. */
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
                          const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture);
 

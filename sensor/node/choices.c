@@ -1,6 +1,8 @@
 #include "sensor/node/choices.h"
 
 #include "dis/enumerations.h"
+#include "render/view.h"
+#include "terrain/sun.h"
 #include "sensor/node/opening.h"
 
 #include <stdarg.h>
@@ -292,9 +294,29 @@ void choose_rate(HostPlan *plan, Choices *choices, const Config *config)
 
 /* ---- time of day ---------------------------------------------------------------------------- */
 
+/* Of senders that do not write the time into their stamps. */
+static void say_doubts(Choices *choices, const Survey *survey)
+{
+    enum { most_lines = 4 };
+    char text[exercise_clock_doubt_text_size];
+    for (int i = 0; i < survey->doubts.count && i < most_lines; i++) {
+        exercise_clock_doubt_text(text, sizeof text, &survey->doubts.sender[i]);
+        choice_add(choices, "%s", text);
+    }
+    if (survey->doubts.count > most_lines)
+        choice_add(choices, "time stamps of %s%d more senders are no clock: `pitviper inspect` lists them",
+                   survey->doubts.count == exercise_clock_doubts_listed ? "at least " : "",
+                   survey->doubts.count - most_lines);
+}
+
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame)
 {
     double first_unix_s;
+    char   left_out[80] = "";
+    say_doubts(choices, survey);
+    if (survey->absolute_left_out > 0)
+        snprintf(left_out, sizeof left_out, "; %d of %d absolute stamps disagree and are left out",
+                 survey->absolute_left_out, survey->absolute_stamps);
     if (*config->exercise.utc) {
         if (!text_to_unix_s(&first_unix_s, config->exercise.utc)) {
             log_error("replay: exercise.utc: '%s' is not a time such as 2026-06-21T10:00:00Z, 1900 .. 2100",
@@ -307,15 +329,34 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
         choice_add(choices, "time of day: the clock of a Start/Resume PDU (exercise.utc)");
     } else if (isfinite(survey->absolute_unix_s)) {
         *unix_s = survey->absolute_unix_s;
-        choice_add(choices, "time of day: absolute time stamps and the date of the capture (exercise.utc)");
+        choice_add(choices, "time of day: absolute time stamps and the date of the capture%s (exercise.utc)",
+                   left_out);
     } else {
         /* mean solar time: 86400 s for 2 pi of longitude */
         double ten_local_s = 0;
         text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
         *unix_s = ten_local_s - frame->origin.lon_rad / (2 * pi_rad) * 86400 - survey->first_s;
-        choice_add(choices, "time of day: local solar 10:00 on 21 June, the log does not say (exercise.utc)");
+        choice_add(choices, "time of day: local solar 10:00 on 21 June, %s (exercise.utc)",
+                   survey->absolute_stamps > 0 ? "the absolute stamps of the log do not agree"
+                                               : "the log does not say");
     }
     return STATUS_OK;
+}
+
+void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame)
+{
+    static const double dark_deg = -6;
+    const double        at_s[2] = {plan->start_s, plan->end_s};
+    double              lowest_deg = INFINITY;
+    if (!(bands >> BAND_OPTICAL & 1)) return;
+    for (int k = 0; k < 2; k++) {
+        Sun sun;
+        if (!isfinite(at_s[k]) || sun_at(&sun, unix_s + at_s[k], &frame->origin, 1013.25, 15, NAN) != STATUS_OK) continue;
+        lowest_deg = fmin(lowest_deg, sun.elevation_rad / rad_per_deg);
+    }
+    if (lowest_deg < dark_deg)
+        choice_add(choices, "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
+                   "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)", -lowest_deg);
 }
 
 /* ---- ground --------------------------------------------------------------------------------- */

@@ -38,8 +38,11 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 
 /* Frames a second of exercise time, into the plan. */
 void choose_rate(HostPlan *plan, Choices *choices, const Config *config);
-/* Unix time of exercise time 0. */
+/* Unix time of exercise time 0. Also says whose time stamps are no clock. */
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
+/* A line when optical pictures of this place will be black: the sun more than 6 degrees below the horizon, the end of
+ * civil twilight, at the beginning or the end of the plan. */
+void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame);
 /* The exercise identifier to hear: as configured, or the one with most usable Entity States; -1: all. Causal: also
  * where there is but one, others may come. */
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);

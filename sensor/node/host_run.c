@@ -158,6 +158,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool 
     say_visibility(choices, &o->config, world->atmosphere);
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
+    choice_say_night(choices, run->bands, *unix_s, plan, &frame);
     for (int i = 0; i < choices->count; i++) printf("%s\n", choices->line[i]);
     fflush(stdout);
     return STATUS_OK;

@@ -78,6 +78,7 @@ typedef struct Findings {
     double      first_s, last_s;
     Rows        entities, senders, events;
     uint64_t    removed, started, stopped;
+    ExerciseClockDoubts doubts; /* senders whose stamps are no clock */
 } Findings;
 
 static void *row_at(const Rows *rows, int i) { return rows->row + (size_t)i * rows->size; }
@@ -278,6 +279,7 @@ static Status gather(Findings *f, const DisLog *log, const Options *options)
             status = note_pdu(f, header.type, pdu, header.length, t_s);
         }
     }
+    if (clock) f->doubts = *exercise_clock_doubts(clock);
     exercise_clock_destroy(clock);
     return status;
 }
@@ -364,6 +366,11 @@ static void print_senders(const Findings *f)
                              : row->absolute == row->pdus ? "absolute"
                                                           : "relative and absolute";
         printf("  %-12s %-8s %8llu  %s\n", name, versions, (unsigned long long)row->pdus, stamps);
+    }
+    for (int i = 0; i < f->doubts.count; i++) {
+        char text[exercise_clock_doubt_text_size];
+        exercise_clock_doubt_text(text, sizeof text, &f->doubts.sender[i]);
+        printf("  %s\n", text);
     }
 }
 

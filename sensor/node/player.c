@@ -35,6 +35,7 @@ struct Player {
     Aimed          aimed[shots_kept];            /* rings: the latest */
     DisEntityId    munition[munitions_kept];
     uint64_t       shots, munitions;
+    int            doubts_said;
 };
 
 Status player_create(Player **out, int exercise, bool causal)
@@ -91,6 +92,19 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
     return STATUS_OK;
 }
 
+/* Counts stamps that are no clock; says it of a sender heard live, once. Of a log the survey says it. */
+static void note_doubts(Player *player, bool say)
+{
+    const ExerciseClockDoubts *doubts = exercise_clock_doubts(player->clock);
+    char                       text[exercise_clock_doubt_text_size];
+    player->counters.stamps_doubted = doubts->by_arrival;
+    for (; player->doubts_said < doubts->count; player->doubts_said++) {
+        if (!say) continue;
+        exercise_clock_doubt_text(text, sizeof text, &doubts->sender[player->doubts_said]);
+        log_warn("run: %s", text);
+    }
+}
+
 Status player_add(Player *player, const DisDatagram *datagram, bool keep)
 {
     const uint8_t *at = datagram->bytes, *pdu;
@@ -103,6 +117,7 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep)
         }
         event.t_s = exercise_clock_pdu_time(player->clock, &event.header, pdu, datagram->capture_s);
         if (isnan(event.t_s)) continue;
+        note_doubts(player, keep);
         if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
         player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
         event.counts_s   = player->causal ? player->latest_s : event.t_s;

@@ -249,6 +249,7 @@ static json_t *counters_json(const RunRecord *r)
     json_object_set_new(counters, "pdus", pdus);
     for (int i = 0; i < DIS_DROP_COUNT; i++) set_count(dropped, dis_drop_name((DisDrop)i), r->dis->dropped[i]);
     json_object_set_new(counters, "dropped", dropped);
+    set_count(counters, "stamps_doubted", r->dis->stamps_doubted);
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live));

@@ -9,6 +9,8 @@ enum { pdus = 200 };
 static uint8_t     bytes[pdus][160];
 static DisDatagram datagram[pdus];
 
+static double speed_mps, motion_rate; /* what the reports say, and seconds of motion a second of stamp */
+
 /* PDU k stamped at stamp_s(k), captured at capture_s(k); every fifth from another sender, unstamped. */
 static DisLog make(double stamp_s[pdus], double capture_s[pdus])
 {
@@ -16,7 +18,9 @@ static DisLog make(double stamp_s[pdus], double capture_s[pdus])
         const double   past_s = fmod(stamp_s[k] + 7200, 3600);
         DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
                                          .timestamp = k % 5 == 4 ? 0 : (uint32_t)(past_s / 3600 * 2147483648.0) << 1},
-                              .id = {1, (uint16_t)(k % 5 == 4 ? 2 : 1), 7}};
+                              .id = {1, (uint16_t)(k % 5 == 4 ? 2 : 1), 7},
+                              .p_ecef = {6.4e6, 0, speed_mps * motion_rate * stamp_s[k]},
+                              .velocity_mps = {0, (float)(0.6 * speed_mps), (float)(0.8 * speed_mps)}};
         const size_t octets = dis_encode_entity_state(bytes[k], sizeof bytes[k], &pdu);
         CHECK(octets > 0);
         datagram[k] = (DisDatagram){.capture_s = capture_s[k], .octets = (uint32_t)octets, .bytes = bytes[k]};
@@ -59,6 +63,24 @@ static void an_honest_capture_is_left_alone(void **state)
     CHECK(!retimed(1.1, 0));
 }
 
+/* Stamps at half and at twice the rate of packets: what moves says which of the two is the clock. */
+static void motion_decides_between_two_clocks(void **state)
+{
+    (void)state;
+    static const double rate[] = {0.5, 0.6, 2};
+    speed_mps = 250;
+    for (int k = 0; k < 3; k++) {
+        motion_rate = 1; /* a playback at another speed */
+        CHECK(retimed(rate[k], 0));
+        motion_rate = rate[k]; /* stamps that run wrong */
+        CHECK(!retimed(rate[k], 0));
+        CHECK(!retimed(rate[k], 0.1));
+        motion_rate = 0.1 * rate[k]; /* says nothing */
+        CHECK(retimed(rate[k], 0));
+    }
+    speed_mps = motion_rate = 0;
+}
+
 static void stamps_that_are_no_clock_are_not_believed(void **state)
 {
     (void)state;
@@ -86,6 +108,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(packets_at_another_pace_take_the_stamps),
         cmocka_unit_test(an_honest_capture_is_left_alone),
+        cmocka_unit_test(motion_decides_between_two_clocks),
         cmocka_unit_test(stamps_that_are_no_clock_are_not_believed),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -121,7 +121,7 @@ static void tracks_are_sorted_and_in_world_axes(void **state)
                                    .phi_rad = 2};
     filled(m, dis_encode_entity_state_update(room(m, 13), 150, &update));
     update.id = id_of(77); /* never introduced */
-    filled(m, dis_encode_entity_state_update(room(m, 13.5), 150, &update));
+    filled(m, dis_encode_entity_state_update(room(m, 13.1), 150, &update));
     say_state(m, 12.5, body); /* late */
 
     Survey s = survey_of(m);
@@ -244,6 +244,7 @@ static void clocks_tell_the_date(void **state)
 
     m->absolute = true;
     m->datagram[0].capture_s += 3; /* the capturing machine is three seconds fast */
+    m->epoch_s += 3;
     say_state(m, 2401, state_of(1, 0));
     DisStartResume start = {.header = header(m, dis_pdu_start_resume, 2402),
                             .originating = id_of(1),
@@ -263,6 +264,58 @@ static void clocks_tell_the_date(void **state)
     say_state(m, 10, state_of(1, 0));
     s = survey_of(m);
     CHECK(isnan(s.absolute_unix_s));
+    survey_destroy(&s);
+}
+
+/* One absolute stamp among those of two proper senders, 25 minutes off, heard first or amid the others. */
+static void one_absurd_stamp_does_not_tell_the_date(void **state)
+{
+    (void)state;
+    const double date_s = 1371300000;
+    for (int absurd = -1; absurd < 20; absurd++) { /* -1: none */
+        MadeLog *m = new_log(date_s - 2400);
+        m->absolute = true;
+        for (int i = 0; i < 20; i++) {
+            DisEntityState said = state_of(1 + i % 2, 0);
+            if (i % 2) said.id.application = 5;
+            if (i == absurd) said.id.application = 99;
+            say_state(m, 2400 + i, said);
+            if (i == absurd) { /* the header's stamp: octets 4 .. 7 */
+                const uint32_t wrong = stamp(m, 3900);
+                for (int k = 0; k < 4; k++) ((uint8_t *)(uintptr_t)m->datagram[i].bytes)[4 + k] = (uint8_t)(wrong >> (24 - 8 * k));
+            }
+        }
+        Survey s = survey_of(m);
+        CHECK(s.absolute_stamps == 20 && s.absolute_left_out == (absurd >= 0));
+        CHECK_NEAR(s.absolute_unix_s + s.datagram_s[19], date_s + 19, 1e-5);
+        survey_destroy(&s);
+    }
+    MadeLog *m = new_log(date_s - 2400); /* alone it says nothing */
+    m->absolute = true;
+    say_state(m, 3900, state_of(1, 0));
+    m->datagram[0].capture_s = date_s;
+    m->absolute = false;
+    for (int i = 0; i < 20; i++) say_state(m, 2400 + i, state_of(2, 0));
+    Survey s = survey_of(m);
+    CHECK(s.absolute_stamps == 1 && isnan(s.absolute_unix_s));
+    survey_destroy(&s);
+}
+
+/* A sender of a constant absolute stamp says nothing of the date either, however often. */
+static void a_constant_absolute_stamp_does_not_tell_the_date(void **state)
+{
+    (void)state;
+    const double date_s = 1371300000;
+    MadeLog     *m = new_log(date_s);
+    m->absolute = true;
+    for (int i = 0; i < 30; i++) {
+        say_state(m, 777, state_of(1, 0));
+        m->datagram[i].capture_s = date_s + i;
+    }
+    Survey s = survey_of(m);
+    CHECK(s.absolute_stamps == 1 && isnan(s.absolute_unix_s));
+    CHECK(s.doubts.count == 1 && s.doubts.by_arrival == 29 && s.counters.stamps_doubted == 29);
+    CHECK_NEAR(s.last_s - s.first_s, 29, 1e-5);
     survey_destroy(&s);
 }
 
@@ -468,6 +521,8 @@ int main(void)
         cmocka_unit_test(shots_join_by_munition_then_event),
         cmocka_unit_test(many_shots_of_one_id),
         cmocka_unit_test(clocks_tell_the_date),
+        cmocka_unit_test(one_absurd_stamp_does_not_tell_the_date),
+        cmocka_unit_test(a_constant_absolute_stamp_does_not_tell_the_date),
         cmocka_unit_test(constant_acceleration_is_exact),
         cmocka_unit_test(no_overshoot),
         cmocka_unit_test(ends_and_gaps_are_held),

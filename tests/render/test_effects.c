@@ -81,6 +81,15 @@ static View view_north(int side_px)
                   .r_enu_from_cam = {1, 0, 0, 0, 0, 1, 0, -1, 0}};
 }
 
+/* Air temperature where wind and rise have put it: 6.5 K/km from 288.15 K on the round Earth. */
+static double air_k_at(const EffectPuff *puff, const Air *air)
+{
+    EffectVolume v;
+    CHECK(effect_volume(&v, &effects, puff, &air->weather, &world.frame));
+    const double height_m = v.p_enu[2] + (v.p_enu[0] * v.p_enu[0] + v.p_enu[1] * v.p_enu[1]) / (2 * 6371e3);
+    return 288.15 - 0.0065 * height_m;
+}
+
 static const unsigned all_bands = (1u << effect_band_count) - 1;
 
 /* Transmittance and added radiance along the boresight. */
@@ -130,7 +139,7 @@ static void flash_follows_its_closed_form(void **state)
         const double grown = 1 - exp(-age_s / (law->grow_s * scale)), lived = age_s / (law->life_s * scale);
         const double radius_m = scale * (law->radius_start_m + (law->radius_end_m - law->radius_start_m) * grown);
         const double thin = (1 - lived * lived) * (1 - lived * lived);
-        const double temp_k = 288.15 + law->temp_rise_k * exp(-age_s / (law->cool_s * scale));
+        const double temp_k = air_k_at(&puff, &air) + law->temp_rise_k * exp(-age_s / (law->cool_s * scale));
         /* through the centre of (1 - q^2)^2: 16/15 of the radius at the peak, and the peak is 35/8 of the mean */
         const double depth = law->extinction_m2_kg[effect_band_g] * kg * thin / (4.0 / 3 * pi_rad * pow(radius_m, 3)) *
                              35.0 / 8 * 16.0 / 15 * radius_m;
@@ -157,7 +166,7 @@ static void thick_smoke_reads_its_temperature(void **state)
     for (double range_m = 200; range_m <= 5000; range_m *= 5) {
         EffectPuff   puff = puff_at(EFFECT_BURST_SMOKE, range_m, 0, 50);
         double       tau[effect_band_count], added[effect_band_count];
-        const double temp_k = 288.15 + effects.law[EFFECT_BURST_SMOKE].temp_rise_k, albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
+        const double temp_k = air_k_at(&puff, &air) + effects.law[EFFECT_BURST_SMOKE].temp_rise_k, albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
         /* surroundings as warm as it is: then what it scatters is the same */
         air.ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air.planck_lwir, temp_k);
         air.sky_w_m2[AIR_LWIR] = pi_rad * air.ground_w_m2_sr[AIR_LWIR];
@@ -180,9 +189,10 @@ static void near_infrared_sees_it_longer(void **state)
     static Veils     path;
     const Air        air = air_when(-30);
     const EffectLaw *law = &effects.law[EFFECT_FLAME];
-    const double     age_s = 1, range_m = 100, temp_k = 288.15 + law->temp_rise_k * exp(-age_s / law->cool_s);
+    const double     age_s = 1, range_m = 100;
     double           tau[effect_band_count], added[effect_band_count];
     EffectPuff       puff = puff_at(EFFECT_FLAME, range_m, age_s, 20);
+    const double     temp_k = air_k_at(&puff, &air) + law->temp_rise_k * exp(-age_s / law->cool_s);
     boresight(tau, added, &puff, &air);
     path_north(&path, &air, AIR_NIR, range_m, (float)temp_k);
     const double glow = planck_band(0.7e-6, 1.1e-6, temp_k, NULL), night = air.sky_w_m2[AIR_NIR] / pi_rad;

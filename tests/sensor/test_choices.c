@@ -40,6 +40,48 @@ static void the_exercise_heard_most_is_taken(void **state)
     CHECK(choices.count == 0);
 }
 
+/* At the equator on the day of the equinox the sun goes down by a quarter degree a minute from 18:07 UTC on. */
+static void optical_pictures_of_the_night_are_said_to_be_black(void **state)
+{
+    (void)state;
+    static const struct { const char *utc; bool black; } at[] = {
+        {"2026-03-20T12:00:00Z", false}, {"2026-03-20T18:20:00Z", false}, {"2026-03-20T18:27:00Z", false},
+        {"2026-03-20T18:40:00Z", true}, {"2026-03-21T00:00:00Z", true}, {"2026-03-21T06:10:00Z", false}};
+    const LocalFrame frame = {0};
+    for (size_t k = 0; k < sizeof at / sizeof at[0]; k++)
+        for (unsigned bands = 1; bands < 1u << BAND_COUNT; bands++) {
+            double   unix_s;
+            HostPlan plan    = {.start_s = 100, .end_s = k % 2 ? INFINITY : 130};
+            Choices  choices = {0};
+            CHECK(text_to_unix_s(&unix_s, at[k].utc));
+            choice_say_night(&choices, bands, unix_s - 100, &plan, &frame);
+            CHECK(choices.count == (at[k].black && bands >> BAND_OPTICAL & 1));
+            if (choices.count) CHECK(says(&choices, "optical: black") && says(&choices, "exercise.utc"));
+        }
+}
+
+/* Senders whose stamps are no clock, and absolute stamps that disagree, are said. */
+static void stamps_that_are_no_clock_are_said(void **state)
+{
+    (void)state;
+    Survey     survey = {.first_s = 0, .clock_start_unix_s = NAN, .absolute_unix_s = 5e8, .absolute_stamps = 20,
+                         .absolute_left_out = 1, .doubts = {.count = 6}};
+    Config     config = config_default();
+    Choices    choices = {0};
+    LocalFrame frame = {0};
+    double     unix_s;
+    for (int i = 0; i < 6; i++)
+        survey.doubts.sender[i] = (ExerciseClockDoubt){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
+    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(says(&choices, "time stamps of 3:40 stand still: 89 of its 90 PDUs count from their arrival"));
+    CHECK(says(&choices, "3:43") && !says(&choices, "3:44") && says(&choices, "2 more senders"));
+    CHECK(says(&choices, "1 of 20 absolute stamps disagree and are left out"));
+    survey.absolute_unix_s = NAN;
+    choices.count = 0;
+    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(says(&choices, "local solar 10:00 on 21 June, the absolute stamps of the log do not agree"));
+}
+
 static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
 {
     (void)state;
@@ -176,6 +218,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_exercise_heard_most_is_taken),
+        cmocka_unit_test(optical_pictures_of_the_night_are_said_to_be_black),
+        cmocka_unit_test(stamps_that_are_no_clock_are_said),
         cmocka_unit_test(the_time_of_day_comes_from_the_best_that_is_known),
         cmocka_unit_test(the_longest_flight_that_hit_is_the_host),
         cmocka_unit_test(a_causal_host_is_one_that_is_still_there),

@@ -1,0 +1,168 @@
+/* Senders whose time stamps are no clock, through the player and the entity table: where a mover of 250 m/s is shown in
+ * every frame against where it was.
+ *
+ * The judge is the mover's own line: it reports its true position at known instants, so nothing of the clock enters the
+ * truth. What may remain is the arrival jitter that the clock allows before it doubts stamps, times the speed. */
+#include "tests/check.h"
+
+#include "sensor/node/player.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { most_reports = 2000, octets_most = 160 };
+
+static const double speed_mps = 250, span_s = 60, frame_s = 0.05, sim0_s = 3570, unix0_s = 1.75e9 + 0.375;
+static const double tick_s = 3600.0 / 2147483648.0;
+
+typedef enum Kind {
+    STAMP_ZERO, STAMP_CONSTANT, STAMP_CONSTANT_ABSOLUTE, STAMP_MS, STAMP_US, STAMP_US_SHIFTED, STAMP_UNIX_S,
+    STAMP_COUNT, STAMP_COUNT_PER_ENTITY, STAMP_RANDOM, STAMP_SWAPPED, STAMP_HALF, STAMP_DOUBLE, STAMP_RELATIVE,
+    STAMP_ABSOLUTE, STAMP_JITTER, KIND_COUNT
+} Kind;
+
+static const char *const kind_name[KIND_COUNT] = {
+    "zero", "constant", "constant, absolute", "milliseconds", "microseconds", "microseconds, shifted", "Unix seconds",
+    "counter of PDUs", "counter of an entity's PDUs", "random", "octets swapped", "half rate", "double rate",
+    "relative", "absolute", "relative, +-50 ms of jitter"};
+
+static uint8_t     bytes[2 * most_reports][octets_most];
+static DisDatagram datagram[2 * most_reports];
+static Catalog    *catalog;
+
+static int open_catalog(void **state)
+{
+    (void)state;
+    char path[512];
+    return etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.05) == STATUS_OK ? 0 : -1;
+}
+
+static int close_catalog(void **state)
+{
+    (void)state;
+    catalog_close(catalog);
+    return 0;
+}
+
+static uint32_t good_stamp(double sim_s, bool absolute)
+{
+    return (uint32_t)(uint64_t)llround(fmod(sim_s, 3600) / tick_s) << 1 | absolute;
+}
+
+/* The k-th PDU of the sender, the n-th of its entity, at sim_s. */
+static uint32_t stamp_of(Kind kind, double sim_s, int k, int n, int entity)
+{
+    const double passed_s = sim_s - sim0_s;
+    switch (kind) {
+    case STAMP_ZERO: return 0;
+    case STAMP_CONSTANT: return 0x6A09E666;
+    case STAMP_CONSTANT_ABSOLUTE: return 0x6A09E667;
+    case STAMP_MS: return (uint32_t)llround(1e3 * (passed_s + 77));
+    case STAMP_US: return (uint32_t)llround(1e6 * (passed_s + 77));
+    case STAMP_US_SHIFTED: return (uint32_t)llround(1e6 * (passed_s + 77)) << 1;
+    case STAMP_UNIX_S: return (uint32_t)floor(unix0_s + passed_s);
+    case STAMP_COUNT: return (uint32_t)k + 1;
+    case STAMP_COUNT_PER_ENTITY: return (uint32_t)n + 1 + 1000 * (uint32_t)entity;
+    case STAMP_RANDOM: return (uint32_t)(4294967296.0 * random_uniform(9, 1, 0, (uint64_t)k));
+    case STAMP_SWAPPED: return __builtin_bswap32(good_stamp(sim_s, false));
+    case STAMP_HALF: return good_stamp(sim0_s + 0.5 * passed_s, false);
+    case STAMP_DOUBLE: return good_stamp(sim0_s + 2 * passed_s, false);
+    case STAMP_ABSOLUTE: return good_stamp(sim_s, true);
+    case STAMP_RELATIVE: case STAMP_JITTER: case KIND_COUNT: break;
+    }
+    return good_stamp(sim_s, false);
+}
+
+static const double top_m = 6383137;
+
+/* One sender with a mover (entity 1) and one that stands (entity 2), the latter half a heartbeat later. beside: another,
+ * proper, sender is heard first. */
+static DisLog make_log(Kind kind, double heartbeat_s, bool beside)
+{
+    int count = 0, k = 0;
+    if (beside) {
+        DisEntityState other = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                           .timestamp = good_stamp(sim0_s + 1234 - 0.4, false)},
+                                .id = {2, 9, 1}, .type = {1, 1, 222, 1, 1, 1, 0}, .p_ecef = {6378137, 0, 900},
+                                .dead_reckoning = 1};
+        const size_t octets = dis_encode_entity_state(bytes[count], octets_most, &other);
+        datagram[count] = (DisDatagram){.capture_s = unix0_s - 0.4, .octets = (uint32_t)octets, .bytes = bytes[count]};
+        count++;
+    }
+    for (int n = 0; n * heartbeat_s <= span_s; n++)
+        for (int entity = 1; entity <= 2; entity++, k++, count++) {
+            const double passed_s = (n + 0.5 * (entity - 1)) * heartbeat_s;
+            const double jitter_s = kind == STAMP_JITTER ? 0.1 * random_uniform(9, 2, 0, (uint64_t)k) - 0.05 : 0;
+            DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                             .timestamp = stamp_of(kind, sim0_s + passed_s, k, n, entity)},
+                                  .id = {1, 1, (uint16_t)entity}, .type = {1, 2, 222, 1, 1, 1, 0},
+                                  .p_ecef = {top_m, entity == 1 ? speed_mps * passed_s : 5000, 0},
+                                  .velocity_mps = {0, entity == 1 ? (float)speed_mps : 0, 0}, .dead_reckoning = 2};
+            const size_t octets = dis_encode_entity_state(bytes[count], octets_most, &pdu);
+            CHECK(octets > 0 && count < 2 * most_reports);
+            datagram[count] = (DisDatagram){.capture_s = unix0_s + passed_s + jitter_s, .octets = (uint32_t)octets,
+                                            .bytes = bytes[count]};
+        }
+    return (DisLog){.count = count, .datagram = datagram};
+}
+
+/* Worst distance of the mover from its line over the frames from its sender's second report on, m; frames after the
+ * last report left out. */
+static double worst_m(Kind kind, double heartbeat_s, bool beside, bool causal)
+{
+    const DisLog      log = make_log(kind, heartbeat_s, beside);
+    EntityTableConfig config = entity_table_default_config();
+    EntityTable      *table  = NULL;
+    Player           *player = NULL;
+    char              heat[512];
+    double            worst = 0;
+    CHECK(etc_path(heat, sizeof heat, "heat.csv"));
+    assert_int_equal(entity_table_create(&table, &config, catalog, heat), STATUS_OK);
+    assert_int_equal(player_create(&player, -1, causal), STATUS_OK);
+    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    for (int f = 0; f * frame_s < span_s; f++) {
+        const double   passed_s = 0.5 * heartbeat_s + 0.06 + f * frame_s;
+        const double   t_s = player_time_s(player, unix0_s + passed_s);
+        SnapshotEntity e;
+        if (passed_s > span_s) break;
+        player_feed(player, table, t_s);
+        const EntityHandle handle = entity_table_find(table, (DisEntityId){1, 1, 1});
+        if (!entity_table_pose(&e, table, handle, t_s)) {
+            worst = INFINITY;
+            break;
+        }
+        worst = fmax(worst, fabs(e.p_ecef[1] - speed_mps * passed_s));
+    }
+    player_destroy(player);
+    entity_table_destroy(table);
+    return worst;
+}
+
+/* The dead-reckoning threshold of 1 m, and the speed times what the clock allows as jitter of arrivals: nothing where the
+ * stamps stand still or jump, dis/exercise_clock.h's 0.15 s where they run, but at another rate. */
+static void a_mover_stays_where_it_is(void **state)
+{
+    (void)state;
+    static const double heartbeat_s[] = {0.12, 0.2, 1, 5};
+    const bool          show = getenv("PITVIPER_SHOW") != NULL;
+    for (int kind = 0; kind < KIND_COUNT; kind++) {
+        const bool   runs = kind == STAMP_US || kind == STAMP_US_SHIFTED || kind == STAMP_HALF || kind == STAMP_DOUBLE;
+        const double allowed_s = runs ? 0.15 : kind == STAMP_JITTER ? 0.1 : 0;
+        if (show) printf("%-28s", kind_name[kind]);
+        for (int h = 0; h < 4; h++)
+            for (int way = 0; way < 4; way++) {
+                const double m = worst_m((Kind)kind, heartbeat_s[h], way & 1, way & 2);
+                if (show) printf(" %8.1f%s", m, way == 3 ? " |" : "");
+                else CHECK_NEAR(m, 0, 1 + speed_mps * allowed_s);
+            }
+        if (show) printf("\n");
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_mover_stays_where_it_is),
+    };
+    return cmocka_run_group_tests(tests, open_catalog, close_catalog);
+}
