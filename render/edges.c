@@ -14,6 +14,7 @@ static const double middling_px = 64;
 static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
 static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
+static const double kinds_bent = 1; /* of what the range changes from pixel to pixel: ground is no plane */
 
 static void mark_box(Job *job, const double box[4], RefineFlag flag)
 {
@@ -88,16 +89,26 @@ static double plane_range(const Picture *p, size_t at, const double d_at[3], con
     return range_m > 0 && range_m < INFINITY ? range_m : NAN;
 }
 
-static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step)
+/* Whether hit b lies off the plane of hit a: by more than step_m and `bent` times what the range changes along it. */
+static bool lies_off(const Picture *p, size_t a, size_t b, const double d_a[3], const double d_b[3], double step_m,
+                     double bent)
+{
+    const double there_m = plane_range(p, a, d_a, d_b);
+    return !(fabs(there_m - p->range_m[b]) <= step_m + bent * fabs(there_m - p->range_m[a]));
+}
+
+/* Whether each of two hits lies off the other's plane; `either`: one of them is enough (a roof and the wall below it,
+ * one seen along its own plane). */
+static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step_m,
+                           double bent, bool either)
 {
     const Picture *p = job->picture;
-    const double   near_m = fmin(p->range_m[a], p->range_m[b]), far_m = fmax(p->range_m[a], p->range_m[b]);
     double         d_a[3], d_b[3];
-    if (far_m - near_m <= step * near_m) return false;
+    if (fabsf(p->range_m[a] - p->range_m[b]) <= step_m) return false;
     view_ray(d_a, &job->request->view, xa + 0.5, ya + 0.5);
     view_ray(d_b, &job->request->view, xb + 0.5, yb + 0.5);
-    return !(fabs(plane_range(p, a, d_a, d_b) - p->range_m[b]) <= step * near_m) &&
-           !(fabs(plane_range(p, b, d_b, d_a) - p->range_m[a]) <= step * near_m);
+    const bool from_a = lies_off(p, a, b, d_a, d_b, step_m, bent), from_b = lies_off(p, b, a, d_b, d_a, step_m, bent);
+    return either ? from_a || from_b : from_a && from_b;
 }
 
 static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
@@ -112,7 +123,10 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     const bool   other = p->material[a] != p->material[b];
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
-    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, part ? step_part : step_ground))
+    const double near_m = fmin(p->range_m[a], p->range_m[b]);
+    const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
+    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px : step_ground * near_m;
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
     return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
@@ -144,7 +158,11 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
     const View      *view  = &job->request->view;
     const int        width = x1 - x0;
     uint32_t         across[side + 1], above[side], below[side]; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    uint16_t         corner[corner_capacity];
+    const bool       grounds = job->world->landscape && job->request->samples == 1 &&
+                         job->request->bands & ~(1u << BAND_RADAR);
     const int        left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
+    if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
     if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
     for (int y = y0; y < y1; y++) {
         find_plain(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
@@ -158,6 +176,10 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
                 flag |= edge_between(job, x, y, xb, yb);
             }
+            const size_t px = pixel_index(job, x, y);
+            if (grounds && !(flag & refine_all) && !job->picture->entity[px] && job->picture->range_m[px] < INFINITY &&
+                corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
+                flag |= refine_ground;
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
             flags[(y - y0) * width + k] = (uint8_t)flag;
         }
@@ -167,32 +189,25 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
 
 /* ---- ground --------------------------------------------------------------------------------- */
 
-void spread_ground(Scratch *s, const Job *job)
+void recall_ground(Scratch *s, const Job *job)
 {
-    const View    *view    = &job->request->view;
-    const Picture *p       = job->picture;
-    const Block   *block   = &s->block;
-    const int      samples = block->n * block->n;
-    s->hits.count   = s->rays.count = block->pixels * samples;
+    const View    *view  = &job->request->view;
+    const Picture *p     = job->picture;
+    const Block   *block = &s->block;
+    s->hits.count   = s->rays.count = block->pixels;
     s->hits.columns = s->rays.columns = 0;
     for (int i = 0; i < s->hits.count; i++) {
-        const int    x = block->x[i / samples], y = block->y[i / samples];
-        const size_t px = pixel_index(job, x, y);
-        double       place[2], d_enu[3], d_centre[3];
-        sample_place(place, block->n, i % samples);
-        view_ray(d_enu, view, x + place[0], y + place[1]);
-        view_ray(d_centre, view, x + 0.5, y + 0.5);
-        double range_m = plane_range(p, px, d_centre, d_enu);
-        /* seen from along it a plane runs off; the ground does not */
-        if (!(range_m < 2 * p->range_m[px] && range_m > 0.5 * p->range_m[px])) range_m = p->range_m[px];
-        s->hits.range_m[i] = range_m;
+        const size_t px = pixel_index(job, block->x[i], block->y[i]);
+        double       d_enu[3];
+        view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
+        s->hits.range_m[i] = p->range_m[px];
         s->hits.entity[i]  = 0;
         s->hits.part[i] = s->hits.model[i] = 0;
         s->rays.far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
             s->rays.o_enu[k][i] = view->p_enu[k];
             s->rays.d_enu[k][i] = d_enu[k];
-            s->hits.p_enu[k][i] = view->p_enu[k] + range_m * d_enu[k];
+            s->hits.p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
             s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
         }
         s->shadow[i] = job->shadow[px];

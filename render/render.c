@@ -184,6 +184,14 @@ static void average(float *plane, const Scratch *s, const Job *job)
 {
     const Block *block = &s->block;
     const int    samples = block->n * block->n;
+    if (block->split) {
+        for (int i = 0, p = 0; p < block->pixels; p++) {
+            double sum = 0;
+            for (; i < s->hits.count && block->pixel_of[i] == p; i++) sum += (double)block->part_of[i] * s->out[i];
+            plane[pixel_index(job, block->x[p], block->y[p])] = (float)sum;
+        }
+        return;
+    }
     if (samples == 1) {
         for (int p = 0, run; p < block->pixels; p += run) {
             run = run_from(block, p);
@@ -223,11 +231,13 @@ static void gather_around(Scratch *s, const Job *job)
                                   job->snapshot};
     const int            samples = block->n * block->n;
     uint64_t             key[hits_capacity];
-    for (int i = 0; i < s->hits.count; i++)
-        key[i] = block->footprint
-                     ? footprint_key(block->footprint, block->cell[i])
-                     : (pixel_index(job, block->x[i / samples], block->y[i / samples]) * 32 + (uint64_t)block->n) * 256 +
-                           (uint64_t)(i % samples);
+    for (int i = 0, within = 0; i < s->hits.count; i++) {
+        const int p = block->footprint ? 0 : sample_pixel(block, i);
+        within = block->split ? (i > 0 && block->pixel_of[i - 1] == p ? within + 1 : 0) : i % samples;
+        key[i] = block->footprint ? footprint_key(block->footprint, block->cell[i])
+                                  : (pixel_index(job, block->x[p], block->y[p]) * 32 + (uint64_t)block->n) * 256 +
+                                        (uint64_t)within;
+    }
     gather_light(&s->gathered, &scene, &s->hits, render_air_bands(block->bands, request->optical), request->sky_samples,
                  key, &s->counters.visibility);
 }
@@ -292,9 +302,9 @@ static double sample_area(const Scratch *s, const Job *job, int i)
 {
     const Block *block = &s->block;
     if (block->footprint) return footprint_area(block->footprint, block->cell[i]);
-    const int    samples = block->n * block->n;
-    const size_t px      = pixel_index(job, block->x[i / samples], block->y[i / samples]);
-    return block->sign * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) / samples;
+    const int    p  = sample_pixel(block, i);
+    const size_t px = pixel_index(job, block->x[p], block->y[p]);
+    return block->sign * (job->picture->covered ? 1 - (double)job->picture->covered[px] : 1) * sample_part(block, i);
 }
 
 static void add_to_profile(Scratch *s, const Job *job)
@@ -417,7 +427,8 @@ static int list_entities(Scratch *s, const Job *job, const Tile *tile)
     return listed;
 }
 
-void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+/* Eye rays of the block's pixels, and what they meet. */
+static void trace_block(Scratch *s, const Job *job, int listed)
 {
     const RenderRequest *request = job->request;
     const double         t0 = wall_clock_s();
@@ -426,6 +437,11 @@ void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
                          &s->counters.visibility);
     s->counters.rays_primary += (uint64_t)s->rays.count;
     s->visibility_s += wall_clock_s() - t0;
+}
+
+void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+{
+    trace_block(s, job, listed);
     trace_shadows(s, job);
     shade_block(s, job);
     if (pairs) count_targets(s, job, listed, pairs);
@@ -496,6 +512,30 @@ static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
     s->counters.visibility.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
 }
 
+/* Places a side at which a sample of n x n is asked for kinds of ground: twice as fine as edges of parts are sampled,
+ * since it is cheap. */
+static int ground_side(const Job *job, int n)
+{
+    const int side = 2 * job->request->edge_samples / n;
+    return side < 2 ? 2 : side > 16 ? 16 : side;
+}
+
+enum { step_kinds = 2 }; /* of ground, a sample at a step */
+
+/* As render_block, with the samples split by kinds of ground. */
+static void split_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+{
+    trace_block(s, job, listed);
+    trace_shadows(s, job);
+    if (pairs) { /* of the samples as they were shot */
+        trace_veils(s, job);
+        count_targets(s, job, listed, pairs);
+    }
+    if (job->world->landscape) split_ground(s, job, ground_side(job, s->block.n), step_kinds);
+    shade_block(s, job);
+    s->block.split = false;
+}
+
 /* The block's pixels once more with n samples a side, in place of what they had. */
 static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
 {
@@ -508,11 +548,14 @@ static void refine_block(Scratch *s, const Job *job, const Refinement *how, int 
     block->sign   = 1;
     block->writes = true;
     if (how->has & refine_ground) {
-        spread_ground(s, job);
+        recall_ground(s, job);
+        split_ground(s, job, ground_side(job, 1), ground_mix_most);
         shade_block(s, job);
+        block->split = false;
         return;
     }
-    render_block(s, job, listed, areas ? pairs : NULL);
+    if (how->has & refine_step) split_block(s, job, listed, areas ? pairs : NULL);
+    else render_block(s, job, listed, areas ? pairs : NULL);
     s->counters.rays_edges += (uint64_t)s->rays.count;
     if (!sums || remembered) return;
     block->n      = job->request->samples;
@@ -537,8 +580,8 @@ static void refine_tile(void *user, int worker, int task)
         {refine_all, 0, all, edge},
         {refine_step, refine_all, all, 2},
         {refine_sun, refine_all | refine_step, sunlit, edge},
-        {refine_ground, refine_all | refine_step | refine_sun, no_radar, 2},
-        {refine_ground | refine_sun, refine_all | refine_step, lwir, 2},
+        {refine_ground, refine_all | refine_step | refine_sun, no_radar, 1},
+        {refine_ground | refine_sun, refine_all | refine_step, lwir, 1},
     };
     uint8_t flags_of[hits_capacity];
     refine_flags(flags_of, job, tile.x0, tile.y0, tile.x1, tile.y1);
@@ -562,7 +605,9 @@ static void refine_tile(void *user, int worker, int task)
                 if ((flags & how->has) != how->has || flags & how->lacks) continue;
                 s->block.x[s->block.pixels]   = (uint16_t)x;
                 s->block.y[s->block.pixels++] = (uint16_t)y;
-                if ((s->block.pixels + 1) * how->n * how->n <= hits_capacity) continue;
+                const int each = how->n * how->n * (how->has & refine_ground ? ground_mix_most
+                                                    : how->has & refine_step ? step_kinds : 1);
+                if ((s->block.pixels + 1) * each <= hits_capacity) continue;
                 refine_block(s, job, how, listed, pairs);
                 s->block.pixels = 0;
             }

@@ -34,7 +34,21 @@ typedef struct Block {
     Footprint *footprint;                      /* NULL: pixels */
     ProbeTask *probe;                          /* not NULL: pixels looked at again, for the budget; into no plane */
     int      cell[hits_capacity];              /* of each sample of a footprint: row * columns + column */
+    /* after split_ground: samples are no longer n x n a pixel but as many as it shows kinds of ground */
+    bool     split;
+    uint16_t pixel_of[hits_capacity];          /* of each sample: index into x and y */
+    float    part_of[hits_capacity];           /* of each sample: its part of its pixel, 0 .. 1 */
 } Block;
+
+/* The pixel that a sample belongs to: index into Block.x and y; and its part of it. */
+static inline int sample_pixel(const Block *block, int sample)
+{
+    return block->split ? block->pixel_of[sample] : sample / (block->n * block->n);
+}
+static inline double sample_part(const Block *block, int sample)
+{
+    return block->split ? (double)block->part_of[sample] : 1.0 / (block->n * block->n);
+}
 
 /* Place of sample s of n x n in its pixel, 0 .. 1. A grid turned by atan(1 / n), so that an edge along the rows or
  * columns is met in n^2 steps and not in n; the one sample of n = 1 is the centre. */
@@ -158,9 +172,9 @@ void gather(Job *job, int workers);
  * depend on what else is asked for; and bare ground must stay cheap. */
 typedef enum RefineFlag {
     refine_all    = 1, /* edge_samples a side, every band */
-    refine_step   = 2, /* 2 a side, every band: a crest of the ground, the horizon */
+    refine_step   = 2, /* 2 a side, each by kinds of ground; every band: a crest of the ground, the horizon */
     refine_sun    = 4, /* edge_samples a side, optical and MWIR: the edge of a shadow */
-    refine_ground = 8, /* 2 a side on the plane of the hit there is, no ray; not the radar: another kind of ground */
+    refine_ground = 8, /* the plane of the hit there is, by kinds of ground, no ray; not the radar */
 } RefineFlag;
 
 /* Marks what must be refined whoever stands beside it: boxes of targets of middling size, and where a target's
@@ -168,8 +182,26 @@ typedef enum RefineFlag {
 void mark_boxes(Job *job);
 /* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the shadow plane. */
 void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
-/* The block's samples as places on the planes of their pixels' hits, which are of ground: rays, hits and shadow. */
-void spread_ground(Scratch *s, const Job *job);
+/* The block's pixels as their planes say what their hits were, which are of ground: rays, hits and shadow; n is 1. */
+void recall_ground(Scratch *s, const Job *job);
+
+/* ---- ground_mix.c ----------------------------------------------------------------------------- */
+
+enum {
+    ground_mix_places = 256,  /* most places a sample at which the class is asked */
+    ground_mix_most   = 4,    /* most classes that a sample is split into */
+    corner_capacity   = (tile_side_samples + 1) * (tile_side_samples + 1),
+    material_unknown  = 0xffff,
+};
+
+/* Materials of the ground at the corners of the pixels x0 .. x1 - 1, y0 .. y1 - 1, (x1 - x0 + 1) a row; material_unknown
+ * where the pixel right and below shows no ground. Reads the truth planes. */
+void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1);
+/* Whether one of the four corners from `corner` on is of another material than that. columns: corners a row. */
+bool corners_differ(const uint16_t *corner, int columns, uint32_t material);
+/* Splits the block's samples of ground by the surface classes within their squares of 1 / n px: side x side places are
+ * asked, at most `most` classes kept. hits.count x most <= hits_capacity; side <= 16, most <= ground_mix_most. */
+void split_ground(Scratch *s, const Job *job, int side, int most);
 
 /* ---- footprint.c ----------------------------------------------------------------------------- */
 

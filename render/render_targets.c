@@ -144,7 +144,6 @@ void count_targets(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
 void add_radiance(Scratch *s, const Job *job, int plane)
 {
     const Block  *block   = &s->block;
-    const int     samples = block->n * block->n;
     const double  per_quantum = 1 / job->radiance_quantum; /* powers of two: exact */
     const float  *covered = job->picture->covered;
     uint32_t      of = 0;
@@ -155,10 +154,10 @@ void add_radiance(Scratch *s, const Job *job, int plane)
             if (of) s->target[of - 1].radiance[plane] += sum;
             of = s->hits.entity[i], sum = 0;
         }
-        const int    pixel = samples == 1 ? i : i / samples;
+        const int    pixel = sample_pixel(block, i);
         const double open = covered ? 1 - (double)covered[pixel_index(job, block->x[pixel], block->y[pixel])] : 1;
         const double value = clamp(s->out[i], -job->radiance_limit, job->radiance_limit);
-        sum += block->sign * llrint(value * (open / samples) * s->cosine3[pixel] * per_quantum);
+        sum += block->sign * llrint(value * (open * sample_part(block, i)) * s->cosine3[pixel] * per_quantum);
     }
     if (of) s->target[of - 1].radiance[plane] += sum;
 }
