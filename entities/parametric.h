@@ -14,7 +14,12 @@
  *   at 1e-5 m              tank 0.7 M, truck 3 M, helicopter 4 M, aircraft 3 M, ship 7 M, decoy 11 M, person 1.6 M, in
  *                          one to twenty seconds */
 Status parametric_build(Model *out, const char *name, double sag_m);
+/* The same of another size, NULL: its own. Facets keep to sag_m at that size. STATUS_BAD_VALUE, logged: a figure outside
+ * 0.02 .. 50 times the shape's own. */
+Status parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m);
 bool   parametric_known(const char *name);
+int    parametric_count(void); /* of built-in shapes */
+const char *parametric_name(int index);
 
 /* One builder a file; sag_m as above, already checked. */
 Status parametric_tank(Model *out, double sag_m);
@@ -29,5 +34,13 @@ Status parametric_person(Model *out, double sag_m);
 Status parametric_building(Model *out, double sag_m);
 Status parametric_decoy(Model *out, double sag_m);
 Status parametric_flare(Model *out, double sag_m);
+/* Several to a file, by name. */
+Status parametric_airplane(Model *out, const char *name, double sag_m);
+Status parametric_wheeled(Model *out, const char *name, double sag_m);
+Status parametric_artillery(Model *out, const char *name, double sag_m);
+Status parametric_rotorcraft(Model *out, const char *name, double sag_m);
+Status parametric_vessel(Model *out, const char *name, double sag_m);
+Status parametric_munition(Model *out, const char *name, double sag_m);
+Status parametric_structure(Model *out, const char *name, double sag_m);
 
 #endif
