@@ -125,19 +125,21 @@ static void shipped_table(void **state)
         Origin origin;
     } want[] = {
         {{1, 1, 222, 1, 1, 1, 0}, "tank", ORIGIN_BASE},        {{1, 1, 225, 2, 1, 0, 0}, "carrier", ORIGIN_BASE},
-        {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 6, 1, 0, 0}, "truck", ORIGIN_BASE},
-        {{1, 1, 13, 82, 0, 0, 0}, "truck", ORIGIN_BASE},       {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
-        {{1, 2, 225, 23, 7, 0, 0}, "helicopter", ORIGIN_BASE}, {{2, 2, 225, 1, 1, 3, 0}, "missile", ORIGIN_CENTRE},
-        {{2, 9, 222, 2, 5, 0, 0}, "missile", ORIGIN_CENTRE},   {{1, 2, 225, 1, 1, 0, 0}, "aircraft", ORIGIN_BASE},
+        {{1, 1, 222, 7, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 6, 1, 0, 0}, "jeep", ORIGIN_BASE},
+        {{1, 1, 13, 82, 0, 0, 0}, "bus", ORIGIN_BASE},         {{1, 2, 225, 20, 1, 0, 0}, "helicopter", ORIGIN_BASE},
+        {{1, 2, 225, 23, 7, 0, 0}, "helicopter_tandem", ORIGIN_BASE}, {{2, 2, 225, 1, 1, 3, 0}, "missile", ORIGIN_CENTRE},
+        {{2, 9, 222, 2, 5, 0, 0}, "shell", ORIGIN_CENTRE},     {{1, 2, 225, 1, 1, 0, 0}, "aircraft", ORIGIN_BASE},
         {{3, 1, 225, 1, 0, 0, 0}, "person", ORIGIN_BASE},      {{0, 0, 0, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
-        {{1, 1, 222, 28, 7, 1, 0}, "launcher", ORIGIN_BASE},   {{1, 1, 222, 4, 1, 0, 0}, "tank", ORIGIN_BASE},
-        {{1, 1, 222, 5, 1, 0, 0}, "truck", ORIGIN_BASE},       {{1, 1, 222, 8, 1, 0, 0}, "carrier", ORIGIN_BASE},
-        {{1, 2, 225, 4, 1, 0, 0}, "aircraft", ORIGIN_BASE},    {{1, 2, 225, 26, 1, 0, 0}, "helicopter", ORIGIN_BASE},
-        {{1, 2, 225, 91, 1, 0, 0}, "helicopter", ORIGIN_BASE}, {{1, 3, 71, 50, 1, 0, 0}, "ship", ORIGIN_BASE},
-        {{1, 4, 222, 3, 1, 0, 0}, "ship", ORIGIN_BASE},        {{1, 5, 225, 11, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{1, 1, 222, 28, 7, 1, 0}, "launcher", ORIGIN_BASE},   {{1, 1, 222, 4, 1, 0, 0}, "howitzer", ORIGIN_BASE},
+        {{1, 1, 222, 5, 1, 0, 0}, "gun", ORIGIN_BASE},         {{1, 1, 222, 8, 1, 0, 0}, "carrier_cargo", ORIGIN_BASE},
+        {{1, 2, 225, 4, 1, 0, 0}, "cargo_plane", ORIGIN_BASE}, {{1, 2, 225, 26, 1, 0, 0}, "helicopter_light", ORIGIN_BASE},
+        {{1, 2, 225, 91, 1, 0, 0}, "helicopter_light", ORIGIN_BASE}, {{1, 3, 71, 50, 1, 0, 0}, "ship", ORIGIN_BASE},
+        {{1, 4, 222, 3, 1, 0, 0}, "submarine", ORIGIN_BASE},   {{1, 5, 225, 11, 0, 0, 0}, "satellite", ORIGIN_CENTRE},
         {{5, 1, 225, 11, 0, 0, 0}, "building", ORIGIN_BASE},   {{8, 2, 225, 2, 0, 0, 0}, "flare", ORIGIN_CENTRE},
-        {{8, 2, 225, 1, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{8, 1, 225, 5, 0, 0, 0}, "decoy", ORIGIN_BASE},
-        {{8, 2, 225, 5, 0, 0, 0}, "unknown", ORIGIN_BASE},     {{4, 1, 225, 0, 0, 0, 0}, "unknown", ORIGIN_BASE},
+        {{8, 2, 225, 1, 0, 0, 0}, "none", ORIGIN_CENTRE},      {{8, 1, 225, 5, 0, 0, 0}, "decoy", ORIGIN_BASE},
+        {{8, 2, 225, 5, 0, 0, 0}, "none", ORIGIN_CENTRE},      {{4, 1, 225, 0, 0, 0, 0}, "none", ORIGIN_BASE},
+        {{6, 1, 225, 1, 0, 0, 0}, "crates", ORIGIN_BASE},      {{7, 1, 225, 1, 0, 0, 0}, "none", ORIGIN_BASE},
+        {{9, 1, 225, 1, 0, 0, 0}, "radar", ORIGIN_BASE},       {{8, 4, 225, 6, 0, 0, 0}, "buoy", ORIGIN_BASE},
     };
     char path[512];
     Catalog *c;
