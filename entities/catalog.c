@@ -18,24 +18,24 @@ typedef struct CatalogRow {
     Origin origin;
 } CatalogRow;
 
-/* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it: nodes
- * and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size it is built
- * when a type that has it is first asked for: of two hundred models an exercise has ten. */
+/* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
+ * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
+ * it is built when a type that has it is first asked for: of two hundred models an exercise has ten. */
 typedef struct CatalogModel {
-    char           *source;  /* its built-in name, or its file */
-    ModelSize       size;    /* zeroes: its own */
-    int             shape;   /* index of the one whose `first` this is a size of */
-    int             class;   /* index of the first of the same name */
-    Model           first;   /* of shape == own index alone: coarse, or of a file */
-    _Atomic(Model *) fine;   /* NULL: not asked for yet, or of a file */
-    atomic_bool     failed;  /* no memory when it was asked for */
+    char *source;          /* its built-in name, or its file */
+    ModelSize size;        /* zeroes: its own */
+    int shape;             /* index of the one whose `first` this is a size of */
+    int class;             /* index of the first of the same name */
+    Model first;           /* of shape == own index alone: coarse, or of a file */
+    _Atomic(Model *) fine; /* NULL: not asked for yet, or of a file */
+    atomic_bool failed;    /* no memory when it was asked for */
 } CatalogModel;
 
 struct Catalog {
-    int           row_count, model_count;
-    CatalogRow   *row;
+    int row_count, model_count;
+    CatalogRow *row;
     CatalogModel *model; /* model[0]: unknown */
-    double        sag_m;
+    double sag_m;
     pthread_mutex_t *building;
 };
 
@@ -91,8 +91,8 @@ static Status find_or_add(int *out, Catalog *catalog, const char *name, const Mo
                                           : model_open(&added->first, NULL, &imported, source, catalog->sag_m);
     if (status == STATUS_OK && !model_scale_to(factor, &catalog->model[added->shape].first, size)) {
         const Model *own = &catalog->model[added->shape].first;
-        log_error("catalog: too far from the shape's own size: model=%s its=%.4g x %.4g x %.4g m range=0.02..50 times", source,
-                  own->length_m, own->width_m, own->height_m);
+        log_error("catalog: too far from the shape's own size: model=%s its=%.4g x %.4g x %.4g m range=0.02..50 times",
+                  source, own->length_m, own->width_m, own->height_m);
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK && !(added->source = strdup(source))) status = STATUS_NO_MEMORY;
@@ -100,10 +100,10 @@ static Status find_or_add(int *out, Catalog *catalog, const char *name, const Mo
         if (added->shape == catalog->model_count) model_destroy(&added->first);
         return status;
     }
-    added->size  = *size;
+    added->size = *size;
     added->class = 0;
-    while (added->class < catalog->model_count &&
-           strcmp(catalog->model[catalog->model[added->class].shape].first.name, catalog->model[added->shape].first.name) != 0)
+    while (added->class < catalog->model_count && strcmp(catalog->model[catalog->model[added->class].shape].first.name,
+                                                         catalog->model[added->shape].first.name) != 0)
         added->class++;
     *out = catalog->model_count++;
     return STATUS_OK;
@@ -117,7 +117,8 @@ static void build_fine(const Catalog *catalog, int index)
     pthread_mutex_lock(catalog->building);
     if (!atomic_load(&m->fine) && !atomic_load(&m->failed)) {
         Model *fine = calloc(1, sizeof *fine);
-        const Status status = fine ? parametric_build_size(fine, m->source, &m->size, catalog->sag_m) : STATUS_NO_MEMORY;
+        const Status status =
+            fine ? parametric_build_size(fine, m->source, &m->size, catalog->sag_m) : STATUS_NO_MEMORY;
         if (status == STATUS_OK) {
             atomic_store(&m->fine, fine);
         } else {
@@ -130,7 +131,8 @@ static void build_fine(const Catalog *catalog, int index)
     pthread_mutex_unlock(catalog->building);
 }
 
-static Status read_size(ModelSize *size, const Table *table, int r, const int column[catalog_columns], const char *model)
+static Status read_size(ModelSize *size, const Table *table, int r, const int column[catalog_columns],
+                        const char *model)
 {
     double *const figure[3] = {&size->length_m, &size->width_m, &size->height_m};
     for (int k = 0; k < 3; k++) {
@@ -139,8 +141,8 @@ static Status read_size(ModelSize *size, const Table *table, int r, const int co
         const Status status = table_number(figure[k], table, r, column[3 + k], 0.001, 2000);
         if (status != STATUS_OK) return status;
         if (!model_is_path(model)) continue;
-        log_error("catalog: a file has its own size, which its sidecar scales: file=%s line=%d model=\"%s\"", table->path,
-                  table->line[r + 1], model);
+        log_error("catalog: a file has its own size, which its sidecar scales: file=%s line=%d model=\"%s\"",
+                  table->path, table->line[r + 1], model);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -171,7 +173,7 @@ static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, in
         return STATUS_BAD_VALUE;
     }
     ModelSize size;
-    Status    status = read_size(&size, table, r, column, model);
+    Status status = read_size(&size, table, r, column, model);
     if (status != STATUS_OK) return status;
     status = find_or_add(&row->model, catalog, model, &size, table->path);
     if (status != STATUS_OK)
@@ -194,7 +196,7 @@ Status catalog_open(Catalog **out, const char *path, double sag_m)
     static const char *const names[catalog_columns] = {"type", "model", "origin", "length_m", "width_m", "height_m"};
     static const ModelSize own = {0};
     Table    table = {0};
-    int      column[catalog_columns], unknown;
+    int column[catalog_columns], unknown;
     Catalog *catalog = NULL;
 
     if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
@@ -242,7 +244,7 @@ void catalog_close(Catalog *catalog)
     if (!catalog) return;
     for (int m = 0; m < catalog->model_count; m++) {
         CatalogModel *model = catalog->model + m;
-        Model        *fine  = atomic_load(&model->fine);
+        Model *fine = atomic_load(&model->fine);
         if (fine) model_destroy(fine);
         free(fine);
         if (model->shape == m) model_destroy(&model->first);
@@ -259,8 +261,8 @@ int catalog_model_count(const Catalog *catalog) { return catalog->model_count; }
 
 const Model *catalog_model(const Catalog *catalog, int model)
 {
-    const CatalogModel *m    = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
-    const Model        *fine = atomic_load(&m->fine);
+    const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
+    const Model *fine = atomic_load(&m->fine);
     return fine ? fine : &catalog->model[m->shape].first;
 }
 

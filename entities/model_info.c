@@ -17,8 +17,10 @@ static void usage(FILE *to)
         "read:\n"
         "tank.glb, tank.yaml.\n\n"
         "  --sag M     largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n"
-        "  --length M  a built-in model of that length, width or height, as a row of etc/catalog.csv gives it: 0.001 .. 2000 m;\n"
-        "  --width M   what is left out is in proportion. Length and width: of the bounding box at rest; height: from the\n"
+        "  --length M  a built-in model of that length, width or height, as a row of etc/catalog.csv gives it: 0.001 "
+        ".. 2000 m;\n"
+        "  --width M   what is left out is in proportion. Length and width: of the bounding box at rest; height: from "
+        "the\n"
         "  --height M  ground, or the lowest point below it\n",
         to);
 }
@@ -114,13 +116,17 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     ModelEdges edges;
     bool imported;
     if (sized && model_is_path(name)) {
-        log_error("model: --length, --width and --height are for built-in models; `scale` in a sidecar sizes a file: %s", name);
+        log_error(
+            "model: --length, --width and --height are for built-in models; `scale` in a sidecar sizes a file: %s",
+            name);
         return 2;
     }
     Status status = STATUS_OK;
     imported = false;
-    if (sized && parametric_known(name)) status = parametric_build_size(&model, name, size, sag_m);
-    else status = model_open(&model, &report, &imported, name, sag_m);
+    if (sized && parametric_known(name))
+        status = parametric_build_size(&model, name, size, sag_m);
+    else
+        status = model_open(&model, &report, &imported, name, sag_m);
     if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
     if (status != STATUS_OK) return 1; /* all else was said where it happened */
     if (model_edges(&edges, &model) != STATUS_OK) {
@@ -168,16 +174,18 @@ int model_command(int argc, char **argv)
             usage(stdout);
             return 0;
         }
-        double *const            figure[3] = {&size.length_m, &size.width_m, &size.height_m};
+        double *const figure[3] = {&size.length_m, &size.width_m, &size.height_m};
         static const char *const option[3] = {"--length", "--width", "--height"};
-        int                      which = 0;
+        int which = 0;
         while (which < 3 && strcmp(argv[i], option[which]) != 0) which++;
         if (which < 3) {
-            if (i + 1 < argc && text_to_double(figure[which], argv[i + 1]) && *figure[which] >= 0.001 && *figure[which] <= 2000) {
+            if (i + 1 < argc && text_to_double(figure[which], argv[i + 1]) && *figure[which] >= 0.001 &&
+                *figure[which] <= 2000) {
                 i++;
                 continue;
             }
-            fprintf(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i], i + 1 < argc ? argv[i + 1] : "");
+            fprintf(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i],
+                    i + 1 < argc ? argv[i + 1] : "");
             return 2;
         }
         if (strcmp(argv[i], "--sag") == 0) {

@@ -43,33 +43,74 @@ static const struct {
     Status (*build)(Model *out, double sag_m);
     FamilyBuild family; /* instead: a file that holds several shapes */
 } builders[] = {
-    {"tank", parametric_tank, NULL},         {"truck", parametric_truck, NULL},       {"helicopter", parametric_helicopter, NULL},
-    {"missile", parametric_missile, NULL},   {"carrier", parametric_carrier, NULL},   {"launcher", parametric_launcher, NULL},
-    {"aircraft", parametric_aircraft, NULL}, {"ship", parametric_ship, NULL},         {"person", parametric_person, NULL},
-    {"building", parametric_building, NULL}, {"decoy", parametric_decoy, NULL},       {"flare", parametric_flare, NULL},
-    {"unknown", parametric_unknown, NULL},   {"marker", parametric_marker, NULL},
-    {"airliner", NULL, parametric_airplane}, {"airliner_4", NULL, parametric_airplane}, {"cargo_plane", NULL, parametric_airplane},
-    {"cargo_jet", NULL, parametric_airplane}, {"bomber", NULL, parametric_airplane}, {"patrol_plane", NULL, parametric_airplane},
-    {"attack_plane", NULL, parametric_airplane}, {"light_plane", NULL, parametric_airplane}, {"uav", NULL, parametric_airplane},
-    {"car", NULL, parametric_wheeled}, {"jeep", NULL, parametric_wheeled}, {"motorcycle", NULL, parametric_wheeled},
-    {"robot", NULL, parametric_wheeled}, {"bus", NULL, parametric_wheeled}, {"carrier_wheeled", NULL, parametric_wheeled},
-    {"truck_heavy", NULL, parametric_wheeled}, {"semi_trailer", NULL, parametric_wheeled}, {"trailer", NULL, parametric_wheeled},
-    {"shelter", NULL, parametric_wheeled}, {"rocket_truck", NULL, parametric_wheeled},
-    {"rocket_launcher", NULL, parametric_artillery}, {"howitzer", NULL, parametric_artillery},
-    {"bulldozer", NULL, parametric_artillery}, {"carrier_cargo", NULL, parametric_artillery}, {"gun", NULL, parametric_artillery},
+    {"tank", parametric_tank, NULL},
+    {"truck", parametric_truck, NULL},
+    {"helicopter", parametric_helicopter, NULL},
+    {"missile", parametric_missile, NULL},
+    {"carrier", parametric_carrier, NULL},
+    {"launcher", parametric_launcher, NULL},
+    {"aircraft", parametric_aircraft, NULL},
+    {"ship", parametric_ship, NULL},
+    {"person", parametric_person, NULL},
+    {"building", parametric_building, NULL},
+    {"decoy", parametric_decoy, NULL},
+    {"flare", parametric_flare, NULL},
+    {"unknown", parametric_unknown, NULL},
+    {"marker", parametric_marker, NULL},
+    {"airliner", NULL, parametric_airplane},
+    {"airliner_4", NULL, parametric_airplane},
+    {"cargo_plane", NULL, parametric_airplane},
+    {"cargo_jet", NULL, parametric_airplane},
+    {"bomber", NULL, parametric_airplane},
+    {"patrol_plane", NULL, parametric_airplane},
+    {"attack_plane", NULL, parametric_airplane},
+    {"light_plane", NULL, parametric_airplane},
+    {"uav", NULL, parametric_airplane},
+    {"car", NULL, parametric_wheeled},
+    {"jeep", NULL, parametric_wheeled},
+    {"motorcycle", NULL, parametric_wheeled},
+    {"robot", NULL, parametric_wheeled},
+    {"bus", NULL, parametric_wheeled},
+    {"carrier_wheeled", NULL, parametric_wheeled},
+    {"truck_heavy", NULL, parametric_wheeled},
+    {"semi_trailer", NULL, parametric_wheeled},
+    {"trailer", NULL, parametric_wheeled},
+    {"shelter", NULL, parametric_wheeled},
+    {"rocket_truck", NULL, parametric_wheeled},
+    {"rocket_launcher", NULL, parametric_artillery},
+    {"howitzer", NULL, parametric_artillery},
+    {"bulldozer", NULL, parametric_artillery},
+    {"carrier_cargo", NULL, parametric_artillery},
+    {"gun", NULL, parametric_artillery},
     {"mortar", NULL, parametric_artillery},
-    {"helicopter_utility", NULL, parametric_rotorcraft}, {"helicopter_tandem", NULL, parametric_rotorcraft},
-    {"helicopter_light", NULL, parametric_rotorcraft}, {"quadcopter", NULL, parametric_rotorcraft},
+    {"helicopter_utility", NULL, parametric_rotorcraft},
+    {"helicopter_tandem", NULL, parametric_rotorcraft},
+    {"helicopter_light", NULL, parametric_rotorcraft},
+    {"quadcopter", NULL, parametric_rotorcraft},
     {"airship", NULL, parametric_rotorcraft},
-    {"boat", NULL, parametric_vessel}, {"rhib", NULL, parametric_vessel}, {"aircraft_carrier", NULL, parametric_vessel},
-    {"submarine", NULL, parametric_vessel}, {"cargo_ship", NULL, parametric_vessel}, {"tanker", NULL, parametric_vessel},
-    {"missile_air", NULL, parametric_munition}, {"missile_cruise", NULL, parametric_munition},
-    {"missile_ballistic", NULL, parametric_munition}, {"bomb", NULL, parametric_munition},
-    {"bomb_guided", NULL, parametric_munition}, {"shell", NULL, parametric_munition}, {"torpedo", NULL, parametric_munition},
+    {"boat", NULL, parametric_vessel},
+    {"rhib", NULL, parametric_vessel},
+    {"aircraft_carrier", NULL, parametric_vessel},
+    {"submarine", NULL, parametric_vessel},
+    {"cargo_ship", NULL, parametric_vessel},
+    {"tanker", NULL, parametric_vessel},
+    {"missile_air", NULL, parametric_munition},
+    {"missile_cruise", NULL, parametric_munition},
+    {"missile_ballistic", NULL, parametric_munition},
+    {"bomb", NULL, parametric_munition},
+    {"bomb_guided", NULL, parametric_munition},
+    {"shell", NULL, parametric_munition},
+    {"torpedo", NULL, parametric_munition},
     {"mine", NULL, parametric_munition},
-    {"crates", NULL, parametric_structure}, {"radar", NULL, parametric_structure}, {"tent", NULL, parametric_structure},
-    {"bridge", NULL, parametric_structure}, {"buoy", NULL, parametric_structure}, {"satellite", NULL, parametric_structure},
-    {"locomotive", NULL, parametric_structure}, {"railcar", NULL, parametric_structure}, {"animal", NULL, parametric_structure},
+    {"crates", NULL, parametric_structure},
+    {"radar", NULL, parametric_structure},
+    {"tent", NULL, parametric_structure},
+    {"bridge", NULL, parametric_structure},
+    {"buoy", NULL, parametric_structure},
+    {"satellite", NULL, parametric_structure},
+    {"locomotive", NULL, parametric_structure},
+    {"railcar", NULL, parametric_structure},
+    {"animal", NULL, parametric_structure},
     {"none", NULL, parametric_structure},
 };
 
@@ -82,8 +123,8 @@ static int find_builder(const char *name)
     return -1;
 }
 
-bool        parametric_known(const char *name) { return find_builder(name) >= 0; }
-int         parametric_count(void) { return builder_count; }
+bool parametric_known(const char *name) { return find_builder(name) >= 0; }
+int parametric_count(void) { return builder_count; }
 const char *parametric_name(int index) { return builders[index].name; }
 
 static bool sag_is_fit(const char *name, double sag_m)
@@ -109,9 +150,10 @@ Status parametric_build(Model *out, const char *name, double sag_m)
 Status parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m)
 {
     static const double coarsest_m = 0.1, finest_m = 1e-5;
-    Model  model = {0};
+    Model model = {0};
     double factor[3];
-    if (!size || !(size->length_m > 0 || size->width_m > 0 || size->height_m > 0)) return parametric_build(out, name, sag_m);
+    if (!size || !(size->length_m > 0 || size->width_m > 0 || size->height_m > 0))
+        return parametric_build(out, name, sag_m);
     if (!sag_is_fit(name, sag_m)) return STATUS_BAD_VALUE;
     /* once coarsely, for the factors; then with facets that keep to the sag when they have grown */
     Status status = build(&model, name, coarsest_m);
@@ -125,7 +167,8 @@ Status parametric_build_size(Model *out, const char *name, const ModelSize *size
     }
     if (!fits || status == STATUS_BAD_VALUE) {
         log_error("parametric: too far from the shape's own size: model=%s length_m=%g width_m=%g height_m=%g "
-                  "range=0.02..50 times", name, size->length_m, size->width_m, size->height_m);
+                  "range=0.02..50 times",
+                  name, size->length_m, size->width_m, size->height_m);
         status = STATUS_BAD_VALUE;
     }
     if (status != STATUS_OK) {

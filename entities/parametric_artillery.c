@@ -1,13 +1,14 @@
-/* Tracked and towed artillery, and tracked engines of work: rocket launcher with a traversing box of tubes, howitzer in a
- * large turret at the rear, bulldozer, cargo carrier, towed howitzer, mortar.
+/* Tracked and towed artillery, and tracked engines of work: rocket launcher with a traversing box of tubes, howitzer in
+ * a large turret at the rear, bulldozer, cargo carrier, towed howitzer, mortar.
  *
  * Published length, width and height (US Army TM and FM figures; Jane's Armour and Artillery; the same in the open
  * encyclopedias): M270 MLRS 6.97 x 2.97 x 2.59 m (travelling); M109A6 9.68 (gun forward) x 3.15 x 3.24; Caterpillar D7G
- * with blade 5.15 x 3.80 x 3.30; M548 5.89 x 2.69 x 2.82 (with bows 2.71 over the cab); M198 in action 11.0 m long, 2.90
- * high, tracks 2.8 apart; M120 mortar: tube 1.76 m, firing at 45 .. 85 degrees. Tracks, wheels and lines are estimates.
+ * with blade 5.15 x 3.80 x 3.30; M548 5.89 x 2.69 x 2.82 (with bows 2.71 over the cab); M198 in action 11.0 m
+ * long, 2.90 high, tracks 2.8 apart; M120 mortar: tube 1.76 m, firing at 45 .. 85 degrees. Tracks, wheels and lines are
+ * estimates.
  *
- * Articulated: launcher (4096 azimuth, 4736 elevation), turret (4096 azimuth) and gun (4416 elevation); gun of the towed
- * howitzer and tube of the mortar (4096 azimuth, 4416 elevation). Wheels roll. */
+ * Articulated: launcher (4096 azimuth, 4736 elevation), turret (4096 azimuth) and gun (4416 elevation); gun of the
+ * towed howitzer and tube of the mortar (4096 azimuth, 4416 elevation). Wheels roll. */
 #include "entities/parametric.h"
 #include "entities/parametric_forms.h"
 
@@ -18,8 +19,8 @@ static int turning(MeshBuilder *b, const char *name, int parent, double x, doubl
     return node;
 }
 
-static int lifting(MeshBuilder *b, const char *name, int parent, double x, double h_from_parent, uint32_t dis_class, double low_deg,
-                   double high_deg)
+static int lifting(MeshBuilder *b, const char *name, int parent, double x, double h_from_parent, uint32_t dis_class,
+                   double low_deg, double high_deg)
 {
     const int node = mesh_node(b, name, parent, x, 0, -h_from_parent);
     mesh_joint(b, node, 0, 1, 0, dis_class, 13, low_deg * rad_per_deg, high_deg * rad_per_deg);
@@ -35,16 +36,32 @@ static void tracks_and_wheels(MeshBuilder *b, const RunningGear *gear)
 static void build_rocket_launcher(MeshBuilder *b)
 {
     static const RunningGear gear = {
-        .half_gauge_m = 1.21, .track_width_m = 0.53, .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 88,
-        .road_wheels = 6, .first_x_m = 2.05, .step_m = 0.84, .road_radius_m = 0.305, .front_x_m = 2.85, .front_z_m = -0.62,
-        .front_radius_m = 0.26, .rear_x_m = -2.85, .rear_z_m = -0.58, .rear_radius_m = 0.24, .front_drives = true,
+        .half_gauge_m = 1.21,
+        .track_width_m = 0.53,
+        .band_m = 0.03,
+        .cleat_m = 0.02,
+        .cleat_length_m = 0.07,
+        .links = 88,
+        .road_wheels = 6,
+        .first_x_m = 2.05,
+        .step_m = 0.84,
+        .road_radius_m = 0.305,
+        .front_x_m = 2.85,
+        .front_z_m = -0.62,
+        .front_radius_m = 0.26,
+        .rear_x_m = -2.85,
+        .rear_z_m = -0.58,
+        .rear_radius_m = 0.24,
+        .front_drives = true,
     };
-    static const double hull[6][2] = {{-3.40, 0.55}, {2.75, 0.45}, {3.45, 0.85}, {3.45, 1.05}, {-3.485, 1.05}, {-3.485, 0.70}};
+    static const double hull[6][2] = {{-3.40, 0.55}, {2.75, 0.45},   {3.45, 0.85},
+                                      {3.45, 1.05},  {-3.485, 1.05}, {-3.485, 0.70}};
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     form_profile(b, 6, hull, -0.92, 0.92);
     form_boxes(b, -3.48, 3.30, 0.90, 1.485, 1.00, 1.12);
     mesh_part(b, 0, "cab", "paint_olive", HEAT_CABIN);
-    static const double cab[6][2] = {{1.35, 1.00}, {3.35, 1.00}, {3.485, 1.25}, {3.15, 2.35}, {2.95, 2.50}, {1.35, 2.58}};
+    static const double cab[6][2] = {{1.35, 1.00}, {3.35, 1.00}, {3.485, 1.25},
+                                     {3.15, 2.35}, {2.95, 2.50}, {1.35, 2.58}};
     form_profile(b, 6, cab, -1.40, 1.40);
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
     static const double pane[4][2] = {{3.36, 1.62}, {3.19, 2.18}, {3.21, 2.19}, {3.38, 1.63}};
@@ -64,8 +81,7 @@ static void build_rocket_launcher(MeshBuilder *b)
     mesh_box(b, place_at(0, 0, 0), -1.2, -0.9, -0.45, 0.8, 0.9, -0.18);
     const int box = lifting(b, "launcher", base, -1.05, 0.50, 4736, 0, 60);
     mesh_part(b, box, "pods", "paint_olive", HEAT_GUN);
-    for (int side = -1; side <= 1; side += 2)
-        mesh_box(b, parts_side(side), -0.40, 0.03, -1.03, 3.30, 1.30, 0.02);
+    for (int side = -1; side <= 1; side += 2) mesh_box(b, parts_side(side), -0.40, 0.03, -1.03, 3.30, 1.30, 0.02);
     mesh_part(b, box, "tube_caps", "metal_dark", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2)
         for (int i = 0; i < 6; i++) {
@@ -77,12 +93,27 @@ static void build_rocket_launcher(MeshBuilder *b)
 static void build_howitzer(MeshBuilder *b)
 {
     static const RunningGear gear = {
-        .half_gauge_m = 1.38, .track_width_m = 0.38, .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 80,
-        .road_wheels = 7, .first_x_m = 2.55, .step_m = 0.66, .road_radius_m = 0.305, .front_x_m = 3.20, .front_z_m = -0.66,
-        .front_radius_m = 0.27, .rear_x_m = -2.15, .rear_z_m = -0.55, .rear_radius_m = 0.24, .front_drives = true,
+        .half_gauge_m = 1.38,
+        .track_width_m = 0.38,
+        .band_m = 0.03,
+        .cleat_m = 0.02,
+        .cleat_length_m = 0.07,
+        .links = 80,
+        .road_wheels = 7,
+        .first_x_m = 2.55,
+        .step_m = 0.66,
+        .road_radius_m = 0.305,
+        .front_x_m = 3.20,
+        .front_z_m = -0.66,
+        .front_radius_m = 0.27,
+        .rear_x_m = -2.15,
+        .rear_z_m = -0.55,
+        .rear_radius_m = 0.24,
+        .front_drives = true,
     };
     /* the hull is 6.19 m long, its rear at -2.58; the muzzle makes 9.68 m */
-    static const double hull[7][2] = {{-2.50, 0.55}, {2.90, 0.46}, {3.61, 0.95}, {3.55, 1.10}, {2.30, 1.85}, {-2.58, 1.85}, {-2.58, 0.75}};
+    static const double hull[7][2] = {{-2.50, 0.55}, {2.90, 0.46},  {3.61, 0.95}, {3.55, 1.10},
+                                      {2.30, 1.85},  {-2.58, 1.85}, {-2.58, 0.75}};
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     form_profile(b, 7, hull, -1.15, 1.15);
     static const double sponson[5][2] = {{-2.56, 1.02}, {3.30, 1.02}, {3.45, 1.13}, {2.28, 1.82}, {-2.56, 1.82}};
@@ -95,7 +126,8 @@ static void build_howitzer(MeshBuilder *b)
     tracks_and_wheels(b, &gear);
     const int turret = turning(b, "turret", 0, -0.85, 1.85, 4096);
     mesh_part(b, turret, "turret", "paint_olive", HEAT_TURRET);
-    static const double side_view[6][2] = {{-1.70, 0.02}, {1.25, 0.02}, {1.55, -0.30}, {1.15, -1.05}, {0.4, -1.13}, {-1.73, -1.10}};
+    static const double side_view[6][2] = {{-1.70, 0.02}, {1.25, 0.02}, {1.55, -0.30},
+                                           {1.15, -1.05}, {0.4, -1.13}, {-1.73, -1.10}};
     mesh_prism(b, place_at(0, 0, 0), 6, side_view, -1.42, 1.42);
     mesh_cylinder(b, place_axis(0.1, 0.7, -1.10, 0, 0, -1), 0, 0.18, 0.40);
     mesh_box(b, place_at(0, 0, 0), -0.1, 0.55, -1.39, 0.35, 0.8, -1.27);
@@ -110,9 +142,23 @@ static void build_howitzer(MeshBuilder *b)
 static void build_bulldozer(MeshBuilder *b)
 {
     static const RunningGear gear = {
-        .half_gauge_m = 0.99, .track_width_m = 0.56, .band_m = 0.05, .cleat_m = 0.05, .cleat_length_m = 0.04, .links = 44,
-        .road_wheels = 6, .first_x_m = 1.05, .step_m = 0.42, .road_radius_m = 0.15, .front_x_m = 1.25, .front_z_m = -0.50,
-        .front_radius_m = 0.38, .rear_x_m = -1.35, .rear_z_m = -0.50, .rear_radius_m = 0.38, .front_drives = false,
+        .half_gauge_m = 0.99,
+        .track_width_m = 0.56,
+        .band_m = 0.05,
+        .cleat_m = 0.05,
+        .cleat_length_m = 0.04,
+        .links = 44,
+        .road_wheels = 6,
+        .first_x_m = 1.05,
+        .step_m = 0.42,
+        .road_radius_m = 0.15,
+        .front_x_m = 1.25,
+        .front_z_m = -0.50,
+        .front_radius_m = 0.38,
+        .rear_x_m = -1.35,
+        .rear_z_m = -0.50,
+        .rear_radius_m = 0.38,
+        .front_drives = false,
     };
     mesh_part(b, 0, "body", "paint_sand", HEAT_HULL);
     form_box(b, -1.90, 1.55, -0.60, 0.60, 0.50, 1.05);
@@ -133,7 +179,8 @@ static void build_bulldozer(MeshBuilder *b)
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_EXHAUST);
     form_bar(b, 0.85, 0.15, 2.0, 0.85, 0.15, 3.0, 0.06);
     mesh_part(b, 0, "blade", "steel_worn", HEAT_PASSIVE);
-    static const double blade[6][2] = {{2.52, 0.06}, {2.70, 0.06}, {2.50, 0.45}, {2.50, 0.85}, {2.68, 1.25}, {2.40, 1.10}};
+    static const double blade[6][2] = {{2.52, 0.06}, {2.70, 0.06}, {2.50, 0.45},
+                                       {2.50, 0.85}, {2.68, 1.25}, {2.40, 1.10}};
     form_profile(b, 6, blade, -1.90, 1.90);
     for (int side = -1; side <= 1; side += 2) form_bar(b, 0.2, side * 1.38, 0.45, 2.48, side * 1.38, 0.30, 0.11);
     tracks_and_wheels(b, &gear);
@@ -142,11 +189,26 @@ static void build_bulldozer(MeshBuilder *b)
 static void build_carrier_cargo(MeshBuilder *b)
 {
     static const RunningGear gear = {
-        .half_gauge_m = 1.08, .track_width_m = 0.38, .band_m = 0.03, .cleat_m = 0.02, .cleat_length_m = 0.07, .links = 68,
-        .road_wheels = 5, .first_x_m = 1.35, .step_m = 0.70, .road_radius_m = 0.305, .front_x_m = 2.20, .front_z_m = -0.70,
-        .front_radius_m = 0.24, .rear_x_m = -2.25, .rear_z_m = -0.58, .rear_radius_m = 0.20, .front_drives = true,
+        .half_gauge_m = 1.08,
+        .track_width_m = 0.38,
+        .band_m = 0.03,
+        .cleat_m = 0.02,
+        .cleat_length_m = 0.07,
+        .links = 68,
+        .road_wheels = 5,
+        .first_x_m = 1.35,
+        .step_m = 0.70,
+        .road_radius_m = 0.305,
+        .front_x_m = 2.20,
+        .front_z_m = -0.70,
+        .front_radius_m = 0.24,
+        .rear_x_m = -2.25,
+        .rear_z_m = -0.58,
+        .rear_radius_m = 0.20,
+        .front_drives = true,
     };
-    static const double hull[6][2] = {{-2.80, 0.55}, {2.20, 0.45}, {2.93, 0.95}, {2.93, 1.20}, {-2.94, 1.20}, {-2.94, 0.75}};
+    static const double hull[6][2] = {{-2.80, 0.55}, {2.20, 0.45},  {2.93, 0.95},
+                                      {2.93, 1.20},  {-2.94, 1.20}, {-2.94, 0.75}};
     mesh_part(b, 0, "hull", "paint_olive", HEAT_HULL);
     form_profile(b, 6, hull, -0.87, 0.87);
     form_boxes(b, -2.94, 2.70, 0.86, 1.34, 1.06, 1.21);
@@ -168,7 +230,8 @@ static void build_carrier_cargo(MeshBuilder *b)
     form_boxes(b, -2.93, 0.55, 1.22, 1.30, 1.19, 1.95);
     form_box(b, -2.935, -2.86, -1.24, 1.24, 1.19, 1.95);
     mesh_part(b, 0, "canvas", "canvas", HEAT_PASSIVE);
-    const Station tilt[3] = {{-2.90, 1.28, -2.82, -1.92, 0.3}, {-1.2, 1.26, -2.79, -1.92, 0.3}, {0.52, 1.28, -2.82, -1.92, 0.3}};
+    const Station tilt[3] = {
+        {-2.90, 1.28, -2.82, -1.92, 0.3}, {-1.2, 1.26, -2.79, -1.92, 0.3}, {0.52, 1.28, -2.82, -1.92, 0.3}};
     mesh_loft(b, place_at(0, 0, 0), tilt, 3);
     tracks_and_wheels(b, &gear);
 }
@@ -184,7 +247,8 @@ static void build_gun(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2) {
         static const double end_y = 1.27;
         form_bar(b, 0.2, side * 0.35, 0.72, -5.20, side * end_y, 0.22, 0.13);
-        form_box(b, -5.50, -5.05, side < 0 ? -end_y - 0.13 : end_y - 0.27, side < 0 ? -end_y + 0.27 : end_y + 0.13, 0, 0.50);
+        form_box(b, -5.50, -5.05, side < 0 ? -end_y - 0.13 : end_y - 0.27, side < 0 ? -end_y + 0.27 : end_y + 0.13, 0,
+                 0.50);
     }
     for (int side = -1; side <= 1; side += 2) form_wheel(b, "wheel", side, 0, 0.75, side * 1.23, 0.55, 0.17);
     const int top = turning(b, "top_carriage", 0, 0.55, 0.95, 4096);

@@ -28,16 +28,17 @@ void form_bar(MeshBuilder *b, double x0, double y0, double h0, double x1, double
     mesh_bar(b, (double[3]){x0, y0, -h0}, (double[3]){x1, y1, -h1}, radius);
 }
 
-void form_fin(MeshBuilder *b, double y, double lead0, double trail0, double low_m, double lead1, double trail1, double high_m,
-              double thickness)
+void form_fin(MeshBuilder *b, double y, double lead0, double trail0, double low_m, double lead1, double trail1,
+              double high_m, double thickness)
 {
     parts_wing(b, parts_upright(0, y, 0), lead0, trail0, low_m, 0, lead1, trail1, high_m, 0, thickness);
 }
 
-void form_wheel(MeshBuilder *b, const char *kind, int side, int number, double x, double y, double radius, double half_width)
+void form_wheel(MeshBuilder *b, const char *kind, int side, int number, double x, double y, double radius,
+                double half_width)
 {
-    const int    node = parts_wheel_node(b, 0, kind, side, number, x, y, -radius, radius);
-    const Place  outwards = place_axis(0, 0, 0, 0, side < 0 ? -1 : 1, 0);
+    const int node = parts_wheel_node(b, 0, kind, side, number, x, y, -radius, radius);
+    const Place outwards = place_axis(0, 0, 0, 0, side < 0 ? -1 : 1, 0);
     const double r = radius, w = half_width;
     mesh_part(b, node, "tyre", "rubber_black", HEAT_WHEEL);
     mesh_profile_begin(b, -0.8 * w, 0.60 * r);
@@ -60,7 +61,8 @@ void form_wheel(MeshBuilder *b, const char *kind, int side, int number, double x
     mesh_lathe(b, outwards);
 }
 
-void form_propeller(MeshBuilder *b, const char *name, double x, double y, double h, double radius, int blades, double rpm)
+void form_propeller(MeshBuilder *b, const char *name, double x, double y, double h, double radius, int blades,
+                    double rpm)
 {
     const int node = mesh_node(b, name, 0, x, y, -h);
     mesh_joint(b, node, 1, 0, 0, 0, 0, 1, -1);

@@ -1,5 +1,5 @@
-/* Helicopters other than the attack helicopter, and aircraft that are lifted otherwise: utility helicopter, tandem-rotor
- * helicopter, light helicopter, quadcopter, airship.
+/* Helicopters other than the attack helicopter, and aircraft that are lifted otherwise: utility helicopter,
+ * tandem-rotor helicopter, light helicopter, quadcopter, airship.
  *
  * Published (US Army TM 1-1520 series and fact sheets; Jane's All the World's Aircraft; manufacturers; the same in the
  * open encyclopedias): UH-60A 19.76 m over the turning rotors, main rotor 16.36 m, height 5.13; CH-47D 30.1 m over the
@@ -27,7 +27,8 @@ static void tail_rotor(MeshBuilder *b, double x, double y, double h, double radi
         Place place = place_at(0, 0, 0);
         const double m[9] = {-s, c, 0, 0, 0, 1, c, s, 0};
         memcpy(place.m, m, sizeof m);
-        parts_wing(b, place, 0.06 * radius, -0.06 * radius, 0.06 * radius, 0, 0.05 * radius, -0.05 * radius, radius, 0, 0.12);
+        parts_wing(b, place, 0.06 * radius, -0.06 * radius, 0.06 * radius, 0, 0.05 * radius, -0.05 * radius, radius, 0,
+                   0.12);
     }
 }
 
@@ -44,9 +45,10 @@ static void build_utility(MeshBuilder *b)
 {
     const double hub_x = 1.02, nose = 9.20 - 2.2; /* blade's tip forward at 9.2; tail rotor's behind at -10.56 */
     mesh_part(b, 0, "fuselage", "paint_olive", HEAT_HULL);
-    const Station body[9] = {{-8.30, 0.16, -2.75, -2.10, 1}, {-6.0, 0.34, -2.50, -1.55, 0.9}, {-3.0, 0.60, -2.45, -0.95, 0.8},
-                             {-1.2, 1.05, -2.45, -0.52, 0.5}, {0.6, 1.18, -2.45, -0.48, 0.4}, {3.4, 1.18, -2.45, -0.48, 0.4},
-                             {4.8, 1.00, -2.20, -0.52, 0.6}, {6.2, 0.62, -1.58, -0.62, 0.9}, {nose, 0.15, -1.22, -0.85, 1}};
+    const Station body[9] = {
+        {-8.30, 0.16, -2.75, -2.10, 1},  {-6.0, 0.34, -2.50, -1.55, 0.9}, {-3.0, 0.60, -2.45, -0.95, 0.8},
+        {-1.2, 1.05, -2.45, -0.52, 0.5}, {0.6, 1.18, -2.45, -0.48, 0.4},  {3.4, 1.18, -2.45, -0.48, 0.4},
+        {4.8, 1.00, -2.20, -0.52, 0.6},  {6.2, 0.62, -1.58, -0.62, 0.9},  {nose, 0.15, -1.22, -0.85, 1}};
     mesh_loft(b, place_at(0, 0, 0), body, 9);
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
     static const double screen[4][2] = {{5.85, 1.62}, {4.75, 2.22}, {4.78, 2.27}, {5.9, 1.68}};
@@ -56,12 +58,19 @@ static void build_utility(MeshBuilder *b)
         form_box(b, 0.4, 1.9, side < 0 ? -1.20 : 1.15, side < 0 ? -1.15 : 1.20, 1.40, 2.00);
     }
     mesh_part(b, 0, "engines", "paint_olive", HEAT_TURBINE);
-    const Station pod[4] = {{-1.9, 0.25, -0.30, 0.25, 1}, {-1.0, 0.42, -0.42, 0.36, 0.9}, {1.2, 0.42, -0.42, 0.36, 0.9}, {1.7, 0.28, -0.26, 0.26, 1}};
+    const Station pod[4] = {{-1.9, 0.25, -0.30, 0.25, 1},
+                            {-1.0, 0.42, -0.42, 0.36, 0.9},
+                            {1.2, 0.42, -0.42, 0.36, 0.9},
+                            {1.7, 0.28, -0.26, 0.26, 1}};
     for (int side = -1; side <= 1; side += 2) mesh_loft(b, place_at(0, side * 0.82, -2.72), pod, 4);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_TURBINE);
-    for (int side = -1; side <= 1; side += 2) mesh_cylinder(b, place_axis(-1.85, side * 0.9, -2.70, -1, 0.4 * side, 0), 0, 0.35, 0.20);
+    for (int side = -1; side <= 1; side += 2)
+        mesh_cylinder(b, place_axis(-1.85, side * 0.9, -2.70, -1, 0.4 * side, 0), 0, 0.35, 0.20);
     mesh_part(b, 0, "mast_fairing", "paint_olive", HEAT_PASSIVE);
-    const Station dome[4] = {{-0.9, 0.3, -2.75, -2.3, 0.9}, {0.2, 0.55, -3.10, -2.3, 0.8}, {1.6, 0.55, -3.05, -2.3, 0.8}, {2.7, 0.25, -2.60, -2.3, 0.9}};
+    const Station dome[4] = {{-0.9, 0.3, -2.75, -2.3, 0.9},
+                             {0.2, 0.55, -3.10, -2.3, 0.8},
+                             {1.6, 0.55, -3.05, -2.3, 0.8},
+                             {2.7, 0.25, -2.60, -2.3, 0.9}};
     mesh_loft(b, place_at(0, 0, 0), dome, 4);
     form_bar(b, hub_x, 0, 3.0, hub_x, 0, 3.72, 0.18);
     mesh_part(b, 0, "fin", "paint_olive", HEAT_PASSIVE);
@@ -79,8 +88,9 @@ static void build_tandem(MeshBuilder *b)
 {
     const double fore = 5.93, aft = -5.93, radius = 18.29 / 2;
     mesh_part(b, 0, "fuselage", "paint_olive", HEAT_HULL);
-    const Station body[7] = {{-7.3, 0.85, -3.05, -2.10, 0.6}, {-5.6, 1.40, -3.15, -0.95, 0.45}, {-3.8, 1.40, -3.12, -0.60, 0.4},
-                             {3.6, 1.40, -3.12, -0.58, 0.4}, {5.6, 1.28, -3.05, -0.62, 0.5}, {7.0, 0.92, -2.35, -0.75, 0.8},
+    const Station body[7] = {{-7.3, 0.85, -3.05, -2.10, 0.6}, {-5.6, 1.40, -3.15, -0.95, 0.45},
+                             {-3.8, 1.40, -3.12, -0.60, 0.4}, {3.6, 1.40, -3.12, -0.58, 0.4},
+                             {5.6, 1.28, -3.05, -0.62, 0.5},  {7.0, 0.92, -2.35, -0.75, 0.8},
                              {7.95, 0.25, -1.70, -1.15, 1}};
     mesh_loft(b, place_at(0, 0, 0), body, 7);
     mesh_part(b, 0, "pylons", "paint_olive", HEAT_PASSIVE);
@@ -99,7 +109,8 @@ static void build_tandem(MeshBuilder *b)
     const Station pod[3] = {{-0.95, 0.30, -0.32, 0.32, 1}, {-0.2, 0.40, -0.42, 0.42, 1}, {1.1, 0.34, -0.35, 0.35, 1}};
     for (int side = -1; side <= 1; side += 2) mesh_loft(b, place_at(-5.6, side * 0.98, -3.55), pod, 3);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_TURBINE);
-    for (int side = -1; side <= 1; side += 2) mesh_cylinder(b, place_axis(-6.5, side * 0.98, -3.55, -1, 0, 0), 0, 0.3, 0.24);
+    for (int side = -1; side <= 1; side += 2)
+        mesh_cylinder(b, place_axis(-6.5, side * 0.98, -3.55, -1, 0, 0), 0, 0.3, 0.24);
     legs(b, 2.2, 1.6, 0.8, 0.30);
     for (int side = -1; side <= 1; side += 2) {
         form_bar(b, -4.6, side * 1.1, 0.9, -4.9, side * 1.55, 0.3, 0.07);
@@ -120,22 +131,28 @@ static void build_light_helicopter(MeshBuilder *b)
 {
     const double hub_x = 0.955;
     mesh_part(b, 0, "fuselage", "paint_olive", HEAT_HULL);
-    const Station body[8] = {{-6.0, 0.09, -1.85, -1.60, 1}, {-3.2, 0.17, -1.90, -1.45, 1}, {-1.6, 0.30, -2.05, -1.20, 0.9},
-                             {-0.7, 0.66, -2.30, -0.68, 0.6}, {0.9, 0.70, -2.30, -0.52, 0.5}, {2.2, 0.66, -2.05, -0.52, 0.6},
-                             {3.3, 0.46, -1.45, -0.62, 0.9}, {3.85, 0.12, -1.10, -0.82, 1}};
+    const Station body[8] = {{-6.0, 0.09, -1.85, -1.60, 1},   {-3.2, 0.17, -1.90, -1.45, 1},
+                             {-1.6, 0.30, -2.05, -1.20, 0.9}, {-0.7, 0.66, -2.30, -0.68, 0.6},
+                             {0.9, 0.70, -2.30, -0.52, 0.5},  {2.2, 0.66, -2.05, -0.52, 0.6},
+                             {3.3, 0.46, -1.45, -0.62, 0.9},  {3.85, 0.12, -1.10, -0.82, 1}};
     mesh_loft(b, place_at(0, 0, 0), body, 8);
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
     static const double screen[4][2] = {{3.12, 1.48}, {2.15, 2.05}, {2.18, 2.10}, {3.16, 1.54}};
     form_profile(b, 4, screen, -0.52, 0.52);
-    for (int side = -1; side <= 1; side += 2) form_box(b, 0.4, 2.1, side < 0 ? -0.71 : 0.6, side < 0 ? -0.6 : 0.71, 1.35, 1.95);
+    for (int side = -1; side <= 1; side += 2)
+        form_box(b, 0.4, 2.1, side < 0 ? -0.71 : 0.6, side < 0 ? -0.6 : 0.71, 1.35, 1.95);
     mesh_part(b, 0, "engines", "paint_olive", HEAT_TURBINE);
-    const Station cowl[4] = {{-1.8, 0.12, -2.2, -1.95, 1}, {-0.9, 0.34, -2.60, -2.1, 0.8}, {0.9, 0.36, -2.66, -2.1, 0.8}, {1.6, 0.15, -2.35, -2.1, 1}};
+    const Station cowl[4] = {{-1.8, 0.12, -2.2, -1.95, 1},
+                             {-0.9, 0.34, -2.60, -2.1, 0.8},
+                             {0.9, 0.36, -2.66, -2.1, 0.8},
+                             {1.6, 0.15, -2.35, -2.1, 1}};
     mesh_loft(b, place_at(0, 0, 0), cowl, 4);
     mesh_part(b, 0, "exhaust", "metal_dark", HEAT_TURBINE);
     mesh_cylinder(b, place_axis(-0.7, 0, -2.55, -0.5, 0, -1), 0, 0.25, 0.11);
     mesh_part(b, 0, "fin", "paint_olive", HEAT_PASSIVE);
     form_fin(b, 0.0, -5.35, -5.85, 1.2, -5.75, -6.15, 2.75, 0.10);
-    for (int side = -1; side <= 1; side += 2) parts_wing(b, parts_side(side), -3.9, -4.4, 0.05, -1.70, -3.95, -4.4, 0.98, -1.70, 0.10);
+    for (int side = -1; side <= 1; side += 2)
+        parts_wing(b, parts_side(side), -3.9, -4.4, 0.05, -1.70, -3.95, -4.4, 0.98, -1.70, 0.10);
     mesh_part(b, 0, "skids", "metal_dark", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
         form_bar(b, -1.0, side * 0.95, 0.045, 2.4, side * 0.95, 0.045, 0.045);
@@ -153,7 +170,9 @@ static void build_quadcopter(MeshBuilder *b)
 {
     /* 0.52 m over the propellers each way; the catalog sizes it */
     mesh_part(b, 0, "body", "paint_grey", HEAT_AIRFRAME);
-    const Station body[4] = {{-0.16, 0.05, -0.145, -0.075, 0.6}, {-0.05, 0.075, -0.165, -0.065, 0.6}, {0.08, 0.075, -0.165, -0.065, 0.6},
+    const Station body[4] = {{-0.16, 0.05, -0.145, -0.075, 0.6},
+                             {-0.05, 0.075, -0.165, -0.065, 0.6},
+                             {0.08, 0.075, -0.165, -0.065, 0.6},
                              {0.17, 0.045, -0.14, -0.085, 0.8}};
     mesh_loft(b, place_at(0, 0, 0), body, 4);
     static const double reach = 0.17;
@@ -198,12 +217,16 @@ static void build_airship(MeshBuilder *b)
         parts_wing(b, place, -17.5, -27.5, 2.2, 0, -21.5, -28.2, 7.6, 0, 0.05);
     }
     mesh_part(b, 0, "gondola", "paint_grey", HEAT_CABIN);
-    const Station car[4] = {{-3.5, 0.7, -3.6, -1.2, 0.4}, {-2, 0.95, -3.8, -0.6, 0.3}, {2, 0.95, -3.8, -0.6, 0.3}, {3.6, 0.6, -3.5, -1.1, 0.4}};
+    const Station car[4] = {{-3.5, 0.7, -3.6, -1.2, 0.4},
+                            {-2, 0.95, -3.8, -0.6, 0.3},
+                            {2, 0.95, -3.8, -0.6, 0.3},
+                            {3.6, 0.6, -3.5, -1.1, 0.4}};
     mesh_loft(b, place_at(0, 0, 0), car, 4);
     form_bar(b, 0, 0, 0.9, 0, 0, 0.3, 0.08);
     mesh_cylinder(b, place_axis(0, 0, -0.3, 0, 1, 0), -0.1, 0.1, 0.3);
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
-    for (int side = -1; side <= 1; side += 2) form_box(b, -1.9, 2.2, side < 0 ? -0.97 : 0.93, side < 0 ? -0.93 : 0.97, 1.9, 2.8);
+    for (int side = -1; side <= 1; side += 2)
+        form_box(b, -1.9, 2.2, side < 0 ? -0.97 : 0.93, side < 0 ? -0.93 : 0.97, 1.9, 2.8);
     mesh_part(b, 0, "engines", "metal_dark", HEAT_TURBINE);
     for (int side = -1; side <= 1; side += 2) {
         mesh_cylinder(b, place_at(-2.0, side * 1.9, -2.0), -0.8, 0.8, 0.35);
@@ -219,8 +242,11 @@ Status parametric_rotorcraft(Model *out, const char *name, double sag_m)
         const char *name;
         void (*build)(MeshBuilder *b);
     } kinds[] = {
-        {"helicopter_utility", build_utility}, {"helicopter_tandem", build_tandem}, {"helicopter_light", build_light_helicopter},
-        {"quadcopter", build_quadcopter},      {"airship", build_airship},
+        {"helicopter_utility", build_utility},
+        {"helicopter_tandem", build_tandem},
+        {"helicopter_light", build_light_helicopter},
+        {"quadcopter", build_quadcopter},
+        {"airship", build_airship},
     };
     int k = 0;
     while (strcmp(kinds[k].name, name) != 0) k++;

@@ -1,11 +1,11 @@
 /* Things that stand: crates, radar on its mast, tent, bridge, buoy, satellite; rolling stock; an animal.
  *
  * Sizes: crates: a pallet of 1.22 x 1.02 m (the 48 x 40 inch pallet of MIL-P-15011), loaded to 1.20 m; radar: AN/TPQ-36
- * class trailer with a mast, 4.3 x 2.1 x 3.9 m, estimate; tent: GP medium 9.75 x 4.88 x 3.05 (US Army TM 10-8340); bridge:
- * a two-lane girder span of 30 m, 8.0 m wide, its deck 6 m over the ground, estimate; buoy: AN/SSQ-53 0.91 m long, 0.124 m
- * across, its float at the surface; satellite: body of 3 m with wings of 17 m (GPS IIF class 17.3 x 2.5 x 2.2);
- * locomotive: GE ES44AC 22.3 x 3.12 x 4.7; railcar: 50-foot box car 16.9 x 3.2 x 4.6; animal: a horse 2.4 m long, 1.6 m at
- * the withers, estimate. */
+ * class trailer with a mast, 4.3 x 2.1 x 3.9 m, estimate; tent: GP medium 9.75 x 4.88 x 3.05 (US Army TM 10-8340);
+ * bridge: a two-lane girder span of 30 m, 8.0 m wide, its deck 6 m over the ground, estimate; buoy: AN/SSQ-53 0.91 m
+ * long, 0.124 m across, its float at the surface; satellite: body of 3 m with wings of 17 m (GPS IIF class 17.3 x 2.5
+ * x 2.2); locomotive: GE ES44AC 22.3 x 3.12 x 4.7; railcar: 50-foot box car 16.9 x 3.2 x 4.6; animal: a horse 2.4 m
+ * long, 1.6 m at the withers, estimate. */
 #include "entities/parametric.h"
 #include "entities/parametric_forms.h"
 
@@ -22,7 +22,9 @@ static void build_crates(MeshBuilder *b)
         }
     mesh_part(b, 0, "battens", "wood_pine", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2)
-        for (int i = 0; i < 2; i++) form_box(b, -0.40 + 0.61 * i, -0.30 + 0.61 * i, side < 0 ? -0.51 : 0.49, side < 0 ? -0.49 : 0.51, 0.15, 1.17);
+        for (int i = 0; i < 2; i++)
+            form_box(b, -0.40 + 0.61 * i, -0.30 + 0.61 * i, side < 0 ? -0.51 : 0.49, side < 0 ? -0.49 : 0.51, 0.15,
+                     1.17);
 }
 
 static void build_radar(MeshBuilder *b)
@@ -84,7 +86,8 @@ static void build_bridge(MeshBuilder *b)
     for (int side = -1; side <= 1; side += 2) {
         form_bar(b, -14.95, side * 3.9, 7.0, 14.95, side * 3.9, 7.0, 0.05);
         form_bar(b, -14.95, side * 3.9, 6.5, 14.95, side * 3.9, 6.5, 0.04);
-        for (int i = 0; i < 13; i++) form_bar(b, -14.9 + 29.8 / 12 * i, side * 3.9, 5.95, -14.9 + 29.8 / 12 * i, side * 3.9, 7.0, 0.045);
+        for (int i = 0; i < 13; i++)
+            form_bar(b, -14.9 + 29.8 / 12 * i, side * 3.9, 5.95, -14.9 + 29.8 / 12 * i, side * 3.9, 7.0, 0.045);
     }
 }
 
@@ -123,7 +126,7 @@ static void bogie(MeshBuilder *b, double x, int first, int axles, double step, d
     for (int i = 0; i < axles; i++)
         for (int side = -1; side <= 1; side += 2) {
             const double at = x + step * (0.5 * (axles - 1) - i);
-            const int    node = parts_wheel_node(b, 0, "wheel", side, first + i, at, side * 0.75, -radius, radius);
+            const int node = parts_wheel_node(b, 0, "wheel", side, first + i, at, side * 0.75, -radius, radius);
             mesh_part(b, node, "wheel", "steel_worn", HEAT_WHEEL);
             parts_disc(b, place_axis(0, 0, 0, 0, side, 0), radius, 0.07, 6);
         }
@@ -146,7 +149,8 @@ static void build_locomotive(MeshBuilder *b)
     form_profile(b, 4, nose, -0.95, 0.95);
     mesh_part(b, 0, "windows", "glass_window", HEAT_CABIN);
     form_boxes(b, 8.86, 8.92, 0.15, 1.35, 3.35, 4.15);
-    for (int side = -1; side <= 1; side += 2) form_box(b, 6.5, 8.4, side < 0 ? -1.565 : 1.54, side < 0 ? -1.54 : 1.565, 3.3, 4.1);
+    for (int side = -1; side <= 1; side += 2)
+        form_box(b, 6.5, 8.4, side < 0 ? -1.565 : 1.54, side < 0 ? -1.54 : 1.565, 3.3, 4.1);
     mesh_part(b, 0, "hood", "paint_sand", HEAT_ENGINE_DECK);
     form_box(b, -8.2, 6.12, -0.98, 0.98, 1.64, 4.45);
     mesh_part(b, 0, "radiator", "metal_dark", HEAT_ENGINE_DECK);
@@ -170,7 +174,9 @@ static void build_railcar(MeshBuilder *b)
     parts_block(b, (Rectangle){-7.78, 7.78, -1.54, 1.54}, 4.30, (Rectangle){-7.7, 7.7, -0.3, 0.3}, 4.60);
     for (int side = -1; side <= 1; side += 2)
         for (int i = 0; i < 11; i++)
-            if (i != 5) form_box(b, -7.5 + 1.48 * i, -7.4 + 1.48 * i, side < 0 ? -1.57 : 1.49, side < 0 ? -1.49 : 1.57, 1.15, 4.29);
+            if (i != 5)
+                form_box(b, -7.5 + 1.48 * i, -7.4 + 1.48 * i, side < 0 ? -1.57 : 1.49, side < 0 ? -1.49 : 1.57, 1.15,
+                         4.29);
     mesh_part(b, 0, "doors", "paint_deck_grey", HEAT_PASSIVE);
     form_boxes(b, -1.25, 1.25, 1.45, 1.60, 1.20, 4.20);
     mesh_part(b, 0, "frame", "metal_dark", HEAT_PASSIVE);
@@ -221,9 +227,16 @@ Status parametric_structure(Model *out, const char *name, double sag_m)
         const char *name;
         void (*build)(MeshBuilder *b);
     } kinds[] = {
-        {"crates", build_crates},         {"radar", build_radar},           {"tent", build_tent},       {"bridge", build_bridge},
-        {"buoy", build_buoy},             {"satellite", build_satellite},   {"locomotive", build_locomotive},
-        {"railcar", build_railcar},       {"animal", build_animal},         {"none", build_none},
+        {"crates", build_crates},
+        {"radar", build_radar},
+        {"tent", build_tent},
+        {"bridge", build_bridge},
+        {"buoy", build_buoy},
+        {"satellite", build_satellite},
+        {"locomotive", build_locomotive},
+        {"railcar", build_railcar},
+        {"animal", build_animal},
+        {"none", build_none},
     };
     int k = 0;
     while (strcmp(kinds[k].name, name) != 0) k++;

@@ -2,9 +2,9 @@
  *
  * Published length over all, beam and draught (Jane's Fighting Ships; US Navy fact files; owners' data; the same in the
  * open encyclopedias): Nimitz class 332.8 m x 76.8 m (flight deck; hull 40.8 m) x 11.3 m; Los Angeles class submarine
- * 110.3 x 10.1 x 9.4; Mark VI patrol boat 26 x 6.2 x 1.5 (Cyclone class 54.6 x 7.6 x 2.3); rigid inflatable boat 11 m NSW
- * 10.95 x 3.20 x 0.91; cargo ship: Panamax container ship 294 x 32.2 x 12; tanker: Aframax 245 x 42 x 14. Heights above
- * water, superstructures and lines are estimates.
+ * 110.3 x 10.1 x 9.4; Mark VI patrol boat 26 x 6.2 x 1.5 (Cyclone class 54.6 x 7.6 x 2.3); rigid inflatable boat 11 m
+ * NSW 10.95 x 3.20 x 0.91; cargo ship: Panamax container ship 294 x 32.2 x 12; tanker: Aframax 245 x 42 x 14. Heights
+ * above water, superstructures and lines are estimates.
  *
  * The base is the waterline: z = 0 is the sea, and the hull reaches its draught below it. Superstructures are boxes and
  * the hull is a few sections of straight lines: good for a silhouette, not for lines. */
@@ -26,12 +26,12 @@ static void hull(MeshBuilder *b, int count, const Section *s, const char *bottom
             double at[2][4][2];
             for (int k = 0; k < 2; k++) {
                 const Section *c = s + i + k;
-                const double   low = part ? 0 : c->keel_half, high = part ? c->deck_half : c->water_half;
-                const double   foot = part ? c->water_half : low, z0 = part ? 0 : -c->keel_h, z1 = part ? -c->deck_h : 0;
-                const double   outline[4][2] = {{foot, z0}, {high, z1}, {-high, z1}, {-foot, z0}};
+                const double low = part ? 0 : c->keel_half, high = part ? c->deck_half : c->water_half;
+                const double foot = part ? c->water_half : low, z0 = part ? 0 : -c->keel_h, z1 = part ? -c->deck_h : 0;
+                const double outline[4][2] = {{foot, z0}, {high, z1}, {-high, z1}, {-foot, z0}};
                 memcpy(at[k], outline, sizeof outline);
             }
-            Place        place = place_at(0, 0, 0);
+            Place place = place_at(0, 0, 0);
             const double m[9] = {0, 1, 0, 1, 0, 0, 0, 0, 1};
             memcpy(place.m, m, sizeof m);
             mesh_slab(b, place, 4, (const double (*)[2])at[0], s[i].x, (const double (*)[2])at[1], s[i + 1].x);
@@ -45,14 +45,16 @@ static int radar(MeshBuilder *b, double x, double y, double h, double half_width
     mesh_joint(b, node, 0, 0, 1, 5376, 11, 1, -1);
     mesh_node_get(b, node)->spin_rps_moving = 24 * 2 * pi_rad / 60;
     mesh_part(b, node, "radar", "metal_dark", HEAT_PASSIVE);
-    mesh_box(b, place_at(0, 0, 0), -0.07 * half_width, -half_width, -0.35 * half_width, 0.07 * half_width, half_width, 0.02);
+    mesh_box(b, place_at(0, 0, 0), -0.07 * half_width, -half_width, -0.35 * half_width, 0.07 * half_width, half_width,
+             0.02);
     return node;
 }
 
 static void build_boat(MeshBuilder *b)
 {
-    static const Section s[6] = {{-13, 1.2, 2.7, 2.9, -0.9, 1.9}, {-8, 1.2, 2.9, 3.05, -1.3, 2.0}, {0, 0.8, 2.9, 3.1, -1.5, 2.2},
-                                 {6, 0.4, 2.3, 2.9, -1.4, 2.6}, {10, 0.15, 1.2, 2.0, -0.9, 3.0}, {13, 0.03, 0.06, 0.12, -0.03, 3.4}};
+    static const Section s[6] = {{-13, 1.2, 2.7, 2.9, -0.9, 1.9}, {-8, 1.2, 2.9, 3.05, -1.3, 2.0},
+                                 {0, 0.8, 2.9, 3.1, -1.5, 2.2},   {6, 0.4, 2.3, 2.9, -1.4, 2.6},
+                                 {10, 0.15, 1.2, 2.0, -0.9, 3.0}, {13, 0.03, 0.06, 0.12, -0.03, 3.4}};
     hull(b, 6, s, "paint_antifouling", "paint_ship_grey");
     mesh_part(b, 0, "superstructure", "paint_ship_grey", HEAT_CABIN);
     static const double house[5][2] = {{-4.5, 2.0}, {4.6, 2.0}, {3.2, 4.3}, {2.4, 4.6}, {-4.5, 4.4}};
@@ -85,8 +87,11 @@ static void build_boat(MeshBuilder *b)
 
 static void build_rhib(MeshBuilder *b)
 {
-    static const Section s[5] = {{-5.2, 0.5, 1.2, 1.25, -0.35, 0.55}, {-1, 0.4, 1.2, 1.3, -0.55, 0.6}, {2.5, 0.25, 0.95, 1.2, -0.5, 0.7},
-                                 {4.4, 0.08, 0.4, 0.75, -0.3, 0.85}, {5.2, 0.02, 0.04, 0.15, -0.05, 0.95}};
+    static const Section s[5] = {{-5.2, 0.5, 1.2, 1.25, -0.35, 0.55},
+                                 {-1, 0.4, 1.2, 1.3, -0.55, 0.6},
+                                 {2.5, 0.25, 0.95, 1.2, -0.5, 0.7},
+                                 {4.4, 0.08, 0.4, 0.75, -0.3, 0.85},
+                                 {5.2, 0.02, 0.04, 0.15, -0.05, 0.95}};
     hull(b, 5, s, "paint_ship_grey", "paint_ship_grey");
     mesh_part(b, 0, "collar", "rubber_black", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
@@ -107,13 +112,14 @@ static void build_rhib(MeshBuilder *b)
 
 static void build_carrier_ship(MeshBuilder *b)
 {
-    static const Section s[6] = {{-158, 6, 17, 19, -4, 14}, {-120, 14, 20.2, 20.4, -11.3, 14}, {60, 15, 20.4, 20.4, -11.3, 14},
-                                 {115, 8, 15, 19, -11.3, 14.5}, {150, 2, 6, 13, -11.0, 15.5}, {163, 0.6, 1.0, 9, -9, 16}};
+    static const Section s[6] = {{-158, 6, 17, 19, -4, 14},       {-120, 14, 20.2, 20.4, -11.3, 14},
+                                 {60, 15, 20.4, 20.4, -11.3, 14}, {115, 8, 15, 19, -11.3, 14.5},
+                                 {150, 2, 6, 13, -11.0, 15.5},    {163, 0.6, 1.0, 9, -9, 16}};
     hull(b, 6, s, "paint_antifouling", "paint_ship_grey");
     mesh_part(b, 0, "flight_deck", "paint_deck_grey", HEAT_PASSIVE);
     /* seen from above: the angled deck juts out to the left; island on the right */
-    const double plan[11][2] = {{-166.4, -24}, {-166.4, 26}, {-125, 30}, {-100, 38.3}, {30, 38.5}, {62, 26}, {166.4, 17},
-                                {166.4, -16}, {95, -20}, {72, -38.3}, {-60, -38.3}};
+    const double plan[11][2] = {{-166.4, -24}, {-166.4, 26}, {-125, 30}, {-100, 38.3}, {30, 38.5},  {62, 26},
+                                {166.4, 17},   {166.4, -16}, {95, -20},  {72, -38.3},  {-60, -38.3}};
     double low[11][2], high[11][2];
     for (int i = 0; i < 11; i++) {
         high[i][0] = plan[i][0], high[i][1] = plan[i][1];
@@ -145,15 +151,20 @@ static void build_submarine(MeshBuilder *b)
 {
     /* at the surface: the deck stands a little out of the water, the sail above it */
     const double half = 110.3 / 2, r = 10.1 / 2, axis_h = r - 9.4;
-    const Station s[9] = {{-half, 0.15, -axis_h - 0.15, -axis_h + 0.15, 1}, {-half + 9, 1.6, -axis_h - 1.6, -axis_h + 1.6, 1},
-                          {-half + 19, 3.5, -axis_h - 3.5, -axis_h + 3.5, 1}, {-half + 32, 0.985 * r, -axis_h - 0.985 * r, -axis_h + 0.985 * r, 1},
-                          {-half + 38, r, -axis_h - r, -axis_h + r, 1}, {half - 14, r, -axis_h - r, -axis_h + r, 1},
+    const Station s[9] = {{-half, 0.15, -axis_h - 0.15, -axis_h + 0.15, 1},
+                          {-half + 9, 1.6, -axis_h - 1.6, -axis_h + 1.6, 1},
+                          {-half + 19, 3.5, -axis_h - 3.5, -axis_h + 3.5, 1},
+                          {-half + 32, 0.985 * r, -axis_h - 0.985 * r, -axis_h + 0.985 * r, 1},
+                          {-half + 38, r, -axis_h - r, -axis_h + r, 1},
+                          {half - 14, r, -axis_h - r, -axis_h + r, 1},
                           {half - 5.5, 0.82 * r, -axis_h - 0.82 * r, -axis_h + 0.82 * r, 1},
-                          {half - 1.5, 0.48 * r, -axis_h - 0.48 * r, -axis_h + 0.48 * r, 1}, {half, 0.12 * r, -axis_h - 0.1 * r, -axis_h + 0.1 * r, 1}};
+                          {half - 1.5, 0.48 * r, -axis_h - 0.48 * r, -axis_h + 0.48 * r, 1},
+                          {half, 0.12 * r, -axis_h - 0.1 * r, -axis_h + 0.1 * r, 1}};
     mesh_part(b, 0, "pressure_hull", "paint_black_gloss", HEAT_HULL);
     mesh_loft(b, place_at(0, 0, 0), s, 9);
     mesh_part(b, 0, "sail", "paint_black_gloss", HEAT_CABIN);
-    const double low[8][2] = {{14, 0}, {16.5, 0.9}, {20, 1.25}, {24, 1.0}, {26, 0}, {24, -1.0}, {20, -1.25}, {16.5, -0.9}};
+    const double low[8][2] = {{14, 0}, {16.5, 0.9}, {20, 1.25},  {24, 1.0},
+                              {26, 0}, {24, -1.0},  {20, -1.25}, {16.5, -0.9}};
     double top[8][2];
     for (int i = 0; i < 8; i++) {
         top[i][0] = 20 + 0.94 * (low[i][0] - 20);
@@ -189,8 +200,9 @@ static void build_cargo_ship(MeshBuilder *b)
     mesh_part(b, 0, "containers", "brick_red", HEAT_PASSIVE);
     for (int i = 0; i < 11; i++) {
         static const int tiers[11] = {4, 5, 5, 0, 5, 6, 5, 6, 5, 4, 3};
-        const double     x = -128 + 22 * i;
-        if (tiers[i] > 0) form_box(b, x, x + 20, -(i == 10 ? 11 : 15.5), i == 10 ? 11 : 15.5, 9.4, 9.5 + 2.6 * tiers[i]);
+        const double x = -128 + 22 * i;
+        if (tiers[i] > 0)
+            form_box(b, x, x + 20, -(i == 10 ? 11 : 15.5), i == 10 ? 11 : 15.5, 9.4, 9.5 + 2.6 * tiers[i]);
     }
     mesh_part(b, 0, "superstructure", "paint_white_wood", HEAT_CABIN);
     form_box(b, -62, -50, -14, 14, 9.4, 34);
@@ -230,8 +242,12 @@ Status parametric_vessel(Model *out, const char *name, double sag_m)
         const char *name;
         void (*build)(MeshBuilder *b);
     } kinds[] = {
-        {"boat", build_boat},           {"rhib", build_rhib},             {"aircraft_carrier", build_carrier_ship},
-        {"submarine", build_submarine}, {"cargo_ship", build_cargo_ship}, {"tanker", build_tanker},
+        {"boat", build_boat},
+        {"rhib", build_rhib},
+        {"aircraft_carrier", build_carrier_ship},
+        {"submarine", build_submarine},
+        {"cargo_ship", build_cargo_ship},
+        {"tanker", build_tanker},
     };
     int k = 0;
     while (strcmp(kinds[k].name, name) != 0) k++;

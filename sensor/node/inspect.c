@@ -405,7 +405,7 @@ static void print_entities(const Findings *f)
 static Status print_shapes(const Findings *f)
 {
     static const double sag_m = 0.1; /* sizes are wanted, not facets */
-    char     path[4096];
+    char path[4096];
     Catalog *catalog;
     if (f->entities.count == 0) return STATUS_OK;
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
@@ -413,22 +413,23 @@ static Status print_shapes(const Findings *f)
     if (status != STATUS_OK) return status;
     printf("\nShapes (of etc/catalog.csv: length x width x height m)\n");
     for (int i = 0; i < f->entities.count; i++) {
-        const EntityRow    *row = row_at(&f->entities, i);
+        const EntityRow *row = row_at(&f->entities, i);
         const DisEntityType type = row->type;
-        char                text[dis_type_text_size];
-        bool                said = false;
+        char text[dis_type_text_size];
+        bool said = false;
         for (int k = 0; k < i && !said; k++) {
             const EntityRow *other = row_at(&f->entities, k);
             said = memcmp(&type, &other->type, sizeof type) == 0;
         }
         if (said) continue;
         dis_entity_type_text(text, type);
-        const int    index = catalog_find(catalog, type, NULL, NULL);
+        const int index = catalog_find(catalog, type, NULL, NULL);
         const Model *model = catalog_model(catalog, index);
-        if (!catalog_shows(catalog, index)) printf("  %-22s nothing is seen of it\n", text);
+        if (!catalog_shows(catalog, index))
+            printf("  %-22s nothing is seen of it\n", text);
         else
-            printf("  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m, model->height_m,
-                   index == 0 ? " (no row of the catalog: a stand-in)" : "");
+            printf("  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
+                   model->height_m, index == 0 ? " (no row of the catalog: a stand-in)" : "");
     }
     catalog_close(catalog);
     return STATUS_OK;

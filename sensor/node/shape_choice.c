@@ -12,7 +12,7 @@ static bool same_type(DisEntityType a, DisEntityType b)
 }
 
 typedef struct Unshaped {
-    int           entities, types, named;
+    int entities, types, named;
     DisEntityType type[most_named];
 } Unshaped;
 
@@ -27,7 +27,7 @@ static void note(Unshaped *u, DisEntityType type)
 
 static void say(Choices *choices, const Unshaped *u, const char *what, const char *how)
 {
-    char   text[160] = "";
+    char text[160] = "";
     size_t n = 0;
     if (u->entities == 0) return;
     for (int i = 0; i < u->named && n < sizeof text; i++) {
@@ -35,8 +35,8 @@ static void say(Choices *choices, const Unshaped *u, const char *what, const cha
         dis_entity_type_text(type, u->type[i]);
         n += (size_t)snprintf(text + n, sizeof text - n, "%s%s", i ? ", " : "", type);
     }
-    choice_add(choices, "shapes: %s of %d %s (%s%s); %s", what, u->entities, u->entities == 1 ? "entity" : "entities", text,
-               u->types > u->named ? ", ..." : "", how);
+    choice_add(choices, "shapes: %s of %d %s (%s%s); %s", what, u->entities, u->entities == 1 ? "entity" : "entities",
+               text, u->types > u->named ? ", ..." : "", how);
 }
 
 void choose_shapes(Choices *choices, const Survey *survey, const Catalog *catalog)
@@ -44,10 +44,12 @@ void choose_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
     Unshaped unseen = {0}, unknown = {0};
     for (int i = 0; i < survey->track_count; i++) {
         const DisEntityType type = survey->track[i].type;
-        int                 matched;
-        const int           model = catalog_find(catalog, type, NULL, &matched);
-        if (!catalog_shows(catalog, model)) note(&unseen, type);
-        else if (model == 0) note(&unknown, type);
+        int matched;
+        const int model = catalog_find(catalog, type, NULL, &matched);
+        if (!catalog_shows(catalog, model))
+            note(&unseen, type);
+        else if (model == 0)
+            note(&unknown, type);
     }
     say(choices, &unseen, "nothing is seen", "`none` in etc/catalog.csv");
     say(choices, &unknown, "a wedge is shown", "no row of etc/catalog.csv");

@@ -548,7 +548,8 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     fixture_close(&f);
 }
 
-/* A radio, a cloud and chaff are heard and counted, but a scene does not have them; under another type the same id comes back. */
+/* A radio, a cloud and chaff are heard and counted, but a scene does not have them; under another type the same id
+ * comes back. */
 static void what_has_no_shape_is_not_in_the_scene(void **state)
 {
     (void)state;
