@@ -101,6 +101,19 @@ void model_pose(NodePose *pose, const Model *model, const double *value);
  * STATUS_NO_MEMORY: nothing is filled in. */
 Status model_measure(Model *model);
 void model_destroy(Model *model); /* frees and zeroes; accepts zeroes */
+
+/* Figures of a model at rest, m; 0: left open, in proportion to those that are given. length, width: of the bounding
+ * box; height: from the ground (z = 0), or from the lowest point where that is below it, to the top. */
+typedef struct ModelSize {
+    double length_m, width_m, height_m;
+} ModelSize;
+
+/* Brings a model to a size, its joints with it; wheels and rotors stay round, and wheels on the ground. Figures are met
+ * to 1e-3 where wheels and rotors allow it. STATUS_BAD_VALUE: a factor outside 0.02 .. 50; then, and without memory,
+ * the model is as it was or half way, and good for model_destroy alone. */
+Status model_resize(Model *model, const ModelSize *size);
+/* Factors along the body axes that the size asks for; false: outside 0.02 .. 50. */
+bool   model_scale_to(double factor[3], const Model *model, const ModelSize *size);
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */
 Status model_validate(const Model *model);

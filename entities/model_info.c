@@ -1,6 +1,7 @@
 #include "entities/model_info.h"
 
 #include "entities/model_import.h"
+#include "entities/parametric.h"
 #include "entities/sidecar.h"
 
 #include <stdlib.h>
@@ -8,14 +9,19 @@
 static void usage(FILE *to)
 {
     fputs(
-        "usage: pitviper model info NAME|FILE [--sag M]\n\n"
+        "usage: pitviper model info NAME|FILE [--sag M] [--length M] [--width M] [--height M]\n\n"
         "Says what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
         "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, "
         "also\n"
         "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is "
         "read:\n"
         "tank.glb, tank.yaml.\n\n"
-        "  --sag M   largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n",
+        "  --sag M     largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n"
+        "  --length M  a built-in model of that length, width or height, as a row of etc/catalog.csv gives it: 0.001 "
+        ".. 2000 m;\n"
+        "  --width M   what is left out is in proportion. Length and width: of the bounding box at rest; height: from "
+        "the\n"
+        "  --height M  ground, or the lowest point below it\n",
         to);
 }
 
@@ -102,13 +108,25 @@ static void print_parts(const Model *m)
     }
 }
 
-static int print_info(const char *name, double sag_m)
+static int print_info(const char *name, const ModelSize *size, double sag_m)
 {
+    const bool sized = size->length_m > 0 || size->width_m > 0 || size->height_m > 0;
     Model model;
     ModelImport report = {0};
     ModelEdges edges;
     bool imported;
-    const Status status = model_open(&model, &report, &imported, name, sag_m);
+    if (sized && model_is_path(name)) {
+        log_error(
+            "model: --length, --width and --height are for built-in models; `scale` in a sidecar sizes a file: %s",
+            name);
+        return 2;
+    }
+    Status status = STATUS_OK;
+    imported = false;
+    if (sized && parametric_known(name))
+        status = parametric_build_size(&model, name, size, sag_m);
+    else
+        status = model_open(&model, &report, &imported, name, sag_m);
     if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
     if (status != STATUS_OK) return 1; /* all else was said where it happened */
     if (model_edges(&edges, &model) != STATUS_OK) {
@@ -138,6 +156,7 @@ int model_command(int argc, char **argv)
 {
     const char *name = NULL;
     double sag_m = 0.005;
+    ModelSize size = {0};
     if (argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
         usage(stdout);
         return 0;
@@ -154,6 +173,20 @@ int model_command(int argc, char **argv)
         if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
             usage(stdout);
             return 0;
+        }
+        double *const figure[3] = {&size.length_m, &size.width_m, &size.height_m};
+        static const char *const option[3] = {"--length", "--width", "--height"};
+        int which = 0;
+        while (which < 3 && strcmp(argv[i], option[which]) != 0) which++;
+        if (which < 3) {
+            if (i + 1 < argc && text_to_double(figure[which], argv[i + 1]) && *figure[which] >= 0.001 &&
+                *figure[which] <= 2000) {
+                i++;
+                continue;
+            }
+            fprintf(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i],
+                    i + 1 < argc ? argv[i + 1] : "");
+            return 2;
         }
         if (strcmp(argv[i], "--sag") == 0) {
             if (i + 1 < argc && text_to_double(&sag_m, argv[i + 1]) && sag_m >= 1e-5 && sag_m <= 0.1) {
@@ -175,5 +208,5 @@ int model_command(int argc, char **argv)
         usage(stderr);
         return 2;
     }
-    return print_info(name, sag_m);
+    return print_info(name, &size, sag_m);
 }

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 typedef struct ModelMeshes {
-    const Model *model;
+    const Model *model;      /* NULL: not built yet */
     int          count;
     NodeMesh    *mesh;       /* nodes that have triangles; one more for each way in which damage hides some */
 } ModelMeshes;
@@ -14,6 +14,7 @@ struct Tracer {
     atomic_int   error; /* the first that Embree reported */
     int          count;
     ModelMeshes *model;
+    const Catalog *catalog; /* NULL: the models were given, and are built */
 };
 
 /* ---- building ----------------------------------------------------------------------------- */
@@ -186,6 +187,27 @@ done:
     return status;
 }
 
+static void close_model(ModelMeshes *meshes)
+{
+    for (int k = 0; k < meshes->count; k++) {
+        if (meshes->mesh[k].scene) rtcReleaseScene(meshes->mesh[k].scene);
+        free(meshes->mesh[k].triangle);
+        free(meshes->mesh[k].facet);
+        free(meshes->mesh[k].corner);
+    }
+    free(meshes->mesh);
+    *meshes = (ModelMeshes){0};
+}
+
+Status tracer_need(Tracer *tracer, int model)
+{
+    ModelMeshes *meshes = &tracer->model[model];
+    if (meshes->model || !tracer->catalog) return STATUS_OK;
+    const Status status = build_model(meshes, tracer, catalog_model(tracer->catalog, model));
+    if (status != STATUS_OK) close_model(meshes);
+    return status;
+}
+
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa)
 {
     char        config[128] = "threads=1,start_threads=0,set_affinity=0";
@@ -211,7 +233,7 @@ Status tracer_create_models(Tracer **out, const Model *const *models, int count,
     tracer->model = calloc((size_t)count + 1, sizeof *tracer->model);
     if (!tracer->model) { status = STATUS_NO_MEMORY; goto fail; }
     for (; tracer->count < count; ) {
-        status = build_model(&tracer->model[tracer->count], tracer, models[tracer->count]);
+        if (models[tracer->count]) status = build_model(&tracer->model[tracer->count], tracer, models[tracer->count]);
         tracer->count++;
         if (status != STATUS_OK) goto fail;
     }
@@ -229,8 +251,9 @@ Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa)
     const int     count = catalog_model_count(catalog);
     const Model **models = calloc((size_t)count + 1, sizeof *models);
     if (!models) return STATUS_NO_MEMORY;
-    for (int m = 0; m < count; m++) models[m] = catalog_model(catalog, m);
+    for (int m = 0; m < count; m++) models[m] = catalog_is_built(catalog, m) ? catalog_model(catalog, m) : NULL;
     const Status status = tracer_create_models(out, models, count, isa);
+    if (status == STATUS_OK) (*out)->catalog = catalog;
     free(models);
     return status;
 }
@@ -238,16 +261,7 @@ Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa)
 void tracer_destroy(Tracer *tracer)
 {
     if (!tracer) return;
-    for (int m = 0; m < tracer->count; m++) {
-        ModelMeshes *meshes = &tracer->model[m];
-        for (int k = 0; k < meshes->count; k++) {
-            if (meshes->mesh[k].scene) rtcReleaseScene(meshes->mesh[k].scene);
-            free(meshes->mesh[k].triangle);
-            free(meshes->mesh[k].facet);
-            free(meshes->mesh[k].corner);
-        }
-        free(meshes->mesh);
-    }
+    for (int m = 0; m < tracer->count; m++) close_model(&tracer->model[m]);
     free(tracer->model);
     if (tracer->device) rtcReleaseDevice(tracer->device);
     free(tracer);

@@ -11,9 +11,12 @@
 #include "entities/model.h"
 #include "render/visibility.h"
 
-/* As tracer_create, with the models given directly; they must outlive the tracer. */
+/* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. */
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);
 int    tracer_model_count(const Tracer *tracer);
+/* Builds the geometry of a model of the catalog that was not built when the tracer was made. One thread, before
+ * parts_pose. */
+Status tracer_need(Tracer *tracer, int model);
 const Model *tracer_model(const Tracer *tracer, int model);
 
 typedef struct NodeMesh NodeMesh;

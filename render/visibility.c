@@ -33,6 +33,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
         posed->model  = -1;
         posed->damage = 0;
         if (e->model < 0 || e->model >= tracer_model_count(tracer)) continue;
+        if (tracer_need(tracer, e->model) != STATUS_OK) return STATUS_NO_MEMORY;
         posed->node = arena_alloc(arena, (size_t)parts_node_count(tracer, e->model) + 1, sizeof *posed->node);
         if (!posed->node) return STATUS_NO_MEMORY;
         enu_from_ecef(p_enu, frame, e->p_ecef);

@@ -237,8 +237,9 @@ static char *part_names(const FrameFiles *frame)
     char *text = calloc(size, 1);
     for (int m = 0; text && m < catalog_model_count(catalog); m++) {
         const Model *model = catalog_model(catalog, m);
-        bool         here  = false;
-        for (int i = 0; i < frame->snapshot->count; i++) here |= frame->snapshot->entity[i].model == m;
+        bool         here  = false; /* in any size: the parts are the same */
+        for (int i = 0; i < frame->snapshot->count && catalog_class(catalog, m) == m; i++)
+            here |= catalog_class(catalog, frame->snapshot->entity[i].model) == m;
         for (int i = 0; here && i < model->part_count; i++)
             if (i == 0)
                 n += (size_t)snprintf(text + n, size - n, "%s%s:%s", n ? ";" : "", model->name, model->part[i].name);

@@ -2,6 +2,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/node/quality.h"
+#include "sensor/node/shape_choice.h"
 
 #include <stdlib.h>
 
@@ -152,6 +153,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool 
     if (status == STATUS_OK) status = choose_time(unix_s, choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
         status = choose_ground(landscape, clamp, choices, &run->survey, &o->config, &frame, run->catalog, plan);
+    if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
     if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
     if (status == STATUS_OK) status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
     if (status != STATUS_OK) return status;

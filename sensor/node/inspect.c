@@ -9,6 +9,7 @@
 #include "dis/log.h"
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
+#include "entities/catalog.h"
 #include "terrain/geodesy.h"
 
 #include <stdio.h>
@@ -407,6 +408,40 @@ static void print_entities(const Findings *f)
     }
 }
 
+/* Each type once, in the order of the table above, with what it is seen as. */
+static Status print_shapes(const Findings *f)
+{
+    static const double sag_m = 0.1; /* sizes are wanted, not facets */
+    char path[4096];
+    Catalog *catalog;
+    if (f->entities.count == 0) return STATUS_OK;
+    if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
+    const Status status = catalog_open(&catalog, path, sag_m);
+    if (status != STATUS_OK) return status;
+    printf("\nShapes (of etc/catalog.csv: length x width x height m)\n");
+    for (int i = 0; i < f->entities.count; i++) {
+        const EntityRow *row = row_at(&f->entities, i);
+        const DisEntityType type = row->type;
+        char text[dis_type_text_size];
+        bool said = false;
+        for (int k = 0; k < i && !said; k++) {
+            const EntityRow *other = row_at(&f->entities, k);
+            said = memcmp(&type, &other->type, sizeof type) == 0;
+        }
+        if (said) continue;
+        dis_entity_type_text(text, type);
+        const int index = catalog_find(catalog, type, NULL, NULL);
+        const Model *model = catalog_model(catalog, index);
+        if (!catalog_shows(catalog, index))
+            printf("  %-22s nothing is seen of it\n", text);
+        else
+            printf("  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
+                   model->height_m, index == 0 ? " (no row of the catalog: a stand-in)" : "");
+    }
+    catalog_close(catalog);
+    return STATUS_OK;
+}
+
 static const char *result_text(uint8_t result)
 {
     switch (result) {
@@ -448,7 +483,7 @@ static Status print_summary(const DisLog *log, const Options *options)
     Findings f = {.entities.size = sizeof(EntityRow),
                   .senders.size = sizeof(SenderRow),
                   .events.size = sizeof(EventRow)};
-    const Status status = gather(&f, log, options);
+    Status status = gather(&f, log, options);
     if (status == STATUS_OK) {
         if (f.entities.count) qsort(f.entities.row, (size_t)f.entities.count, f.entities.size, compare_rows);
         if (f.senders.count) qsort(f.senders.row, (size_t)f.senders.count, f.senders.size, compare_rows);
@@ -456,6 +491,7 @@ static Status print_summary(const DisLog *log, const Options *options)
         print_counts(&f);
         print_senders(&f);
         print_entities(&f);
+        status = print_shapes(&f);
         print_events(&f);
     }
     release(&f);

@@ -94,10 +94,11 @@ static json_t *annotation_json(const FrameRecord *r, const Target *t, long long 
     char                  name[dis_id_text_size], type[dis_type_text_size];
     dis_entity_id_text(name, entity->id);
     dis_entity_type_text(type, entity->type);
-    json_t *out = json_pack("{s:I,s:I,s:i,s:[i,i,i,i],s:f,s:i,s:s,s:s}", "id", (json_int_t)id, "image_id",
-                            (json_int_t)image, "category_id", entity->model + 1, "bbox", t->box[0], t->box[1],
-                            t->box[2] - t->box[0], t->box[3] - t->box[1], "area", t->pixels, "iscrowd", 0, "entity", name,
-                            "type", type);
+    const int category = catalog_class(r->catalog, entity->model) + 1;
+    json_t   *out = json_pack("{s:I,s:I,s:i,s:[i,i,i,i],s:f,s:i,s:s,s:s}", "id", (json_int_t)id, "image_id",
+                              (json_int_t)image, "category_id", category, "bbox", t->box[0], t->box[1],
+                              t->box[2] - t->box[0], t->box[3] - t->box[1], "area", t->pixels, "iscrowd", 0, "entity",
+                              name, "type", type);
     if (!out) return NULL;
     set_number(out, "range_m", t->range_m);
     set_number(out, "aspect_deg", t->aspect_rad / rad_per_deg);
@@ -143,8 +144,9 @@ static void join(Coco *c)
     while ((n = fread(block, 1, sizeof block, c->waiting)) > 0) fwrite(block, 1, n, c->file);
     fputs("],\n\"categories\":[", c->file);
     for (int m = 0; c->catalog && m < catalog_model_count(c->catalog); m++)
-        put(c->file, json_pack("{s:i,s:s,s:s}", "id", m + 1, "name", catalog_model(c->catalog, m)->name, "supercategory",
-                               "entity"), m == 0, false);
+        if (catalog_class(c->catalog, m) == m) /* one for all sizes of a shape */
+            put(c->file, json_pack("{s:i,s:s,s:s}", "id", m + 1, "name", catalog_model(c->catalog, m)->name,
+                                   "supercategory", "entity"), m == 0, false);
     fputs("],\n\"licenses\":[],\n\"info\":", c->file);
     json_t *info = json_pack("{s:s,s:s,s:s,s:I}", "description", "pitviper replay", "version", PITVIPER_VERSION,
                              "config_sha256", c->config_sha256, "seed", (json_int_t)c->seed);

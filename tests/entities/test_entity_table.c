@@ -548,6 +548,28 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     fixture_close(&f);
 }
 
+/* A radio, a cloud and chaff are heard and counted, but a scene does not have them; under another type the same id
+ * comes back. */
+static void what_has_no_shape_is_not_in_the_scene(void **state)
+{
+    (void)state;
+    static const DisEntityType unseen[3] = {{7, 1, 225, 1, 1, 0, 0}, {4, 1, 0, 1, 0, 0, 0}, {8, 2, 225, 1, 1, 0, 0}};
+    Fixture f = fixture_open(NULL);
+    for (int i = 0; i < 3; i++) {
+        const DisEntityState pdu = report(10 + i, unseen[i]);
+        hear(&f, &pdu, 1);
+    }
+    DisEntityState tank = report(1, tank_type);
+    hear(&f, &tank, 1);
+    CHECK(seen_at(&f, 1, 1.5) && f.snapshot.count == 1);
+    for (int i = 0; i < 3; i++) CHECK(!seen_at(&f, 10 + i, 1.5));
+    CHECK(entity_table_count(f.table) == 4);
+    DisEntityState changed = report(10, tank_type);
+    hear(&f, &changed, 2);
+    CHECK(seen_at(&f, 10, 2.5) && f.snapshot.count == 2);
+    fixture_close(&f);
+}
+
 /* ---- octets ------------------------------------------------------------------------------- */
 
 static void octets_are_checked_and_counted(void **state)
@@ -697,6 +719,7 @@ int main(void)
         cmocka_unit_test(wheels_roll_with_the_way),
         cmocka_unit_test(rotors_spin_and_freeze),
         cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
+        cmocka_unit_test(what_has_no_shape_is_not_in_the_scene),
         cmocka_unit_test(landing_gear_needs_no_report),
         cmocka_unit_test(octets_are_checked_and_counted),
         cmocka_unit_test(mutated_octets_do_no_harm),

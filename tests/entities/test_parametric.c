@@ -54,7 +54,7 @@ static void bad_requests_are_refused(void **state)
     untouched = m;
     log_set_level((LogLevel)(LOG_ERROR + 1));
     const Status got[5] = {parametric_build(&m, "tank", 0.11), parametric_build(&m, "tank", 9e-6),
-                           parametric_build(&m, "tank", NAN), parametric_build(&m, "submarine", 0.01),
+                           parametric_build(&m, "tank", NAN), parametric_build(&m, "zeppelin", 0.01),
                            parametric_build(&m, "", 0.01)};
     log_set_level(LOG_INFO);
     for (int i = 0; i < 5; i++) CHECK(got[i] == (i < 3 ? STATUS_BAD_VALUE : STATUS_UNSUPPORTED));
