@@ -1,6 +1,8 @@
 /* sensor/detector/mrtd.c: the minimum resolvable temperature difference that a sensor's figures promise. */
 #include "sensor/detector/mrtd.h"
 
+#include "sensor/detector/chain.h"
+
 /* Of white noise in square pixels, what a mean over a length leaves; below a pixel, that of the pixel. */
 static double white_left(double length_px)
 {
@@ -24,7 +26,7 @@ static double line_shared(double length_px, double reach_px)
 static double mtf_along(const SensorPreset *p, int axis, double f)
 {
     const PhotonDetector *d = &p->photons;
-    const MtfChain        mtf = {.cutoff_cyc_px = d->pitch_m / (0.5 * (d->low_m + d->high_m) * d->f_number),
+    const MtfChain        mtf = {.cutoff_cyc_px = d->pitch_m / (chain_wavelength_m(p, -1) * d->f_number),
                                  .obscuration = p->obscuration, .footprint_px = p->footprint, .places = 1,
                                  .jitter_px = p->jitter_px};
     const double          sweep_px = axis == 0 && p->scan.by_columns ? d->integration_s / p->scan.line_s : 0;

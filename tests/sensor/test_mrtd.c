@@ -80,7 +80,7 @@ static void run_chain(Chain *chain, int frame)
     static const double still[2] = {0, 0};
     const float        *in[1] = {plane};
     chain_expose(chain, in);
-    chain_run(chain, in, frame, still);
+    chain_run(chain, in, NULL, frame, still);
 }
 
 static float flat[lots][pixels]; /* added frames without targets, of each detector */

@@ -23,7 +23,7 @@ static void run_chain(Chain *chain, int frame, const double rate_px_s[2])
 {
     const float *in[1] = {plane};
     chain_expose(chain, in);
-    chain_run(chain, in, frame, rate_px_s);
+    chain_run(chain, in, NULL, frame, rate_px_s);
 }
 
 static void fill(double temp_k)
