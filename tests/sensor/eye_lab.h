@@ -30,6 +30,7 @@ static struct {
     int         shots;
     char        folder[temp_path_size];
     SessionResult result;
+    double      first_s;
 } lab;
 
 static inline int lab_open(void **state)
@@ -163,7 +164,8 @@ static inline void lab_run(const Config *given, double from_s, double rate_hz, i
                                   .pool = lab.pool, .unix_s = 1782036000, .bands = 1u << BAND_LWIR,
                                   .config_sha256 = "", .sensors = &sensors, .publish = lab_shoot};
     assert_int_equal(session_open(&session, &shared, &plan, player, lab.folder), STATUS_OK);
-    lab.shots = 0;
+    lab.shots   = 0;
+    lab.first_s = survey.first_s;
     for (int k = 0; k < frames; k++) {
         bool shown;
         /* on ticks, to the bit */
