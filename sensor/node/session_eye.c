@@ -183,20 +183,24 @@ static void step_gimbal(Session *s, double t_s)
     say_limit(s, t_s);
 }
 
-/* How the camera turns: to where it will be a tick later. */
-static void camera_rate(double w_cam_rps[3], Session *s, const Mounted *now, const double r_enu_from_cam[9], double t_s)
+/* How the camera turns, and how the eye goes: to where it will be a tick later. */
+static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
 {
     static const double step_s = 1.0 / seeker_ticks_per_s;
     Mounted             next;
     Seeker              seeker = s->seeker;
-    double              p_aim_ecef[3], r_enu_from_mount[9], r_next[9];
-    memset(w_cam_rps, 0, 3 * sizeof *w_cam_rps);
-    if (!s->seeker.started || !mounted_ahead(&next, s, now, t_s)) return;
+    double              p_aim_ecef[3], r_enu_from_mount[9], r_next[9], lever[2][3];
+    memcpy(eye->state.v_ecef_mps, now->host.v_ecef_mps, sizeof eye->state.v_ecef_mps);
+    if (!seeker.started || !mounted_ahead(&next, s, now, t_s)) return;
+    /* its own motion is the host's at t_s; only what the host's turning adds is a difference */
+    v3_sub(lever[0], now->p_ecef, now->host.p_ecef);
+    v3_sub(lever[1], next.p_ecef, next.host.p_ecef);
+    for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] += (lever[1][k] - lever[0][k]) / step_s;
     if (!aim_pose(p_aim_ecef, s, t_s + step_s)) memcpy(p_aim_ecef, s->p_aim_ecef, sizeof p_aim_ecef);
     turn_gimbal(&seeker, s, &next, p_aim_ecef);
     enu_axes(r_enu_from_mount, s, &next);
     seeker_camera(r_next, &seeker, r_enu_from_mount);
-    turn_rate(w_cam_rps, r_enu_from_cam, r_next, step_s);
+    turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
 /* What lasts beyond a frame changes at ticks alone: it does not depend on which frames are made. */
@@ -240,10 +244,9 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     double r_enu_from_mount[9];
     enu_axes(r_enu_from_mount, s, &at);
     memcpy(eye->state.p_ecef, at.p_ecef, sizeof eye->state.p_ecef);
-    memcpy(eye->state.v_ecef_mps, host->v_ecef_mps, sizeof eye->state.v_ecef_mps);
     memcpy(eye->r_ecef_from_body, host->r_ecef_from_body, sizeof eye->r_ecef_from_body);
     seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_mount);
-    camera_rate(eye->w_cam_rps, s, &at, eye->view.r_enu_from_cam, t_s);
+    camera_motion(eye, s, &at, t_s);
     eye->hidden = eye->state.host_index = index;
     eye->at_limit                       = s->seeker.at_limit;
     eye->aim_known                      = s->aim_known;

@@ -257,6 +257,40 @@ static void a_turning_missile_smears_along_the_right_axes(void **state)
     }
 }
 
+/* A camera far from the middle of a turning hull, looking down beside it: the ground goes by as the eye does, and turns. */
+static void a_sensor_far_out_moves_with_the_turn(void **state)
+{
+    (void)state;
+    SensorRow    rows[32];
+    const int    count = read_sensors(rows);
+    const double w_rps = 0.1, out_m = 20, up_m = 50;
+    for (int n = 0; n < count; n++) {
+        Config config = lab_config(&rows[n]);
+        lab_forget();
+        for (int k = 0; k <= 4; k++) {
+            LabReport r = {.t_s = 100 + k, .entity = 1, .type = tank, .w_body_rps = {0, 0, w_rps}};
+            lab_attitude(r.r_enu_from_body, 2 + w_rps * k, 0, 0);
+            lab_say(&r);
+        }
+        strcpy(config.exercise.host, "1:1:1");
+        config.sensor.gimbal_limit_deg = 0;
+        config.sensor.mount_pitch_deg  = -60;
+        config.sensor.mount_x_m = out_m, config.sensor.mount_y_m = 0, config.sensor.mount_z_m = -up_m;
+        lab_run(&config, 0.96, 100, 8);
+        for (int k = 1; k < lab.shots - 1; k++) {
+            double       got[2], seen[2];
+            const double range_m = lab.shot[k].p_enu[2] / sin(60 * rad_per_deg), focal = focal_px(rows[n].width_px, rows[n].hfov_deg);
+            /* to the left by the turn about the vertical, w cos 60, and by the eye's way to the right */
+            const double want_px_s = -focal * (w_rps * cos(60 * rad_per_deg) + w_rps * out_m / range_m);
+            rate_of(got, &lab.shot[k], &rows[n]);
+            CHECK_NEAR(got[0], want_px_s, 3e-3 * fabs(want_px_s)); /* half a pixel of the coarse picture in range */
+            CHECK_NEAR(got[1], 0, 3e-3 * fabs(want_px_s));
+            rate_seen(seen, k, range_m);
+            for (int i = 0; i < 2; i++) CHECK_NEAR(got[i], focal / lab.shot[k].focal_px * seen[i], 3e-3 * fabs(want_px_s));
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -265,6 +299,7 @@ int main(void)
         cmocka_unit_test(an_aircraft_sees_the_ground_go_by),
         cmocka_unit_test(a_missile_holds_its_aim),
         cmocka_unit_test(a_turning_missile_smears_along_the_right_axes),
+        cmocka_unit_test(a_sensor_far_out_moves_with_the_turn),
     };
     return cmocka_run_group_tests(tests, lab_open, lab_close);
 }

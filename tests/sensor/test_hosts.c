@@ -65,7 +65,10 @@ static void the_sensor_goes_from_one_to_the_next(void **state)
     for (int k = 0; k < lab.shots; k++)
         for (int i = 0; i < many; i++) {
             if (all[i].t_s != lab.shot[k].t_s) continue;
-            CHECK(memcmp(&all[i], &lab.shot[k], sizeof all[i]) == 0);
+            CHECK(memcmp(all[i].p_enu, lab.shot[k].p_enu, sizeof all[i].p_enu) == 0);
+            CHECK(memcmp(all[i].r_enu_from_cam, lab.shot[k].r_enu_from_cam, sizeof all[i].r_enu_from_cam) == 0);
+            CHECK(memcmp(all[i].rate_px_s, lab.shot[k].rate_px_s, sizeof all[i].rate_px_s) == 0);
+            CHECK(all[i].host.entity == lab.shot[k].host.entity);
             met++;
         }
     CHECK(met > 15 && met >= lab.shots - 1); /* one is later than all those were */
