@@ -59,7 +59,7 @@ static json_t *host_json(const FrameRecord *r)
     set_number(host, "psi_deg", psi_rad / rad_per_deg);
     set_number(host, "theta_deg", theta_rad / rad_per_deg);
     set_number(host, "phi_deg", phi_rad / rad_per_deg);
-    set_number(host, "speed_mps", v3_length(r->v_eye_mps));
+    set_number(host, "speed_mps", v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps));
     return host;
 }
 
