@@ -266,8 +266,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
             return STATUS_BAD_VALUE;
         }
         HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
-        choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is a "
-                   "notional one (exercise.host)");
+        choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is "
+                   "a notional one (exercise.host)");
         choose_aim(&plan, choices, survey, config);
         *out = plan;
         return STATUS_OK;
@@ -285,8 +285,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
         const Track *impact = longest_flight(survey, config, guided, true);
         const Track *flight = impact ? impact : longest_flight(survey, config, guided, false);
         if (!flight) continue;
-        choice_add(choices, "host: %s, %s%s; its seeker is a notional one (exercise.host)", who(name, survey, flight->id),
-                   impact ? "the longest flight that hit an entity" : "the longest flight",
+        choice_add(choices, "host: %s, %s%s; its seeker is a notional one (exercise.host)",
+                   who(name, survey, flight->id), impact ? "the longest flight that hit an entity" : "the longest flight",
                    guided ? "" : ", of unguided munitions");
         return plan_host(out, choices, survey, config, flight->id);
     }

@@ -31,12 +31,13 @@ typedef struct HostPlan {
 
 extern const char host_munition[], host_observer[]; /* what exercise.host says but ids */
 
-/* Of the guided munitions, else of the others, mines never: the one whose Detonation says entity impact, longest flight
- * first; else the longest flight; else an
- * observer circling the vehicle that went farthest; else an observer of the middle of whatever was heard. Causal: the
- * longest flight among munitions that are still there, else the observer. */
+/* Of the guided munitions, else of the others, mines never: the one whose Detonation says entity impact, longest
+ * flight first; else the longest flight; else an observer circling the vehicle that went farthest; else an observer of
+ * the middle of whatever was heard. Causal: the longest flight among munitions that are still there, else the
+ * observer. */
 Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
-/* For a host that was asked for by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not hold it. */
+/* For a host that was asked for by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not hold
+ * it. */
 Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
 
 /* Frames a second of exercise time, into the plan. */

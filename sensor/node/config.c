@@ -28,7 +28,8 @@ static const Setting keys[] = {
     {"sensor.gimbal_lag_s", SETTING_DOUBLE, AT(sensor.gimbal_lag_s), 0, 10, NULL, "s",
      "time constant of the tracking loop"},
     {"sensor.mount", SETTING_TEXT, AT(sensor.mount), 0, 0, NULL, "",
-     "what the sensor goes with: auto (nose or roof), or a part of the host: primary turret, primary gun 2, a node's name"},
+     "what the sensor goes with: auto (nose or roof), or a part of the host: primary turret, primary gun 2, a node's "
+     "name"},
     {"sensor.mount_x_m", SETTING_DOUBLE, AT(sensor.mount_x_m), -500, 500, NULL, "m",
      "forward, from the body's origin or the part's pivot; unset: in the nose, on the roof, of a part 0"},
     {"sensor.mount_y_m", SETTING_DOUBLE, AT(sensor.mount_y_m), -500, 500, NULL, "m", "right"},
@@ -85,8 +86,8 @@ static const Setting keys[] = {
     {"exercise.utc", SETTING_TEXT, AT(exercise.utc), 0, 0, NULL, "",
      "date and time of the first PDU, 2026-06-21T10:00:00Z"},
     {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "",
-     "site:application:entity that carries the sensor; observer: nobody; munition: one that appears, guided ones first, "
-     "then the next (run, replay --causal)"},
+     "site:application:entity that carries the sensor; observer: a stand-off one; munition: those that appear, guided "
+     "ones first, one after the other (run, replay --causal)"},
     {"exercise.aim", SETTING_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},
     {"exercise.from_s", SETTING_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
     {"exercise.to_s", SETTING_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},
@@ -323,8 +324,8 @@ Status config_check(const Config *config)
     }
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
         strcmp(config->exercise.host, "observer") != 0 && !dis_entity_id_parse(&id, config->exercise.host)) {
-        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition nor "
-                  "observer", config->exercise.host);
+        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition "
+                  "nor observer", config->exercise.host);
         return STATUS_BAD_VALUE;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {

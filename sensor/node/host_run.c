@@ -116,13 +116,15 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     const RunRecord       record = {
               .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
-              .host_count = result->host_count > 0 ? result->host_count : 1, .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
+              .host_count = result->host_count > 0 ? result->host_count : 1,
+              .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
               .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = hash, .dis = heard,
               .link_dropped = link ? link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
-              .at_limit = result->at_limit, .effects = result->effects, .render = result->counters, .stage_count = session_stages,
+              .at_limit = result->at_limit,
+              .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms};
     const Status status = record_write_run(path, &record);
@@ -176,8 +178,8 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     else printf("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
     if (result->at_limit > 0)
-        log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name, result->at_limit,
-                 result->frames);
+        log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
+                 result->at_limit, result->frames);
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
                  result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0

@@ -18,7 +18,8 @@ enum { class_count = sizeof classes / sizeof *classes, of_a_class = 10, class_st
 uint32_t mount_class(const char *part)
 {
     long long number;
-    if (text_to_long(&number, part)) return number >= 1024 && number < 8192 && number % class_step == 0 ? (uint32_t)number : 0;
+    if (text_to_long(&number, part))
+        return number >= 1024 && number < 8192 && number % class_step == 0 ? (uint32_t)number : 0;
     for (int i = 0; i < class_count; i++) {
         const size_t length = strlen(classes[i].name);
         if (strncmp(part, classes[i].name, length) != 0) continue;

@@ -5,8 +5,8 @@
  * the words of SISO-REF-010 (`primary turret`, `secondary gun 2`; without a number the first) or by the number of its
  * class: the sensor then goes with that part, its place is given from the part's pivot, in the part's axes.
  *
- *     mount_x_m, mount_y_m, mount_z_m     forward, right, down; from the body's origin (centre of its base) or the part's
- *                                         pivot. Not given: of `auto` as above, of a part 0
+ *     mount_x_m, mount_y_m, mount_z_m     forward, right, down; from the body's origin (centre of its base) or the
+ *                                         part's pivot. Not given: of `auto` as above, of a part 0
  *     mount_yaw_deg, mount_pitch_deg      turn the axis of the gimbal, right and up, in this order
  *     mount_roll_deg                      turns the picture about the boresight, its right side down: the picture is
  *                                         roll-stabilised, and that is where it is held */

@@ -119,7 +119,8 @@ static void take_host(Session *s, DisEntityId host, bool guided)
     }
     dis_entity_id_text(s->host_text, host);
     session_note_host(s);
-    log_info("host: %s, %s %s munition", s->host_text, first ? "the first" : "the next", guided ? "guided" : "unguided");
+    log_info("host: %s, %s %s munition", s->host_text, first ? "the first" : "the next",
+             guided ? "guided" : "unguided");
 }
 
 /* Who was still to come, or comes after one that is gone: the host, and a munition's target by its Fire. */
@@ -162,7 +163,8 @@ static void turn_gimbal(Seeker *seeker, const Session *s, const Mounted *at, con
 static void say_limit(Session *s, double t_s)
 {
     char aim[dis_id_text_size] = "its aim";
-    if (s->seeker.at_limit == s->limit_said || (s->limit_tick >= 0 && s->tick - s->limit_tick < seeker_ticks_per_s)) return;
+    if (s->seeker.at_limit == s->limit_said) return;
+    if (s->limit_tick >= 0 && s->tick - s->limit_tick < seeker_ticks_per_s) return;
     s->limit_said = s->seeker.at_limit;
     s->limit_tick = s->tick;
     if (!dis_entity_id_is_none(s->plan.aim)) dis_entity_id_text(aim, s->plan.aim);

@@ -34,8 +34,8 @@ typedef struct Target {
     TargetBand band[BAND_COUNT];
 } Target;
 
-/* Hidden share of a target below which nothing occludes it: what a fraction of two decimals shows, and what the tracks of
- * vehicles on uneven ground are in it (up to 0.9 % in etc/scenarios/demo.yaml). */
+/* Hidden share of a target below which nothing occludes it: what a fraction of two decimals shows, and what the tracks
+ * of vehicles on uneven ground are in it (up to 0.9 % in etc/scenarios/demo.yaml). */
 static const double truth_occluded_least = 0.01;
 
 /* What noise the detector adds, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */

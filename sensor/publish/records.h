@@ -22,7 +22,7 @@ typedef struct FrameRecord {
     const RenderRequest  *request;
     double                hfov_rad;
     bool                  gimbal_at_limit;
-    double                scene_rate_px_s[2]; /* column, row: how what lies still in the middle moves over the picture */
+    double                scene_rate_px_s[2]; /* column, row: of what lies still in the middle */
     const Sun            *sun;
     const Target         *target;
     int                   target_count;
