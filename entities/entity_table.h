@@ -76,6 +76,10 @@ const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 
 /* One entity's pose and motion at t_s, the same as in a snapshot; no parts, no heat. False when it is not there. */
 bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s);
+/* The same with its nodes. node, joint_value: as many as its model has nodes; the second is
+ * scratch. */
+bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
+                             EntityHandle handle, double t_s);
 /* Everybody at t_s, sorted by id, in the arena. */
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena);
 

@@ -181,11 +181,26 @@ static void place_origin(SnapshotEntity *e, const EntityTable *table, const Enti
     contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
+/* Nodes of an entity whose place is still as it was reported. */
+static void pose_nodes(NodePose *pose, double *joint_value, const EntityTable *table, const EntitySlot *slot,
+                       const SnapshotEntity *e, double t_s)
+{
+    const Model *model = catalog_model(table->catalog, slot->model);
+    const bool stands = entity_slot_frozen(slot) || slot->stopped;
+    const double forward_m =
+        entity_slot_dt(slot, t_s) != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
+    const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
+                              .distance_m = slot->distance_m + forward_m,
+                              .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
+    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
+                              slot->hold_s);
+    entity_effects_wreck_joints(joint_value, model, slot);
+    model_pose(pose, model, joint_value);
+}
+
 static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value, const EntityTable *table,
                           const EntitySlot *slot, double t_s)
 {
-    const Model *model = catalog_model(table->catalog, slot->model);
-    const double dt_s = entity_slot_dt(slot, t_s);
     const bool stands = entity_slot_frozen(slot) || slot->stopped;
 
     e->id = slot->id;
@@ -202,14 +217,7 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
     if (stands) e->drift_m = e->drift_rad = 0;
     heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
 
-    const double forward_m = dt_s != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
-    const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
-                              .distance_m = slot->distance_m + forward_m,
-                              .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
-    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
-                              slot->hold_s);
-    entity_effects_wreck_joints(joint_value, model, slot);
-    model_pose(pose, model, joint_value);
+    pose_nodes(pose, joint_value, table, slot, e, t_s);
 
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
 }
@@ -299,7 +307,8 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     return status;
 }
 
-bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s)
+bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
+                             EntityHandle handle, double t_s)
 {
     if (!isfinite(t_s) || !entity_table_alive(table, handle)) return false;
     const EntitySlot *slot = table->slot + handle.slot;
@@ -310,7 +319,13 @@ bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHand
     const Ordered order = {entity_key(slot->id), (int)handle.slot};
     const int     only = 0;
     reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
+    if (node) pose_nodes(node, joint_value, table, slot, &e, t_s);
     place_origin(&e, table, slot);
     *out = e;
     return true;
+}
+
+bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s)
+{
+    return entity_table_pose_nodes(out, NULL, NULL, table, handle, t_s);
 }

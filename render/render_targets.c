@@ -237,8 +237,9 @@ static void gather_target(TargetPixels *target, const Job *job, int index, int w
         target->radiance[k] = (double)sum.radiance[k] * job->radiance_quantum;
     for (int b = 0; b < BAND_COUNT; b++)
         target->veiled[b] = sum.visible > 0 ? (double)sum.veiled[b] / (double)sum.visible : 0;
-    memcpy(target->box, sum.box, sizeof sum.box);
-    memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
+    /* a first sample may have met what those that took its place did not */
+    if (sum.visible > 0) memcpy(target->box, sum.box, sizeof sum.box);
+    if (sum.amodal > 0) memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
 }
 
 void gather(Job *job, int workers)

@@ -11,7 +11,7 @@
 
 enum { who_size = 80 };
 
-static const char host_munition[] = "munition";
+const char host_munition[] = "munition", host_observer[] = "observer";
 
 void choice_add(Choices *choices, const char *format, ...)
 {
@@ -152,12 +152,53 @@ static Status aim_is_heard(const Survey *survey, const Config *config)
     return STATUS_OK;
 }
 
+/* asked: for one, not for want of a munition. */
+static Status plan_observer(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, bool asked)
+{
+    char         name[who_size];
+    HostPlan     plan   = {.start_s = survey->first_s, .end_s = survey->last_s};
+    const Track *target = NULL;
+    double       most_m = -1;
+
+    for (int i = 0; i < survey->track_count; i++) /* land first, then anybody; who went farthest */
+        if (choice_is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
+            target = &survey->track[i];
+            most_m = path_m(target);
+        }
+    for (int i = 0; !target && i < survey->track_count; i++) target = &survey->track[i];
+    if (!target) {
+        log_error("replay: the log holds no entity with a usable position; `pitviper inspect LOG` says what it holds");
+        return STATUS_BAD_VALUE;
+    }
+    plan.aim     = target->id;
+    plan.start_s = target->point[0].t_s;
+    memcpy(plan.p_aim_ecef, target->point[0].p_ecef, sizeof plan.p_aim_ecef);
+    if (*config->exercise.aim) {
+        dis_entity_id_parse(&plan.aim, config->exercise.aim);
+        const Track *aim = survey_track(survey, plan.aim);
+        if (aim) {
+            plan.start_s = aim->point[0].t_s;
+            memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
+        }
+    }
+    if (asked)
+        choice_add(choices, "host: a stand-off observer (exercise.host)");
+    else
+        choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
+                   config->causal ? " now" : "");
+    choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
+               config->observer.range_m, config->observer.height_m);
+    *out = plan;
+    return STATUS_OK;
+}
+
 Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host)
 {
     char         text[dis_id_text_size];
     const Track *track = survey_track(survey, host);
     Status       status = aim_is_heard(survey, config);
     if (status != STATUS_OK) return status;
+    if (dis_entity_id_is_none(host)) return plan_observer(out, choices, survey, config, true);
     if (!track && config->causal) {
         HostPlan later = {.host = host, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
         dis_entity_id_text(text, host);
@@ -190,15 +231,17 @@ static bool has_ended(const Survey *survey, const Track *track, const Config *co
            survey->last_s - last->t_s > config->entities.timeout_s;
 }
 
-/* Longest flight among munitions; impact: only those whose Detonation says entity impact. NULL: none. */
-static const Track *longest_flight(const Survey *survey, const Config *config, bool impact)
+/* Longest flight among munitions, guided or not; mines do not fly. impact: only those whose Detonation says entity
+ * impact. NULL: none. */
+static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
 {
     const Track *longest = NULL;
     double       most_s  = config->causal ? -1 : 0; /* one report is a flight that may go on */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot  = choice_shot_of(survey, track->id);
-        if (track->type.kind != dis_kind_munition) continue;
+        if (track->type.kind != dis_kind_munition || track->type.category == dis_munition_fixed) continue;
+        if ((track->type.category == dis_munition_guided) != guided) continue;
         if (config->causal && has_ended(survey, track, config)) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s
@@ -210,42 +253,6 @@ static const Track *longest_flight(const Survey *survey, const Config *config, b
         }
     }
     return longest;
-}
-
-static Status plan_observer(HostPlan *out, Choices *choices, const Survey *survey, const Config *config)
-{
-    char         name[who_size];
-    HostPlan     plan   = {.start_s = survey->first_s, .end_s = survey->last_s};
-    const Track *target = NULL;
-    double       most_m = -1;
-
-    for (int i = 0; i < survey->track_count; i++) /* land first, then anybody; who went farthest */
-        if (choice_is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
-            target = &survey->track[i];
-            most_m = path_m(target);
-        }
-    for (int i = 0; !target && i < survey->track_count; i++) target = &survey->track[i];
-    if (!target) {
-        log_error("replay: the log holds no entity with a usable position; `pitviper inspect LOG` says what it holds");
-        return STATUS_BAD_VALUE;
-    }
-    plan.aim     = target->id;
-    plan.start_s = target->point[0].t_s;
-    memcpy(plan.p_aim_ecef, target->point[0].p_ecef, sizeof plan.p_aim_ecef);
-    if (*config->exercise.aim) {
-        dis_entity_id_parse(&plan.aim, config->exercise.aim);
-        const Track *aim = survey_track(survey, plan.aim);
-        if (aim) {
-            plan.start_s = aim->point[0].t_s;
-            memcpy(plan.p_aim_ecef, aim->point[0].p_ecef, sizeof plan.p_aim_ecef);
-        }
-    }
-    choice_add(choices, "host: a stand-off observer, no munition flies here%s (exercise.host)",
-               config->causal ? " now" : "");
-    choice_add(choices, "aim: %s, circled at %g m, %g m above (exercise.aim, observer.*)", who(name, survey, plan.aim),
-               config->observer.range_m, config->observer.height_m);
-    *out = plan;
-    return STATUS_OK;
 }
 
 Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config)
@@ -261,27 +268,31 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
             return STATUS_BAD_VALUE;
         }
         HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
-        choice_add(choices, "host: the first munition that appears; its seeker is a notional one (exercise.host)");
+        choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is "
+                   "a notional one (exercise.host)");
         choose_aim(&plan, choices, survey, config);
         *out = plan;
         return STATUS_OK;
     }
+    if (strcmp(config->exercise.host, host_observer) == 0) return plan_observer(out, choices, survey, config, true);
     if (*config->exercise.host) {
-        if (!dis_entity_id_parse(&host, config->exercise.host)) {
-            log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition",
+        if (!dis_entity_id_parse(&host, config->exercise.host) || dis_entity_id_is_none(host)) {
+            log_error("replay: exercise.host: '%s' is neither site:application:entity nor munition nor observer",
                       config->exercise.host);
             return STATUS_BAD_VALUE;
         }
         return plan_host(out, choices, survey, config, host);
     }
-    const Track *impact = longest_flight(survey, config, true), *any = longest_flight(survey, config, false);
-    if (impact || any) {
-        choice_add(choices, "host: %s, %s; its seeker is a notional one (exercise.host)",
-                   who(name, survey, impact ? impact->id : any->id),
-                   impact ? "the longest flight that hit an entity" : "the longest flight");
-        return plan_host(out, choices, survey, config, impact ? impact->id : any->id);
+    for (int guided = 1; guided >= 0; guided--) {
+        const Track *impact = longest_flight(survey, config, guided, true);
+        const Track *flight = impact ? impact : longest_flight(survey, config, guided, false);
+        if (!flight) continue;
+        choice_add(choices, "host: %s, %s%s; its seeker is a notional one (exercise.host)",
+                   who(name, survey, flight->id), impact ? "the longest flight that hit an entity" : "the longest flight",
+                   guided ? "" : ", of unguided munitions");
+        return plan_host(out, choices, survey, config, flight->id);
     }
-    return plan_observer(out, choices, survey, config);
+    return plan_observer(out, choices, survey, config, false);
 }
 
 void choose_rate(HostPlan *plan, Choices *choices, const Config *config)

@@ -21,7 +21,7 @@ void choice_add(Choices *choices, const char *format, ...) __attribute__((format
 /* Who carries the sensor, over which span of exercise time, and what it looks at. */
 typedef struct HostPlan {
     DisEntityId host;      /* 0:0:0: the stand-off observer, or whoever comes */
-    bool        any_munition; /* causal: the first munition that appears is the host */
+    bool        any_munition; /* causal: the munitions that appear are the host, one after the other: player_munition */
     DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the place below */
     double      start_s, end_s;
     double      p_aim_ecef[3]; /* where to look when there is no aim entity; valid for an observer */
@@ -29,11 +29,15 @@ typedef struct HostPlan {
     double      rate_hz;   /* choose_rate */
 } HostPlan;
 
-/* The munition whose Detonation says entity impact, longest flight first; else the longest flight; else an
- * observer circling the vehicle that went farthest; else an observer of the middle of whatever was heard. Causal: the
- * longest flight among munitions that are still there, else the observer. */
+extern const char host_munition[], host_observer[]; /* what exercise.host says but ids */
+
+/* Of the guided munitions, else of the others, mines never: the one whose Detonation says entity impact, longest
+ * flight first; else the longest flight; else an observer circling the vehicle that went farthest; else an observer of
+ * the middle of whatever was heard. Causal: the longest flight among munitions that are still there, else the
+ * observer. */
 Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config);
-/* For a host that was asked for by name. STATUS_BAD_VALUE and a message when the log does not hold it. */
+/* For a host that was asked for by name; 0:0:0: the observer. STATUS_BAD_VALUE and a message when the log does not hold
+ * it. */
 Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, DisEntityId host);
 
 /* Frames a second of exercise time, into the plan. */

@@ -27,6 +27,18 @@ static const Setting keys[] = {
     {"sensor.gimbal_rate_dps", SETTING_DOUBLE, AT(sensor.gimbal_rate_dps), 0.01, 10000, NULL, "deg/s", "largest rate"},
     {"sensor.gimbal_lag_s", SETTING_DOUBLE, AT(sensor.gimbal_lag_s), 0, 10, NULL, "s",
      "time constant of the tracking loop"},
+    {"sensor.mount", SETTING_TEXT, AT(sensor.mount), 0, 0, NULL, "",
+     "what the sensor goes with: auto (nose or roof), or a part of the host: primary turret, primary gun 2, a node's "
+     "name"},
+    {"sensor.mount_x_m", SETTING_DOUBLE, AT(sensor.mount_x_m), -500, 500, NULL, "m",
+     "forward, from the body's origin or the part's pivot; unset: in the nose, on the roof, of a part 0"},
+    {"sensor.mount_y_m", SETTING_DOUBLE, AT(sensor.mount_y_m), -500, 500, NULL, "m", "right"},
+    {"sensor.mount_z_m", SETTING_DOUBLE, AT(sensor.mount_z_m), -500, 500, NULL, "m", "down"},
+    {"sensor.mount_yaw_deg", SETTING_DOUBLE, AT(sensor.mount_yaw_deg), -180, 180, NULL, "deg",
+     "the gimbal's axis, right of forward"},
+    {"sensor.mount_pitch_deg", SETTING_DOUBLE, AT(sensor.mount_pitch_deg), -90, 90, NULL, "deg", "then up"},
+    {"sensor.mount_roll_deg", SETTING_DOUBLE, AT(sensor.mount_roll_deg), -180, 180, NULL, "deg",
+     "of the stabilised picture against upright, its right side down"},
     {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
      "none, or sensors of etc/sensors.csv, one a band: staring_lwir,staring_mwir,tv"},
     {"sensor.table", SETTING_TEXT, AT(sensor.table), 0, 0, NULL, "",
@@ -57,7 +69,7 @@ static const Setting keys[] = {
     {"detector.optical_high_w_m2_sr", SETTING_DOUBLE, AT(detector.optical_high_w_m2_sr), 1e-3, 1e4, NULL, "W/(m2 sr)",
      "white, manual level"},
     {"detector.agc_s", SETTING_DOUBLE, AT(detector.agc_s), 0, 1000, NULL, "s",
-     "time constant of the automatic level, from the first frame made on; 0: each frame by itself"},
+     "time constant of a display's automatic level, from the first frame made on; 0: each frame by itself"},
     {"detector.noise", SETTING_DOUBLE, AT(detector.noise), 0, 100, NULL, "", "factor of all noise; 0: none"},
     {"detector.f_number", SETTING_DOUBLE, AT(detector.f_number), 0.5, 100, NULL, "", "in place of the preset's"},
     {"detector.obscuration", SETTING_DOUBLE, AT(detector.obscuration), 0, 0.95, NULL, "",
@@ -85,7 +97,8 @@ static const Setting keys[] = {
     {"exercise.utc", SETTING_TEXT, AT(exercise.utc), 0, 0, NULL, "",
      "date and time of the first PDU, 2026-06-21T10:00:00Z"},
     {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "",
-     "site:application:entity that carries the sensor; munition: the first that appears (run, replay --causal)"},
+     "site:application:entity that carries the sensor; observer: a stand-off one; munition: those that appear, guided "
+     "ones first, one after the other (run, replay --causal)"},
     {"exercise.aim", SETTING_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},
     {"exercise.from_s", SETTING_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
     {"exercise.to_s", SETTING_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},
@@ -188,7 +201,10 @@ Config config_default(void)
     strcpy(c.sensor.bands, "optical,mwir,lwir,radar");
     strcpy(c.sensor.optical, "rgb");
     strcpy(c.sensor.antialias, "adaptive");
+    strcpy(c.sensor.mount, "auto");
+    c.sensor.mount_x_m = c.sensor.mount_y_m = c.sensor.mount_z_m = NAN;
     strcpy(c.detector.level, "auto");
+    c.detector.agc_s                = 2; /* a level that follows at once flickers: tests/system/test_level.sh */
     c.detector.bits                 = 8;
     c.detector.gain                 = 1;
     c.detector.noise_optical        = 0.005;
@@ -318,10 +334,14 @@ Status config_check(const Config *config)
     }
     DisEntityId id;
     double      unix_s;
+    if (!*config->sensor.mount) {
+        log_error("config: sensor.mount: has no name; auto, or a part of the host such as `primary turret`");
+        return STATUS_BAD_VALUE;
+    }
     if (*config->exercise.host && strcmp(config->exercise.host, "munition") != 0 &&
-        !dis_entity_id_parse(&id, config->exercise.host)) {
-        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition",
-                  config->exercise.host);
+        strcmp(config->exercise.host, "observer") != 0 && !dis_entity_id_parse(&id, config->exercise.host)) {
+        log_error("config: exercise.host: '%s' is neither site:application:entity, for example 1:3001:82, nor munition "
+                  "nor observer", config->exercise.host);
         return STATUS_BAD_VALUE;
     }
     if (*config->exercise.aim && !dis_entity_id_parse(&id, config->exercise.aim)) {

@@ -21,6 +21,9 @@ typedef struct Config {
         char   optical[8];         /* rgb, pan or nir */
         int    sky_samples;        /* directions a hit; 0: the quick form */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
+        char   mount[48];          /* auto, or a part that the sensor goes with */
+        double mount_x_m, mount_y_m, mount_z_m; /* NaN: the mount's own */
+        double mount_yaw_deg, mount_pitch_deg, mount_roll_deg;
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
         char   table[1024];        /* a sensor's sheet (sensor/detector/sheet.h); empty: none */
         double lens_k1, lens_k2, lens_k3, lens_p1,
@@ -49,7 +52,7 @@ typedef struct Config {
     struct {
         int    port, exercise;     /* exercise -1: the one heard most, -2: all */
         char   utc[32];            /* of the first PDU; empty: chosen */
-        char   host[24];           /* an id; munition: the first that appears, causal only; empty: chosen */
+        char   host[24];           /* an id; munition: those that appear, causal only; observer; empty: chosen */
         char   aim[24];            /* empty: chosen */
         double from_s, to_s;       /* exercise time; NaN: whole */
         double listen_s;           /* causal: before the choices */

@@ -102,25 +102,29 @@ static Status write_run(const Run *run, const char *out, const char *host, const
                         const SessionResult *result, const DisCounters *heard)
 {
     char        path[path_size + 16];
-    const char *choice[choices_capacity];
+    const char *choice[choices_capacity], *hosts[session_hosts_kept];
     double      stage_ms[session_stages][3] = {{0}};
     const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
     if (!hash) return STATUS_NO_MEMORY;
 
     for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
+    for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
+    if (result->host_count == 0) hosts[0] = host; /* still to come */
     summarise_stages(stage_ms, result);
     snprintf(path, sizeof path, "%s/run.json", out);
     const DisLogCounters *link = run->link;
     const RunRecord       record = {
               .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
-              .host_count = 1, .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
-              .frame_number = result->number, .host = &host, .choice = choice, .frame_sha256 = hash, .dis = heard,
+              .host_count = result->host_count > 0 ? result->host_count : 1,
+              .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
+              .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = hash, .dis = heard,
               .link_dropped = link ? link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
+              .at_limit = result->at_limit,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
               .stage_ms = stage_ms};
@@ -176,6 +180,9 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     if (config->publish.files) printf("%d frames in %s/frames\n", result->frames, out);
     else printf("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
+    if (result->at_limit > 0)
+        log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
+                 result->at_limit, result->frames);
     if (result->buried > 0)
         log_warn("%s: the eye was below the ground in %d of %d frames and saw nothing of use%s", name, result->buried,
                  result->frames, *config->terrain.elevation && strcmp(config->terrain.ground, "fit") != 0
@@ -197,7 +204,8 @@ Status run_host(Run *run, const DisEntityId *host)
     char           out[path_size], host_text[dis_id_text_size];
 
     if (host) {
-        dis_entity_id_text(host_text, *host);
+        if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
+        else dis_entity_id_text(host_text, *host);
         printf("host: %s (--host)\n", host_text);
     }
     Status status = choose(&plan, &unix_s, &landscape, &clamp, &choices, run, host);
@@ -209,7 +217,9 @@ Status run_host(Run *run, const DisEntityId *host)
         plan.end_s   = INFINITY;
     }
 
-    if (o->host_count > 1)
+    if (o->host_count > 1 && dis_entity_id_is_none(plan.host))
+        snprintf(out, sizeof out, "%s/%s", o->out, host_observer);
+    else if (o->host_count > 1)
         snprintf(out, sizeof out, "%s/%u-%u-%u", o->out, plan.host.site, plan.host.application, plan.host.entity);
     else
         snprintf(out, sizeof out, "%s", o->out);

@@ -29,11 +29,14 @@ static const struct Row {
     {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
      "only this span of exercise time, in seconds as `pitviper inspect` shows\nthem; frames keep the numbers they have in the whole"},
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
-     "these frames alone, by their numbers; each is what it is in the whole"},
+     "these frames alone, by their numbers; each is what it is in the whole,\n"
+     "but for a display's automatic level (detector.agc_s)"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
-     "site:application:entity that carries the sensor; may be given several\ntimes"},
+     "site:application:entity that carries the sensor, or observer; may be\n"
+     "given several times; munition, with --causal: as `run` has it"},
     {"host", HOST, IN_RUN, NULL, "ID",
-     "site:application:entity that carries the sensor, now or later; munition:\nthe first that appears (default: chosen)"},
+     "site:application:entity that carries the sensor, now or later; observer;\n"
+     "munition: those that appear, guided ones first, one after the other\n(default: chosen)"},
     {"samples", KEY, IN_BOTH, "sensor.samples", "N", "N x N rays a pixel (default: 1)"},
     {"config", CONFIG, IN_BOTH, NULL, "FILE", "or -c: a YAML file of settings; options here override it"},
     {"set", SET, IN_BOTH, NULL, "KEY=VALUE", "one setting, as the printed choices name them; may be given several\ntimes"},

@@ -18,6 +18,12 @@ typedef struct Event {
     };
 } Event;
 
+/* Those of one sort that were heard of: a ring, the latest. */
+typedef struct Munitions {
+    DisEntityId id[munitions_kept];
+    uint64_t    count;
+} Munitions;
+
 typedef struct Aimed {
     DisEntityId munition, target;
 } Aimed;
@@ -33,8 +39,8 @@ struct Player {
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     DisCounters    counters;
     Aimed          aimed[shots_kept];            /* rings: the latest */
-    DisEntityId    munition[munitions_kept];
-    uint64_t       shots, munitions;
+    uint64_t       shots;
+    Munitions      guided, unguided;
     int            doubts_said;
 };
 
@@ -156,16 +162,24 @@ static void note_fire(Player *player, const uint8_t *pdu, size_t octets)
     player->aimed[player->shots++ % shots_kept] = (Aimed){fire.munition, fire.target};
 }
 
+static bool munition_known(const Munitions *m, DisEntityId id)
+{
+    for (uint64_t i = 0; i < m->count && i < munitions_kept; i++)
+        if (dis_entity_id_compare(m->id[i], id) == 0) return true;
+    return false;
+}
+
 static void note_munition(Player *player, const uint8_t *pdu, size_t octets)
 {
-    enum { id_octet = 12, kind_octet = 20 };
-    if (octets <= kind_octet || pdu[kind_octet] != dis_kind_munition) return;
+    enum { id_octet = 12, kind_octet = 20, category_octet = 24 };
+    if (octets <= category_octet || pdu[kind_octet] != dis_kind_munition ||
+        pdu[category_octet] == dis_munition_fixed)
+        return;
     const uint8_t    *at = pdu + id_octet;
     const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]),
                             (uint16_t)(at[4] << 8 | at[5])};
-    for (uint64_t i = 0; i < player->munitions && i < munitions_kept; i++)
-        if (dis_entity_id_compare(player->munition[i], id) == 0) return;
-    player->munition[player->munitions++ % munitions_kept] = id;
+    Munitions *m = pdu[category_octet] == dis_munition_guided ? &player->guided : &player->unguided;
+    if (!munition_known(m, id)) m->id[m->count++ % munitions_kept] = id;
 }
 
 void player_feed(Player *player, EntityTable *table, double t_s)
@@ -212,16 +226,29 @@ bool player_target(DisEntityId *target, const Player *player, DisEntityId muniti
     return false;
 }
 
-bool player_munition(DisEntityId *munition, const Player *player, const EntityTable *table)
+static bool is_there(const EntityTable *table, DisEntityId id)
 {
-    const uint64_t kept = player->munitions < munitions_kept ? player->munitions : munitions_kept;
-    for (uint64_t i = player->munitions - kept; i < player->munitions; i++) {
-        const DisEntityId id = player->munition[i % munitions_kept];
-        if (!entity_table_alive(table, entity_table_find(table, id))) continue;
-        *munition = id;
+    return entity_table_alive(table, entity_table_find(table, id));
+}
+
+static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *table)
+{
+    const uint64_t kept = m->count < munitions_kept ? m->count : munitions_kept;
+    for (uint64_t i = m->count - kept; i < m->count; i++) {
+        if (!is_there(table, m->id[i % munitions_kept])) continue;
+        *id = m->id[i % munitions_kept];
         return true;
     }
     return false;
+}
+
+bool player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table)
+{
+    const bool there = !dis_entity_id_is_none(*munition) && is_there(table, *munition);
+    *guided          = there && munition_known(&player->guided, *munition);
+    if (*guided) return true;
+    if (first_there(munition, &player->guided, table)) return *guided = true;
+    return there || first_there(munition, &player->unguided, table);
 }
 
 const DisCounters *player_counters(const Player *player) { return &player->counters; }

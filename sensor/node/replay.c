@@ -100,8 +100,12 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
 {
     const Options *o = &run->options;
     for (int i = 0; i < o->host_count; i++) {
-        if (!dis_entity_id_parse(&host[i], o->host[i])) {
-            log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82", o->host[i]);
+        const bool observer = strcmp(o->host[i], host_observer) == 0;
+        if (observer) {
+            host[i] = (DisEntityId){0};
+        } else if (!dis_entity_id_parse(&host[i], o->host[i]) || dis_entity_id_is_none(host[i])) {
+            log_error("replay: --host: '%s' is not site:application:entity, for example 1:3001:82, nor observer%s",
+                      o->host[i], strcmp(o->host[i], host_munition) == 0 ? "; munition goes alone" : "");
             return STATUS_BAD_VALUE;
         }
         for (int k = 0; k < i; k++)
@@ -109,7 +113,7 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
                 log_error("replay: --host: %s is given twice", o->host[i]);
                 return STATUS_BAD_VALUE;
             }
-        if (!survey_track(&run->survey, host[i]) && !o->config.causal) {
+        if (!observer && !survey_track(&run->survey, host[i]) && !o->config.causal) {
             log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists who is", o->host[i]);
             return STATUS_BAD_VALUE;
         }

@@ -1,3 +1,4 @@
+/* sensor/node/seeker.c: the gimbal: see the header. */
 #include "sensor/node/seeker.h"
 
 static void direction(double d_body[3], double azimuth_rad, double elevation_rad)
@@ -14,6 +15,7 @@ void seeker_step(Seeker *seeker, const double d_body[3])
 
     /* An aim beyond the limit: the nearest direction on the cone, in the plane of axis and aim. */
     const double off_rad = atan2(hypot(d[1], d[2]), d[0]);
+    seeker->off_rad      = off_rad;
     seeker->at_limit     = off_rad > seeker->config.limit_rad;
     if (seeker->at_limit) {
         const double side = hypot(d[1], d[2]);
@@ -37,13 +39,12 @@ void seeker_step(Seeker *seeker, const double d_body[3])
     seeker->elevation_rad += clamp(share * (elevation_rad - seeker->elevation_rad), -most, most);
 }
 
-void camera_upright(double r_enu_from_cam[9], const double d_enu[3])
+/* right = d x top: of unit vectors that are not parallel. */
+static void camera_topped(double r_enu_from_cam[9], const double d_enu[3], const double top_enu[3])
 {
-    double right[3] = {d_enu[1], -d_enu[0], 0}, down[3]; /* d x up */
-    if (!(hypot(right[0], right[1]) > 1e-9) || !v3_normalize(right, right)) {
-        right[0] = d_enu[2] > 0 ? -1 : 1; /* the top is north: right is west looking up, east looking down */
-        right[1] = right[2] = 0;
-    }
+    double right[3], down[3];
+    v3_cross(right, d_enu, top_enu);
+    v3_normalize(right, right);
     v3_cross(down, d_enu, right);
     for (int i = 0; i < 3; i++) {
         r_enu_from_cam[3 * i]     = right[i];
@@ -52,11 +53,86 @@ void camera_upright(double r_enu_from_cam[9], const double d_enu[3])
     }
 }
 
-void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double r_enu_from_body[9])
+static bool near_vertical(const double d_enu[3]) { return !(hypot(d_enu[0], d_enu[1]) > sin(seeker_vertical_rad)); }
+
+void camera_upright(double r_enu_from_cam[9], const double d_enu[3])
 {
-    double d_body[3], d_enu[3];
+    static const double north[3] = {0, 1, 0}, up[3] = {0, 0, 1};
+    double              d[3] = {d_enu[0], d_enu[1], d_enu[2]};
+    /* what is unit to rounding keeps its bits */
+    if (!(fabs(v3_dot(d, d) - 1) <= 1e-14) && !v3_normalize(d, d)) memcpy(d, north, sizeof d);
+    camera_topped(r_enu_from_cam, d, near_vertical(d) ? north : up);
+}
+
+/* Part of a vector across d, unit; false where it has none to speak of. */
+static bool across(double out[3], const double v[3], const double d[3])
+{
+    double part[3];
+    v3_add_scaled(part, v, -v3_dot(v, d), d);
+    return v3_length(part) > 1e-3 && v3_normalize(out, part);
+}
+
+static void boresight(double d_enu[3], const Seeker *seeker, const double r_enu_from_body[9])
+{
+    double d_body[3];
     direction(d_body, seeker->azimuth_rad, seeker->elevation_rad);
     m3_mul_v3(d_enu, r_enu_from_body, d_body);
     v3_normalize(d_enu, d_enu);
-    camera_upright(r_enu_from_cam, d_enu);
+}
+
+/* The first top of a head that looks straight up or down. */
+static void first_top(double top_enu[3], const double d_enu[3], const double r_enu_from_body[9])
+{
+    const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};
+    const double roof[3] = {-r_enu_from_body[2], -r_enu_from_body[5], -r_enu_from_body[8]};
+    across(top_enu, fabs(v3_dot(nose, d_enu)) < 0.866 ? nose : roof, d_enu);
+}
+
+void seeker_roll(Seeker *seeker, const double r_enu_from_body[9])
+{
+    static const double up[3] = {0, 0, 1}, tick_s = 1.0 / seeker_ticks_per_s;
+    double              d[3], upright[3], carried[3], side[3];
+    boresight(d, seeker, r_enu_from_body);
+    const bool vertical = near_vertical(d);
+    const bool kept     = seeker->top_known && across(carried, seeker->top_enu, d);
+    seeker->upright     = !vertical;
+    if (!vertical) {
+        v3_add_scaled(upright, up, -v3_dot(up, d), d); /* of length above 1e-3 */
+        v3_normalize(upright, upright);
+    }
+    if (!kept) {
+        if (vertical) first_top(seeker->top_enu, d, r_enu_from_body);
+        else memcpy(seeker->top_enu, upright, sizeof upright);
+    } else if (vertical) {
+        memcpy(seeker->top_enu, carried, sizeof carried);
+    } else {
+        v3_cross(side, d, carried);
+        const double most = seeker_roll_rps * tick_s;
+        const double turn = atan2(v3_dot(upright, side), v3_dot(upright, carried));
+        if (fabs(turn) <= most) {
+            memcpy(seeker->top_enu, upright, sizeof upright);
+        } else {
+            seeker->upright = false;
+            v3_scale(carried, cos(most), carried);
+            v3_add_scaled(seeker->top_enu, carried, copysign(sin(most), turn), side);
+            v3_normalize(seeker->top_enu, seeker->top_enu);
+        }
+    }
+    seeker->top_known = true;
+}
+
+void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double r_enu_from_body[9])
+{
+    double d_enu[3], top_enu[3];
+    boresight(d_enu, seeker, r_enu_from_body);
+    const bool upright = !seeker->top_known || (seeker->upright && !near_vertical(d_enu));
+    if (upright || !across(top_enu, seeker->top_enu, d_enu)) camera_upright(r_enu_from_cam, d_enu);
+    else camera_topped(r_enu_from_cam, d_enu, top_enu);
+    if (seeker->config.roll_rad == 0) return;
+    const double c = cos(seeker->config.roll_rad), s = sin(seeker->config.roll_rad);
+    for (int i = 0; i < 3; i++) {
+        const double right = r_enu_from_cam[3 * i], down = r_enu_from_cam[3 * i + 1];
+        r_enu_from_cam[3 * i]     = c * right + s * down;
+        r_enu_from_cam[3 * i + 1] = c * down - s * right;
+    }
 }

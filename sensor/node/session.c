@@ -162,7 +162,9 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     FrameRecord       record = {.frame = frame, .time_s = t_s, .snapshot = &snapshot, .catalog = shared->catalog,
                                 .host = eye.hidden >= 0 ? &snapshot.entity[eye.hidden] : NULL, .request = &request,
                                 .hfov_rad = shared->config->sensor.hfov_deg * rad_per_deg,
-                                .gimbal_at_limit = eye.at_limit, .sun = &sun, .target = target, .target_count = targets};
+                                .gimbal_at_limit = eye.at_limit,
+                                .scene_rate_px_s = {rate_px_s[0], rate_px_s[1]}, .sun = &sun,
+                                .target = target, .target_count = targets};
     FrameError error;
     if (frame_error(&error, &picture, shared->world, &snapshot, &request, target, targets,
                     shared->config->models.sag_m, shared->clamp))
@@ -187,6 +189,7 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     memcpy(done->stage_ms, ms, sizeof ms);
     done->counters = picture.counters;
     done->shown    = true;
+    s->result.at_limit += eye.at_limit;
     if (shared->world->landscape) {
         const double *p_enu = eye.view.p_enu;
         s->result.buried += p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
@@ -208,6 +211,16 @@ static Status open_writer(Session *s)
 
 static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
 
+void session_note_host(Session *s)
+{
+    SessionResult *r = &s->result;
+    for (int i = 0; i < r->host_count; i++)
+        if (strcmp(r->host[i], s->host_text) == 0) return;
+    if (r->host_count == session_hosts_kept) return;
+    _Static_assert(sizeof r->host[0] == sizeof s->host_text, "one text");
+    memcpy(r->host[r->host_count++], s->host_text, sizeof s->host_text);
+}
+
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
@@ -223,7 +236,11 @@ static Status open_session(Session *s)
         table.ground = (ContactGround){&shared->world->frame, &shared->world->landscape->elevation};
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
-                                      shared->config->sensor.gimbal_lag_s};
+                                      shared->config->sensor.gimbal_lag_s,
+                                      shared->config->sensor.mount_roll_deg * rad_per_deg};
+    s->mount       = mount_of(shared->config);
+    s->mount_model = -1;
+    s->limit_tick  = -1;
     s->tick    = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
     if (observes(&s->plan))
@@ -232,6 +249,16 @@ static Status open_session(Session *s)
         strcpy(s->host_text, "munition");
     else
         dis_entity_id_text(s->host_text, s->plan.host);
+    if (!s->plan.any_munition) session_note_host(s);
+
+    int most_nodes = 1;
+    for (int m = 0; m < catalog_model_count(shared->catalog); m++) {
+        const int nodes = catalog_model(shared->catalog, m)->node_count;
+        most_nodes      = nodes > most_nodes ? nodes : most_nodes;
+    }
+    s->node  = calloc((size_t)most_nodes, sizeof *s->node);
+    s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
+    if (!s->node || !s->joint) return STATUS_NO_MEMORY;
 
     s->frame_arena = arena_create();
     if (!s->frame_arena) return STATUS_NO_MEMORY;
@@ -335,6 +362,8 @@ Status session_close(Session *s, SessionResult *result)
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     entity_table_destroy(s->table);
     arena_destroy(s->frame_arena);
+    free(s->node);
+    free(s->joint);
     free(s);
     return status;
 }

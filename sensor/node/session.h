@@ -28,7 +28,7 @@ typedef struct SessionShared {
     void          *user;
 } SessionShared;
 
-enum { session_stages = 6, session_frames_kept = 1000000 };
+enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };
 extern const char *const session_stage_name[session_stages];
 
 /* Lists hold the first session_frames_kept frames; a live node may make more. */
@@ -36,6 +36,9 @@ typedef struct SessionResult {
     int     frames;
     int     listed;
     int     buried;                   /* frames whose eye was below the ground */
+    int     at_limit;                 /* frames whose aim was beyond the gimbal */
+    int     host_count;               /* the first session_hosts_kept that carried the sensor, in order */
+    char    host[session_hosts_kept][dis_id_text_size];
     int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */

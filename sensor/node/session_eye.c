@@ -4,6 +4,8 @@
 #include "dis/enumerations.h"
 #include "sensor/node/scene_rate.h"
 
+#include <stdio.h>
+
 /* nobody sees the silent meanwhile: poses and snapshots leave them out */
 enum { expire_ticks = seeker_ticks_per_s / 10 };
 
@@ -19,17 +21,24 @@ static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
     return true;
 }
 
-/* Pose of the host at t_s. A replay knows a munition's next report, where there is one, and may interpolate; a
- * causal one may not. */
+/* Whether a replay knows the munition's next report at t_s, and may interpolate; a causal one may not. */
+static bool tracked(const Session *s, double t_s)
+{
+    const Track *track = survey_track(s->shared->survey, s->plan.host);
+    return s->plan.munition && !s->shared->config->causal && track && t_s <= track->point[track->count - 1].t_s;
+}
+
+/* Pose of the host at t_s, and of its nodes where the sensor goes with one. */
 static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
 {
     const SessionShared *shared = s->shared;
-    if (!entity_table_pose(host, s->table, entity_table_find(s->table, s->plan.host), t_s)) return false;
-    const Track *track = survey_track(shared->survey, s->plan.host);
-    if (s->plan.munition && !shared->config->causal && t_s <= track->point[track->count - 1].t_s) {
+    if (!entity_table_pose_nodes(host, s->mount.on_part ? s->node : NULL, s->joint, s->table,
+                                 entity_table_find(s->table, s->plan.host), t_s))
+        return false;
+    if (tracked(s, t_s)) {
         TrackPose pose;
         Origin    origin;
-        track_at(&pose, track, t_s);
+        track_at(&pose, survey_track(shared->survey, s->plan.host), t_s);
         const int    model  = catalog_find(shared->catalog, host->type, &origin, NULL);
         const double down_m = origin == ORIGIN_CENTRE ? 0.5 * catalog_model(shared->catalog, model)->height_m : 0;
         for (int k = 0; k < 3; k++) host->p_ecef[k] = pose.p_ecef[k] + down_m * pose.r_ecef_from_body[3 * k + 2];
@@ -40,27 +49,89 @@ static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
     return true;
 }
 
-/* A munition's eye is in its nose, a platform's on its roof. */
-static void eye_of(double p_ecef[3], const Session *s, const SnapshotEntity *host)
+/* The sensor on its host. */
+typedef struct Mounted {
+    SnapshotEntity host;
+    double         p_ecef[3], r_ecef_from_mount[9];
+} Mounted;
+
+/* Once a model: where the sensor sits on it. */
+static void find_node(Session *s, const Model *model, int index)
 {
-    const Model *model       = catalog_model(s->shared->catalog, host->model);
-    double       eye_body[3] = {0, 0, -(model->height_m + 0.3)}, lever_ecef[3];
-    if (host->type.kind == dis_kind_munition) {
-        eye_body[0] = model->box_high[0];
-        eye_body[2] = -0.5 * model->height_m;
-    }
-    m3_mul_v3(lever_ecef, host->r_ecef_from_body, eye_body);
-    v3_add(p_ecef, host->p_ecef, lever_ecef);
+    if (s->mount_model == index) return;
+    s->mount_model = index;
+    s->mount_node  = mount_node(&s->mount, model);
+    if (s->mount_node != mount_missing) return;
+    char   names[200];
+    size_t n = 0;
+    *names   = 0;
+    for (int i = 0; i < model->node_count && n + 1 < sizeof names; i++)
+        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", i ? ", " : "", model->node[i].name);
+    log_warn("host %s: sensor.mount: its model %s has no part '%s', so the sensor sits as with auto; it has: %s",
+             s->host_text, model->name, s->mount.part, names);
+    s->mount_node = mount_body;
 }
 
-/* Who was still to come: the host, and a munition's target by its Fire. */
+static void mounted_on(Mounted *out, Session *s)
+{
+    const Model *model = catalog_model(s->shared->catalog, out->host.model);
+    find_node(s, model, out->host.model);
+    mount_place(out->p_ecef, out->r_ecef_from_mount, &s->mount, &out->host, model, s->node, s->mount_node);
+}
+
+static bool mounted(Mounted *out, Session *s, double t_s)
+{
+    if (!host_pose(&out->host, s, t_s)) return false;
+    mounted_on(out, s);
+    return true;
+}
+
+/* The same a tick later, as far as it is known at t_s: dead reckoning by the same report, so that the next report is no
+ * jerk of the camera. Where a replay's track ends, it goes on as it went. */
+static bool mounted_ahead(Mounted *out, Session *s, const Mounted *now, double t_s)
+{
+    static const double step_s = 1.0 / seeker_ticks_per_s;
+    if (!tracked(s, t_s) || tracked(s, t_s + step_s)) return mounted(out, s, t_s + step_s);
+    SnapshotEntity before;
+    double         turn[9];
+    if (!host_pose(&before, s, t_s - step_s)) return false;
+    out->host = now->host;
+    v3_add_scaled(out->host.p_ecef, now->host.p_ecef, step_s, now->host.v_ecef_mps);
+    m3_tmul(turn, before.r_ecef_from_body, now->host.r_ecef_from_body);
+    m3_mul(out->host.r_ecef_from_body, now->host.r_ecef_from_body, turn);
+    mounted_on(out, s);
+    return true;
+}
+
+/* Another host: its gimbal, its aim and its model are its own. */
+static void take_host(Session *s, DisEntityId host, bool guided)
+{
+    const bool first = dis_entity_id_is_none(s->plan.host);
+    const SeekerConfig config = s->seeker.config;
+    s->plan.host   = host;
+    s->seeker      = (Seeker){.config = config};
+    s->mount_model = -1;
+    s->limit_said  = false;
+    s->limit_tick  = -1;
+    if (!*s->shared->config->exercise.aim) {
+        s->plan.aim  = (DisEntityId){0};
+        s->aim_known = false;
+    }
+    dis_entity_id_text(s->host_text, host);
+    session_note_host(s);
+    log_info("host: %s, %s %s munition", s->host_text, first ? "the first" : "the next",
+             guided ? "guided" : "unguided");
+}
+
+/* Who was still to come, or comes after one that is gone: the host, and a munition's target by its Fire. */
 static void find_host(Session *s)
 {
-    HostPlan *plan = &s->plan;
-    if (plan->any_munition && dis_entity_id_is_none(plan->host) && player_munition(&plan->host, s->player, s->table)) {
-        dis_entity_id_text(s->host_text, plan->host);
-        log_info("host: %s, the first munition", s->host_text);
-    }
+    HostPlan   *plan = &s->plan;
+    DisEntityId host = plan->host;
+    bool        guided;
+    if (plan->any_munition && player_munition(&host, &guided, s->player, s->table) &&
+        dis_entity_id_compare(host, plan->host) != 0)
+        take_host(s, host, guided);
     if (dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(plan->host) &&
         player_target(&plan->aim, s->player, plan->host)) {
         char aim[dis_id_text_size];
@@ -69,25 +140,69 @@ static void find_host(Session *s)
     }
 }
 
+/* Axes of the local frame: what upright means. */
+static void enu_axes(double r_enu_from_mount[9], const Session *s, const Mounted *at)
+{
+    m3_tmul(r_enu_from_mount, s->shared->world->frame.r_ecef_from_enu, at->r_ecef_from_mount);
+}
+
+static void turn_gimbal(Seeker *seeker, const Session *s, const Mounted *at, const double p_aim_ecef[3])
+{
+    double d_mount[3] = {1, 0, 0}, r_enu_from_mount[9];
+    if (s->aim_known) {
+        double d_ecef[3];
+        v3_sub(d_ecef, p_aim_ecef, at->p_ecef);
+        m3_tmul_v3(d_mount, at->r_ecef_from_mount, d_ecef);
+    }
+    seeker_step(seeker, d_mount);
+    enu_axes(r_enu_from_mount, s, at);
+    seeker_roll(seeker, r_enu_from_mount);
+}
+
+/* When it changes, and once a second at most. */
+static void say_limit(Session *s, double t_s)
+{
+    char aim[dis_id_text_size] = "its aim";
+    if (s->seeker.at_limit == s->limit_said) return;
+    if (s->limit_tick >= 0 && s->tick - s->limit_tick < seeker_ticks_per_s) return;
+    s->limit_said = s->seeker.at_limit;
+    s->limit_tick = s->tick;
+    if (!dis_entity_id_is_none(s->plan.aim)) dis_entity_id_text(aim, s->plan.aim);
+    if (s->limit_said)
+        log_warn("host %s: %s is beyond its gimbal at %.2f s: %.1f deg off the axis, the limit is %g "
+                 "(sensor.gimbal_limit_deg, sensor.mount_yaw_deg); it looks as far as it can",
+                 s->host_text, aim, t_s, s->seeker.off_rad / rad_per_deg, s->seeker.config.limit_rad / rad_per_deg);
+    else
+        log_info("host %s: %s is within reach of its gimbal from %.2f s on", s->host_text, aim, t_s);
+}
+
 static void step_gimbal(Session *s, double t_s)
 {
-    SnapshotEntity host;
+    Mounted at;
     s->aim_known |= aim_pose(s->p_aim_ecef, s, t_s); /* gone: the last place is kept */
-    if (!host_pose(&host, s, t_s)) {
-        s->ticks = 0;
-        return;
-    }
-    double d_body[3] = {1, 0, 0};
-    if (s->aim_known) {
-        double p_ecef[3], d_ecef[3];
-        eye_of(p_ecef, s, &host);
-        v3_sub(d_ecef, s->p_aim_ecef, p_ecef);
-        m3_tmul_v3(d_body, host.r_ecef_from_body, d_ecef);
-    }
-    seeker_step(&s->seeker, d_body);
-    memcpy(s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], sizeof s->r_ecef_from_cam[0]);
-    seeker_camera(s->r_ecef_from_cam[1], &s->seeker, host.r_ecef_from_body);
-    if (s->ticks < 2) s->ticks++;
+    if (!mounted(&at, s, t_s)) return;
+    turn_gimbal(&s->seeker, s, &at, s->p_aim_ecef);
+    say_limit(s, t_s);
+}
+
+/* How the camera turns, and how the eye goes: to where it will be a tick later. */
+static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
+{
+    static const double step_s = 1.0 / seeker_ticks_per_s;
+    Mounted             next;
+    Seeker              seeker = s->seeker;
+    double              p_aim_ecef[3], r_enu_from_mount[9], r_next[9], lever[2][3];
+    memcpy(eye->state.v_ecef_mps, now->host.v_ecef_mps, sizeof eye->state.v_ecef_mps);
+    if (!seeker.started || !mounted_ahead(&next, s, now, t_s)) return;
+    /* its own motion is the host's at t_s; only what the host's turning adds is a difference */
+    v3_sub(lever[0], now->p_ecef, now->host.p_ecef);
+    v3_sub(lever[1], next.p_ecef, next.host.p_ecef);
+    for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] += (lever[1][k] - lever[0][k]) / step_s;
+    if (!aim_pose(p_aim_ecef, s, t_s + step_s)) memcpy(p_aim_ecef, s->p_aim_ecef, sizeof p_aim_ecef);
+    turn_gimbal(&seeker, s, &next, p_aim_ecef);
+    enu_axes(r_enu_from_mount, s, &next);
+    seeker_camera(r_next, &seeker, r_enu_from_mount);
+    turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
 /* What lasts beyond a frame changes at ticks alone: it does not depend on which frames are made. */
@@ -115,31 +230,30 @@ static void finish_eye(Eye *eye, const Session *s)
     m3_mul(eye->state.r_ecef_from_cam, frame->r_ecef_from_enu, eye->view.r_enu_from_cam);
 }
 
-static bool host_eye(Eye *eye, const Session *s, Snapshot *snapshot, double t_s)
+static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 {
-    SnapshotEntity host;
-    const int      index = snapshot_find(snapshot, s->plan.host);
-    if (index < 0 || !host_pose(&host, s, t_s)) return false;
+    Mounted   at;
+    const int index = snapshot_find(snapshot, s->plan.host);
+    if (index < 0 || !mounted(&at, s, t_s)) return false;
 
     /* the interpolated pose is the host's in every product: it casts its shadow from there */
-    SnapshotEntity *shown = &snapshot->entity[index];
-    memcpy(shown->p_ecef, host.p_ecef, sizeof shown->p_ecef);
-    memcpy(shown->v_ecef_mps, host.v_ecef_mps, sizeof shown->v_ecef_mps);
-    memcpy(shown->r_ecef_from_body, host.r_ecef_from_body, sizeof shown->r_ecef_from_body);
-    shown->age_s = host.age_s;
+    const SnapshotEntity *host  = &at.host;
+    SnapshotEntity       *shown = &snapshot->entity[index];
+    memcpy(shown->p_ecef, host->p_ecef, sizeof shown->p_ecef);
+    memcpy(shown->v_ecef_mps, host->v_ecef_mps, sizeof shown->v_ecef_mps);
+    memcpy(shown->r_ecef_from_body, host->r_ecef_from_body, sizeof shown->r_ecef_from_body);
+    shown->age_s = host->age_s;
 
-    double r_enu_from_body[9];
-    m3_tmul(r_enu_from_body, s->shared->world->frame.r_ecef_from_enu, host.r_ecef_from_body);
-    eye_of(eye->state.p_ecef, s, &host);
-    memcpy(eye->state.v_ecef_mps, host.v_ecef_mps, sizeof eye->state.v_ecef_mps);
-    memcpy(eye->r_ecef_from_body, host.r_ecef_from_body, sizeof eye->r_ecef_from_body);
-    seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_body);
+    double r_enu_from_mount[9];
+    enu_axes(r_enu_from_mount, s, &at);
+    memcpy(eye->state.p_ecef, at.p_ecef, sizeof eye->state.p_ecef);
+    memcpy(eye->r_ecef_from_body, host->r_ecef_from_body, sizeof eye->r_ecef_from_body);
+    seeker_camera(eye->view.r_enu_from_cam, &s->seeker, r_enu_from_mount);
+    camera_motion(eye, s, &at, t_s);
     eye->hidden = eye->state.host_index = index;
     eye->at_limit                       = s->seeker.at_limit;
     eye->aim_known                      = s->aim_known;
     memcpy(eye->p_aim_ecef, s->p_aim_ecef, sizeof eye->p_aim_ecef);
-    if (s->ticks == 2)
-        turn_rate(eye->w_cam_rps, s->r_ecef_from_cam[0], s->r_ecef_from_cam[1], 1.0 / seeker_ticks_per_s);
     finish_eye(eye, s);
     return true;
 }
@@ -185,7 +299,7 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
     enu_from_ecef(p_enu, frame, eye->state.p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);
-    if (!v3_normalize(d_enu, d_enu)) return false;
+    if (!(v3_length(d_enu) > 0)) return false;
     camera_upright(eye->view.r_enu_from_cam, d_enu);
     eye->hidden = eye->state.host_index = -1;
     eye->aim_known                      = true;

@@ -4,6 +4,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/node/frame_writer.h"
+#include "sensor/node/mount.h"
 #include "sensor/node/pairs.h"
 #include "sensor/node/patience.h"
 #include "sensor/node/player.h"
@@ -24,8 +25,12 @@ struct Session {
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
-    double               r_ecef_from_cam[2][9]; /* of a host's gimbal at the last two ticks */
-    int                  ticks;         /* how many there were, to 2 */
+    Mount                mount;
+    int                  mount_model, mount_node; /* the model whose node that is; -1: none yet */
+    NodePose            *node;          /* of the host, [most nodes of a model]; joint: the same */
+    double              *joint;
+    bool                 limit_said;    /* what was last said of the gimbal's limit, and at which tick */
+    int64_t              limit_tick;
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv */
     FrameLevel           level[BAND_COUNT];
     FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
@@ -46,6 +51,8 @@ typedef struct Eye {
     double   w_cam_rps[3]; /* how the camera turns, in its own axes */
 } Eye;
 
+/* The present host into the result's list, once. */
+void session_note_host(Session *s);
 /* Feeds what counts by t_s, finds host and aim, and turns the gimbal, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the

@@ -257,6 +257,19 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
         plain_band(&t->band[BAND_RADAR], t, px, picture, plain_value, picture->radar, picture_radar, 1, 0);
 }
 
+/* Who stands on the ground has wheels a little in it: a hidden share below truth_occluded_least hides nothing, and then
+ * all of the target counts as visible; otherwise who hides most is named, and the fraction is below 1. */
+static void visibility_of(Target *t, const TargetPixels *px)
+{
+    const double hidden = px->occluded_ground + px->occluded_entity;
+    if (!(px->amodal > 0)) return;
+    t->visible_fraction = 1;
+    if (!(hidden >= truth_occluded_least * px->amodal)) return;
+    t->visible_fraction = clamp(px->visible / px->amodal, 0, 1);
+    t->occluder         = px->occluded_ground >= px->occluded_entity ? "ground" : "entity";
+    t->occluder_index   = px->occluded_ground >= px->occluded_entity ? -1 : px->occluder;
+}
+
 int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
                   const RenderRequest *request, const EyeState *eye, const TruthNoise *noise)
 {
@@ -271,13 +284,9 @@ int truth_targets(Target *out, const Picture *picture, const World *world, const
         for (int b = BAND_OPTICAL; b <= BAND_LWIR && px->visible > 0; b++)
             if (request->bands >> b & 1) t.band[b].veil_transmittance = 1 - px->veiled[b];
         line_of_sight(&t, &snapshot->entity[i], catalog_model(world->catalog, snapshot->entity[i].model), eye);
-        if (px->amodal > 0) t.visible_fraction = px->visible / px->amodal;
+        visibility_of(&t, px);
         memcpy(t.box, px->box, sizeof t.box);
         for (int k = 0; k < 4; k++) t.amodal_box[k] = px->projected ? px->projected_box[k] : px->amodal_box[k];
-        if (px->occluded_ground > 0 || px->occluded_entity > 0) {
-            t.occluder       = px->occluded_ground >= px->occluded_entity ? "ground" : "entity";
-            t.occluder_index = px->occluded_ground >= px->occluded_entity ? -1 : px->occluder;
-        }
         radiometry(&t, px, picture, world, request, noise);
         out[count++] = t;
     }

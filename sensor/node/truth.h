@@ -25,13 +25,18 @@ typedef struct Target {
     double los_az_rad, los_el_rad;          /* from the host, in its own ENU */
     double los_rate_rps[2];                 /* inertial; camera right and up */
     double boresight_error_rad[2];          /* camera right and up */
-    double pixels, visible_fraction;        /* areas, parts of pixels too; NaN: no sample of it, hidden or not */
+    double pixels;                          /* area, parts of pixels too */
+    double visible_fraction;                /* of its area on the image; 1: an occluder is not named; NaN: no sample */
     int    box[4];                          /* visible pixels; empty: all 0 */
     double amodal_box[4];                   /* of its vertices, not clipped to the image */
     const char *occluder;                   /* "ground", "entity" with occluder_index >= 0, or NULL */
     int    occluder_index;
     TargetBand band[BAND_COUNT];
 } Target;
+
+/* Hidden share of a target below which nothing occludes it: what a fraction of two decimals shows, and what the tracks
+ * of vehicles on uneven ground are in it (up to 0.9 % in etc/scenarios/demo.yaml). */
+static const double truth_occluded_least = 0.01;
 
 /* What noise the detector adds, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
 typedef struct TruthNoise {

@@ -59,7 +59,7 @@ static json_t *host_json(const FrameRecord *r)
     set_number(host, "psi_deg", psi_rad / rad_per_deg);
     set_number(host, "theta_deg", theta_rad / rad_per_deg);
     set_number(host, "phi_deg", phi_rad / rad_per_deg);
-    set_number(host, "speed_mps", v3_length(r->v_eye_mps));
+    set_number(host, "speed_mps", v3_length(r->host ? r->host->v_ecef_mps : r->v_eye_mps));
     return host;
 }
 
@@ -84,6 +84,7 @@ static json_t *sensor_json(const FrameRecord *r)
         json_object_set_new(sensor, "lateral_colour", numbers(r->request->lateral, 2));
     json_object_set_new(sensor, "ecef_from_cam", numbers(r->r_ecef_from_cam, 9));
     json_object_set_new(sensor, "gimbal_at_limit", json_boolean(r->gimbal_at_limit));
+    json_object_set_new(sensor, "scene_rate_px_s", numbers(r->scene_rate_px_s, 2));
     return sensor;
 }
 
@@ -253,6 +254,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "packets_without_datagram", r->link_dropped);
     set_count(counters, "own", r->own);
     if (r->live) json_object_set_new(counters, "live", live_json(r->live));
+    json_object_set_new(counters, "frames_at_gimbal_limit", json_integer(r->at_limit));
     set_count(entities, "created", r->entities_created);
     set_count(entities, "timed_out", r->entities_timed_out);
     set_count(entities, "deactivated", r->entities_deactivated);

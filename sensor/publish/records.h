@@ -22,6 +22,7 @@ typedef struct FrameRecord {
     const RenderRequest  *request;
     double                hfov_rad;
     bool                  gimbal_at_limit;
+    double                scene_rate_px_s[2]; /* column, row: of what lies still in the middle */
     const Sun            *sun;
     const Target         *target;
     int                   target_count;
@@ -51,6 +52,7 @@ typedef struct RunRecord {
     uint64_t    link_dropped;         /* packets of the capture that gave no datagram */
     uint64_t    own;                  /* datagrams of this node itself, ignored */
     const LiveCounters *live;         /* NULL: a replay */
+    int         at_limit;             /* frames whose aim was beyond the gimbal */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
     EffectCounters effects;
     RenderCounters render;

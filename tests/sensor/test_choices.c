@@ -214,6 +214,69 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     CHECK(strstr(check_said, "--causal"));
 }
 
+/* A mine that lies there all the time, a shell that hits, a missile that hits nothing, another that flies longer; all
+ * are munitions, and categories 3, 2, 1, 1. */
+static void a_guided_munition_goes_before_any_other_and_a_mine_never(void **state)
+{
+    (void)state;
+    static TrackPoint points[5][4];
+    Track  tracks[5] = {track(10, 1, 1, points[0], 4, 0, 100), track(20, 2, 4, points[1], 4, 0, 100),
+                        track(21, 2, 2, points[2], 4, 5, 40), track(22, 2, 2, points[3], 4, 5, 12),
+                        track(23, 2, 2, points[4], 4, 5, 15)};
+    Shot   shots[1] = {{.munition = {1, 1, 21}, .hit = {1, 1, 10}, .result = dis_result_entity_impact, .fire_s = 5,
+                        .detonation_s = 40}};
+    Survey   survey = {.track_count = 5, .track = tracks, .shot_count = 1, .shot = shots, .first_s = 0, .last_s = 100};
+    Config   config = config_default();
+    Choices  choices = {0};
+    HostPlan plan;
+    tracks[1].type.category = 3;
+    tracks[2].type.category = 2;
+    log_set_sink(check_listen, NULL);
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 23);
+    tracks[3].type.category = tracks[4].type.category = 3; /* mines, too */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 21 && says(&choices, "of unguided munitions"));
+    tracks[2].type.category = 3;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && says(&choices, "no munition flies here"));
+}
+
+/* exercise.host: observer, with whatever flies; with its aim, and the default one. */
+static void an_observer_may_be_asked_for(void **state)
+{
+    (void)state;
+    static TrackPoint points[3][4];
+    Track    tracks[3] = {track(10, 1, 1, points[0], 4, 0, 100), track(11, 1, 1, points[1], 3, 20, 100),
+                          track(20, 2, 2, points[2], 4, 5, 30)};
+    Survey   survey = {.track_count = 3, .track = tracks, .first_s = 0, .last_s = 100};
+    Config   config = config_default();
+    HostPlan plan;
+    log_set_sink(check_listen, NULL);
+    strcpy(config.exercise.host, "observer");
+    assert_int_equal(config_check(&config), STATUS_OK);
+    for (int causal = 0; causal < 2; causal++) {
+        Choices choices = {0};
+        config.causal = causal;
+        config.exercise.aim[0] = 0;
+        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+        CHECK(dis_entity_id_is_none(plan.host) && !plan.any_munition && !plan.munition && plan.aim.entity == 10);
+        CHECK(says(&choices, "host: a stand-off observer (exercise.host)"));
+        strcpy(config.exercise.aim, "1:1:11");
+        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+        CHECK(plan.aim.entity == 11 && plan.start_s == 20);
+        assert_int_equal(plan_host(&plan, &choices, &survey, &config, (DisEntityId){0}), STATUS_OK); /* --host, several */
+        CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 11);
+    }
+    static const char *const bad[] = {"Observer", "observers", "0:0:0", "munitions"};
+    for (int i = 0; i < 4; i++) {
+        Choices choices = {0};
+        strcpy(config.exercise.host, bad[i]);
+        assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
+        CHECK(strstr(check_said, "nor observer"));
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -223,6 +286,8 @@ int main(void)
         cmocka_unit_test(the_time_of_day_comes_from_the_best_that_is_known),
         cmocka_unit_test(the_longest_flight_that_hit_is_the_host),
         cmocka_unit_test(a_causal_host_is_one_that_is_still_there),
+        cmocka_unit_test(a_guided_munition_goes_before_any_other_and_a_mine_never),
+        cmocka_unit_test(an_observer_may_be_asked_for),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -169,20 +169,59 @@ static void munitions_and_their_targets_are_known_when_they_were_heard(void **st
         heard[k] = (DisDatagram){.capture_s = 1000 + k, .octets = (uint32_t)n, .bytes = octets[k]};
     }
     const DisLog log = {.count = 4, .datagram = heard};
-    DisEntityId  id = {0};
+    DisEntityId  id = {0}, host = {0};
+    bool         guided;
     assert_int_equal(player_create(&player, -1, true), STATUS_OK);
     assert_int_equal(player_add_log(player, &log), STATUS_OK);
     player_feed(player, table, 99.5);
-    CHECK(!player_munition(&id, player, table)); /* added, but not heard yet */
+    CHECK(!player_munition(&host, &guided, player, table)); /* added, but not heard yet */
     player_feed(player, table, 100.5);
-    CHECK(player_munition(&id, player, table) && id.entity == 40);
+    CHECK(player_munition(&host, &guided, player, table) && host.entity == 40 && guided);
     CHECK(!player_target(&id, player, (DisEntityId){1, 1, 40}));
     player_feed(player, table, 103.5);
-    CHECK(player_munition(&id, player, table) && id.entity == 40); /* still the first */
+    CHECK(player_munition(&host, &guided, player, table) && host.entity == 40); /* still the first */
     CHECK(player_target(&id, player, (DisEntityId){1, 1, 40}) && id.entity == 21);
     CHECK(player_target(&id, player, (DisEntityId){1, 1, 42}) && id.entity == 23);
     entity_table_expire(table, 113.5); /* 40 was heard 13.5 s ago, 42 11.5 s ago; 12 s are allowed */
-    CHECK(player_munition(&id, player, table) && id.entity == 42);
+    CHECK(player_munition(&host, &guided, player, table) && host.entity == 42);
+    player_destroy(player);
+    entity_table_destroy(table);
+}
+
+/* Heard one a second: a mine, a shell, a second shell, a missile, a second missile, a mine; the first missile is taken away
+ * at 106, the second at 107. Categories by SISO-REF-010: 1 guided, 2 ballistic, 3 fixed. */
+static void the_guided_one_carries_the_sensor_and_then_the_next(void **state)
+{
+    (void)state;
+    static const struct { uint16_t entity; uint8_t category; uint32_t gone; } say[] = {
+        {30, 3, 0}, {31, 2, 0}, {32, 2, 0}, {33, 1, 0}, {34, 1, 0}, {35, 3, 0}, {33, 1, 1u << 23}, {34, 1, 1u << 23},
+        {31, 2, 1u << 23}, {36, 0, 0}, {32, 2, 1u << 23}, {36, 0, 1u << 23}};
+    enum { says = sizeof say / sizeof *say };
+    static const uint16_t want[says] = {0, 31, 31, 33, 33, 33, 34, 31, 32, 32, 36, 0};
+    uint8_t      octets[says][256];
+    DisDatagram  heard[says];
+    EntityTable *table = make_table();
+    Player      *player = NULL;
+    for (int k = 0; k < says; k++) {
+        DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
+                                         .timestamp = (uint32_t)((100.0 + k) / 3600 * 2147483648.0) << 1},
+                              .id = {1, 1, say[k].entity}, .type = {2, 9, 225, say[k].category, 1, 1, 0},
+                              .appearance = say[k].gone, .p_ecef = {6378137, 10.0 * k, 0}, .dead_reckoning = 1};
+        const size_t   n   = dis_encode_entity_state(octets[k], sizeof octets[k], &pdu);
+        CHECK(n > 0);
+        heard[k] = (DisDatagram){.capture_s = 1000 + k, .octets = (uint32_t)n, .bytes = octets[k]};
+    }
+    const DisLog log = {.count = says, .datagram = heard};
+    DisEntityId  host = {0};
+    bool         guided;
+    assert_int_equal(player_create(&player, -1, true), STATUS_OK);
+    assert_int_equal(player_add_log(player, &log), STATUS_OK);
+    for (int k = 0; k < says; k++) {
+        player_feed(player, table, 100.5 + k);
+        const bool there = player_munition(&host, &guided, player, table);
+        CHECK(there == (want[k] != 0));
+        if (there) CHECK(host.entity == want[k] && guided == (want[k] == 33 || want[k] == 34));
+    }
     player_destroy(player);
     entity_table_destroy(table);
 }
@@ -195,6 +234,7 @@ int main(void)
         cmocka_unit_test(what_comes_bit_by_bit_counts_as_the_whole_log),
         cmocka_unit_test(arrival_and_exercise_time_agree_to_the_last_bit),
         cmocka_unit_test(munitions_and_their_targets_are_known_when_they_were_heard),
+        cmocka_unit_test(the_guided_one_carries_the_sensor_and_then_the_next),
     };
     return cmocka_run_group_tests(tests, open_catalog, close_catalog);
 }

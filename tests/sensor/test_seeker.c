@@ -1,7 +1,9 @@
 /* The gimbal: limits, rate, lag; the camera: upright, right is right. */
 #include "tests/check.h"
 
+#include "entities/dead_reckoning.h"
 #include "sensor/node/seeker.h"
+#include "terrain/local_frame.h"
 
 static Seeker head(double limit_deg, double rate_dps, double lag_s)
 {
@@ -112,6 +114,166 @@ static void straight_up_and_down_still_give_a_camera(void **state)
     }
 }
 
+/* Any length, and none: a rotation that looks along it. */
+static void a_direction_may_have_any_length(void **state)
+{
+    (void)state;
+    static const double lengths[] = {1e-150, 1e-9, 0.3, 1, 650, 6.4e6, 1e150};
+    static const double d[3] = {0.48, -0.6, 0.64};
+    double              want[9], got[9];
+    camera_upright(want, d);
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        double longer[3];
+        v3_scale(longer, lengths[i], d);
+        camera_upright(got, longer);
+        for (int k = 0; k < 9; k++) CHECK_NEAR(got[k], want[k], 1e-15);
+    }
+    const double none[][3] = {{0, 0, 0}, {NAN, 0, 0}, {INFINITY, 1, 0}};
+    for (int i = 0; i < 3; i++) {
+        double unit[9];
+        camera_upright(got, none[i]);
+        m3_tmul(unit, got, got);
+        for (int k = 0; k < 9; k++) CHECK_NEAR(unit[k], k % 4 == 0, 1e-15);
+    }
+}
+
+/* Attitude in ENU as a PDU brings it: three angles in float32, at 48 N 11 E. */
+static void as_sent(double r_enu_from_body[9], const double meant[9])
+{
+    const Geodetic place = {48 * rad_per_deg, 11 * rad_per_deg, 0};
+    LocalFrame     frame;
+    double         r_ecef[9], psi, theta, phi;
+    CHECK(local_frame_at(&frame, &place) == STATUS_OK);
+    m3_mul(r_ecef, frame.r_ecef_from_enu, meant);
+    euler_from_r_ecef_from_body(&psi, &theta, &phi, r_ecef);
+    r_ecef_from_body_euler(r_ecef, (float)psi, (float)theta, (float)phi);
+    m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, r_ecef);
+}
+
+/* x forward at this heading and pitch, then rolled. */
+static void pitched(double r[9], double heading_rad, double pitch_rad, double roll_rad)
+{
+    const double sh = sin(heading_rad), ch = cos(heading_rad), sp = sin(pitch_rad), cp = cos(pitch_rad);
+    const double x[3] = {sh * cp, ch * cp, sp}, y[3] = {ch, -sh, 0};
+    double       z[3];
+    v3_cross(z, x, y);
+    for (int i = 0; i < 3; i++) {
+        r[3 * i]     = x[i];
+        r[3 * i + 1] = cos(roll_rad) * y[i] + sin(roll_rad) * z[i];
+        r[3 * i + 2] = cos(roll_rad) * z[i] - sin(roll_rad) * y[i];
+    }
+}
+
+static void tick(double cam[9], Seeker *s, const double r_enu_from_body[9])
+{
+    static const double ahead[3] = {1, 0, 0};
+    seeker_step(s, ahead);
+    seeker_roll(s, r_enu_from_body);
+    seeker_camera(cam, s, r_enu_from_body);
+}
+
+/* Angle between the tops of two pictures that look the same way but for 1e-3 rad. */
+static double roll_between(const double a[9], const double b[9])
+{
+    const double x = a[1] * b[1] + a[4] * b[4] + a[7] * b[7], y = a[0] * b[1] + a[3] * b[4] + a[6] * b[7];
+    return atan2(y, x);
+}
+
+/* A munition that falls nose down, its angles good to float32: each report's nose points another 1e-7 rad off the
+ * vertical, to any side. The picture keeps its top, which is where the munition's back was. */
+static void a_vertical_dive_does_not_roll(void **state)
+{
+    (void)state;
+    for (double heading = 0.1; heading < 6.2; heading += 0.7)
+        for (double spin = -1; spin <= 1; spin++) { /* rad/s about the nose: the picture does not take part */
+            Seeker s = head(60, 1e4, 0.03);
+            double cam[9], first[9], meant[9], r[9], most = 0, directions = 0;
+            for (int k = 0; k < 400; k++) {
+                const double lean = 3e-7 * sin(1.7 * k), roll = spin * 0.01 * k;
+                pitched(meant, heading + lean, -0.5 * pi_rad + 3e-7 * cos(0.9 * k), roll);
+                as_sent(r, meant);
+                tick(cam, &s, r);
+                if (k == 0) {
+                    memcpy(first, cam, sizeof first);
+                    for (int i = 0; i < 3; i++) CHECK_NEAR(cam[3 * i + 1], meant[3 * i + 2], 1e-5); /* down is its belly's */
+                }
+                most       = fmax(most, fabs(roll_between(first, cam)));
+                directions = fmax(directions, fabs(remainder(atan2(r[0], r[3]) - heading, 2 * pi_rad)));
+            }
+            CHECK(directions > 1); /* rad: what the heading of the nose did meanwhile */
+            CHECK(most < 2e-6);
+        }
+}
+
+/* Over the top: from a dive at 80 degrees through the vertical and out on the other side. Upright turns round by half a
+ * turn at once; the picture turns at its rate, and is upright again. A little beside the vertical, too. */
+static void a_dive_through_the_vertical_rolls_steadily(void **state)
+{
+    (void)state;
+    for (double beside = 0; beside < 3e-3; beside += 7e-4) {
+        Seeker s = head(60, 1e4, 0);
+        double cam[9], before[9], r[9], upright[9], most = 0;
+        for (int k = 0; k <= 600; k++) {
+            const double pitch = (-80 - fmin(20, 0.1 * k)) * rad_per_deg;
+            const double x[3] = {sin(beside), cos(pitch) * cos(beside), sin(pitch) * cos(beside)};
+            camera_upright(cam, x); /* any body with that nose */
+            for (int i = 0; i < 3; i++) r[3 * i] = cam[3 * i + 2], r[3 * i + 1] = cam[3 * i], r[3 * i + 2] = cam[3 * i + 1];
+            tick(cam, &s, r);
+            if (k > 0) most = fmax(most, fabs(roll_between(before, cam)));
+            memcpy(before, cam, sizeof before);
+            camera_upright(upright, x);
+        }
+        CHECK(most <= seeker_roll_rps / seeker_ticks_per_s * 1.01 + 2e-3); /* and the turn of the boresight about it */
+        for (int k = 0; k < 9; k++) CHECK_NEAR(cam[k], upright[k], 1e-12);
+    }
+}
+
+/* Out of the cone of the vertical the picture is upright, and what float32 leaves of the roll is 0.05 px of 434. */
+static void beside_the_vertical_the_picture_is_upright(void **state)
+{
+    (void)state;
+    for (double off = 1.05 * seeker_vertical_rad; off < 0.1; off *= 1.3)
+        for (double heading = 0; heading < 6.2; heading += 0.3) {
+            Seeker s = head(60, 1e4, 0);
+            double cam[9], exact[9], meant[9], r[9], d[3];
+            pitched(meant, heading, -0.5 * pi_rad + off, 0.3);
+            for (int i = 0; i < 3; i++) d[i] = meant[3 * i];
+            camera_upright(exact, d);
+            as_sent(r, meant);
+            tick(cam, &s, r);
+            CHECK(fabs(roll_between(exact, cam)) * 434 < 0.1 * seeker_vertical_rad / off);
+        }
+}
+
+/* The first look of a head that hangs below an aircraft: the top is where its nose is. */
+static void the_first_look_down_has_the_nose_on_top(void **state)
+{
+    (void)state;
+    static const double below[3] = {0, 0, 1};
+    for (double heading = 0; heading < 6.2; heading += 0.4) {
+        Seeker s = head(120, 1e4, 0);
+        double cam[9], r[9];
+        pitched(r, heading, 0, 0);
+        seeker_step(&s, below);
+        seeker_roll(&s, r);
+        seeker_camera(cam, &s, r);
+        for (int i = 0; i < 3; i++) CHECK_NEAR(-cam[3 * i + 1], r[3 * i], 1e-9);
+    }
+}
+
+/* sensor.mount_roll_deg: right side down. */
+static void the_picture_may_be_held_rolled(void **state)
+{
+    (void)state;
+    Seeker s = head(60, 1e4, 0);
+    double cam[9], r[9];
+    s.config.roll_rad = 0.4;
+    pitched(r, 0, 0, 0.9);
+    tick(cam, &s, r);
+    const double want[9] = {cos(0.4), -sin(0.4), 0, 0, 0, 1, -sin(0.4), -cos(0.4), 0};
+    for (int k = 0; k < 9; k++) CHECK_NEAR(cam[k], want[k], 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -120,6 +282,12 @@ int main(void)
         cmocka_unit_test(it_stops_at_its_limit_in_the_plane_of_the_aim),
         cmocka_unit_test(the_picture_is_upright_whatever_the_body_does),
         cmocka_unit_test(straight_up_and_down_still_give_a_camera),
+        cmocka_unit_test(a_direction_may_have_any_length),
+        cmocka_unit_test(a_vertical_dive_does_not_roll),
+        cmocka_unit_test(a_dive_through_the_vertical_rolls_steadily),
+        cmocka_unit_test(beside_the_vertical_the_picture_is_upright),
+        cmocka_unit_test(the_first_look_down_has_the_nose_on_top),
+        cmocka_unit_test(the_picture_may_be_held_rolled),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

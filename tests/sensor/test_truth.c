@@ -240,6 +240,30 @@ static void hidden_targets_are_listed_and_the_host_never(void **state)
     assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 0);
 }
 
+/* The fraction is 1 just where no occluder is named, to two decimals as well: on a sweep of hidden shares, with ground,
+ * another entity or both in the way, of targets of 0.01 to 10000 px. */
+static void an_occluder_is_named_where_the_fraction_shows_it(void **state)
+{
+    (void)state;
+    for (double amodal = 0.01; amodal < 2e4; amodal *= 10)
+        for (int k = 0; k <= 1000; k++)
+            for (int way = 0; way < 3; way++) {
+                const double hidden = amodal * k / 1000, by_ground = way == 0 ? hidden : way == 1 ? 0 : 0.3 * hidden;
+                Target       t[2];
+                scene();
+                f.pixels[1] = (TargetPixels){.projected = true, .visible = amodal - hidden, .amodal = amodal,
+                                             .occluded_ground = by_ground, .occluded_entity = hidden - by_ground,
+                                             .occluder = way == 0 ? -1 : 0};
+                assert_int_equal(truth_targets(t, &f.picture, &f.world, &f.snapshot, &f.request, &f.eye, &noise), 1);
+                CHECK(t[0].visible_fraction >= 0 && t[0].visible_fraction <= 1);
+                CHECK((t[0].visible_fraction == 1) == (t[0].occluder == NULL));
+                CHECK((rint(100 * t[0].visible_fraction) == 100) == (t[0].occluder == NULL));
+                CHECK((t[0].occluder != NULL) == (k >= 10));
+                if (k > 10) CHECK_NEAR(t[0].visible_fraction, 1 - k / 1000.0, 1e-9);
+                if (k > 10) CHECK(strcmp(t[0].occluder, way == 0 ? "ground" : "entity") == 0 && t[0].occluder_index == (way == 0 ? -1 : 0));
+            }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -248,6 +272,7 @@ int main(void)
         cmocka_unit_test(contrast_is_the_temperature_difference_that_was_painted),
         cmocka_unit_test(a_small_target_is_judged_by_its_samples),
         cmocka_unit_test(hidden_targets_are_listed_and_the_host_never),
+        cmocka_unit_test(an_occluder_is_named_where_the_fraction_shows_it),
     };
     return cmocka_run_group_tests(tests, open_fixture, close_fixture);
 }

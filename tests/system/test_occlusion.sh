@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# What truth.jsonl says of who is seen and who is hidden agrees with itself, from the first frame to the impact: an
+# occluder is named just where the visible fraction is below 1, a box of visible pixels is there just where there are
+# some. labels: small
+. "$(dirname "$0")/common.sh"
+
+# seen OUT: a line a target: pixels, visible fraction, box or -, occluder or -
+seen() {
+    grep -oE '"pixels":[^{]*"amodal_box_px":\[[^]]*\](,"occluded_by":"[^"]*")?' "$1/truth.jsonl" | sed -E '
+        s/"amodal_box_px".*"occluded_by":"([^"]*)"/\1/; s/"amodal_box_px":.*/-/
+        /"box_px"/!s/,([^,]*)$/,-,\1/; s/"box_px":\[[^]]*\]/box/
+        /"visible_fraction"/!s/,/,none,/; s/"(pixels|visible_fraction)"://g; s/,/ /g'
+}
+exercise demo "$tmp/demo.pcap"
+replay "$tmp/demo.pcap" "$tmp/out" --bands lwir --no-png --rate 2
+seen "$tmp/out" >"$tmp/seen"
+check "targets are there" is "$(wc -l <"$tmp/seen")" '>' 40
+check "all of four words" [ -z "$(awk 'NF != 4' "$tmp/seen")" ]
+check "no fraction beyond 0 .. 1" [ -z "$(awk '$2 != "none" && !($2 >= 0 && $2 <= 1)' "$tmp/seen")" ]
+check "whole, and nobody named; hidden, and somebody" \
+    [ -z "$(awk '$2 != "none" && ($2 == 1) != ($4 == "-")' "$tmp/seen")" ]
+check "nor at two decimals" [ -z "$(awk '$2 != "none" && (sprintf("%.2f", $2) == "1.00") != ($4 == "-")' "$tmp/seen")" ]
+check "a box where there are pixels" [ -z "$(awk '($1 > 0) != ($3 == "box")' "$tmp/seen")" ]
+check "whole ones are there" [ -n "$(awk '$2 == 1' "$tmp/seen")" ]
+check "not sampled: not seen" [ -z "$(awk '$2 == "none" && $1 > 0' "$tmp/seen")" ]
+finish
