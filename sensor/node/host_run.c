@@ -153,7 +153,8 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool 
     if (status == STATUS_OK)
         status = choose_ground(landscape, clamp, choices, &run->survey, &o->config, &frame, run->catalog, plan);
     if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
-    if (status == STATUS_OK) status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
+    if (status == STATUS_OK)
+        status = atmosphere_open_at(&world->atmosphere, o->config.weather.atmosphere, o->config.weather.visibility_m);
     if (status != STATUS_OK) return status;
     say_visibility(choices, &o->config, world->atmosphere);
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
