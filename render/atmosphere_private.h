@@ -89,7 +89,8 @@ double stencil_value(const Stencil *stencil, const PathTable *table, int value);
 
 /* ---- a visibility, a model ----------------------------------------------------------------- */
 
-enum { column_max = 256, slices_max = 8, slices_made_max = 4 * (slices_max + 1) + 1, phase_heights_max = 8 };
+enum { column_max = 256, slices_max = 8, phase_heights_max = 8 };
+enum { steps_between = 6, slices_made_max = steps_between * (slices_max + 1) + 1 };
 
 /* What a metre of air does, by height, of clear air or of haze; sums from the ground up so that a mean is a
  * difference. */
@@ -103,7 +104,7 @@ typedef struct AirColumn {
 
 typedef struct Slice {
     double    visibility_m, longwave_down_w_m2;
-    bool      has_paths;                 /* files of its own for path, scattered and sky_scattered */
+    bool      has_paths, has_scattered;  /* files of its own for path; for scattered and sky_scattered */
     AirColumn haze;
     PathTable path[AIR_BAND_COUNT];
     PathTable scattered;                 /* ratio to scatter_estimate */
@@ -140,7 +141,7 @@ typedef struct Blend {
     double       haze_low, haze_high; /* shares for haze; of a single table at another visibility its scale, 0 */
 } Blend;
 
-/* The air of any visibility, from the tables' own slices, of which one at least has paths. */
+/* The air of any visibility, from the tables' own slices, of which one at least has paths, one scattered light. */
 Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m);
 void   slice_close(Slice *slice);
 /* Visibilities so close together that straight lines will do, in rising order: the tables', the ends, some between. */

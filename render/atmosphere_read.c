@@ -284,8 +284,8 @@ static Status open_paths(PathTable *out, const char *folder, AirBand band, bool 
     return STATUS_BAD_VALUE;
 }
 
-/* paths: whether there are files of paths beside those of the haze itself, the sun and the sky's own light. */
-static Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder, bool paths)
+/* The haze itself, the sun and the sky's own light; paths and scattered light where the slice says that it has them. */
+static Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder)
 {
     char path[1024];
     const Blend blend = {slice, slice, 0, 1, 0};
@@ -295,14 +295,13 @@ static Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char 
     if (status == STATUS_OK) status = read_sky_thermal(&slice->sky_thermal, atmosphere, path);
     if (status == STATUS_OK) status = path_in(path, folder, "sun.csv");
     if (status == STATUS_OK) status = read_sun(&slice->sun, path, atmosphere->sun_top_w_m2);
-    slice->has_paths = paths;
-    if (!paths) return status;
-    for (int i = 0; i < air_tabled_count && status == STATUS_OK; i++) {
+    for (int i = 0; i < air_tabled_count && slice->has_paths && status == STATUS_OK; i++) {
         const AirBand band = air_tabled[i];
         status = open_paths(&slice->path[band], folder, band, true);
         if (status == STATUS_OK) normalize_hazy(&slice->path[band], atmosphere, &slice->haze, band);
     }
-    if (status == STATUS_OK) status = path_in(path, folder, "sky_scattered.csv");
+    if (status != STATUS_OK || !slice->has_scattered) return status;
+    status = path_in(path, folder, "sky_scattered.csv");
     if (status == STATUS_OK) status = read_sky_scattered(slice, atmosphere, &blend, path);
     if (status == STATUS_OK) status = path_in(path, folder, "scattered.csv");
     if (status == STATUS_OK) status = read_scattered(slice, atmosphere, &blend, path);
@@ -379,27 +378,23 @@ static Status open_clear(Atmosphere *atmosphere, const char *folder)
     return status;
 }
 
-/* A visibility without paths_b.csv has none of the files of paths. */
-static bool folder_has_paths(const char *folder)
+static bool folder_has(const char *folder, const char *name)
 {
     char path[1024];
-    return path_in(path, folder, "paths_b.csv") == STATUS_OK && access(path, F_OK) == 0;
+    return path_in(path, folder, name) == STATUS_OK && access(path, F_OK) == 0;
 }
 
-/* Which of the tables a visibility needs: the two about it, and the two about it that have paths; beyond the last of
- * these the last two. NAN: all. */
-static void choose_tables(bool need[slices_max], const bool paths[slices_max], const double *table_m, int count,
+/* Which of the tables a visibility needs: the two about it of those that have something; beyond the last of these the
+ * last two. Where it is that of a table, this alone. */
+static void choose_tables(bool need[slices_max], const bool has[slices_max], const double *table_m, int count,
                           double visibility_m)
 {
-    for (int i = 0; i < count; i++) need[i] = isnan(visibility_m);
-    for (int with_paths = 0; with_paths < 2; with_paths++) {
-        int of[slices_max], n = 0, i = 0;
-        for (int k = 0; k < count; k++)
-            if (paths[k] || !with_paths) of[n++] = k;
-        while (i + 2 < n && visibility_m > table_m[of[i + 1]]) i++;
-        for (int k = i; k < n && k < i + 2; k++)
-            if (n == 1 || visibility_m != table_m[of[k == i ? i + 1 : i]]) need[of[k]] = true; /* not when on the other */
-    }
+    int of[slices_max] = {0}, n = 0, i = 0;
+    for (int k = 0; k < count; k++)
+        if (has[k]) of[n++] = k;
+    while (i + 2 < n && visibility_m > table_m[of[i + 1]]) i++;
+    for (int k = i; k < n && k < i + 2; k++)
+        if (n == 1 || visibility_m != table_m[of[k == i ? i + 1 : i]]) need[of[k]] = true;
 }
 
 /* The slices that are asked: of one visibility, or so many that any lies close between two. */
@@ -420,24 +415,34 @@ static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count
 /* Beyond the tables' visibilities haze goes on by the same straight line in 1 / visibility, this far. */
 static const double visibility_below = 0.4, visibility_above = 2.2;
 
-/* list: visibilities and what is in visibilities.csv. */
+/* list: visibilities and what is in visibilities.csv. A folder without paths_b.csv has no paths, one without
+ * sky_scattered.csv no scattered light; the neighbours' count there. */
 static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid *list, double visibility_m)
 {
     const int count = list->nodes[0];
     const double *table_m = list->axis[0];
-    bool paths[slices_max], need[slices_max], any = false;
+    bool paths[slices_max] = {false}, light[slices_max] = {false}, need[slices_max] = {false}, all[slices_max];
+    bool any_paths = false, any_light = false;
     char slice_folder[slices_max][1024], name[32];
     for (int i = 0; i < count; i++) {
         snprintf(name, sizeof name, "%.0f", table_m[i]);
         if (path_in(slice_folder[i], folder, name) != STATUS_OK) return STATUS_BAD_VALUE;
-        paths[i] = folder_has_paths(slice_folder[i]);
-        any = any || paths[i];
+        any_paths |= paths[i] = folder_has(slice_folder[i], "paths_b.csv");
+        any_light |= light[i] = folder_has(slice_folder[i], "sky_scattered.csv");
+        all[i] = true;
     }
-    if (!any) paths[0] = true; /* says which file is missing */
+    if (!any_paths) paths[0] = true; /* which file is missing will be said */
+    if (!any_light) light[0] = true;
     atmosphere->low_m = table_m[0] * visibility_below;
     atmosphere->high_m = table_m[count - 1] * visibility_above;
-    visibility_m = isnan(visibility_m) ? NAN : clamp(visibility_m, atmosphere->low_m, atmosphere->high_m);
-    choose_tables(need, paths, table_m, count, visibility_m);
+    if (isnan(visibility_m)) {
+        memcpy(need, all, sizeof need);
+    } else {
+        visibility_m = clamp(visibility_m, atmosphere->low_m, atmosphere->high_m);
+        choose_tables(need, all, table_m, count, visibility_m);
+        choose_tables(need, paths, table_m, count, visibility_m);
+        choose_tables(need, light, table_m, count, visibility_m);
+    }
 
     Slice *tabled = calloc((size_t)count, sizeof *tabled);
     if (!tabled) return STATUS_NO_MEMORY;
@@ -447,7 +452,9 @@ static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid
         if (!need[i]) continue;
         tabled[read].visibility_m = table_m[i];
         tabled[read].longwave_down_w_m2 = list->value[i];
-        status = slice_open(&tabled[read++], atmosphere, slice_folder[i], paths[i]);
+        tabled[read].has_paths = paths[i];
+        tabled[read].has_scattered = light[i];
+        status = slice_open(&tabled[read++], atmosphere, slice_folder[i]);
     }
     if (status == STATUS_OK) status = make_slices(atmosphere, tabled, read, visibility_m);
     for (int i = 0; i < read; i++) slice_close(&tabled[i]);

@@ -126,11 +126,18 @@ static Status grid_like(Grid *out, const Grid *grid)
     return STATUS_OK;
 }
 
-/* Depths by the haze's column at each of the two tables' visibilities and at the one wanted. Beyond the thicker table
- * the line goes on no further than to depth_reach times its depth: the tables' digits end there. */
+/* A depth's ratio to its column's, by the column's depth. A band's mean thins out as its opaque parts go: beyond the
+ * thicker table the line goes over into a ratio that falls as 1 / depth at most, so that depth never does. */
+static double ratio_between(double first, double second, double share)
+{
+    const double change = share * (second - first);
+    if (share >= 0 || !(first > 0)) return clamp(first + change, -1, 3);
+    return change < 0 ? first / (1 - change / first) : first + fmin(change, 0.05 * first);
+}
+
+/* Depths by the haze's own at each of the two tables' visibilities and at the one wanted. */
 static Status path_between(PathTable *out, const Slice *slice, const Slice *low, const Slice *high, AirBand band, double share)
 {
-    static const double depth_reach = 8;
     const PathTable *from = &low->path[band], *other = &high->path[band];
     const Status status = paths_like(out, from);
     if (status != STATUS_OK || low == high) return status;
@@ -139,7 +146,7 @@ static Status path_between(PathTable *out, const Slice *slice, const Slice *low,
         const double a_m = from->axis[0][pair / from->nodes[1]], b_m = from->axis[1][pair % from->nodes[1]];
         const double here = column_mean(&slice->haze, band, a_m, b_m);
         const double thick = column_mean(&low->haze, band, a_m, b_m), thin = column_mean(&high->haze, band, a_m, b_m);
-        const double of_depth = share_of_depth(thick, thin, fmin(here, depth_reach * thick), clamp(share, 0, 1));
+        const double of_depth = share_of_depth(thick, thin, here, clamp(share, 0, 1));
         for (int row = from->first[pair]; row < from->first[pair + 1]; row++) {
             double *value = out->value + (size_t)row * (size_t)out->values;
             const double *beside = other->value + (size_t)row * (size_t)other->values;
@@ -148,7 +155,7 @@ static Status path_between(PathTable *out, const Slice *slice, const Slice *low,
             for (int w = 0; w < from->weights; w++) {
                 const double temp_k = w > 0 ? from->weight_temp_k[w] : NAN;
                 const double second = alike ? beside[w] : path_weight_value(other, &at, temp_k);
-                value[w] = clamp(value[w] + of_depth * (second - value[w]), -1, 3);
+                value[w] = ratio_between(value[w], second, of_depth);
             }
             if (from->weights < 2) continue;
             const double second = alike ? beside[other->weights] : stencil_value(&at, other, other->weights);
@@ -212,26 +219,53 @@ static Status grid_between(Grid *out, const Grid *from, const Grid *other, doubl
     return STATUS_OK;
 }
 
-/* The sun's depth and what it leaves to the sky, by the haze above each height. */
+/* Cosine of the zenith angle whose slant_x it is. */
+static double cosine_of_slant(double x)
+{
+    const double least = exp(-x);
+    double c = least;
+    for (int i = 0; i < 30; i++) c = least - 0.025 * exp(-11 * c);
+    return fmax(c, 0);
+}
+
+/* Sunlight of one direction at a height, over that above the air. */
+typedef struct SunPart {
+    double depth, diffuse;
+} SunPart;
+
+/* Depth by the haze above; so the inverse of all light on a level plane, as layers that scatter let light through (two
+ * streams: 1 / (1 + a depth)); what is not direct of it is diffuse. */
+static SunPart sun_part_between(SunPart low, SunPart high, double share, double cosine)
+{
+    const double depth = fmax(low.depth + share * (high.depth - low.depth), 0.3 * fmin(low.depth, high.depth));
+    const double all[2] = {cosine * exp(-low.depth) + low.diffuse, cosine * exp(-high.depth) + high.diffuse};
+    const double even = low.diffuse + share * (high.diffuse - low.diffuse);
+    const double inverse = 1 / all[0] + share * (1 / all[1] - 1 / all[0]);
+    const double least = 0.3 * fmin(low.diffuse, high.diffuse), most = 2 * fmax(low.diffuse, high.diffuse);
+    const double diffuse = inverse > 0 && isfinite(inverse) ? 1 / inverse - cosine * exp(-depth) : even;
+    return (SunPart){depth, fmin(clamp(diffuse, least, most), 1)};
+}
+
 static Status sun_between(Grid *out, const Slice *slice, const Slice *low, const Slice *high, double share)
 {
     const Status status = grid_like(out, &low->sun);
     if (status != STATUS_OK || low == high) return status;
+    const double top_m = slice->haze.height_m[slice->haze.nodes - 1];
     for (int n = 0; n < out->nodes[0] * out->nodes[1]; n++) {
         const double at[2] = {out->axis[0][n / out->nodes[1]], out->axis[1][n % out->nodes[1]]};
+        const double cosine = cosine_of_slant(at[1]);
         double other[2 * air_tabled_count], *value = out->value + n * out->values;
         grid_at(other, &high->sun, at);
         for (int k = 0; k < air_tabled_count; k++) {
             const AirBand b = air_tabled[k];
-            const double top_m = slice->haze.height_m[slice->haze.nodes - 1];
             const double thick = column_mean(&low->haze, b, at[0], top_m), thin = column_mean(&high->haze, b, at[0], top_m);
             const double of_depth =
                 share_of_depth(thick, thin, column_mean(&slice->haze, b, at[0], top_m), clamp(share, 0, 1));
-            const double depth[2] = {exp(value[k]), exp(other[k])};
-            const double diffuse[2] = {exp(value[k + air_tabled_count]), exp(other[k + air_tabled_count])};
-            value[k] = log(fmax(depth[0] + of_depth * (depth[1] - depth[0]), 0.3 * fmin(depth[0], depth[1])));
-            value[k + air_tabled_count] = log(clamp(diffuse[0] + of_depth * (diffuse[1] - diffuse[0]),
-                                                    0.3 * fmin(diffuse[0], diffuse[1]), 1));
+            const SunPart first = {exp(value[k]), exp(value[k + air_tabled_count])};
+            const SunPart second = {exp(other[k]), exp(other[k + air_tabled_count])};
+            const SunPart here = sun_part_between(first, second, of_depth, cosine);
+            value[k] = log(here.depth);
+            value[k + air_tabled_count] = log(here.diffuse);
         }
     }
     return STATUS_OK;
@@ -239,50 +273,58 @@ static Status sun_between(Grid *out, const Slice *slice, const Slice *low, const
 
 /* ---- a visibility --------------------------------------------------------------------------------- */
 
-/* The two of some slices, of those that have paths or of all, that a visibility lies between; beyond them the last. */
-static void neighbours(const Slice **low, const Slice **high, const Slice *slice, int count, bool with_paths, double visibility_m)
+typedef bool SliceHas(const Slice *slice);
+static bool has_haze(const Slice *slice) { return slice->visibility_m > 0; }
+static bool has_paths(const Slice *slice) { return slice->has_paths; }
+static bool has_scattered(const Slice *slice) { return slice->has_scattered; }
+
+/* The two slices of those that have something between which a visibility lies, beyond them the last two; and the share
+ * of the second. */
+typedef struct Sides {
+    const Slice *low, *high;
+    double       share;
+} Sides;
+
+static Sides sides_of(const Slice *slice, int count, SliceHas *has, double visibility_m)
 {
     const Slice *of[slices_max] = {slice};
     int n = 0, i = 0;
     for (int k = 0; k < count; k++)
-        if (slice[k].has_paths || !with_paths) of[n++] = &slice[k];
+        if (has(&slice[k])) of[n++] = &slice[k];
     while (i + 2 < n && visibility_m > of[i + 1]->visibility_m) i++;
-    *low = of[i];
-    *high = n > 1 ? of[i + 1] : of[i];
+    const Slice *low = of[i], *high = n > 1 ? of[i + 1] : of[i];
+    return (Sides){low, high, share_between(low->visibility_m, high->visibility_m, visibility_m)};
 }
 
 Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
 {
-    const Slice *low, *high, *path_low, *path_high;
-    neighbours(&low, &high, tabled, count, false, visibility_m);
-    neighbours(&path_low, &path_high, tabled, count, true, visibility_m);
-    const double share = share_between(low->visibility_m, high->visibility_m, visibility_m);
-    const double path_share = share_between(path_low->visibility_m, path_high->visibility_m, visibility_m);
-    *out = (Slice){.visibility_m = count > 1 ? visibility_m : low->visibility_m, .has_paths = true};
-    out->longwave_down_w_m2 = low->longwave_down_w_m2 + clamp(share, 0, 1) * (high->longwave_down_w_m2 - low->longwave_down_w_m2);
-    column_between(&out->haze, atmosphere, low, high, share);
-    Status status = sun_between(&out->sun, out, low, high, share);
-    if (status == STATUS_OK) status = grid_between(&out->sky_thermal, &low->sky_thermal, &high->sky_thermal, share);
+    const Sides any = sides_of(tabled, count, has_haze, visibility_m);
+    const Sides path = sides_of(tabled, count, has_paths, visibility_m);
+    const Sides light = sides_of(tabled, count, has_scattered, visibility_m);
+    const double longwave[2] = {any.low->longwave_down_w_m2, any.high->longwave_down_w_m2};
+    *out = (Slice){.visibility_m = count > 1 ? visibility_m : any.low->visibility_m, .has_paths = true, .has_scattered = true,
+                   .longwave_down_w_m2 = longwave[0] + clamp(any.share, 0, 1) * (longwave[1] - longwave[0])};
+    column_between(&out->haze, atmosphere, any.low, any.high, any.share);
+    Status status = sun_between(&out->sun, out, any.low, any.high, any.share);
+    if (status == STATUS_OK) status = grid_between(&out->sky_thermal, &any.low->sky_thermal, &any.high->sky_thermal, any.share);
     for (int k = 0; k < air_tabled_count && status == STATUS_OK; k++)
-        status = path_between(&out->path[air_tabled[k]], out, path_low, path_high, air_tabled[k], path_share);
-    if (status == STATUS_OK) status = scattered_between(&out->scattered, path_low, path_high, path_share);
+        status = path_between(&out->path[air_tabled[k]], out, path.low, path.high, air_tabled[k], path.share);
+    if (status == STATUS_OK) status = scattered_between(&out->scattered, light.low, light.high, light.share);
     if (status == STATUS_OK)
-        status = grid_between(&out->sky_scattered, &path_low->sky_scattered, &path_high->sky_scattered, path_share);
+        status = grid_between(&out->sky_scattered, &light.low->sky_scattered, &light.high->sky_scattered, light.share);
     return status;
 }
 
 int visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m)
 {
-    enum { between = 4, beyond = 4 };
     int n = 0;
     if (count == 1) {
         out[n++] = tabled[0].visibility_m;
         return n;
     }
     for (int i = -1; i < count; i++) {
-        const double a = 1 / (i < 0 ? low_m : tabled[i].visibility_m), b = 1 / (i + 1 < count ? tabled[i + 1].visibility_m : high_m);
-        const int steps = i < 0 || i + 1 == count ? beyond : between;
-        for (int k = 0; k < steps; k++) out[n++] = k ? 1 / (a + (b - a) * k / steps) : i < 0 ? low_m : tabled[i].visibility_m;
+        const double a_m = i < 0 ? low_m : tabled[i].visibility_m, b_m = i + 1 < count ? tabled[i + 1].visibility_m : high_m;
+        for (int k = 0; k < steps_between; k++) out[n++] = k ? a_m * pow(b_m / a_m, (double)k / steps_between) : a_m;
     }
     out[n++] = high_m;
     return n;

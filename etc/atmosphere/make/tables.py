@@ -8,6 +8,7 @@ there already is not made again. sun.csv takes about a minute, the others some s
 the tables beside it.
 """
 import argparse
+import csv
 import os
 
 import numpy as np
@@ -23,6 +24,7 @@ SKY_HEIGHTS_M = [0, 250, 500, 750, 1000, 1500, 2000, 2500, 3000, 3500, 4500, 550
 SKY_ZENITHS = [0, 30, 45, 60, 70, 75, 80, 83, 85, 86.5, 88, 89, 89.5, 90]
 SPANS = [(820, 1260), (2080, 2960), (9080, 25000)]  # 1/cm, what the bands need
 GAUSS = 6
+SHINE_K = [200, 260, 300, 450, 1000, 3000]
 
 
 class Maker:
@@ -30,6 +32,7 @@ class Maker:
         self.model, self.visibility_km, self.work = model, visibility_km, work
         self.folder = os.path.join(out, model, f"{visibility_km * 1000:.0f}")
         os.makedirs(self.folder, exist_ok=True)
+        self.beside = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), model, "clear")
 
     def runs(self, cases, spans=SPANS, **more):
         """Arguments of lowtran.case to spectra over all spans."""
@@ -86,6 +89,40 @@ class Maker:
                          *(lt.integral(flux[:, 0], per_wavenumber, b) * 1e4 for b in lt.BANDS_UM)))
         self.write("sun.csv", "observer_m,sun_zenith_deg," + ",".join(f"direct_{b}" for b in lt.BANDS_UM) + "," +
                    ",".join(f"diffuse_{b}" for b in lt.BANDS_UM), rows)
+
+    def paths(self):
+        """paths_<band>.csv, of the same paths as those of clear air."""
+        keys = {}
+        for path in (os.path.join(self.beside, "paths_b.csv"),):
+            with open(path, encoding="ascii") as rows:
+                for row in csv.reader(r for r in rows if r[0].isdigit()):
+                    keys[tuple(float(x) for x in row[:3])] = None
+        sun = self.runs([dict(kind=3, emission=3)])[0]
+        wavenumber, light = sun[:, 0], sun[:, 5]
+        cases = [dict(kind=1, h1=a / 1000, range_km=r / 1000) if a == b else
+                 dict(kind=2, h1=a / 1000, h2=b / 1000, angle=0.0 if b > a else 180.0, stretch=r / abs(b - a))
+                 for a, b, r in keys]
+        kelvin = {band: SHINE_K if band in ("mwir", "lwir") else [] for band in lt.BANDS_UM}
+        weights = {band: [light] + [lt.planck(wavenumber, t) for t in kelvin[band]] for band in lt.BANDS_UM}
+        totals = {band: [lt.integral(wavenumber, w, band) for w in weights[band]] for band in lt.BANDS_UM}
+        rows = {band: [] for band in lt.BANDS_UM}
+        for start in range(0, len(cases), 100):
+            spectra = self.runs(cases[start:start + 100], emission=1)
+            for (a, b, r), s in zip(list(keys)[start:start + 100], spectra):
+                # depths, of which a transmittance of nothing has none: 1000 is as good as any
+                ln_tau = np.log(np.maximum(s[:, 1], 1e-300))
+                for band in lt.BANDS_UM:
+                    row = [a, b, r]
+                    for weight, total in zip(weights[band], totals[band]):
+                        lost = lt.integral(wavenumber, weight * -np.expm1(ln_tau), band) / total
+                        kept = lt.integral(wavenumber, weight * s[:, 1], band) / total
+                        row.append(-np.log1p(-lost) if lost < 0.5 else -np.log(max(kept, 1e-300)))
+                    if kelvin[band]:
+                        row.append(lt.integral(s[:, 0], s[:, 2], band) * 1e4)
+                    rows[band].append(row)
+        for band in lt.BANDS_UM:
+            columns = [f"depth_{t}k" for t in kelvin[band]] + (["thermal_w_m2_sr"] if kelvin[band] else [])
+            self.write(f"paths_{band}.csv", ",".join(["observer_m,target_m,range_m,depth_sun"] + columns), rows[band])
 
     def longwave(self):
         node, weight = np.polynomial.legendre.leggauss(GAUSS)
