@@ -89,7 +89,7 @@ double stencil_value(const Stencil *stencil, const PathTable *table, int value);
 
 /* ---- a visibility, a model ----------------------------------------------------------------- */
 
-enum { column_max = 256, slices_max = 8, phase_heights_max = 8 };
+enum { column_max = 256, slices_max = 12, phase_heights_max = 8 };
 enum { steps_between = 6, slices_made_max = steps_between * (slices_max + 1) + 1 };
 
 /* What a metre of air does, by height, of clear air or of haze; sums from the ground up so that a mean is a

@@ -77,7 +77,7 @@ static void paths(bool fog)
         snprintf(what, sizeof what, "%s: tau %s beyond 20 km", fog ? "fog" : "2-50 km", tabled[i]);
         judge(&found[i].far, what, 0.05, 0.05);
         snprintf(what, sizeof what, "%s: path kelvin %s", fog ? "fog" : "2-50 km", tabled[i]);
-        if (i >= 4) judge(&found[i].kelvin, what, 0.5, 0.6);
+        if (i >= 4) judge(&found[i].kelvin, what, fog ? 0.55 : 0.3, 0.55);
     }
     table_close(&table);
 }
@@ -120,7 +120,8 @@ static void sun_of_other_visibilities(void **state)
     judge(&direct[0], "2-50 km: sun direct", 0.01, 0.02);
     judge(&total[0], "2-50 km: sun and sky", 0.01, 0.01);
     judge(&direct[1], "fog: sun direct", 0.05, 0.05);
-    judge(&total[1], "fog: sun and sky", 0.02, 0.02);
+    judge(&total[1], "fog: sun and sky", 0.25, 0.25); /* the worst: a low sun, of whose light a hundredth is left */
+    CHECK(percentile(&total[1], 0.5) < 0.002);
     table_close(&table);
 }
 
@@ -159,6 +160,7 @@ static void alone_and_among_others(void **state)
     for (size_t v = 0; v < sizeof visibility_m / sizeof *visibility_m; v++) {
         Atmosphere *one = NULL;
         CHECK(atmosphere_open_at(&one, "us1976", visibility_m[v]) == STATUS_OK);
+        const double soft = visibility_m[v] < 200 ? 0.01 : 0.004; /* beyond the tables */
         double low_m, high_m, all_low_m, all_high_m;
         atmosphere_visibilities(one, &low_m, &high_m);
         atmosphere_visibilities(model[0], &all_low_m, &all_high_m);
@@ -175,7 +177,7 @@ static void alone_and_among_others(void **state)
                 CHECK_NEAR(a.thermal_w_m2_sr, all.thermal_w_m2_sr, 0.003 * all.thermal_w_m2_sr);
                 CHECK_NEAR(a.scattered_w_m2_sr, all.scattered_w_m2_sr, 0.01 * all.scattered_w_m2_sr);
                 CHECK_NEAR(sun.direct_normal_w_m2, all_sun.direct_normal_w_m2, 0.003 * all_sun.direct_normal_w_m2 + 0.01);
-                CHECK_NEAR(sun.diffuse_horizontal_w_m2, all_sun.diffuse_horizontal_w_m2, 0.003 * all_sun.diffuse_horizontal_w_m2 + 1e-9);
+                CHECK_NEAR(sun.diffuse_horizontal_w_m2, all_sun.diffuse_horizontal_w_m2, soft * all_sun.diffuse_horizontal_w_m2);
             }
         atmosphere_close(one);
     }

