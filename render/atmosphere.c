@@ -163,7 +163,8 @@ static double look_depth(const Look *look, double temp_k)
 {
     const Blend *blend = look->blend;
     const AirBand band = look->band;
-    double depth = look->clear_plain * exp(path_weight_value(&look->atmosphere->clear_path[band], &look->clear, temp_k));
+    const PathTable *clear = &look->atmosphere->clear_path[band];
+    double depth = look->clear_plain * exp(path_weight_value(clear, &look->clear, temp_k));
     if (!blend) return depth;
     double haze = path_weight_value(&blend->low->path[band], &look->low, temp_k);
     if (blend->low != blend->high)

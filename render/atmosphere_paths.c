@@ -213,7 +213,8 @@ bool paths_alike(const PathTable *a, const PathTable *b)
 {
     return paths_same_shape(a, b) && a->values == b->values && a->weights == b->weights && a->suns == b->suns &&
            a->azimuths == b->azimuths && memcmp(a->weight_temp_k, b->weight_temp_k, sizeof a->weight_temp_k) == 0 &&
-           memcmp(a->sun_x, b->sun_x, sizeof a->sun_x) == 0 && memcmp(a->azimuth_deg, b->azimuth_deg, sizeof a->azimuth_deg) == 0;
+           memcmp(a->sun_x, b->sun_x, sizeof a->sun_x) == 0 &&
+           memcmp(a->azimuth_deg, b->azimuth_deg, sizeof a->azimuth_deg) == 0;
 }
 
 /* ---- looking up ------------------------------------------------------------------------------- */

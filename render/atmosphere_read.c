@@ -119,7 +119,8 @@ static Status read_column(AirColumn *out, const char *path, double low)
             double *to = i % 2 ? out->scatter_per_m[air_tabled[i / 2]] : out->per_m[air_tabled[i / 2]];
             for (int n = 0; n < out->nodes; n++) to[n] = grid.value[n * 2 * air_tabled_count + i] * 1e-3;
         }
-        for (int i = 0; i < air_tabled_count; i++) column_sum_up(out, out->per_m[air_tabled[i]], out->sum[air_tabled[i]]);
+        for (int i = 0; i < air_tabled_count; i++)
+            column_sum_up(out, out->per_m[air_tabled[i]], out->sum[air_tabled[i]]);
     } else {
         log_error("atmosphere: %s: 2 to %d heights from 0 upwards are needed, there are %d from %g m", path,
                   (int)column_max, out->nodes, grid.axis[0][0]);
@@ -401,7 +402,8 @@ static void choose_tables(bool need[slices_max], const bool has[slices_max], con
 static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
 {
     double step_m[slices_made_max] = {visibility_m};
-    const int steps = isnan(visibility_m) ? visibility_steps(step_m, tabled, count, atmosphere->low_m, atmosphere->high_m) : 1;
+    int steps = 1;
+    if (isnan(visibility_m)) steps = visibility_steps(step_m, tabled, count, atmosphere->low_m, atmosphere->high_m);
     atmosphere->slice = calloc((size_t)steps, sizeof *atmosphere->slice);
     if (!atmosphere->slice) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;

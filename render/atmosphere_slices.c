@@ -44,7 +44,8 @@ static double at_level(const Pair *p, double low, double high)
 /* A visibility's value at a height between two levels. */
 static double between_levels(const Pair *p, double height_m, double below_m, double above_m, double t)
 {
-    const double low = column_value(p->low, p->low_value, height_m), high = column_value(p->high, p->high_value, height_m);
+    const double low = column_value(p->low, p->low_value, height_m);
+    const double high = column_value(p->high, p->high_value, height_m);
     const double a[2] = {column_value(p->low, p->low_value, below_m), column_value(p->high, p->high_value, below_m)};
     const double b[2] = {column_value(p->low, p->low_value, above_m), column_value(p->high, p->high_value, above_m)};
     if (!(low > 0 && high > 0 && a[0] > 0 && a[1] > 0 && b[0] > 0 && b[1] > 0)) return at_level(p, low, high);
@@ -68,7 +69,8 @@ static int merge_heights(double *out, const AirColumn *a, const AirColumn *b)
     return nodes;
 }
 
-static void column_between(AirColumn *out, const Atmosphere *atmosphere, const Slice *low, const Slice *high, double share)
+static void column_between(AirColumn *out, const Atmosphere *atmosphere, const Slice *low, const Slice *high,
+                           double share)
 {
     const Grid *level = &atmosphere->temperature;
     out->nodes = merge_heights(out->height_m, &low->haze, &high->haze);
@@ -136,7 +138,8 @@ static double ratio_between(double first, double second, double share)
 }
 
 /* Depths by the haze's own at each of the two tables' visibilities and at the one wanted. */
-static Status path_between(PathTable *out, const Slice *slice, const Slice *low, const Slice *high, AirBand band, double share)
+static Status path_between(PathTable *out, const Slice *slice, const Slice *low, const Slice *high, AirBand band,
+                           double share)
 {
     const PathTable *from = &low->path[band], *other = &high->path[band];
     const Status status = paths_like(out, from);
@@ -258,7 +261,8 @@ static Status sun_between(Grid *out, const Slice *slice, const Slice *low, const
         grid_at(other, &high->sun, at);
         for (int k = 0; k < air_tabled_count; k++) {
             const AirBand b = air_tabled[k];
-            const double thick = column_mean(&low->haze, b, at[0], top_m), thin = column_mean(&high->haze, b, at[0], top_m);
+            const double thick = column_mean(&low->haze, b, at[0], top_m);
+            const double thin = column_mean(&high->haze, b, at[0], top_m);
             const double of_depth =
                 share_of_depth(thick, thin, column_mean(&slice->haze, b, at[0], top_m), clamp(share, 0, 1));
             const SunPart first = {exp(value[k]), exp(value[k + air_tabled_count])};
@@ -302,11 +306,13 @@ Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabl
     const Sides path = sides_of(tabled, count, has_paths, visibility_m);
     const Sides light = sides_of(tabled, count, has_scattered, visibility_m);
     const double longwave[2] = {any.low->longwave_down_w_m2, any.high->longwave_down_w_m2};
-    *out = (Slice){.visibility_m = count > 1 ? visibility_m : any.low->visibility_m, .has_paths = true, .has_scattered = true,
+    *out = (Slice){.visibility_m = count > 1 ? visibility_m : any.low->visibility_m,
+                   .has_paths = true, .has_scattered = true,
                    .longwave_down_w_m2 = longwave[0] + clamp(any.share, 0, 1) * (longwave[1] - longwave[0])};
     column_between(&out->haze, atmosphere, any.low, any.high, any.share);
     Status status = sun_between(&out->sun, out, any.low, any.high, any.share);
-    if (status == STATUS_OK) status = grid_between(&out->sky_thermal, &any.low->sky_thermal, &any.high->sky_thermal, any.share);
+    if (status == STATUS_OK)
+        status = grid_between(&out->sky_thermal, &any.low->sky_thermal, &any.high->sky_thermal, any.share);
     for (int k = 0; k < air_tabled_count && status == STATUS_OK; k++)
         status = path_between(&out->path[air_tabled[k]], out, path.low, path.high, air_tabled[k], path.share);
     if (status == STATUS_OK) status = scattered_between(&out->scattered, light.low, light.high, light.share);
@@ -323,7 +329,8 @@ int visibility_steps(double out[slices_made_max], const Slice *tabled, int count
         return n;
     }
     for (int i = -1; i < count; i++) {
-        const double a_m = i < 0 ? low_m : tabled[i].visibility_m, b_m = i + 1 < count ? tabled[i + 1].visibility_m : high_m;
+        const double a_m = i < 0 ? low_m : tabled[i].visibility_m;
+        const double b_m = i + 1 < count ? tabled[i + 1].visibility_m : high_m;
         for (int k = 0; k < steps_between; k++) out[n++] = k ? a_m * pow(b_m / a_m, (double)k / steps_between) : a_m;
     }
     out[n++] = high_m;

@@ -138,8 +138,8 @@ static void say_visibility(Choices *choices, const Config *config, const Atmosph
         choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
                    "(weather.visibility_m)", low_m, high_m);
     else if (config->weather.visibility_m < 1000)
-        choice_add(choices, "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in infrared "
-                   "(weather.visibility_m)", config->weather.visibility_m);
+        choice_add(choices, "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
+                   "infrared (weather.visibility_m)", config->weather.visibility_m);
 }
 
 /* World and all that is said of it. */

@@ -11,7 +11,9 @@ static const AirBand tabled_band[6] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, A
 static int open_models(void **state)
 {
     (void)state;
-    return atmosphere_open(&model[0], model_name[0]) != STATUS_OK || atmosphere_open(&model[1], model_name[1]) != STATUS_OK;
+    for (int m = 0; m < 2; m++)
+        if (atmosphere_open(&model[m], model_name[m]) != STATUS_OK) return -1;
+    return 0;
 }
 
 static int close_models(void **state)
@@ -40,10 +42,12 @@ typedef struct Found {
 
 static void find(Found *out, const Table *table, int row, int i)
 {
-    static const double temp_k[4] = {300, 350, 800, 1700}, per_k[2] = {0.04997, 0.6297}; /* d radiance / d temp at 300 K */
+    static const double temp_k[4] = {300, 350, 800, 1700};
+    static const double per_k[2] = {0.04997, 0.6297}; /* d radiance / d temp at 300 K */
     const AirBand band = tabled_band[i];
     const int line = table->line[row + 1];
-    const double a_m = cell(table, row, "observer_m"), b_m = cell(table, row, "target_m"), range_m = cell(table, row, "range_m");
+    const double a_m = cell(table, row, "observer_m"), b_m = cell(table, row, "target_m");
+    const double range_m = cell(table, row, "range_m");
     /* the reader's level path is a straight line, which lies lower by this in the mean than one of constant height */
     const double lift_m = a_m == b_m ? range_m * range_m / (12 * 7433000.0) : 0;
     const AirPath path = {a_m + lift_m, b_m + lift_m, range_m, pi_rad, 0};
@@ -94,7 +98,7 @@ static void paths_in_fog(void **state)
     paths(true);
 }
 
-/* Direct light where a hundredth of it is left, and all light on a level plane; the sun to 80 degrees from the zenith. */
+/* Direct light where a hundredth of it is left, and all light on a level plane; the sun to 80 degrees. */
 static void sun_of_other_visibilities(void **state)
 {
     (void)state;
@@ -107,15 +111,16 @@ static void sun_of_other_visibilities(void **state)
         for (int i = 0; i < 6; i++) {
             const double visibility_m = 1000 * cell(&table, row, "visibility_km");
             const double zenith_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg"), level = cos(zenith_rad);
-            const double want = cell_of(&table, row, "direct_", tabled[i]), diffuse = cell_of(&table, row, "diffuse_", tabled[i]);
+            const double want = cell_of(&table, row, "direct_", tabled[i]);
+            const double diffuse = cell_of(&table, row, "diffuse_", tabled[i]), height_m = cell(&table, row, "observer_m");
             const int fog = visibility_m < 2000;
             SunAir sun, top;
-            atmosphere_sun(&sun, model_of(&table, row), visibility_m, tabled_band[i], cell(&table, row, "observer_m"), zenith_rad);
+            atmosphere_sun(&sun, model_of(&table, row), visibility_m, tabled_band[i], height_m, zenith_rad);
             atmosphere_sun(&top, model_of(&table, row), 50000, tabled_band[i], 16000, 0);
             if (want > 0.01 * top.direct_normal_w_m2)
                 keep(&direct[fog], relative(sun.direct_normal_w_m2, want, 0), table.line[row + 1]);
-            keep(&total[fog], relative(sun.direct_normal_w_m2 * level + sun.diffuse_horizontal_w_m2, want * level + diffuse, 0),
-                 table.line[row + 1]);
+            const double all = sun.direct_normal_w_m2 * level + sun.diffuse_horizontal_w_m2;
+            keep(&total[fog], relative(all, want * level + diffuse, 0), table.line[row + 1]);
         }
     judge(&direct[0], "2-50 km: sun direct", 0.01, 0.02);
     judge(&total[0], "2-50 km: sun and sky", 0.01, 0.01);
@@ -123,6 +128,45 @@ static void sun_of_other_visibilities(void **state)
     judge(&total[1], "fog: sun and sky", 0.25, 0.25); /* the worst: a low sun, of whose light a hundredth is left */
     CHECK(percentile(&total[1], 0.5) < 0.002);
     table_close(&table);
+}
+
+/* Scattered light at 10 km, between the tables of 5 and 23 that alone have it: of the sky and of paths. Thermal bands,
+ * where the air's own light is more, are left out. */
+static void scattered_between_its_tables(void **state)
+{
+    (void)state;
+    static Errors sky_errors, path_errors;
+    memset(&sky_errors, 0, sizeof sky_errors);
+    memset(&path_errors, 0, sizeof path_errors);
+    for (int path = 0; path < 2; path++) {
+        Table table;
+        CHECK(table_open(&table, path ? "tests/render/atmosphere_scattered.csv" : "tests/render/atmosphere_sky.csv") ==
+              STATUS_OK);
+        for (int row = 0; row < table.rows; row++)
+            for (int i = 0; i < 4; i++) {
+                if (cell(&table, row, "visibility_km") != 10) continue;
+                const double sun_rad = rad_per_deg * cell(&table, row, "sun_zenith_deg");
+                const double azimuth_rad = rad_per_deg * cell(&table, row, "rel_azimuth_deg");
+                const double eye_m = cell(&table, row, "observer_m"), want = cell_of(&table, row, "scattered_", tabled[i]);
+                const Atmosphere *a = model_of(&table, row);
+                SkyAir sky;
+                PathAir air;
+                if (path) {
+                    const AirPath at = {eye_m, cell(&table, row, "target_m"), cell(&table, row, "range_m"), sun_rad,
+                                        azimuth_rad};
+                    atmosphere_path(&air, a, 10000, tabled_band[i], &at, 300);
+                    keep(&path_errors, relative(air.scattered_w_m2_sr, want, 0), table.line[row + 1]);
+                } else {
+                    const double zenith_rad = rad_per_deg * cell(&table, row, "zenith_deg");
+                    atmosphere_sky(&sky, a, 10000, tabled_band[i], eye_m, zenith_rad, sun_rad, azimuth_rad);
+                    keep(&sky_errors, relative(sky.scattered_w_m2_sr, want, 0), table.line[row + 1]);
+                }
+            }
+        table_close(&table);
+    }
+    judge(&sky_errors, "10 km: sky scattered", 0.4, 0.5); /* the worst: along the horizon */
+    judge(&path_errors, "10 km: path scattered", 0.25, 0.35);
+    CHECK(percentile(&sky_errors, 0.5) < 0.02 && percentile(&path_errors, 0.5) < 0.04);
 }
 
 /* More haze is never clearer, no step where tables meet, and the span is what it says. */
@@ -155,7 +199,8 @@ static void goes_smoothly(void **state)
 static void alone_and_among_others(void **state)
 {
     (void)state;
-    static const double visibility_m[] = {100, 200, 700, 2000, 3000, 5000, 10000, 15000, 23000, 40000, 50000, 90000, 3e5};
+    static const double visibility_m[] = {100,   200,   700,   2000,  3000,  5000, 10000,
+                                          15000, 23000, 40000, 50000, 90000, 3e5};
     static const AirPath path[3] = {{500, 500, 7000, 0.9, 1}, {0, 1500, 3000, 0.5, 2}, {6000, 100, 9000, 1.2, 0}};
     for (size_t v = 0; v < sizeof visibility_m / sizeof *visibility_m; v++) {
         Atmosphere *one = NULL;
@@ -176,8 +221,9 @@ static void alone_and_among_others(void **state)
                 CHECK_NEAR(a.transmittance, all.transmittance, 0.003);
                 CHECK_NEAR(a.thermal_w_m2_sr, all.thermal_w_m2_sr, 0.003 * all.thermal_w_m2_sr);
                 CHECK_NEAR(a.scattered_w_m2_sr, all.scattered_w_m2_sr, 0.01 * all.scattered_w_m2_sr);
-                CHECK_NEAR(sun.direct_normal_w_m2, all_sun.direct_normal_w_m2, 0.003 * all_sun.direct_normal_w_m2 + 0.01);
-                CHECK_NEAR(sun.diffuse_horizontal_w_m2, all_sun.diffuse_horizontal_w_m2, soft * all_sun.diffuse_horizontal_w_m2);
+                const double direct = all_sun.direct_normal_w_m2, diffuse = all_sun.diffuse_horizontal_w_m2;
+                CHECK_NEAR(sun.direct_normal_w_m2, direct, 0.003 * direct + 0.01);
+                CHECK_NEAR(sun.diffuse_horizontal_w_m2, diffuse, soft * diffuse);
             }
         atmosphere_close(one);
     }
@@ -189,6 +235,7 @@ int main(void)
         cmocka_unit_test(paths_of_other_visibilities),
         cmocka_unit_test(paths_in_fog),
         cmocka_unit_test(sun_of_other_visibilities),
+        cmocka_unit_test(scattered_between_its_tables),
         cmocka_unit_test(goes_smoothly),
         cmocka_unit_test(alone_and_among_others),
     };

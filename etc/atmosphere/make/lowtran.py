@@ -49,13 +49,14 @@ def patched(source):
     for unit, label in (("IPR", 906), ("IPR1", 907), ("IPU", 907), ("IPR", 916), ("IPU", 917), ("IPU", 927),
                         ("IPR", 936), ("IPU", 937)):
         text = once(rf"^ +WRITE\({unit},{label}\)[^\n]*\n(?:     [&+X][^\n]*\n)*", "", text)
-    text = once(r"^      IF \(IMLT .NE. 1\) THEN\n +WRITE\(IPR,926\)[^\n]*\n[^\n]*\n      ELSE\n +WRITE\(IPR,928\)[^\n]*\n"
+    text = once(r"^      IF \(IMLT .NE. 1\) THEN\n +WRITE\(IPR,926\)[^\n]*\n[^\n]*\n      ELSE\n"
+                r" +WRITE\(IPR,928\)[^\n]*\n"
                 r"[^\n]*\n      ENDIF\n", "", text)
     text = once(r"^      BIGNUM = 1.0E38$", "      BIGNUM = 1.0E300", text)
     text = once(r"^      BIGEXP = 87.0$", "      BIGEXP = 690.0", text)
     # a path of flat layers: card 2's wind speed, which rural haze does not use, is its length over its rise
-    text = once(r"^      CALL EXABIN$", "      CALL EXABIN\n      IF(WSS.GT.0.) THEN\n      DO 901 K=1,KMAX\n      IF(K.EQ.15) GO TO 901\n"
-                "      W(K)=W(K)*WSS\n      DO 902 IK=1,68\n902   WPATH(IK,K)=WPATH(IK,K)*WSS\n901   CONTINUE\n      ENDIF", text)
+    text = once(r"^      CALL EXABIN$", "      CALL EXABIN\n      IF(WSS.GT.0.) THEN\n      DO 901 K=1,KMAX\n"
+                "      IF(K.EQ.15) GO TO 901\n      W(K)=W(K)*WSS\n      DO 902 IK=1,68\n902   WPATH(IK,K)=WPATH(IK,K)*WSS\n901   CONTINUE\n      ENDIF", text)
     text = once(r"^      pure SUBROUTINE BS", "      SUBROUTINE BS", text)
     text = once(r"^      IPython = IPython\+1",
                 "      WRITE(77) FLOAT(ICASE),V,TX(9),SUMV,SUMS,TSOLIV,SOLIV,TX(7),TX(10)\n"
@@ -88,7 +89,8 @@ def case(model, visibility_km, kind, emission=0, scatter=False, h1=0.0, h2=0.0, 
     1 radiance, 2 with sunlight, 3 the sun itself. visibility_km 0: no haze. stretch: of a vertical path of flat layers
     its range over its rise."""
     cards = [f"{MODELS[model]:5d}{kind:5d}{emission:5d}{int(scatter):5d}" + f"{0:5d}" * 8 + f"{1:5d}{0:8.3f}{0.2:7.2f}",
-             f"{1 if visibility_km else 0:5d}" + f"{0:5d}" * 5 + f"{visibility_km:10.5f}{stretch:10.6f}" + f"{0:10.3f}" * 3]
+             f"{1 if visibility_km else 0:5d}" + f"{0:5d}" * 5 + f"{visibility_km:10.5f}{stretch:10.6f}" +
+             f"{0:10.3f}" * 3]
     if emission == 3:
         cards.append(f"{h1:10.5f}{0:10.3f}{angle:10.5f}{DAY:5d}" + " " * 5 + f"{0:10.3f}{0:5d}{0:10.3f}")
     else:

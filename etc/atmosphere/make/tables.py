@@ -81,7 +81,8 @@ class Maker:
         places = [(h, z) for h in SUN_HEIGHTS_KM for z in SUN_ZENITHS]
         direct = self.runs([dict(kind=3, emission=3, h1=h, angle=z) for h, z in places])
         # fluxes of the whole air, whatever the path; by levels downwards, the ground is the 33rd
-        fluxes = self.runs([dict(kind=3, emission=2, scatter=True, angle=30, sun_zenith=z) for z in SUN_ZENITHS], step=20)
+        cases = [dict(kind=3, emission=2, scatter=True, angle=30, sun_zenith=z) for z in SUN_ZENITHS]
+        fluxes = self.runs(cases, step=20)
         rows = []
         for (h, z), d in zip(places, direct):
             flux = fluxes[SUN_ZENITHS.index(z)]
