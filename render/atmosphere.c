@@ -26,20 +26,15 @@ int air_tabled_index(AirBand band)
 
 /* ---- between visibilities ---------------------------------------------------------------------- */
 
-/* Beyond the tables' visibilities haze goes on by the same straight line in 1 / visibility, this far. */
-static const double visibility_below = 0.4, visibility_above = 2.2;
-
 void atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m)
 {
-    *low_m = atmosphere->slice[0].visibility_m * visibility_below;
-    *high_m = atmosphere->slice[atmosphere->slices - 1].visibility_m * visibility_above;
+    *low_m = atmosphere->low_m;
+    *high_m = atmosphere->high_m;
 }
 
 void blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m)
 {
-    double low_m, high_m;
-    atmosphere_visibilities(atmosphere, &low_m, &high_m);
-    const double v_m = clamp(visibility_m, low_m, high_m);
+    const double v_m = clamp(visibility_m, atmosphere->low_m, atmosphere->high_m);
     const Slice *slice = atmosphere->slice;
     if (atmosphere->slices == 1) {
         *out = (Blend){slice, slice, 0, slice->visibility_m / v_m, 0};
@@ -47,8 +42,9 @@ void blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m)
     }
     int i = 0;
     while (i + 2 < atmosphere->slices && v_m > slice[i + 1].visibility_m) i++;
-    const double a = 1 / slice[i].visibility_m, b = 1 / slice[i + 1].visibility_m, x = (1 / v_m - a) / (b - a);
-    *out = (Blend){&slice[i], &slice[i + 1], clamp(x, 0, 1), 1 - x, x};
+    const double a = 1 / slice[i].visibility_m, b = 1 / slice[i + 1].visibility_m;
+    const double x = clamp((1 / v_m - a) / (b - a), 0, 1);
+    *out = (Blend){&slice[i], &slice[i + 1], x, 1 - x, x};
 }
 
 static double value_at(const AirColumn *column, const double *value, double height_m)
@@ -85,10 +81,9 @@ double column_scatter(const AirColumn *column, AirBand band, double height_m)
     return value_at(column, column->scatter_per_m[band], height_m);
 }
 
-/* Beyond the tables' visibilities haze never falls below a tenth of the clearest table's. */
 static double blend_haze(const Blend *blend, double low, double high)
 {
-    return fmax(blend->haze_low * low + blend->haze_high * high, 0.1 * high);
+    return blend->haze_low * low + blend->haze_high * high;
 }
 
 double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m)
@@ -129,8 +124,7 @@ int path_emission_weight(const PathTable *table)
     return best;
 }
 
-/* Value of a weight, of sunlight or of a temperature: straight in 1 / temperature. */
-static double weight_value(const PathTable *table, const Stencil *at, double temp_k)
+double path_weight_value(const PathTable *table, const Stencil *at, double temp_k)
 {
     if (isnan(temp_k) || table->weights < 2) return stencil_value(at, table, 0);
     if (table->weights == 2) return stencil_value(at, table, 1);
@@ -169,11 +163,12 @@ static double look_depth(const Look *look, double temp_k)
 {
     const Blend *blend = look->blend;
     const AirBand band = look->band;
-    double depth = look->clear_plain * exp(weight_value(&look->atmosphere->clear_path[band], &look->clear, temp_k));
+    const PathTable *clear = &look->atmosphere->clear_path[band];
+    double depth = look->clear_plain * exp(path_weight_value(clear, &look->clear, temp_k));
     if (!blend) return depth;
-    double haze = weight_value(&blend->low->path[band], &look->low, temp_k);
+    double haze = path_weight_value(&blend->low->path[band], &look->low, temp_k);
     if (blend->low != blend->high)
-        haze = blend_of(blend, haze, weight_value(&blend->high->path[band], &look->high, temp_k));
+        haze = blend_of(blend, haze, path_weight_value(&blend->high->path[band], &look->high, temp_k));
     return depth + look->haze_plain * fmax(haze, 0);
 }
 
@@ -213,21 +208,27 @@ static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
     return p;
 }
 
+double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled)
+{
+    double s, a, sum = 0;
+    const int i = interval_of(&s, table->sun_x, table->suns, sun_x);
+    const int j = interval_of(&a, table->azimuth_deg, table->azimuths, azimuth_deg);
+    for (int corner = 0; corner < 4; corner++) {
+        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? a : 1 - a);
+        if (share == 0) continue;
+        const int node = (i + (corner & 1)) * table->azimuths + j + (corner >> 1);
+        sum += share * stencil_value(at, table, node * air_tabled_count + tabled);
+    }
+    return sum;
+}
+
 /* Ratio of scattered light to its estimate, of one visibility. */
 static double scattered_ratio(const PathTable *table, AirBand band, const AirPath *path)
 {
     Stencil stencil;
     stencil_at(&stencil, table, path->observer_m, -path_up(path), path->range_m);
-    double s, a, sum = 0;
-    const int i = interval_of(&s, table->sun_x, table->suns, slant_x(path->sun_zenith_rad));
-    const int j = interval_of(&a, table->azimuth_deg, table->azimuths, path->rel_azimuth_rad / rad_per_deg);
-    for (int corner = 0; corner < 4; corner++) {
-        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? a : 1 - a);
-        if (share == 0) continue;
-        const int node = (i + (corner & 1)) * table->azimuths + j + (corner >> 1);
-        sum += share * stencil_value(&stencil, table, node * air_tabled_count + air_tabled_index(band));
-    }
-    return sum;
+    return scattered_value(table, &stencil, slant_x(path->sun_zenith_rad), path->rel_azimuth_rad / rad_per_deg,
+                           air_tabled_index(band));
 }
 
 static double scattered(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path,

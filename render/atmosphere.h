@@ -22,9 +22,12 @@ typedef struct Atmosphere Atmosphere;
 /* model: us1976, midlat_summer, or any other that etc/atmosphere holds; all of its visibilities are read. Failures
  * (no such model, a malformed row, a point missing) are logged with file and line. */
 Status atmosphere_open(Atmosphere **out, const char *model);
+/* The same for one visibility alone, m: it reads only the tables beside it, and is asked about no other. */
+Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m);
 void   atmosphere_close(Atmosphere *atmosphere);
-/* Visibilities that count, m; outside them the nearest does. Between tables haze's extinction is a straight line in
- * 1 / visibility, and it goes on so beyond them, to 0.4 of the least and 2.2 of the greatest that has a table. */
+/* Visibilities that count, m; outside them the nearest does: 0.4 of the least to 2.2 of the greatest that has a table.
+ * Between tables and beyond them haze's extinction at the model's own heights (temperature.csv) is a straight line in
+ * 1 / visibility, between these heights one in its logarithm (render/atmosphere_slices.c). */
 void   atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
 /* One straight path over a round Earth. Heights above the ground that the model stands on (its 0 km), of both ends; the

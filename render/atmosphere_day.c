@@ -273,7 +273,7 @@ static double clear_mean(const AirDay *day, AirBand band, const Span *s)
 /* As blend_haze of atmosphere.c has it. */
 static double haze_of(const AirDay *day, double low, double high)
 {
-    return day->hazes ? fmax(day->blend.haze_low * low + day->blend.haze_high * high, 0.1 * high) : day->blend.haze_low * low;
+    return day->hazes ? day->blend.haze_low * low + day->blend.haze_high * high : day->blend.haze_low * low;
 }
 
 static double haze_mean(const AirDay *day, AirBand band, const Span *s)

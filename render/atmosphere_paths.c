@@ -197,6 +197,26 @@ done:
     return status;
 }
 
+/* ---- alike ------------------------------------------------------------------------------------ */
+
+bool paths_same_shape(const PathTable *a, const PathTable *b)
+{
+    if (a->rows != b->rows || a->nodes[0] != b->nodes[0] || a->nodes[1] != b->nodes[1]) return false;
+    for (int i = 0; i < 2; i++)
+        if (memcmp(a->axis[i], b->axis[i], (size_t)a->nodes[i] * sizeof a->axis[i][0]) != 0) return false;
+    const size_t pairs = (size_t)a->nodes[0] * (size_t)a->nodes[1];
+    return a->ln_range_low == b->ln_range_low && memcmp(a->first, b->first, (pairs + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->ln_range, b->ln_range, (size_t)a->rows * sizeof *a->ln_range) == 0;
+}
+
+bool paths_alike(const PathTable *a, const PathTable *b)
+{
+    return paths_same_shape(a, b) && a->values == b->values && a->weights == b->weights && a->suns == b->suns &&
+           a->azimuths == b->azimuths && memcmp(a->weight_temp_k, b->weight_temp_k, sizeof a->weight_temp_k) == 0 &&
+           memcmp(a->sun_x, b->sun_x, sizeof a->sun_x) == 0 &&
+           memcmp(a->azimuth_deg, b->azimuth_deg, sizeof a->azimuth_deg) == 0;
+}
+
 /* ---- looking up ------------------------------------------------------------------------------- */
 
 /* Lagrange's cubic through the four rows around x (fewer at the ends), straight on below the first row. Below the

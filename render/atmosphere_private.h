@@ -70,6 +70,9 @@ typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *colum
 Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
                   PathColumns *choose);
 void   paths_close(PathTable *table);
+/* The same heights and ranges; and the same columns as well. */
+bool   paths_same_shape(const PathTable *a, const PathTable *b);
+bool   paths_alike(const PathTable *a, const PathTable *b);
 
 /* Weight by which the path's own emission is counted: of the temperature nearest the air's. */
 int path_emission_weight(const PathTable *table);
@@ -86,7 +89,8 @@ double stencil_value(const Stencil *stencil, const PathTable *table, int value);
 
 /* ---- a visibility, a model ----------------------------------------------------------------- */
 
-enum { column_max = 256, slices_max = 8, phase_heights_max = 8 };
+enum { column_max = 256, slices_max = 12, phase_heights_max = 8 };
+enum { steps_between = 6, slices_made_max = steps_between * (slices_max + 1) + 1 };
 
 /* What a metre of air does, by height, of clear air or of haze; sums from the ground up so that a mean is a
  * difference. */
@@ -100,6 +104,7 @@ typedef struct AirColumn {
 
 typedef struct Slice {
     double    visibility_m, longwave_down_w_m2;
+    bool      has_paths, has_scattered;  /* files of its own for path; for scattered and sky_scattered */
     AirColumn haze;
     PathTable path[AIR_BAND_COUNT];
     PathTable scattered;                 /* ratio to scatter_estimate */
@@ -110,7 +115,8 @@ typedef struct Slice {
 
 struct Atmosphere {
     int          slices;
-    Slice       *slice;                  /* rising visibility */
+    Slice       *slice;                  /* rising visibility: every table's and some between and beyond, or just one */
+    double       low_m, high_m;          /* visibilities that count */
     double       sun_top_w_m2[AIR_BAND_COUNT];
     AirColumn    clear;
     PathTable    clear_path[AIR_BAND_COUNT];
@@ -132,13 +138,20 @@ static inline double slant_x(double zenith_rad) { return log(air_mass(zenith_rad
 typedef struct Blend {
     const Slice *low, *high;  /* of visibility; may be the same */
     double       share;       /* of high, 0 .. 1, straight in 1 / visibility */
-    double       haze_low, haze_high; /* shares for haze, which goes on beyond the tables' visibilities */
+    double       haze_low, haze_high; /* shares for haze; of a single table at another visibility its scale, 0 */
 } Blend;
+
+/* The air of any visibility, from the tables' own slices, of which one at least has paths, one scattered light. */
+Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m);
+void   slice_close(Slice *slice);
+/* Visibilities so close together that straight lines will do, in rising order: the tables', the ends, some between. */
+int    visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
 
 void   blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m);
 double column_mean(const AirColumn *column, AirBand band, double a_m, double b_m);
 double column_scatter(const AirColumn *column, AirBand band, double height_m);
-/* Of two visibilities' haze, going on beyond them in a straight line of 1 / visibility. */
+void   column_sum_up(const AirColumn *column, const double *value, double *sum);
+/* Of two visibilities' haze. */
 double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m);
 double blend_haze_scatter(const Blend *blend, AirBand band, double height_m);
 /* Black radiance of the air between two heights, each metre counted by how much it emits. */
@@ -154,6 +167,9 @@ static inline double path_up(const AirPath *path)
  * round, and light bends after it by a seventh. */
 static inline double mean_sag_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
 
+/* A table's value: of its weights at a temperature (NAN: sunlight), straight in 1 / temperature; of scattered light. */
+double path_weight_value(const PathTable *table, const Stencil *at, double temp_k);
+double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled);
 /* Depths of a path, of sunlight (temp_k NAN) or of what has a temperature. */
 void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
                     int temps);

@@ -3,6 +3,7 @@
 #include "render/atmosphere_private.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { depth_max = 1000 };
 
@@ -92,7 +93,7 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
 
 /* ---- columns of air ---------------------------------------------------------------------------- */
 
-static void sum_up(const AirColumn *column, const double *value, double *sum)
+void column_sum_up(const AirColumn *column, const double *value, double *sum)
 {
     for (int n = 1; n < column->nodes; n++)
         sum[n] = sum[n - 1] + (column->height_m[n] - column->height_m[n - 1]) / 2 * (value[n] + value[n - 1]);
@@ -118,7 +119,8 @@ static Status read_column(AirColumn *out, const char *path, double low)
             double *to = i % 2 ? out->scatter_per_m[air_tabled[i / 2]] : out->per_m[air_tabled[i / 2]];
             for (int n = 0; n < out->nodes; n++) to[n] = grid.value[n * 2 * air_tabled_count + i] * 1e-3;
         }
-        for (int i = 0; i < air_tabled_count; i++) sum_up(out, out->per_m[air_tabled[i]], out->sum[air_tabled[i]]);
+        for (int i = 0; i < air_tabled_count; i++)
+            column_sum_up(out, out->per_m[air_tabled[i]], out->sum[air_tabled[i]]);
     } else {
         log_error("atmosphere: %s: 2 to %d heights from 0 upwards are needed, there are %d from %g m", path,
                   (int)column_max, out->nodes, grid.axis[0][0]);
@@ -134,7 +136,7 @@ static void add_black(AirColumn *clear, const Atmosphere *atmosphere)
         const AirBand band = i ? AIR_LWIR : AIR_MWIR;
         for (int n = 0; n < clear->nodes; n++)
             clear->black_per_m[i][n] = clear->per_m[band][n] * black_air(atmosphere, band, clear->height_m[n]);
-        sum_up(clear, clear->black_per_m[i], clear->black_sum[i]);
+        column_sum_up(clear, clear->black_per_m[i], clear->black_sum[i]);
     }
 }
 
@@ -185,7 +187,7 @@ static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AI
     return STATUS_OK;
 }
 
-static const GridColumn scattered_value[air_tabled_count] = {
+static const GridColumn scattered_column[air_tabled_count] = {
     {"b", 0, 1e4}, {"g", 0, 1e4}, {"r", 0, 1e4}, {"nir", 0, 1e4}, {"mwir", 0, 1e4}, {"lwir", 0, 1e4}};
 
 /* Ratio of the truth to the estimate. Where the estimate is nothing so is the truth. */
@@ -194,7 +196,7 @@ static double ratio_to(double truth, double estimate) { return estimate > 1e-30 
 static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
 {
     PathTable table;
-    const Status status = paths_open(&table, path, 5, scattered_value, air_tabled_count, NULL);
+    const Status status = paths_open(&table, path, 5, scattered_column, air_tabled_count, NULL);
     if (status != STATUS_OK) return status;
     for (int j = 0; j < table.nodes[1]; j++) table.axis[1][j] = -cos(table.axis[1][j] * rad_per_deg);
     double *value = table.value;
@@ -226,7 +228,7 @@ static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, con
     static const GridColumn axis[4] = {
         {"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}, {"sun_zenith_deg", 0, 90}, {"rel_azimuth_deg", 0, 180}};
     Grid grid;
-    const Status status = grid_open(&grid, path, axis, 4, scattered_value, air_tabled_count);
+    const Status status = grid_open(&grid, path, axis, 4, scattered_column, air_tabled_count);
     if (status != STATUS_OK) return status;
     const int azimuths = grid.nodes[3];
     double *value = grid.value;
@@ -252,7 +254,7 @@ static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, con
 
 /* ---- what a visibility has ---------------------------------------------------------------------- */
 
-static void slice_close(Slice *slice)
+void slice_close(Slice *slice)
 {
     for (int i = 0; i < AIR_BAND_COUNT; i++) paths_close(&slice->path[i]);
     paths_close(&slice->scattered);
@@ -283,22 +285,24 @@ static Status open_paths(PathTable *out, const char *folder, AirBand band, bool 
     return STATUS_BAD_VALUE;
 }
 
+/* The haze itself, the sun and the sky's own light; paths and scattered light where the slice says that it has them. */
 static Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder)
 {
     char path[1024];
     const Blend blend = {slice, slice, 0, 1, 0};
     Status status = path_in(path, folder, "haze.csv");
     if (status == STATUS_OK) status = read_column(&slice->haze, path, 0);
-    for (int i = 0; i < air_tabled_count && status == STATUS_OK; i++) {
-        const AirBand band = air_tabled[i];
-        status = open_paths(&slice->path[band], folder, band, true);
-        if (status == STATUS_OK) normalize_hazy(&slice->path[band], atmosphere, &slice->haze, band);
-    }
     if (status == STATUS_OK) status = path_in(path, folder, "sky_thermal.csv");
     if (status == STATUS_OK) status = read_sky_thermal(&slice->sky_thermal, atmosphere, path);
     if (status == STATUS_OK) status = path_in(path, folder, "sun.csv");
     if (status == STATUS_OK) status = read_sun(&slice->sun, path, atmosphere->sun_top_w_m2);
-    if (status == STATUS_OK) status = path_in(path, folder, "sky_scattered.csv");
+    for (int i = 0; i < air_tabled_count && slice->has_paths && status == STATUS_OK; i++) {
+        const AirBand band = air_tabled[i];
+        status = open_paths(&slice->path[band], folder, band, true);
+        if (status == STATUS_OK) normalize_hazy(&slice->path[band], atmosphere, &slice->haze, band);
+    }
+    if (status != STATUS_OK || !slice->has_scattered) return status;
+    status = path_in(path, folder, "sky_scattered.csv");
     if (status == STATUS_OK) status = read_sky_scattered(slice, atmosphere, &blend, path);
     if (status == STATUS_OK) status = path_in(path, folder, "scattered.csv");
     if (status == STATUS_OK) status = read_scattered(slice, atmosphere, &blend, path);
@@ -375,10 +379,95 @@ static Status open_clear(Atmosphere *atmosphere, const char *folder)
     return status;
 }
 
-static Status open_model(Atmosphere *atmosphere, const char *folder)
+static bool folder_has(const char *folder, const char *name)
+{
+    char path[1024];
+    return path_in(path, folder, name) == STATUS_OK && access(path, F_OK) == 0;
+}
+
+/* Which of the tables a visibility needs: the two about it of those that have something; beyond the last of these the
+ * last two. Where it is that of a table, this alone. */
+static void choose_tables(bool need[slices_max], const bool has[slices_max], const double *table_m, int count,
+                          double visibility_m)
+{
+    int of[slices_max] = {0}, n = 0, i = 0;
+    for (int k = 0; k < count; k++)
+        if (has[k]) of[n++] = k;
+    while (i + 2 < n && visibility_m > table_m[of[i + 1]]) i++;
+    for (int k = i; k < n && k < i + 2; k++)
+        if (n == 1 || visibility_m != table_m[of[k == i ? i + 1 : i]]) need[of[k]] = true;
+}
+
+/* The slices that are asked: of one visibility, or so many that any lies close between two. */
+static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
+{
+    double step_m[slices_made_max] = {visibility_m};
+    int steps = 1;
+    if (isnan(visibility_m)) steps = visibility_steps(step_m, tabled, count, atmosphere->low_m, atmosphere->high_m);
+    atmosphere->slice = calloc((size_t)steps, sizeof *atmosphere->slice);
+    if (!atmosphere->slice) return STATUS_NO_MEMORY;
+    Status status = STATUS_OK;
+    for (int i = 0; i < steps && status == STATUS_OK; i++) {
+        atmosphere->slices++;
+        status = slice_between(&atmosphere->slice[i], atmosphere, tabled, count, step_m[i]);
+    }
+    return status;
+}
+
+/* Beyond the tables' visibilities haze goes on by the same straight line in 1 / visibility, this far. */
+static const double visibility_below = 0.4, visibility_above = 2.2;
+
+/* list: visibilities and what is in visibilities.csv. A folder without paths_b.csv has no paths, one without
+ * sky_scattered.csv no scattered light; the neighbours' count there. */
+static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid *list, double visibility_m)
+{
+    const int count = list->nodes[0];
+    const double *table_m = list->axis[0];
+    bool paths[slices_max] = {false}, light[slices_max] = {false}, need[slices_max] = {false}, all[slices_max];
+    bool any_paths = false, any_light = false;
+    char slice_folder[slices_max][1024], name[32];
+    for (int i = 0; i < count; i++) {
+        snprintf(name, sizeof name, "%.0f", table_m[i]);
+        if (path_in(slice_folder[i], folder, name) != STATUS_OK) return STATUS_BAD_VALUE;
+        any_paths |= paths[i] = folder_has(slice_folder[i], "paths_b.csv");
+        any_light |= light[i] = folder_has(slice_folder[i], "sky_scattered.csv");
+        all[i] = true;
+    }
+    if (!any_paths) paths[0] = true; /* which file is missing will be said */
+    if (!any_light) light[0] = true;
+    atmosphere->low_m = table_m[0] * visibility_below;
+    atmosphere->high_m = table_m[count - 1] * visibility_above;
+    if (isnan(visibility_m)) {
+        memcpy(need, all, sizeof need);
+    } else {
+        visibility_m = clamp(visibility_m, atmosphere->low_m, atmosphere->high_m);
+        choose_tables(need, all, table_m, count, visibility_m);
+        choose_tables(need, paths, table_m, count, visibility_m);
+        choose_tables(need, light, table_m, count, visibility_m);
+    }
+
+    Slice *tabled = calloc((size_t)count, sizeof *tabled);
+    if (!tabled) return STATUS_NO_MEMORY;
+    int read = 0;
+    Status status = STATUS_OK;
+    for (int i = 0; i < count && status == STATUS_OK; i++) {
+        if (!need[i]) continue;
+        tabled[read].visibility_m = table_m[i];
+        tabled[read].longwave_down_w_m2 = list->value[i];
+        tabled[read].has_paths = paths[i];
+        tabled[read].has_scattered = light[i];
+        status = slice_open(&tabled[read++], atmosphere, slice_folder[i]);
+    }
+    if (status == STATUS_OK) status = make_slices(atmosphere, tabled, read, visibility_m);
+    for (int i = 0; i < read; i++) slice_close(&tabled[i]);
+    free(tabled);
+    return status;
+}
+
+static Status open_model(Atmosphere *atmosphere, const char *folder, double visibility_m)
 {
     static const GridColumn visibility = {"visibility_m", 100, 500000}, longwave = {"longwave_down_w_m2", 1, 1000};
-    char path[1024], slice_folder[1024], name[32];
+    char path[1024];
     Status status = path_in(path, folder, "visibilities.csv");
     Grid list = {0};
     if (status == STATUS_OK) status = grid_open(&list, path, &visibility, 1, &longwave, 1);
@@ -388,39 +477,17 @@ static Status open_model(Atmosphere *atmosphere, const char *folder)
         status = STATUS_BAD_VALUE;
     }
     if (status == STATUS_OK) status = open_clear(atmosphere, folder);
-    if (status == STATUS_OK) {
-        atmosphere->slice = calloc((size_t)list.nodes[0], sizeof *atmosphere->slice);
-        if (!atmosphere->slice) status = STATUS_NO_MEMORY;
-    }
-    for (int i = 0; i < list.nodes[0] && status == STATUS_OK; i++) {
-        Slice *slice = &atmosphere->slice[i];
-        slice->visibility_m = list.axis[0][i];
-        slice->longwave_down_w_m2 = list.value[i];
-        atmosphere->slices++;
-        snprintf(name, sizeof name, "%.0f", slice->visibility_m);
-        status = path_in(slice_folder, folder, name);
-        if (status == STATUS_OK) status = slice_open(slice, atmosphere, slice_folder);
-    }
+    if (status == STATUS_OK) status = open_slices(atmosphere, folder, &list, visibility_m);
     grid_close(&list);
     return status;
 }
 
 /* ---- tables of one shape ------------------------------------------------------------------------ */
 
-static bool same_shape(const PathTable *a, const PathTable *b)
-{
-    if (a->rows != b->rows || a->nodes[0] != b->nodes[0] || a->nodes[1] != b->nodes[1]) return false;
-    for (int i = 0; i < 2; i++)
-        if (memcmp(a->axis[i], b->axis[i], (size_t)a->nodes[i] * sizeof a->axis[i][0]) != 0) return false;
-    const size_t pairs = (size_t)a->nodes[0] * (size_t)a->nodes[1];
-    return a->ln_range_low == b->ln_range_low && memcmp(a->first, b->first, (pairs + 1) * sizeof *a->first) == 0 &&
-           memcmp(a->ln_range, b->ln_range, (size_t)a->rows * sizeof *a->ln_range) == 0;
-}
-
 /* The first gives its number to those that are like it. */
 static void number_shapes(Atmosphere *atmosphere)
 {
-    PathTable *table[(slices_max + 1) * AIR_BAND_COUNT + slices_max];
+    PathTable *table[(slices_made_max + 1) * AIR_BAND_COUNT + slices_made_max];
     int        count = 0;
     for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->clear_path[air_tabled[k]];
     for (int s = 0; s < atmosphere->slices; s++) {
@@ -429,12 +496,14 @@ static void number_shapes(Atmosphere *atmosphere)
     }
     for (int i = 0; i < count; i++) {
         int first = 0;
-        while (first < i && !same_shape(table[first], table[i])) first++;
+        while (first < i && !paths_same_shape(table[first], table[i])) first++;
         table[i]->shape = first;
     }
 }
 
-Status atmosphere_open(Atmosphere **out, const char *model)
+Status atmosphere_open(Atmosphere **out, const char *model) { return atmosphere_open_at(out, model, NAN); }
+
+Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m)
 {
     char name[96], folder[512];
     bool plain = *model && strlen(model) < 64;
@@ -462,7 +531,7 @@ Status atmosphere_open(Atmosphere **out, const char *model)
         air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
         status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
     }
-    if (status == STATUS_OK) status = open_model(atmosphere, folder);
+    if (status == STATUS_OK) status = open_model(atmosphere, folder, visibility_m);
     if (status != STATUS_OK) {
         if (status == STATUS_NO_MEMORY) log_error("atmosphere: out of memory for model %s", model);
         else log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);

@@ -42,7 +42,8 @@ static bool files_are_there(const char *path, const Config *config)
 static bool air_is_there(const Config *config)
 {
     Atmosphere *atmosphere = NULL;
-    const bool  there = atmosphere_open(&atmosphere, config->weather.atmosphere) == STATUS_OK;
+    const bool  there =
+        atmosphere_open_at(&atmosphere, config->weather.atmosphere, config->weather.visibility_m) == STATUS_OK;
     atmosphere_close(atmosphere);
     return there;
 }

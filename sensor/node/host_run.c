@@ -142,6 +142,9 @@ static void say_visibility(Choices *choices, const Config *config, const Atmosph
     if (config->weather.visibility_m < low_m || config->weather.visibility_m > high_m)
         choice_add(choices, "air: the tables reach visibilities of %.0f to %.0f m; the nearest of them is taken "
                    "(weather.visibility_m)", low_m, high_m);
+    else if (config->weather.visibility_m < 1000)
+        choice_add(choices, "air: %.0f m of visibility is haze as thick as that; a fog of droplets is denser in "
+                   "infrared (weather.visibility_m)", config->weather.visibility_m);
 }
 
 /* World and all that is said of it. */
@@ -159,7 +162,8 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool 
         status = choose_ground(landscape, clamp, choices, &run->survey, &o->config, &frame, run->catalog, plan);
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
     if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
-    if (status == STATUS_OK) status = atmosphere_open(&world->atmosphere, o->config.weather.atmosphere);
+    if (status == STATUS_OK)
+        status = atmosphere_open_at(&world->atmosphere, o->config.weather.atmosphere, o->config.weather.visibility_m);
     if (status != STATUS_OK) return status;
     say_visibility(choices, &o->config, world->atmosphere);
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;

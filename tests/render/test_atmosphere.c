@@ -1,6 +1,6 @@
 /* The tables of the air against the program that filled them: at its own points, at points that the tables do not
  * hold, and at the ends. */
-#include "tests/check.h"
+#include "tests/render/atmosphere_errors.h"
 #include "render/atmosphere.h"
 #include "render/planck.h"
 #include "render/probe.h"
@@ -27,57 +27,7 @@ static const Atmosphere *model_named(const char *name)
     return strcmp(name, "us1976") == 0 ? us1976 : strcmp(name, "midlat_summer") == 0 ? midlat_summer : NULL;
 }
 
-/* ---- errors, collected --------------------------------------------------------------------------- */
-
-enum { errors_max = 40000 };
-
-typedef struct Errors {
-    int    count;
-    double worst, square;
-    int    worst_line;
-    double one[errors_max];
-} Errors;
-
-static void keep(Errors *errors, double error, int line)
-{
-    error = fabs(error);
-    if (isnan(error)) error = INFINITY;
-    if (errors->count < errors_max) errors->one[errors->count++] = error;
-    errors->square += error * error;
-    if (error < errors->worst) return;
-    errors->worst = error;
-    errors->worst_line = line;
-}
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static double percentile(Errors *errors, double share)
-{
-    qsort(errors->one, (size_t)errors->count, sizeof *errors->one, compare);
-    return errors->one[(int)fmin(share * errors->count, errors->count - 1)];
-}
-
 static double rms(const Errors *errors) { return sqrt(errors->square / errors->count); }
-
-/* One row of a table, by column name. */
-static double cell(const Table *table, int row, const char *column)
-{
-    const int c = table_column(table, column);
-    double value = NAN;
-    if (c < 0) fail_msg("%s: no column %s", table->path, column);
-    return text_to_double(&value, table_text(table, row, c)) ? value : NAN;
-}
-
-static const char *word(const Table *table, int row, const char *column)
-{
-    const int c = table_column(table, column);
-    if (c < 0) fail_msg("%s: no column %s", table->path, column);
-    return table_text(table, row, c);
-}
 
 /* The band that shared/data/atmosphere calls so; -1: not one of ours. */
 static int band_of(const char *name)
@@ -89,8 +39,6 @@ static int band_of(const char *name)
 }
 
 /* Relative, of transmittances not below a thousandth: what is fainter shows in no picture. */
-static double relative(double got, double want, double floor) { return (got - want) / fmax(fabs(want), floor); }
-
 static const double tau_floor = 1e-3;
 
 /* Of the model's own rays. Below a tenth a transmittance may instead be one of a depth right to a per cent: within 2
@@ -147,17 +95,6 @@ static bool open_reference(Table *table, const char *name)
     if (!reference_path(path, file)) return false;
     CHECK(table_open(table, path) == STATUS_OK);
     return true;
-}
-
-/* Says a file's worst and fails beyond the limit; p99 and worst are of relative errors. */
-static void judge(Errors *errors, const char *what, double p99_limit, double worst_limit)
-{
-    const double p99 = percentile(errors, 0.99);
-    printf("  %-34s %5d points: median %.1e, p99 %.1e, worst %.1e (line %d)\n", what, errors->count,
-           percentile(errors, 0.5), p99, errors->worst, errors->worst_line);
-    CHECK(errors->count > 0);
-    if (!(p99 <= p99_limit && errors->worst <= worst_limit))
-        fail_msg("%s: p99 %g, limit %g; worst %g, limit %g", what, p99, p99_limit, errors->worst, worst_limit);
 }
 
 static Errors tau_errors[AIR_BAND_COUNT], radiance_errors[AIR_BAND_COUNT];
@@ -403,40 +340,6 @@ static void paths_between_the_points(void **state)
     table_close(&table);
 }
 
-/* Visibilities that have no tables: straight lines in 1 / visibility against the model itself. The model's own
- * profiles bend at 10 km and differ above 2 km, so this is the air of another day rather than an error of reading. */
-static void visibilities_between_and_beyond(void **state)
-{
-    (void)state;
-    Table table;
-    open_held_out(&table, "paths");
-    clear_errors();
-    for (int row = 0; row < table.rows; row++) {
-        const double visibility_m = 1000 * cell(&table, row, "visibility_km");
-        if (visibility_m == 5000 || visibility_m == 23000) continue;
-        const AirPath path = {cell(&table, row, "observer_m"), cell(&table, row, "target_m"),
-                              cell(&table, row, "range_m"), pi_rad, 0};
-        for (int i = 0; i < 6; i++) {
-            char column[32];
-            PathAir air;
-            atmosphere_path(&air, model_named(word(&table, row, "model")), visibility_m, tabled_band[i], &path, 300);
-            snprintf(column, sizeof column, "sun_%s", tabled[i]);
-            Errors *errors = visibility_m > 5000 && visibility_m < 23000 ? tau_errors : radiance_errors;
-            keep(&errors[tabled_band[i]], air.sun_transmittance - cell(&table, row, column), table.line[row + 1]);
-        }
-    }
-    for (int i = 0; i < 6; i++) {
-        char what[64];
-        snprintf(what, sizeof what, "7 and 10 km: tau %s, absolute", tabled[i]);
-        judge(&tau_errors[tabled_band[i]], what, 0.06, 0.06);
-        CHECK(percentile(&tau_errors[tabled_band[i]], 0.5) < 0.01);
-        snprintf(what, sizeof what, "3 and 40 km: tau %s, absolute", tabled[i]);
-        judge(&radiance_errors[tabled_band[i]], what, 0.16, 0.16);
-        CHECK(percentile(&radiance_errors[tabled_band[i]], 0.5) < 0.01);
-    }
-    table_close(&table);
-}
-
 static void sky_and_sun_between_the_points(void **state)
 {
     (void)state;
@@ -615,31 +518,6 @@ static void goes_to_its_limits(void **state)
     CHECK_NEAR(left.scattered_w_m2_sr, right.scattered_w_m2_sr, 1e-9);
 }
 
-/* More haze is never clearer, no step where tables meet, and the span is what it says. */
-static void visibility_goes_smoothly(void **state)
-{
-    (void)state;
-    double low_m, high_m;
-    atmosphere_visibilities(us1976, &low_m, &high_m);
-    CHECK(low_m > 1000 && low_m <= 5000 && high_m >= 23000 && high_m < 100000);
-    const AirPath path = {0, 300, 4000, 0.9, 1};
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        double last = 0, step = 0;
-        for (double visibility_m = 1000; visibility_m < 80000; visibility_m *= 1.01) {
-            PathAir air;
-            atmosphere_path(&air, us1976, visibility_m, (AirBand)b, &path, 300);
-            CHECK(air.transmittance >= last - 1e-6);
-            if (visibility_m > 1000) step = fmax(step, air.transmittance - last);
-            last = air.transmittance;
-        }
-        CHECK(step < 0.012); /* of one per cent of visibility: tau ln(1 / tau) / 100, with room for the band */
-    }
-    PathAir at, beyond;
-    atmosphere_path(&at, us1976, high_m, AIR_G, &path, 300);
-    atmosphere_path(&beyond, us1976, 10 * high_m, AIR_G, &path, 300);
-    CHECK(at.transmittance == beyond.transmittance);
-}
-
 /* The probe: the same figures by row, bad rows with a reason and no figures. */
 static void probe_answers(void **state)
 {
@@ -689,9 +567,7 @@ int main(void)
         cmocka_unit_test(paths_between_the_points),
         cmocka_unit_test(sky_and_sun_between_the_points),
         cmocka_unit_test(scattered_between_the_points),
-        cmocka_unit_test(visibilities_between_and_beyond),
         cmocka_unit_test(goes_to_its_limits),
-        cmocka_unit_test(visibility_goes_smoothly),
         cmocka_unit_test(probe_answers),
     };
     return cmocka_run_group_tests(tests, open_models, close_models);

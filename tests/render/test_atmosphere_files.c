@@ -167,6 +167,93 @@ static void refuses_and_says_where(void **state)
     log_set_sink(check_listen, NULL);
 }
 
+/* A folder of its own, of haze, sun and the sky's light alone, or of all with other heights, ranges and azimuths. */
+typedef struct Beside {
+    const char *name, *text;
+} Beside;
+#define THICK_ROWS "0,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n1000,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9,1,0.9\n" \
+                   "20000,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0,0.1,0\n"
+#define THICK_PATHS "observer_m,target_m,range_m,depth_sun\n0,0,200,0.3\n0,0,5000,5\n0,8000,8000,4\n" \
+                    "8000,0,8000,4\n8000,8000,300,0.05\n"
+#define THICK_THERMAL "observer_m,target_m,range_m,depth_sun,depth_280k,thermal_w_m2_sr\n0,0,200,0.3,0.3,1\n" \
+                      "0,0,5000,5,5,9\n" \
+                      "0,8000,8000,4,4,9\n8000,0,8000,4,4,9\n8000,8000,300,0.05,0.05,1\n"
+static const Beside thick[] = {
+    {"haze.csv", COLUMN_HEAD THICK_ROWS},
+    {"sky_thermal.csv", "observer_m,zenith_deg,mwir,lwir\n0,0,0.5,7\n0,60,0.6,9\n0,90,1,30\n"},
+    {"sun.csv", "observer_m,sun_zenith_deg,direct_b,direct_g,direct_r,direct_nir,direct_mwir,direct_lwir,"
+                "diffuse_b,diffuse_g,diffuse_r,diffuse_nir,diffuse_mwir,diffuse_lwir\n"
+                "0,0,20,20,20,90,7,0.6,90,70,60,90,0.2,0.02\n0,85,1,1,1,5,0.5,0.05,6,4,3,5,0.01,0\n"},
+    {"paths_b.csv", THICK_PATHS}, {"paths_g.csv", THICK_PATHS}, {"paths_r.csv", THICK_PATHS},
+    {"paths_nir.csv", THICK_PATHS},
+    {"paths_mwir.csv", THICK_THERMAL}, {"paths_lwir.csv", THICK_THERMAL},
+    {"sky_scattered.csv", "observer_m,zenith_deg,sun_zenith_deg,rel_azimuth_deg," SIX "0,10,0,0,5,4,3,2,0.1,0.01\n"
+                          "0,10,60,0,5,4,3,2,0.1,0.01\n"},
+    {"scattered.csv", "observer_m,zenith_deg,range_m,sun_zenith_deg,rel_azimuth_deg," SIX
+                      "0,0,300,0,90,3,3,3,3,0.1,0\n0,180,50,0,90,1,1,1,1,0,0\n"},
+};
+enum { thick_light = 3, thick_all = sizeof thick / sizeof *thick };
+
+static void write_thick(int count)
+{
+    char path[256];
+    snprintf(path, sizeof path, "%s/atmosphere/m/4000", small_root);
+    mkdir(path, 0777);
+    for (int i = 0; i < thick_all; i++) {
+        snprintf(path, sizeof path, "%s/atmosphere/m/4000/%s", small_root, thick[i].name);
+        remove(path);
+        if (i >= count) continue;
+        FILE *file = fopen(path, "wb");
+        CHECK(file && fputs(thick[i].text, file) >= 0 && fclose(file) == 0);
+    }
+    if (count > 0) return;
+    snprintf(path, sizeof path, "%s/atmosphere/m/4000", small_root);
+    rmdir(path);
+}
+
+/* Two visibilities of which one may lack paths and scattered light, or has them at other points: haze of either and of
+ * what lies between, by hand. */
+static void visibilities_of_any_shape(void **state)
+{
+    (void)state;
+    static const char both[] = "visibility_m,longwave_down_w_m2\n10000,300\n4000,320\n";
+    const int list = small_index("m/visibilities.csv");
+    const AirPath path = {0, 0, 200, 0.5, 1};
+    write_small(list, both, sizeof both - 1);
+    for (int whole = 0; whole < 2; whole++) {
+        write_thick(whole ? thick_all : thick_light);
+        static const double visibility_m[] = {1000, 4000, 6000, 10000, 30000};
+        double last = 0;
+        for (int v = 0; v < 5; v++) {
+            Atmosphere *all = NULL, *one = NULL;
+            CHECK(atmosphere_open(&all, "m") == STATUS_OK);
+            CHECK(atmosphere_open_at(&one, "m", visibility_m[v]) == STATUS_OK);
+            for (int b = 0; b < AIR_BAND_COUNT; b++) {
+                PathAir a, c;
+                SkyAir sky;
+                SunAir sun;
+                atmosphere_path(&a, all, visibility_m[v], (AirBand)b, &path, 300);
+                atmosphere_path(&c, one, visibility_m[v], (AirBand)b, &path, 300);
+                atmosphere_sky(&sky, one, visibility_m[v], (AirBand)b, 0, 1, 0.5, 1);
+                atmosphere_sun(&sun, one, visibility_m[v], (AirBand)b, 0, 0.5);
+                CHECK_NEAR(a.transmittance, c.transmittance, 0.01);
+                CHECK(isfinite(a.scattered_w_m2_sr) && isfinite(c.thermal_w_m2_sr) && isfinite(sky.scattered_w_m2_sr));
+                CHECK(sun.direct_normal_w_m2 > 0 && isfinite(sun.diffuse_horizontal_w_m2));
+                if (b > 0) continue;
+                CHECK(whole && v < 4 ? c.transmittance > last : c.transmittance >= last - 1e-6);
+                last = c.transmittance;
+                /* m/10000 is clear air alone: depth 0.04 in 200 m. m/4000: its own row, or its haze, 1/km, at 0 m */
+                if (v == 1) CHECK_NEAR(-log(c.transmittance), whole ? 0.3 : 0.04, whole ? 1e-6 : 0.2);
+                if (v == 3) CHECK_NEAR(-log(c.transmittance), 0.0386, 0.003);
+            }
+            atmosphere_close(all);
+            atmosphere_close(one);
+        }
+    }
+    write_thick(0);
+    restore_small(list);
+}
+
 /* Bytes and lines changed, lost and doubled: refused with a reason, or read and then of finite answers. */
 static void survives_any_spoiling(void **state)
 {
@@ -233,6 +320,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(refuses_and_says_where, make_small, remove_small),
+        cmocka_unit_test_setup_teardown(visibilities_of_any_shape, make_small, remove_small),
         cmocka_unit_test_setup_teardown(survives_any_spoiling, make_small, remove_small),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
