@@ -4,10 +4,12 @@
 
 enum {
     dis_kind_platform = 1, dis_kind_munition = 2, dis_kind_life_form = 3, dis_kind_cultural_feature = 5,
-    dis_kind_expendable = 8
+    dis_kind_supply = 6, dis_kind_expendable = 8, dis_kind_sensor_emitter = 9
 };
 enum { dis_munition_guided = 1, dis_munition_fixed = 3 }; /* category of a munition; 2: ballistic; fixed: mines */
-enum { dis_domain_land = 1, dis_domain_air = 2, dis_domain_space = 5 };
+enum {
+    dis_domain_land = 1, dis_domain_air = 2, dis_domain_surface = 3, dis_domain_subsurface = 4, dis_domain_space = 5
+};
 
 /* Appearance: bits that platforms of every domain share, and those of land platforms. */
 enum {

@@ -2,9 +2,30 @@
 
 #include "dis/enumerations.h"
 
+/* Leans with the ground. */
+static bool leans(DisEntityType type)
+{
+    return (type.kind == dis_kind_platform && type.domain == dis_domain_land) ||
+           (type.kind == dis_kind_life_form && type.domain <= dis_domain_land); /* 0: of no domain */
+}
+
 bool contact_applies(DisEntityType type)
 {
-    return (type.kind == dis_kind_platform || type.kind == dis_kind_life_form) && type.domain == dis_domain_land;
+    const bool lies = type.kind == dis_kind_cultural_feature || type.kind == dis_kind_supply ||
+                      type.kind == dis_kind_sensor_emitter;
+    return leans(type) || (lies && type.domain <= dis_domain_land);
+}
+
+bool contact_floats(DisEntityType type)
+{
+    return type.kind == dis_kind_platform && type.domain == dis_domain_surface;
+}
+
+double contact_share(DisEntityType type, double above_m)
+{
+    const double keep_m = contact_floats(type) ? 1.5 : 0.1, set_m = contact_floats(type) ? 3 : 0.5;
+    const double t = clamp((fabs(above_m) - keep_m) / (set_m - keep_m), 0, 1);
+    return t * t * (3 - 2 * t);
 }
 
 /* Unit normal of the ellipsoid through a place, ECEF. */
@@ -41,22 +62,54 @@ double contact_above_m(const ContactGround *ground, const double p_ecef[3])
     return -way_up_m(ground, p_enu, up_enu);
 }
 
+/* Carried through the air, or falling through it. */
+static bool is_airborne(const SnapshotEntity *e, const double up_ecef[3])
+{
+    const double v_up = v3_dot(e->v_ecef_mps, up_ecef), v = v3_length(e->v_ecef_mps);
+    const double along = sqrt(fmax(v * v - v_up * v_up, 0));
+    return v > (e->type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
+}
+
+/* How much of the way to the ground an entity goes, p_enu being its base: 1 where everybody does. */
+static double share_of(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3],
+                       const double up_ecef[3], double way_m)
+{
+    if (!ground->landscape) return 1;
+    const double share = contact_share(e->type, way_m);
+    if (!(share > 0)) return 0;
+    if (contact_floats(e->type)) return share;
+    if (is_airborne(e, up_ecef)) return 0;
+    const bool at_sea = way_m < 0 && landscape_surface(ground->landscape, p_enu[0], p_enu[1]) == SURFACE_WATER;
+    return at_sea ? 0 : share;
+}
+
+/* Clearly on the ground already: the vertical's lean changes nothing in that. */
+static bool stands_near(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3])
+{
+    const double above_m = p_enu[2] - elevation_height(ground->elevation, p_enu[0], p_enu[1], NULL);
+    return ground->landscape && fabs(p_enu[0]) + fabs(p_enu[1]) < 20000 && contact_share(e->type, 1.01 * above_m) == 0;
+}
+
 void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
 {
     enum { along = 5, across = 3 };
     static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
     double up_ecef[3], up[3], p[3], r_enu_from_body[9], forward[3], right[3];
-    if (!ground->elevation || !contact_applies(e->type) || !vertical(up_ecef, e->p_ecef)) return;
-    m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
+    if (!ground->elevation) return;
+    if (!contact_applies(e->type) && !(ground->landscape && contact_floats(e->type))) return;
     enu_from_ecef(p, ground->frame, e->p_ecef);
+    if (stands_near(e, ground, p) || !vertical(up_ecef, e->p_ecef)) return;
+    m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
     m3_tmul(r_enu_from_body, ground->frame->r_ecef_from_enu, e->r_ecef_from_body);
     const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};
     const double down[3] = {r_enu_from_body[2], r_enu_from_body[5], r_enu_from_body[8]};
 
     double way_m = way_up_m(ground, p, up);
     if (!isfinite(way_m)) return;
+    const double share = share_of(e, ground, p, up_ecef, way_m);
+    if (!(share > 0)) return;
     v3_add_scaled(forward, nose, -v3_dot(nose, up), up);
-    const bool upright = v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
+    const bool upright = leans(e->type) && v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
     double slope_forward = 0, slope_right = 0;
     if (upright) {
         v3_cross(right, forward, up);
@@ -81,8 +134,14 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
         slope_forward = clamp(sum_a / sum_aa, -steepest, steepest);
         slope_right   = clamp(sum_b / sum_bb, -steepest, steepest);
     }
-    v3_add_scaled(e->p_ecef, e->p_ecef, way_m, up_ecef);
+    v3_add_scaled(e->p_ecef, e->p_ecef, share * way_m, up_ecef);
     if (!upright) return;
+    if (share < 1) { /* between its own lean and the ground's */
+        const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
+        const double forward_m = v3_dot(nose, forward), right_m = fmax(v3_dot(own, right), 0.1);
+        slope_forward = v3_dot(nose, up) / forward_m + share * (slope_forward - v3_dot(nose, up) / forward_m);
+        slope_right   = v3_dot(own, up) / right_m + share * (slope_right - v3_dot(own, up) / right_m);
+    }
 
     double x[3], y[3], z[3], v[3];
     v3_add_scaled(x, forward, slope_forward, up);

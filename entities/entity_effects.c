@@ -153,7 +153,9 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
 /* Who is set onto the ground smokes there, and a burst on the ground is on this one. */
 static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
-    const double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
+    static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
+    double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
+    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* as far as its entity went */
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }
 

@@ -29,7 +29,7 @@ typedef struct EntityTableConfig {
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
     double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
     Pool  *pool;                  /* who helps with snapshots; NULL: the caller alone. The same bits either way */
-    ContactGround ground;         /* land vehicles are set onto it in every pose handed out; none: they are not */
+    ContactGround ground;         /* what stands on it is set onto it in every pose handed out; none: it is not */
 } EntityTableConfig;
 
 /* Why entities came and went, and what was not believed, how many. */

@@ -133,6 +133,7 @@ static Status cast_group(Cast *cast, int group, int first, int first_id, const T
                     .algorithm = (uint8_t)(g->dead_reckoning ? g->dead_reckoning : s->dis.dead_reckoning)};
     if (!find_type(&e.type, cast, types, g->line, "vehicles", g->type)) return STATUS_BAD_VALUE;
     e.carriage = carriage_of(e.type);
+    if (g->parked && (e.carriage == CARRIAGE_ROTARY || e.carriage == CARRIAGE_FIXED_WING)) e.carriage = CARRIAGE_LAND;
     if (e.carriage == CARRIAGE_MUNITION) {
         log_error("scenario: %s:%d: vehicles: type: '%s' is a munition; those fly by a shot", s->path, g->line,
                   g->type);

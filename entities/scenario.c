@@ -39,6 +39,7 @@ static const Setting group_keys[] = {
     {"turret", SETTING_TEXT, GROUP(turret), 0, 0, "none|still|swing", "", "what is said of primary turret and gun"},
     {"dust", SETTING_TEXT, GROUP(dust), 0, 0, "auto|none|small|medium|large", "", "trail, while it moves"},
     {"engine", SETTING_BOOL, GROUP(engine), 0, 1, NULL, "", "runs"},
+    {"parked", SETTING_BOOL, GROUP(parked), 0, 1, NULL, "", "an aircraft stands on the ground"},
     {"appearance", SETTING_INT, GROUP(appearance), 0, 2147483647, NULL, "", "more bits, as one number"},
     {"dead_reckoning", SETTING_INT, GROUP(dead_reckoning), 0, 9, NULL, "",
      "algorithm 1 .. 9; 0: as dis.dead_reckoning"},

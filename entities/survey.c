@@ -92,7 +92,8 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
     b->points++;
     *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> dis_appearance_frozen_bit & 1,
-                          .deactivated = appearance >> dis_appearance_deactivated_bit & 1};
+                          .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
+                          .engine = appearance >> dis_appearance_power_plant_bit & 1};
     memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
     r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
     if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;

@@ -13,7 +13,7 @@ typedef struct TrackPoint {
     double t_s;
     double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes whatever the algorithm */
     double r_ecef_from_body[9];
-    bool   frozen, deactivated;
+    bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
 
 typedef struct Track {

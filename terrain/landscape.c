@@ -36,6 +36,7 @@ typedef struct Work {
     Curve     curve;
     FixSet    fixes;
     LineSet   lines;
+    Coast     coast;
     Calm      calm;
     FieldAim *aim;
     int       aim_count;
@@ -121,8 +122,8 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* Height of the country where nothing is known: the middle of the fixes; without any, sea level or as much
- * lower as the lines need. */
+/* Height of the country where nothing is known: the middle of the fixes; without any the sea's, else that of the
+ * ellipsoid or as much lower as the lines need. */
 static Status choose_base(Work *work, const LocalFrame *frame)
 {
     double *h = malloc(((size_t)work->fixes.count + 1) * sizeof *h);
@@ -137,6 +138,10 @@ static Status choose_base(Work *work, const LocalFrame *frame)
         return STATUS_OK;
     }
     free(h);
+    if (work->coast.sea_count) {
+        work->base_h_m = work->coast.h_m;
+        return STATUS_OK;
+    }
 
     static const double below_m = 10;
     Curve               curve;
@@ -209,6 +214,8 @@ static Status read_level(Work *work, int k, const Field *spline)
         level->hole_j1 = work->window[k - 1].j1 / ratio;
     }
 
+    status = coast_shape(level, &work->coast);
+    if (status != STATUS_OK) return status;
     status = levels_bend(&level->z, &work->curve);
     if (status != STATUS_OK) return status;
     if (!level->outermost) levels_join(level, &work->level[k + 1], 10 * ratio);
@@ -216,7 +223,9 @@ static Status read_level(Work *work, int k, const Field *spline)
     if (status != STATUS_OK) return status;
     fit_posts(level, k, &work->fixes);
     free(level->cap);
+    free(level->water);
     level->cap = NULL;
+    level->water = NULL;
     return STATUS_OK;
 }
 
@@ -293,10 +302,29 @@ static void count_fixes(Landscape *landscape, const Work *work, const GroundFix 
     }
 }
 
+/* Whatever stands on the water says nothing of the land. */
+static void drop_fixes_at_sea(Work *work)
+{
+    for (int n = 0; work->coast.sea_count && n < work->fixes.count; n++) {
+        FixRow *row = &work->fixes.row[n];
+        if (coast_at(&work->coast, row->x_m, row->y_m) == COAST_SEA) row->dropped = true;
+    }
+}
+
 Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count, const ClearLine *line, int line_count)
 {
-    if (!config_ok(config) || fix_count < 0 || line_count < 0) return STATUS_BAD_VALUE;
+    const LandscapeEvidence evidence = {.fix = fix, .fix_count = fix_count, .line = line, .line_count = line_count};
+    return landscape_create_from(out, config, frame, &evidence);
+}
+
+Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                             const LandscapeEvidence *evidence)
+{
+    const GroundFix *fix = evidence->fix;
+    const ClearLine *line = evidence->line;
+    const int        fix_count = evidence->fix_count, line_count = evidence->line_count;
+    if (!config_ok(config) || fix_count < 0 || line_count < 0 || evidence->place_count < 0) return STATUS_BAD_VALUE;
     if (!v3_is_finite(frame->origin_ecef)) return STATUS_BAD_VALUE;
 
     Landscape landscape = {.frame = *frame, .config = *config};
@@ -308,6 +336,8 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
     Cover *cover = calloc(1, sizeof *cover);
     Status status = cover ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = fix_set_create(&work.fixes, frame, fix, fix_count, config->horizon_m);
+    if (status == STATUS_OK) status = coast_create(&work.coast, evidence, landscape_hash(config->seed, 3, 0));
+    if (status == STATUS_OK) drop_fixes_at_sea(&work);
     if (status == STATUS_OK)
         status = line_set_create(&work.lines, line, line_count, frame, &work.fixes, config->horizon_m);
     if (status != STATUS_OK) goto done;
@@ -323,6 +353,8 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
 
     count_fixes(&landscape, &work, fix, fix_count);
     cover->seed = landscape_hash(config->seed, 2, 0);
+    cover->coast = work.coast;
+    work.coast = (Coast){0};
     landscape.cover = cover;
     cover = NULL;
     *out = landscape;
@@ -334,7 +366,9 @@ done:
     for (int k = 0; k < elevation_max_levels; k++) {
         field_destroy(&work.level[k].z);
         free(work.level[k].cap);
+        free(work.level[k].water);
     }
+    coast_destroy(&work.coast);
     line_set_destroy(&work.lines);
     fix_set_destroy(&work.fixes);
     return status;

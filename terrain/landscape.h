@@ -13,10 +13,18 @@
 #include "terrain/local_frame.h"
 #include "terrain/surface.h"
 
-/* Somewhere the ground is known. */
+/* Somewhere the ground is known. The fixes of one voter (one entity) are one vote together; a fix of voter 0 is a vote
+ * of its own, and only judged by its slopes to others. */
 typedef struct GroundFix {
     double p_enu[3];
+    int    voter; /* >= 0 */
 } GroundFix;
+
+/* A place of which only this is known: sea, or dry land. */
+typedef struct CoastPlace {
+    double x_m, y_m;
+    bool   sea;
+} CoastPlace;
 
 /* A straight line that the ground must leave clear, from a to b, by 2 m where there is room and 0.15 m under any
  * circumstances. An end within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at
@@ -35,6 +43,15 @@ typedef struct LandscapeConfig {
     double   horizon_m;      /* half width of the outermost level */
 } LandscapeConfig;
 
+/* All that an exercise says of its ground. Without a place of sea there is no sea. */
+typedef struct LandscapeEvidence {
+    int               fix_count, line_count, place_count;
+    const GroundFix  *fix;
+    const ClearLine  *line;
+    const CoastPlace *place;
+    double            sea_h_m; /* of the water's surface, above the ellipsoid */
+} LandscapeEvidence;
+
 typedef struct Landscape {
     LocalFrame      frame;
     Elevation       elevation;
@@ -47,10 +64,24 @@ typedef struct Landscape {
 LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
  * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
- * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one. With neither fixes nor
+ * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one; before that
+ * whole voters go that their neighbours contradict (ground_votes). With neither fixes nor
  * low lines the country lies at ellipsoid height 0. fix, line may be NULL when their count is 0. */
 Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
+/* The same with a sea: flat at sea_h_m, wherever a place of sea is nearer than a place of dry land, the line between
+ * bent by up to a third of the distance; a third of the way from a place to its nearest opposite is always of its own
+ * kind. Land comes down to the water within 400 m of the shore, less where a place of dry land is nearer. Fixes on the
+ * water are dropped, and lines do not lower it. */
+Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                             const LandscapeEvidence *evidence);
+/* Which fixes are of a voter that the others outvote: [fix_count] bytes, 1: outvoted. Voters are numbered from 1 and
+ * are no more than the fixes. See landscape_votes.c. */
+Status ground_votes(uint8_t *outvoted, const GroundFix *fix, int fix_count);
+/* How far places are above the ground that the voters near them stand on (the plane that suits best), and how far the
+ * nearest of them is, m; NaN: none within 300 m. */
+Status ground_votes_at(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
+                       int fix_count);
 void   landscape_destroy(Landscape *landscape);
 
 /* How far a line leaves the ground alone about an end that has come down to a fix. */

@@ -401,7 +401,8 @@ Status line_cut(WorkLevel *level, int index, const LineSet *lines, FixSet *fixes
     }
 
     spread_valleys(&cutter);
-    for (size_t n = 0; n < posts; n++) z->v[n] = z->v[n] < level->cap[n] ? z->v[n] : level->cap[n];
+    for (size_t n = 0; n < posts; n++)
+        if (!level->water || !level->water[n]) z->v[n] = z->v[n] < level->cap[n] ? z->v[n] : level->cap[n];
 
     /* rows that would have to stand above what the lines allow */
     const Field cap = {z->spacing_m, z->i0, z->j0, z->nx, z->ny, level->cap};

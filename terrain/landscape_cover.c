@@ -278,6 +278,20 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCe
 
 /* ---- both ----------------------------------------------------------------------------------- */
 
+/* Fills lanes of the sea and its beaches; returns the others. */
+static unsigned coast_surfaces(int32_t surface[8], const Coast *coast, const double x_m[8], const double y_m[8],
+                               unsigned lanes)
+{
+    for (unsigned left = lanes; left; left &= left - 1) {
+        const int       k = __builtin_ctz(left);
+        const CoastKind kind = coast_at(coast, x_m[k], y_m[k]);
+        if (kind == COAST_LAND) continue;
+        surface[k] = kind == COAST_SEA ? SURFACE_WATER : SURFACE_SAND;
+        lanes &= ~(1u << k);
+    }
+    return lanes;
+}
+
 /* Lanes where there is ground: the outermost level encloses the others. NaN: none. */
 static unsigned grounded(const Elevation *elevation, const double x_m[8], const double y_m[8])
 {
@@ -302,7 +316,8 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
         int32_t   found[8] = {0};
         const int some = count - first < 8 ? count - first : 8;
         for (int k = 0; k < 8; k++) x[k] = k < some ? x_m[first + k] : NAN, y[k] = k < some ? y_m[first + k] : NAN;
-        const unsigned lanes = cover ? grounded(&landscape->elevation, x, y) : 0;
+        unsigned lanes = cover ? grounded(&landscape->elevation, x, y) : 0;
+        if (lanes && cover->coast.sea_count) lanes = coast_surfaces(found, &cover->coast, x, y, lanes);
         if (lanes && cover->real)
             real_surfaces(found, landscape, &cells, x, y, lanes);
         else if (lanes)
@@ -323,5 +338,6 @@ void cover_free(Cover *cover)
     if (!cover) return;
     cover_grid_free(cover->grid);
     photo_free(&cover->photo);
+    coast_destroy(&cover->coast);
     free(cover);
 }

@@ -1,8 +1,9 @@
 /* terrain/landscape_fit.c: which fixes to believe, and the last centimetres on the posts themselves.
  *
  * Other simulators' ground, a burst on a roof, a vehicle slung under a helicopter: fixes contradict each other.
- * Two fixes agree when a slope of 35 degrees can join them. Where they do not, the higher one is the likelier
- * liar and goes, unless the lower is outvoted four to one (one report from under the ground). */
+ * Whole entities that the others outvote are gone before (landscape_votes.c). Of what is left two fixes agree when a
+ * slope of 35 degrees can join them. Where they do not, the higher one is the likelier liar and goes, unless the lower
+ * is outvoted four to one (one report from under the ground). */
 #include "terrain/landscape_private.h"
 
 #include <stdlib.h>
@@ -41,11 +42,12 @@ static bool contradict(const FixRow *a, const FixRow *b)
 }
 
 static int gather_candidates(Candidate *out, const LocalFrame *frame, const GroundFix *fix, int fix_count,
-                             double horizon_m)
+                             const uint8_t *outvoted, double horizon_m)
 {
     int count = 0;
     for (int n = 0; n < fix_count; n++) {
         const double *p = fix[n].p_enu;
+        if (outvoted[n]) continue;
         if (!(fabs(p[0]) < horizon_m && fabs(p[1]) < horizon_m) || !isfinite(p[2])) continue;
         double   p_ecef[3];
         Geodetic place;
@@ -59,8 +61,9 @@ static int gather_candidates(Candidate *out, const LocalFrame *frame, const Grou
     return count;
 }
 
-/* Rows of one site: its median first, then whatever the median does not contradict. */
-static void merge_site(FixSet *set, const Candidate *site, int count)
+/* Rows of one site: its median first, then whatever the median does not contradict. counted: the row that each voter
+ * was last counted in. */
+static void merge_site(FixSet *set, const Candidate *site, int count, const GroundFix *fix, int *counted)
 {
     const int median = (count - 1) / 2, first = set->count;
     for (int n = 0; n < count; n++) {
@@ -78,7 +81,9 @@ static void merge_site(FixSet *set, const Candidate *site, int count)
             set->row[shared].weight = 0;
         }
         if (shared < 0) continue;
-        set->row[shared].weight++;
+        const int voter = fix[row->fix].voter;
+        if (voter <= 0 || counted[voter] != shared) set->row[shared].weight++;
+        if (voter > 0) counted[voter] = shared;
         set->row_of_fix[row->fix] = shared;
     }
 }
@@ -193,31 +198,38 @@ Status fix_set_create(FixSet *out, const LocalFrame *frame, const GroundFix *fix
     FixSet     set = {0};
     Status     status = STATUS_NO_MEMORY;
     Candidate *candidate = calloc((size_t)fix_count + 1, sizeof *candidate);
+    uint8_t   *outvoted = calloc((size_t)fix_count + 1, 1);
+    int        voters = 0;
+    for (int n = 0; n < fix_count; n++) voters = fix[n].voter > voters ? fix[n].voter : voters;
+    int *counted = calloc((size_t)voters + 1, sizeof *counted);
     set.row = calloc((size_t)fix_count + 1, sizeof *set.row);
     set.row_of_fix = calloc((size_t)fix_count + 1, sizeof *set.row_of_fix);
-    if (!candidate || !set.row || !set.row_of_fix) goto fail;
+    if (!candidate || !outvoted || !counted || !set.row || !set.row_of_fix) goto done;
 
     for (int n = 0; n < fix_count; n++) set.row_of_fix[n] = -1;
-    const int count = gather_candidates(candidate, frame, fix, fix_count, horizon_m);
+    for (int n = 0; n <= voters; n++) counted[n] = -1;
+    status = ground_votes(outvoted, fix, fix_count);
+    if (status != STATUS_OK) goto done;
+    const int count = gather_candidates(candidate, frame, fix, fix_count, outvoted, horizon_m);
     for (int n = 0, end; n < count; n = end) {
         for (end = n + 1; end < count; end++)
             if (candidate[end].site_i != candidate[n].site_i || candidate[end].site_j != candidate[n].site_j) break;
-        merge_site(&set, candidate + n, end - n);
+        merge_site(&set, candidate + n, end - n, fix, counted);
     }
-    free(candidate);
-    candidate = NULL;
 
     status = drop_contradicted(set.row, set.count, 32);
-    if (status != STATUS_OK) goto fail;
+    if (status != STATUS_OK) goto done;
     status = drop_contradicted_squares(&set);
-    if (status != STATUS_OK) goto fail;
+    if (status != STATUS_OK) goto done;
     status = near_grid_create(&set.near, 32, set.count, &set.row->x_m, &set.row->y_m, sizeof *set.row);
-    if (status != STATUS_OK) goto fail;
+    if (status != STATUS_OK) goto done;
     *out = set;
-    return STATUS_OK;
+    set = (FixSet){0};
 
-fail:
+done:
     free(candidate);
+    free(outvoted);
+    free(counted);
     fix_set_destroy(&set);
     return status;
 }
@@ -266,7 +278,8 @@ static double meet_row(WorkLevel *level, const FixRow *row, double share)
     const double off_m = row->z_m - posts_at(z, row->x_m, row->y_m, corner, weight);
     if (!isfinite(off_m) || !(share > 0)) return off_m;
     for (int k = 0; k < 3; k++) {
-        const bool capped = level->cap && off_m > 0 && !(z->v[corner[k]] < level->cap[corner[k]]);
+        const bool capped = (level->cap && off_m > 0 && !(z->v[corner[k]] < level->cap[corner[k]])) ||
+                            (level->water && level->water[corner[k]]);
         free_post[k] = !capped && (level->outermost || !on_outline(z, corner[k]));
         if (free_post[k]) square += weight[k] * weight[k];
     }

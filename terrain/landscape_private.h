@@ -3,6 +3,8 @@
  * landscape.c        plan of the levels, and the order of the work
  * landscape_levels.c curvature, joining, quantisation: also for ground from files
  * landscape_field.c  smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
+ * landscape_votes.c  which entities to believe
+ * landscape_coast.c  where the sea is, and how the land comes down to it
  * landscape_fit.c    which fixes to believe, and the last centimetres on the posts themselves
  * landscape_clear.c  what clear lines allow
  * landscape_near.c   points by place
@@ -69,7 +71,7 @@ typedef struct FixRow {
     double x_m, y_m, z_m; /* ENU */
     double h_m;           /* above the ellipsoid */
     int    fix;           /* its number in the caller's array */
-    int    weight;        /* fixes that share it */
+    int    weight;        /* voters that share it */
     int    level;         /* level it lies on */
     bool   dropped;
 } FixRow;
@@ -124,6 +126,7 @@ typedef struct WorkLevel {
     /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
     int hole_i0, hole_i1, hole_j0, hole_j1;
     bool outermost;
+    uint8_t *water; /* posts of the sea, which nothing moves; NULL: none */
 } WorkLevel;
 
 /* Height of the triangle of a field of posts, as elevation_height defines it; NaN outside. corner, weight: the
@@ -182,6 +185,28 @@ void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
 /* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation.h on seams. */
 Status levels_store(Elevation *out, const WorkLevel *level, int count);
 
+/* ---- coast -------------------------------------------------------------------------------- */
+
+enum { coast_grids = 6, coast_cells = 256 };
+
+/* Thinned places, and for quick answers nested grids about the origin that say of each cell whether it is all sea, all
+ * land away from the beach, or must be asked place by place. */
+typedef struct Coast {
+    int      sea_count, land_count; /* sea_count 0: no sea */
+    double (*sea)[2], (*land)[2];
+    double   h_m;
+    uint64_t seed;
+    uint8_t *cell[coast_grids]; /* [coast_cells][coast_cells] CoastKind; NULL: no grid */
+} Coast;
+
+typedef enum CoastKind { COAST_LAND, COAST_SEA, COAST_BEACH, COAST_UNSURE } CoastKind;
+
+Status    coast_create(Coast *out, const LandscapeEvidence *evidence, uint64_t seed);
+void      coast_destroy(Coast *coast);
+CoastKind coast_at(const Coast *coast, double x_m, double y_m); /* never COAST_UNSURE */
+/* Heights above the ellipsoid of a level's posts led down to the sea; its water posts marked. */
+Status    coast_shape(WorkLevel *level, const Coast *coast);
+
 /* ---- cover -------------------------------------------------------------------------------- */
 
 typedef struct Cover {
@@ -191,6 +216,7 @@ typedef struct Cover {
     double    geoid_m, treeline_m;
     CoverGrid grid[cover_windows];
     Photo     photo;
+    Coast     coast;
 } Cover;
 
 /* Means of the photograph over each class, once the classes are known. */

@@ -45,7 +45,7 @@ Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char 
     BenchScene        scene = {.landscape = landscape, .sun_now_s = 60};
     EntityTableConfig config = entity_table_default_config();
     char              heat[512];
-    config.ground = (ContactGround){&landscape->frame, &landscape->elevation};
+    config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
     Status status = etc_path(heat, sizeof heat, "heat.csv") && text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
                         ? STATUS_OK : STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&scene.catalog, catalog_path, 0.01);

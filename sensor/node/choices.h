@@ -52,9 +52,12 @@ void choice_say_night(Choices *choices, unsigned bands, double unix_s, const Hos
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
-/* The ground: of the files of terrain.*, else the invented landscape, fitted to the log. clamp: whether land vehicles
- * are set onto it (terrain.ground). */
-Status choose_ground(Landscape *out, bool *clamp, Choices *choices, const Survey *survey, const Config *config,
+/* Who is set onto the ground: nobody, those that an invented landscape does not fit, or all that stand on it. */
+typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_MISFITS, GROUND_CONTACT_ALL } GroundContact;
+
+/* The ground: of the files of terrain.*, else the invented landscape with its sea, fitted to the log (see
+ * ground_evidence.h). contact: who is set onto it (terrain.ground). Who comes later is set onto it all the same. */
+Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
                      const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
 
 /* Shared by the files of choices. */

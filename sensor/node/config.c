@@ -151,8 +151,8 @@ static const Setting keys[] = {
     {"terrain.orthophoto", SETTING_TEXT, AT(terrain.orthophoto), 0, 0, NULL, "",
      "photographs of the ground from above, files or folders"},
     {"terrain.ground", SETTING_TEXT, AT(terrain.ground), 0, 0, "auto|clamp|trust|fit", "",
-     "set land vehicles on the ground, leave them, or lead the ground through them; auto: fit invented ground, "
-     "clamp to real"},
+     "set who stands on the ground onto it, leave them, or lead the ground through them; auto: fit invented ground and "
+     "set onto it whom it does not fit, clamp to real"},
     {"observer.range_m", SETTING_DOUBLE, AT(observer.range_m), 10, 100000, NULL, "m",
      "of the stand-off observer, along the ground"},
     {"observer.height_m", SETTING_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m", "above what it looks at"},

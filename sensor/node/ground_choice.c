@@ -2,122 +2,49 @@
  * exercise says of it; and who is set onto it. */
 #include "sensor/node/choices.h"
 
-#include "dis/enumerations.h"
 #include "entities/contact.h"
+#include "sensor/node/ground_evidence.h"
 #include "terrain/landscape_import.h"
 
 #include <stdlib.h>
 
-/* ---- what the exercise says of it ------------------------------------------------------------- */
+/* ---- invented ------------------------------------------------------------------------------- */
 
-typedef struct Evidence {
-    GroundFix *fix;
-    ClearLine *line;
-    int        fixes, lines, vehicles, impacts;
-} Evidence;
+static int on_land(const GroundEvidence *e) { return e->count[STANCE_GROUND] + e->count[STANCE_LANDED]; }
 
-/* Places far outside the landscape say nothing about it. */
-static const double evidence_reach_m = 60000;
-
-static void add_fix(Evidence *e, const LocalFrame *frame, const double p_ecef[3])
+static void say_sea(Choices *choices, const GroundEvidence *e)
 {
-    GroundFix fix;
-    enu_from_ecef(fix.p_enu, frame, p_ecef);
-    if (hypot(fix.p_enu[0], fix.p_enu[1]) < evidence_reach_m) e->fix[e->fixes++] = fix;
+    const int afloat = e->count[STANCE_AFLOAT], submerged = e->count[STANCE_SUBMERGED];
+    if (afloat + submerged == 0) return;
+    choice_add(choices, "sea: flat at %.1f m above the ellipsoid, where %d ship%s or submarine%s; %s",
+               round(10 * e->said.sea_h_m) / 10 + 0.0 /* no -0.0 */,
+               afloat + submerged, afloat + submerged == 1 ? "" : "s", afloat + submerged == 1 ? " was" : "s were",
+               on_land(e) ? "a shore half-way to what is on land" : "to the horizon, nothing is on land");
+    if (submerged)
+        choice_add(choices, "sea: %d submarine%s under water and not seen, the water is opaque", submerged,
+                   submerged == 1 ? " stays" : "s stay");
 }
 
-static void add_line(Evidence *e, const LocalFrame *frame, const double a_ecef[3], const double b_ecef[3])
+/* After the misfits are known: those it is not fitted to. */
+static void say_invented(Choices *choices, const Landscape *landscape, const GroundEvidence *e, int misfits)
 {
-    ClearLine line;
-    double    d[3];
-    enu_from_ecef(line.a_enu, frame, a_ecef);
-    enu_from_ecef(line.b_enu, frame, b_ecef);
-    v3_sub(d, line.b_enu, line.a_enu);
-    if (v3_length(d) < evidence_reach_m && hypot(line.a_enu[0], line.a_enu[1]) < evidence_reach_m)
-        e->line[e->lines++] = line;
+    choice_add(choices, "ground: invented, fitted to %d land entities and %d ground impacts within %.2f m (terrain.*)",
+               on_land(e) - misfits, e->impacts, landscape->fit_worst_m);
+    say_sea(choices, e);
+    if (landscape->fixes_dropped > 0)
+        choice_add(choices, "ground: %d of %d places contradict others or a flight path and were left out",
+                   landscape->fixes_dropped, e->said.fix_count);
 }
 
-/* How far the base is below what the sender reports. */
-static double base_below_m(const Catalog *catalog, const Track *track)
-{
-    Origin    origin;
-    const int model = catalog_find(catalog, track->type, &origin, NULL);
-    return origin == ORIGIN_CENTRE ? 0.5 * catalog_model(catalog, model)->height_m : 0;
-}
-
-/* A vehicle's base at its reports. */
-static void add_vehicle(Evidence *e, const LocalFrame *frame, const Track *track, double below_m)
-{
-    for (int i = 0; i < track->count; i++) {
-        const TrackPoint *point = &track->point[i];
-        double            base_ecef[3];
-        for (int k = 0; k < 3; k++) /* third column: body z, down */
-            base_ecef[k] = point->p_ecef[k] + below_m * point->r_ecef_from_body[3 * k + 2];
-        add_fix(e, frame, base_ecef);
-    }
-}
-
-static void add_flight(Evidence *e, const LocalFrame *frame, const Survey *survey, const Track *track,
-                       const HostPlan *plan)
-{
-    const Shot  *shot   = track->type.kind == dis_kind_munition ? choice_shot_of(survey, track->id) : NULL;
-    const Track *target = shot ? survey_track(survey, shot->hit) : NULL;
-    /* a hit that names nobody: what the host's own was found to have hit */
-    if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, plan->host) == 0)
-        target = survey_track(survey, plan->aim);
-    for (int i = 0; i + 1 < track->count; i++)
-        add_line(e, frame, track->point[i].p_ecef, track->point[i + 1].p_ecef);
-    /* a shot that hit saw its target all the way */
-    for (int i = 0; target && i < track->count; i++) {
-        TrackPose pose;
-        double    centre_ecef[3];
-        track_at(&pose, target, track->point[i].t_s);
-        for (int k = 0; k < 3; k++) centre_ecef[k] = pose.p_ecef[k] - pose.r_ecef_from_body[3 * k + 2];
-        add_line(e, frame, track->point[i].p_ecef, centre_ecef);
-    }
-}
-
-static Status gather(Evidence *e, const Survey *survey, const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
-{
-    size_t points = (size_t)survey->shot_count;
-    for (int i = 0; i < survey->track_count; i++) points += (size_t)survey->track[i].count;
-    e->fix  = calloc(points + 1, sizeof *e->fix);
-    e->line = calloc(2 * points + (size_t)survey->track_count + 1, sizeof *e->line);
-    if (!e->fix || !e->line) return STATUS_NO_MEMORY;
-    for (int i = 0; i < survey->track_count; i++) {
-        const Track *track = &survey->track[i];
-        if (choice_is_land(track)) {
-            add_vehicle(e, frame, track, base_below_m(catalog, track));
-            e->vehicles++;
-        } else if (choice_flies(track)) {
-            add_flight(e, frame, survey, track, plan);
-        }
-    }
-    for (int i = 0; i < survey->shot_count; i++)
-        if (survey->shot[i].result == dis_result_ground_impact && isfinite(survey->shot[i].detonation_s)) {
-            add_fix(e, frame, survey->shot[i].p_burst_ecef);
-            e->impacts++;
-        }
-    return STATUS_OK;
-}
-
-static Status invent(Landscape *out, Choices *choices, const Config *config, const LocalFrame *frame, const Evidence *e)
+static Status invent(Landscape *out, const Config *config, const LocalFrame *frame, const GroundEvidence *e)
 {
     LandscapeConfig land = landscape_default_config();
     land.seed     = (uint64_t)config->seed;
     land.relief_m = config->terrain.relief_m;
     if (config->terrain.spacing_m > 0) land.spacing_m = config->terrain.spacing_m;
-    const Status status = landscape_create(out, &land, frame, e->fix, e->fixes, e->line, e->lines);
-    if (status != STATUS_OK) {
-        log_error("replay: no landscape could be made: %s", status_name(status));
-        return status;
-    }
-    choice_add(choices, "ground: invented, fitted to %d land entities and %d ground impacts within %.2f m (terrain.*)",
-               e->vehicles, e->impacts, out->fit_worst_m);
-    if (out->fixes_dropped > 0)
-        choice_add(choices, "ground: %d of %d places contradict others or a flight path and were left out", out->fixes_dropped,
-                   e->fixes);
-    return STATUS_OK;
+    const Status status = landscape_create_from(out, &land, frame, &e->said);
+    if (status != STATUS_OK) log_error("replay: no landscape could be made: %s", status_name(status));
+    return status;
 }
 
 /* ---- from files ------------------------------------------------------------------------------- */
@@ -141,7 +68,8 @@ static void say_cover(Choices *choices, const CoverReport *cover)
                cover->unknown > 0 ? "; codes the table lacks were taken by slope and height" : "");
 }
 
-static Status import(Landscape *out, Choices *choices, const Config *config, const LocalFrame *frame, const Evidence *e, bool fit)
+static Status import(Landscape *out, Choices *choices, const Config *config, const LocalFrame *frame,
+                     const GroundEvidence *e, bool fit)
 {
     LandscapeReport r;
     const char *vertical = config->terrain.vertical;
@@ -154,7 +82,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
                       .horizon_m = landscape_default_config().horizon_m},
         .cover = config->terrain.cover, .cover_table = config->terrain.cover_table, .cover_band = config->terrain.cover_band,
         .photo = config->terrain.orthophoto, .seed = (uint64_t)config->seed};
-    const Status status = landscape_import(out, &r, &files, frame, e->fix, fit ? e->fixes : 0);
+    const Status status = landscape_import(out, &r, &files, frame, e->fix, fit ? e->said.fix_count : 0);
     if (status != STATUS_OK) return status;
 
     choice_add(choices, "ground: %d elevation sheet%s, posts %.3g m apart shown at %.3g m over %.1f x %.1f km (terrain.elevation, "
@@ -174,7 +102,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
                r.elevation.beyond_h_m, 1e-3 * r.elevation.blend_m);
     if (fit)
         choice_add(choices, "ground: led through %d land entities and %d ground impacts by a smooth correction of at most %.1f m "
-                   "(terrain.ground)", e->vehicles, e->impacts, r.elevation.correction_m);
+                   "(terrain.ground)", on_land(e), e->impacts, r.elevation.correction_m);
     if (*config->terrain.cover) say_cover(choices, &r.cover);
     else choice_add(choices, "cover: by slope and height, no file says what grows there (terrain.cover)");
     if (*config->terrain.orthophoto)
@@ -191,7 +119,8 @@ static int by_value(const void *a, const void *b)
 }
 
 /* How far the senders' own places are from this ground. */
-static Status say_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey, const Catalog *catalog)
+static Status say_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey,
+                          const GroundEvidence *e)
 {
     const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
     size_t points = 0, count = 0;
@@ -202,11 +131,9 @@ static Status say_contact(Choices *choices, bool clamp, const Landscape *landsca
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         if (!contact_applies(track->type)) continue;
-        const double below_m = base_below_m(catalog, track);
         for (int n = 0; n < track->count; n++) {
             double base_ecef[3];
-            for (int k = 0; k < 3; k++)
-                base_ecef[k] = track->point[n].p_ecef[k] + below_m * track->point[n].r_ecef_from_body[3 * k + 2];
+            ground_evidence_base(base_ecef, &track->point[n], e->below_m[i]);
             const double above_m = contact_above_m(&ground, base_ecef);
             if (!isfinite(above_m)) continue;
             sum += above_m;
@@ -226,19 +153,93 @@ static Status say_contact(Choices *choices, bool clamp, const Landscape *landsca
     return STATUS_OK;
 }
 
-Status choose_ground(Landscape *out, bool *clamp, Choices *choices, const Survey *survey, const Config *config,
+typedef struct Misfit {
+    int    track;
+    double above_m;
+} Misfit;
+
+static int worst_first(const void *pa, const void *pb)
+{
+    const Misfit *a = pa, *b = pb;
+    const double  x = fabs(a->above_m), y = fabs(b->above_m);
+    if (x != y) return x > y ? -1 : 1;
+    return (a->track > b->track) - (a->track < b->track);
+}
+
+/* The report of an entity that is farthest from this ground (or its sea). */
+static double farthest_m(const ContactGround *ground, const Track *track, const GroundEvidence *e, int t)
+{
+    double farthest = 0;
+    for (int n = 0; n < track->count; n++) {
+        double base_ecef[3];
+        if (e->stance[t] == STANCE_GROUND && !e->fixed[e->first[t] + (size_t)n]) continue; /* carried, falling */
+        ground_evidence_base(base_ecef, &track->point[n], e->below_m[t]);
+        const double above_m = contact_above_m(ground, base_ecef);
+        if (fabs(above_m) > fabs(farthest)) farthest = above_m;
+    }
+    return farthest;
+}
+
+/* The invented ground, and who stands on it only because of being set onto it, the worst by name. */
+static Status say_fit(Choices *choices, GroundContact contact, const Landscape *landscape, const Survey *survey,
+                      const GroundEvidence *e)
+{
+    enum { most_named = 3 };
+    const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
+    Misfit *misfit = calloc((size_t)survey->track_count + 1, sizeof *misfit);
+    int     count = 0, n = 0, on_ground = 0;
+    char    text[choice_text_size / 2] = "";
+    if (!misfit) return STATUS_NO_MEMORY;
+    for (int t = 0; t < survey->track_count; t++) {
+        const Track *track = &survey->track[t];
+        if (!(e->stance[t] == STANCE_GROUND && contact_applies(track->type)) &&
+            !(e->stance[t] == STANCE_AFLOAT && contact_floats(track->type)))
+            continue;
+        const double above_m = farthest_m(&ground, track, e, t);
+        if (!(contact_share(track->type, above_m) > 0.5)) continue;
+        misfit[count++] = (Misfit){t, above_m};
+        on_ground += e->stance[t] == STANCE_GROUND;
+    }
+    say_invented(choices, landscape, e, on_ground);
+    if (count > 1) qsort(misfit, (size_t)count, sizeof *misfit, worst_first);
+    for (int k = 0; k < count && k < most_named; k++) {
+        const Track *track = &survey->track[misfit[k].track];
+        char         id[dis_id_text_size], marking[48];
+        dis_entity_id_text(id, track->id);
+        text_escape(marking, sizeof marking, track->marking, strnlen(track->marking, 11));
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s%s%s by %+.1f m", k ? ", " : "", id,
+                      *marking ? " " : "", marking, misfit[k].above_m);
+        if (n >= (int)sizeof text) break;
+    }
+    const char *what = contact == GROUND_CONTACT_NONE ? (count == 1 ? "stays off it" : "stay off it")
+                       : count == 1                   ? "is set onto it"
+                                                      : "are set onto it";
+    if (count && contact != GROUND_CONTACT_ALL)
+        choice_add(choices, "ground: %d %s not fit it and %s, %s%s (terrain.ground)", count,
+                   count == 1 ? "entity does" : "entities do", what, text,
+                   count > most_named ? " ..." : "");
+    free(misfit);
+    return STATUS_OK;
+}
+
+Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
                      const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
 {
-    Evidence   e = {0};
-    const bool real = *config->terrain.elevation, by_itself = strcmp(config->terrain.ground, "auto") == 0;
-    const bool set_onto = by_itself ? real : strcmp(config->terrain.ground, "clamp") == 0;
-    Status     status = gather(&e, survey, frame, catalog, plan);
+    GroundEvidence      e = {0};
+    const char         *said = config->terrain.ground;
+    const bool          real = *config->terrain.elevation, by_itself = strcmp(said, "auto") == 0;
+    const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_MISFITS;
+    const GroundContact set = strcmp(said, "clamp") == 0 || (by_itself && real) ? GROUND_CONTACT_ALL
+                              : real                                           ? GROUND_CONTACT_NONE
+                                                                               : fitted;
+    Status status = ground_evidence_gather(&e, survey, frame, catalog, plan->host, plan->aim);
     if (status == STATUS_OK)
-        status = real ? import(out, choices, config, frame, &e, strcmp(config->terrain.ground, "fit") == 0)
-                      : invent(out, choices, config, frame, &e);
-    if (status == STATUS_OK && (real || !by_itself)) status = say_contact(choices, set_onto, out, survey, catalog);
-    if (status == STATUS_OK) *clamp = set_onto;
-    free(e.fix);
-    free(e.line);
+        status = real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)
+                      : invent(out, config, frame, &e);
+    if (status == STATUS_OK && !real) status = say_fit(choices, set, out, survey, &e);
+    if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
+        status = say_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);
+    if (status == STATUS_OK) *contact = set;
+    ground_evidence_free(&e);
     return status;
 }

@@ -148,7 +148,7 @@ static void say_visibility(Choices *choices, const Config *config, const Atmosph
 }
 
 /* World and all that is said of it. */
-static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool *clamp, Choices *choices, Run *run,
+static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, Choices *choices, Run *run,
                      const DisEntityId *host)
 {
     const Options *o     = &run->options;
@@ -159,7 +159,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, bool 
     if (status == STATUS_OK) status = choose_frame(&frame, &run->survey, plan);
     if (status == STATUS_OK) status = choose_time(unix_s, choices, &run->survey, &o->config, &frame);
     if (status == STATUS_OK)
-        status = choose_ground(landscape, clamp, choices, &run->survey, &o->config, &frame, run->catalog, plan);
+        status = choose_ground(landscape, contact, choices, &run->survey, &o->config, &frame, run->catalog, plan);
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
     if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
     if (status == STATUS_OK)
@@ -204,7 +204,7 @@ Status run_host(Run *run, const DisEntityId *host)
     Player        *player    = NULL;
     Session       *session   = NULL;
     double         unix_s    = 0;
-    bool           clamp     = false;
+    GroundContact  contact   = GROUND_CONTACT_NONE;
     char           out[path_size], host_text[dis_id_text_size];
 
     if (host) {
@@ -212,7 +212,7 @@ Status run_host(Run *run, const DisEntityId *host)
         else dis_entity_id_text(host_text, *host);
         printf("host: %s (--host)\n", host_text);
     }
-    Status status = choose(&plan, &unix_s, &landscape, &clamp, &choices, run, host);
+    Status status = choose(&plan, &unix_s, &landscape, &contact, &choices, run, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
@@ -230,7 +230,7 @@ Status run_host(Run *run, const DisEntityId *host)
     const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
                                   .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN, .sensors = &run->sensors,
-                                  .clamp = clamp, .config_sha256 = run->config_sha256, .publish = run->publish,
+                                  .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
                                   .user = run->user};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);

@@ -167,7 +167,7 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
                                 .target = target, .target_count = targets};
     FrameError error;
     if (frame_error(&error, &picture, shared->world, &snapshot, &request, target, targets,
-                    shared->config->models.sag_m, shared->clamp))
+                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL))
         record.error = &error;
     memcpy(record.p_eye_ecef, eye.state.p_ecef, sizeof record.p_eye_ecef);
     memcpy(record.v_eye_mps, eye.state.v_ecef_mps, sizeof record.v_eye_mps);
@@ -232,8 +232,10 @@ static Status open_session(Session *s)
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
-    if (shared->clamp)
-        table.ground = (ContactGround){&shared->world->frame, &shared->world->landscape->elevation};
+    if (shared->contact != GROUND_CONTACT_NONE)
+        table.ground = (ContactGround){
+            .frame = &shared->world->frame, .elevation = &shared->world->landscape->elevation,
+            .landscape = shared->contact == GROUND_CONTACT_MISFITS ? shared->world->landscape : NULL};
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s,

@@ -47,7 +47,7 @@ static void it_lies_on_a_slope_as_paper_says(void **state)
     (void)state;
     const LocalFrame frame = frame_at(44, -123);
     Elevation        ground = plane(200, 2, 30, 0.125, -0.25);
-    const ContactGround contact = {&frame, &ground};
+    const ContactGround contact = {.frame = &frame, .elevation = &ground};
     for (int n = 0; n < 24; n++) {
         const double heading_rad = 0.26 * n, x_m = 3 * n - 40, y_m = 25 - 2 * n;
         SnapshotEntity e = entity_at(&frame, tank_type, x_m, y_m, 37, heading_rad);
@@ -82,7 +82,7 @@ static void it_moves_along_the_local_vertical(void **state)
     (void)state;
     const LocalFrame frame = frame_at(44, -123);
     Elevation        ground = plane(8200, 16, -20, 0, 0);
-    const ContactGround contact = {&frame, &ground};
+    const ContactGround contact = {.frame = &frame, .elevation = &ground};
     SnapshotEntity      e = entity_at(&frame, truck_type, 8000, 0, 380, 0);
     const SnapshotEntity before = e;
     double   moved[3], r_ecef_from_enu[9], p_ecef[3], p_enu[3];
@@ -105,7 +105,7 @@ static void who_does_not_stand_stays(void **state)
     (void)state;
     const LocalFrame frame = frame_at(44, -123);
     Elevation        ground = plane(100, 2, 30, 0.125, 0);
-    const ContactGround contact = {&frame, &ground}, none = {&frame, NULL};
+    const ContactGround contact = {.frame = &frame, .elevation = &ground}, none = {.frame = &frame};
     SnapshotEntity      e = entity_at(&frame, helicopter_type, 0, 0, 90, 1), before = e;
     contact_set(&e, &contact, &box);
     assert_memory_equal(&e, &before, sizeof e);
@@ -131,6 +131,63 @@ static void who_does_not_stand_stays(void **state)
     elevation_destroy(&ground);
 }
 
+/* A plain at 50 m with a sea at 50 m east of it. */
+static void misfits_alone_are_set_onto_an_invented_ground(void **state)
+{
+    (void)state;
+    static const DisEntityType man = {.kind = 3}, house = {.kind = 5, .domain = 1}, crate = {.kind = 6}, ship = {1, 3, 225, 6, 1, 0, 0},
+                               bunker = {.kind = 5, .domain = 4}, submarine = {1, 4, 225, 1, 0, 0, 0};
+    const LocalFrame frame = frame_at(44, -123);
+    LandscapeConfig  config = landscape_default_config();
+    config.half_width_m = 1500, config.horizon_m = 1500, config.relief_m = 0;
+    const GroundFix        fix = {.p_enu = {-300, 0, 50}};
+    const CoastPlace       place[2] = {{-300, 0, false}, {300, 0, true}};
+    const LandscapeEvidence said = {.fix = &fix, .fix_count = 1, .place = place, .place_count = 2, .sea_h_m = 50};
+    Landscape              land;
+    assert_int_equal(landscape_create_from(&land, &config, &frame, &said), STATUS_OK);
+    const ContactGround contact = {.frame = &frame, .elevation = &land.elevation, .landscape = &land};
+    const ContactGround all = {.frame = &frame, .elevation = &land.elevation};
+    static const struct { DisEntityType type; double x_m, above_m, v_up_mps, v_mps, left_m; } row[] = {
+        {tank_type, -300, 0.09, 0, 10, 0.09},   {tank_type, -300, -0.09, 0, 10, -0.09}, /* within what a fit leaves */
+        {tank_type, -300, 20, 0, 10, 0},        {tank_type, -300, -30, 0, 10, 0},
+        {man, -300, 0.6, 0, 1, 0},              {man, -300, -0.6, 0, 1, 0},
+        {man, -300, 300, -5, 1, 300},           {man, -300, 300, 0, 50, 300}, /* under a parachute, in an aircraft */
+        {tank_type, -300, 900, 0, 80, 900},     {tank_type, -300, -3, -4, 12, 0}, /* carried; down a hill */
+        {house, -300, -4, 0, 0, 0},             {crate, -300, 2, 0, 0, 0},      {bunker, -300, -8, 0, 0, -8},
+        {ship, 300, 1.4, 0, 8, 1.4},            {ship, 300, -1.4, 0, 8, -1.4}, /* heave */
+        {ship, 300, 12, 0, 8, 0},               {ship, 300, -30, 0, 8, 0},      {ship, -300, 40, 0, 8, 0},
+        {tank_type, 300, 8, 0, 0, 8},           {tank_type, 300, -2, 0, 0, 0}, /* on a deck; under water */
+        {submarine, 300, -40, 0, 4, -40},       {helicopter_type, -300, 40, 0, 0, 40},
+    };
+    for (size_t n = 0; n < sizeof row / sizeof row[0]; n++) {
+        const double   z_m = elevation_height(&land.elevation, row[n].x_m, 0, NULL) + row[n].above_m;
+        SnapshotEntity e = entity_at(&frame, row[n].type, row[n].x_m, 0, z_m, 0.4);
+        const double   v_enu[3] = {row[n].v_mps, 0, row[n].v_up_mps};
+        m3_mul_v3(e.v_ecef_mps, frame.r_ecef_from_enu, v_enu);
+        const SnapshotEntity before = e;
+        contact_set(&e, &contact, &box);
+        const double left_m = contact_above_m(&contact, e.p_ecef);
+        if (!(fabs(left_m - row[n].left_m) <= 2e-3)) fail_msg("row %d: %.4f above, want %g", (int)n, left_m, row[n].left_m);
+        if (row[n].left_m == row[n].above_m) assert_memory_equal(&e, &before, sizeof e); /* to the bit */
+        if (row[n].type.kind != 1 || row[n].type.domain != 1)
+            if (row[n].type.kind != 3) assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
+        e = before; /* all: nobody that stands is excepted, ships are not meant */
+        contact_set(&e, &all, &box);
+        if (contact_applies(row[n].type)) CHECK_NEAR(contact_above_m(&all, e.p_ecef), 0, 2e-3);
+        else assert_memory_equal(&e, &before, sizeof e);
+    }
+    /* no jump on the way from as sent to set onto */
+    double last_m = 0.09;
+    for (double above_m = 0.09; above_m < 0.6; above_m += 0.001) {
+        SnapshotEntity e = entity_at(&frame, tank_type, -300, 0, elevation_height(&land.elevation, -300, 0, NULL) + above_m, 1);
+        contact_set(&e, &contact, &box);
+        const double left_m = contact_above_m(&contact, e.p_ecef);
+        CHECK_NEAR(left_m, last_m, 0.003);
+        last_m = left_m;
+    }
+    landscape_destroy(&land);
+}
+
 /* Snapshot, single pose and so the aim agree to the bit, and stand on the ground. */
 static void every_pose_handed_out_stands(void **state)
 {
@@ -138,7 +195,7 @@ static void every_pose_handed_out_stands(void **state)
     const LocalFrame  frame = frame_at(0, 0);
     Elevation         ground = plane(200, 2, 7, 0.125, 0.125);
     EntityTableConfig config = entity_table_default_config();
-    config.ground = (ContactGround){&frame, &ground};
+    config.ground = (ContactGround){.frame = &frame, .elevation = &ground};
     Fixture        f = fixture_open(&config);
     DisEntityState tank = report(1, tank_type), flyer = report(2, helicopter_type);
     tank.velocity_mps[2] = 5;
@@ -166,7 +223,7 @@ static void what_he_gives_off_goes_with_him(void **state)
     const LocalFrame  frame = frame_at(0, 0);
     Elevation         ground = plane(200, 2, -40, 0.125, 0.125); /* 40 m below where everything is sent */
     EntityTableConfig config = entity_table_default_config();
-    config.ground = (ContactGround){&frame, &ground};
+    config.ground = (ContactGround){.frame = &frame, .elevation = &ground};
     Fixture        f = fixture_open(&config);
     DisEntityState tank = report(1, tank_type);
     tank.velocity_mps[2] = 8;
@@ -202,6 +259,7 @@ int main(void)
         cmocka_unit_test(it_lies_on_a_slope_as_paper_says),
         cmocka_unit_test(it_moves_along_the_local_vertical),
         cmocka_unit_test(who_does_not_stand_stays),
+        cmocka_unit_test(misfits_alone_are_set_onto_an_invented_ground),
         cmocka_unit_test(every_pose_handed_out_stands),
         cmocka_unit_test(what_he_gives_off_goes_with_him),
     };

@@ -316,7 +316,7 @@ static void fixes_are_met_by_a_smooth_correction(void **state)
     char      path[512];
     Elevation plain = {0}, led = {0};
     ElevationReport report;
-    GroundFix fix[60];
+    GroundFix fix[60] = {0};
     if (!reference_path(path, "terrain/bitterroot/example_lcp.tif")) skip();
     const LocalFrame frame = frame_at(46.69, -114.17);
     ElevationFiles   files = files_of(path);

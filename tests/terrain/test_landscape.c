@@ -242,7 +242,7 @@ static void contradictions_are_dropped_and_the_rest_is_met(void **state)
     for (int n = 0; n < liars; n++) {
         const double *truth = fix[97 * n + 11].p_enu;
         skip[count] = true;
-        fix[count++] = (GroundFix){{truth[0] + 0.3, truth[1], truth[2] + lie_m[n]}};
+        fix[count++] = (GroundFix){.p_enu = {truth[0] + 0.3, truth[1], truth[2] + lie_m[n]}};
     }
     Landscape land;
     CHECK(landscape_create(&land, &config, &frame, fix, count, NULL, 0) == STATUS_OK);
@@ -306,6 +306,7 @@ static void recorded_vehicles_stand_on_it(void **state)
                 CHECK(geodetic_from_ecef(&origin, p_ecef) == STATUS_OK);
                 CHECK(local_frame_at(&frame, &origin) == STATUS_OK);
             }
+            fix[count].voter = 1 + entity % 97; /* one vote each */
             enu_from_ecef(fix[count++].p_enu, &frame, p_ecef);
         }
         fclose(file);
@@ -418,7 +419,7 @@ static void unknown_lines_are_masked(void **state)
     (void)state;
     const LocalFrame frame = frame_at(36, -123, 0);
     LandscapeConfig  config = small_config(60);
-    GroundFix        fix[2];
+    GroundFix        fix[2] = {0};
     place_above(fix[0].p_enu, &frame, -1200, 300, 0);
     place_above(fix[1].p_enu, &frame, 1200, -200, 3);
     const ClearLine line = {{-1200, 300, fix[0].p_enu[2] + 1}, {1200, -200, fix[1].p_enu[2] + 1}};
@@ -582,8 +583,8 @@ static void bad_input_is_survived(void **state)
     CHECK(land.fixes_dropped == 42);
 
     const LandscapeConfig config = small_config(1);
-    const GroundFix       fix[] = {{{NAN, 0, 0}}, {{0, INFINITY, 0}}, {{0, 0, -INFINITY}}, {{1e300, 0, 0}},
-                                   {{0, 0, 50000}}, {{0, 0, -6371000}}, {{3e6, 0, 0}}, {{10, 10, 1}}};
+    const GroundFix       fix[] = {{.p_enu = {NAN, 0, 0}}, {.p_enu = {0, INFINITY, 0}}, {.p_enu = {0, 0, -INFINITY}}, {.p_enu = {1e300, 0, 0}},
+                                   {.p_enu = {0, 0, 50000}}, {.p_enu = {0, 0, -6371000}}, {.p_enu = {3e6, 0, 0}}, {.p_enu = {10, 10, 1}}};
     const ClearLine line[] = {{{NAN, 0, 0}, {0, 0, 0}},   {{0, 0, 0}, {INFINITY, 0, 0}}, {{0, 0, 1e300}, {0, 0, 0}},
                               {{50, 50, 5}, {50, 50, 5}}, {{1e7, 0, 9}, {-1e7, 0, 9}},   {{0, 0, -1e6}, {9, 9, 1e6}}};
     CHECK(landscape_create(&land, &config, &frame, fix, 8, line, 5) == STATUS_OK);
