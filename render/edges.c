@@ -187,7 +187,8 @@ void spread_ground(Scratch *s, const Job *job)
         if (!(range_m < 2 * p->range_m[px] && range_m > 0.5 * p->range_m[px])) range_m = p->range_m[px];
         s->hits.range_m[i] = range_m;
         s->hits.entity[i]  = 0;
-        s->hits.part[i] = s->hits.model[i] = 0;
+        s->hits.part[i] = s->hits.model[i] = s->hits.node[i] = 0;
+        s->hits.triangle[i] = 0, s->hits.inside[i] = 0;
         s->rays.far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
             s->rays.o_enu[k][i] = view->p_enu[k];

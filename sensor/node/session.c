@@ -70,6 +70,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     const Config *config = s->shared->config;
     *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
                                .optical = config_optical(config), .sky_samples = config->sensor.sky_samples,
+                               .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};
