@@ -3,25 +3,26 @@
 
 #include "render/optical.h"
 #include "render/parts.h"
+#include "terrain/eight.h"
 
 #include <stdatomic.h>
 
 enum {
-    directions    = 64,        /* a place */
+    ground_directions = 64, grid_directions = 40, /* a place */
     kept_slots    = 1 << 15,   /* places on the ground, of the frame */
     kept_probes   = 16,
-    known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 6 levels */
-    levels_most   = 6,
+    known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */
+    finer_most    = 3,         /* times that a cell of the ground is halved */
     lattice_steps = 4,         /* the ground's finest lattice: 2^-4 m */
     coarsest_log2_m = 4,
-    grid_least = 3, grid_most = 40, /* places over an entity's box, a side */
+    grid_least = 3, grid_most = 48, /* places over an entity's box, a side */
     task_places = 32,
 };
 static const double look_m = 50;          /* what is farther from a place changes nothing there */
 static const double hidden_share = 0.01;  /* of a level plane's light: less is left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
 static const double differ = 0.2;         /* shares of directions: places that differ more are looked at more finely */
-static const double grid_px = 5, lattice_px = 3.5;
+static const double grid_px = 2.75, lattice_px = 3.5;
 
 /* What a place answered. */
 typedef struct SkyAnswer {
@@ -32,9 +33,10 @@ typedef struct SkyAnswer {
 /* One place on an entity. */
 typedef struct SkySpot {
     bool   there;
-    double p_enu[3];
-    float  n_enu[3];
-    float  factor[AIR_BAND_COUNT];
+    uint16_t part;
+    float    p_m[3]; /* ENU, from the entity's centre */
+    float    n_enu[3];
+    float    factor[8]; /* by AirBand, and one to spare */
 } SkySpot;
 
 /* An entity of the frame. */
@@ -164,7 +166,15 @@ typedef struct SkyHit {
     float  weight;          /* 0: none near */
 } SkyHit;
 
+/* The cell that was asked last of each size: neighbouring hits lie in it. */
+typedef struct SkyCell {
+    int64_t  column, row;
+    uint32_t block;
+    const SkySlot *corner[4];
+} SkyCell;
+
 struct SkyWorker {
+    SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
     SkySlot      slot[known_slots];
     uint32_t     block;
     int          queue[known_slots], queued; /* slots to be asked */
@@ -270,7 +280,7 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         w->key[i] = w->slot[slots[i]].key;
         place_ground(places, i, v, w->key[i]);
     }
-    gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, directions, look_m, w->key, list, listed,
+    gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m, w->key, list, listed,
                   &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
@@ -283,16 +293,23 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
 
 /* ---- the ground about a hit ---------------------------------------------------------------------------- */
 
-/* Keys and weights of a cell's corners. */
-static void corners_of(uint64_t key[4], double weight[4], const SkyHit *h, const Hits *hits, int i)
+/* The corners of a cell and their weights. False: some are not known yet. */
+static bool corners_of(const SkySlot *corner[4], double weight[4], SkyWorker *w, const SkyVisibility *v,
+                       const SkyHit *h, const Hits *hits, int i)
 {
     const double  per_m = exp2(-h->step), x = hits->p_enu[0][i] * per_m, y = hits->p_enu[1][i] * per_m;
     const double  fx = x - floor(x), fy = y - floor(y);
     const int64_t column = (int64_t)floor(x), row = (int64_t)floor(y), each = (int64_t)1 << (h->step + lattice_steps);
-    for (int k = 0; k < 4; k++) {
-        key[k] = ground_key((column + (k & 1)) * each, (row + (k >> 1)) * each);
-        weight[k] = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
+    SkyCell      *cell = &w->cell[h->step + lattice_steps];
+    bool          known = true;
+    for (int k = 0; k < 4; k++) weight[k] = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
+    if (cell->block != w->block || cell->column != column || cell->row != row) {
+        *cell = (SkyCell){column, row, w->block, {NULL}};
+        for (int k = 0; k < 4; k++)
+            cell->corner[k] = slot_of(w, v, ground_key((column + (k & 1)) * each, (row + (k >> 1)) * each));
     }
+    for (int k = 0; k < 4; k++) known &= (corner[k] = cell->corner[k])->known;
+    return known;
 }
 
 static bool places_differ(const SkySlot *const s[4])
@@ -332,13 +349,9 @@ static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, co
 {
     SkyHit *h = &w->hit[i];
     for (;;) {
-        uint64_t       key[4];
         double         weight[4];
         const SkySlot *s[4];
-        bool           known = true;
-        corners_of(key, weight, h, hits, i);
-        for (int k = 0; k < 4; k++) known &= (s[k] = slot_of(w, v, key[k]))->known;
-        if (!known) return false;
+        if (!corners_of(s, weight, w, v, h, hits, i)) return false;
         if (h->step > h->last_step && (places_differ(s) || h->force)) {
             h->step--;
             h->force = false;
@@ -364,7 +377,7 @@ static double box_distance_m(const PosedEntity *e, const double p_enu[3])
 static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int i, const int *near, int count)
 {
     const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
-    double       offset[3], finest_m = INFINITY, body_m = INFINITY;
+    double       offset[3], coarse_m = INFINITY, body_m = INFINITY;
     h->weight = 0;
     for (int k = 0; k < count; k++) {
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, near[k]);
@@ -375,13 +388,13 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int
         const double weight = clamp((1 - distance_m / reach_m) / fade_share, 0, 1);
         if (!(weight > 0)) continue;
         h->weight = fmaxf(h->weight, (float)weight);
-        finest_m  = fmin(finest_m, 0.35 * reach_m);
+        coarse_m = fmin(coarse_m, 0.35 * reach_m);
         body_m    = fmin(body_m, distance_m);
     }
     if (!(h->weight > 0)) return;
     const double px_m = hits->range_m[i] * v->px_rad;
-    h->step = (int8_t)clamp(floor(log2(finest_m)), -lattice_steps, coarsest_log2_m);
-    h->last_step = (int8_t)clamp(fmax(ceil(log2(lattice_px * px_m) - 0.5), h->step - levels_most + 1), -lattice_steps, coarsest_log2_m);
+    h->step = (int8_t)clamp(floor(log2(coarse_m)), -lattice_steps, coarsest_log2_m);
+    h->last_step = (int8_t)clamp(fmax(ceil(log2(lattice_px * px_m) - 0.5), h->step - finer_most), -lattice_steps, coarsest_log2_m);
     h->force = body_m < exp2(h->step);
     if (h->last_step > h->step) h->step = h->last_step;
 }
@@ -444,7 +457,7 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         const int to = places->count++;
         of[to] = first + i;
         w->key[to] = spot_key(index, first + i);
-        places->entity[to] = met->entity[i];
+        places->entity[to] = met->entity[i], places->part[to] = met->part[i];
         for (int c = 0; c < 3; c++) {
             places->p_enu[c][to] = met->p_enu[c][i];
             places->n_geo[c][to] = places->n_enu[c][to] = met->n_geo[c][i];
@@ -453,71 +466,90 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     }
     if (places->count == 0) return;
     const int listed = list_near(w->near, v, box, look_m, false);
-    gather_change(w->change, scene, places, v->scene.air_bands, directions, look_m, w->key, w->near, listed, &unused);
+    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->key, w->near, listed,
+                  &unused);
     for (int k = 0; k < places->count; k++) {
         SkySpot  *spot = &e->spot[of[k]];
         SkyAnswer found;
         double    n_enu[3];
         for (int c = 0; c < 3; c++) {
             n_enu[c] = places->n_geo[c][k];
-            spot->n_enu[c] = (float)n_enu[c], spot->p_enu[c] = places->p_enu[c][k];
+            spot->n_enu[c] = (float)n_enu[c];
+            spot->p_m[c] = (float)(places->p_enu[c][k] - visibility_posed(scene->visibility, index)->centre_enu[c]);
         }
         answer(&found, v, n_enu, &w->change[k]);
-        memcpy(spot->factor, found.factor, sizeof spot->factor);
-        spot->there = true;
+        memcpy(spot->factor, found.factor, sizeof found.factor);
+        spot->there = true, spot->part = places->part[k];
     }
 }
 
-/* Adds spots of columns and rows from, to (not beyond), by how alike they are to a hit: they face its way, lie in its
- * plane, and near. */
-static double add_spots(double sum[AIR_BAND_COUNT], const SkyEntity *e, const int span[4], const double p_enu[3],
-                        const float n_enu[3])
+/* Adds spots of columns and rows from, to (not beyond), each `step`, by how alike they are to a hit: of its part, facing
+ * its way, in its plane, and near. Returns the sum of weights. */
+static float add_spots(Eight *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
+                       const float n_enu[3], uint16_t part)
 {
-    const double square_m2 = e->pitch_m * e->pitch_m;
-    double       all = 0;
-    for (int row = span[1]; row < span[3]; row++)
-        for (int column = span[0]; column < span[2]; column++) {
+    static const float other_part = 0.05f;
+    const float        square_m2 = (float)(e->pitch_m * e->pitch_m), least_m2 = 0.1f * square_m2;
+    float              all = 0;
+    for (int row = span[1]; row < span[3]; row += step)
+        for (int column = span[0]; column < span[2]; column += step) {
             const SkySpot *s = &e->spot[row * e->columns + column];
-            if (!s->there) continue;
-            const double along = (double)(n_enu[0] * s->n_enu[0] + n_enu[1] * s->n_enu[1] + n_enu[2] * s->n_enu[2]);
-            if (!(along > 0)) continue;
-            double offset[3], off = 0;
-            v3_sub(offset, s->p_enu, p_enu);
-            for (int c = 0; c < 3; c++) off += (double)n_enu[c] * offset[c];
-            const double a2 = along * along, a4 = a2 * a2;
-            const double weight = a4 * a4 / ((0.1 * square_m2 + v3_dot(offset, offset)) * (square_m2 + 16 * off * off));
+            const float along = n_enu[0] * s->n_enu[0] + n_enu[1] * s->n_enu[1] + n_enu[2] * s->n_enu[2];
+            if (!(along > 0)) continue; /* or is not there */
+            const float x = s->p_m[0] - p_m[0], y = s->p_m[1] - p_m[1], z = s->p_m[2] - p_m[2];
+            const float off = n_enu[0] * x + n_enu[1] * y + n_enu[2] * z, a2 = along * along, a4 = a2 * a2;
+            const float weight = (s->part == part ? 1 : other_part) * a4 * a4 * square_m2 * square_m2 /
+                                 ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off));
             all += weight;
-            for (int b = 0; b < AIR_BAND_COUNT; b++) sum[b] += weight * (double)s->factor[b];
+            *sum += _mm256_set1_ps(weight) * eight_load(s->factor);
         }
-    return all * square_m2 * square_m2;
+    return all;
+}
+
+static void span_about(int span[4], const SkyEntity *e, int column, int row, int more)
+{
+    span[0] = column > more ? column - more : 0, span[1] = row > more ? row - more : 0;
+    span[2] = column + more + 1 < e->columns ? column + more + 1 : e->columns;
+    span[3] = row + more + 1 < e->rows ? row + more + 1 : e->rows;
 }
 
 static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits)
 {
-    static const double enough = 0.02; /* one spot beside, turned by 40 degrees */
-    const SkyEntity *e = &v->entity[hits->entity[i] - 1];
-    const View      *view = v->scene.view;
-    const double     p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
-    const float      n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    double           offset_enu[3], p_cam[3], sum[AIR_BAND_COUNT] = {0};
+    static const float enough = 0.3f; /* one spot of the part two steps away */
+    const int          index = (int)hits->entity[i] - 1;
+    const SkyEntity   *e = &v->entity[index];
+    const View        *view = v->scene.view;
+    const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
+    const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    double             offset_enu[3], p_cam[3];
+    float              p_m[3], factor[8];
+    int                span[4];
     if (e->columns == 0) return;
-    v3_sub(offset_enu, p_enu, view->p_enu);
+    for (int c = 0; c < 3; c++) {
+        offset_enu[c] = hits->p_enu[c][i] - view->p_enu[c];
+        p_m[c] = (float)(hits->p_enu[c][i] - centre_enu[c]);
+    }
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
     const double x = 0.5 * view->width + view->focal_px * p_cam[0] / p_cam[2];
     const double y = 0.5 * view->height + view->focal_px * p_cam[1] / p_cam[2];
     const int    column = (int)clamp(floor((x - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
     const int    row = (int)clamp(floor((y - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
-    const int    close[4] = {column > 0 ? column - 1 : 0, row > 0 ? row - 1 : 0,
-                             column + 2 < e->columns ? column + 2 : e->columns, row + 2 < e->rows ? row + 2 : e->rows};
-    double       all = add_spots(sum, e, close, p_enu, n_enu);
-    if (!(all > enough)) {
-        memset(sum, 0, sizeof sum);
-        all = add_spots(sum, e, (const int[4]){0, 0, e->columns, e->rows}, p_enu, n_enu);
+    Eight        sum = eight_all(0);
+    float        all = 0;
+    for (int more = 1; more <= 4 && !(all > enough); more += 3) {
+        span_about(span, e, column, row, more);
+        sum = eight_all(0);
+        all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
     }
-    if (!(all > 1e-9)) return;
-    const double square_m2 = e->pitch_m * e->pitch_m, per = square_m2 * square_m2 / all;
+    if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
+        span_about(span, e, 0, 0, grid_most);
+        sum = eight_all(0);
+        all = add_spots(&sum, e, span, e->columns > 16 || e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
+    }
+    if (!(all > 1e-12f)) return;
+    eight_store(factor, sum * eight_all(1 / (double)all));
     for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (v->scene.air_bands >> b & 1) out->factor[b][i] = (float)(sum[b] * per);
+        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
 
 /* ---- a block --------------------------------------------------------------------------------------------- */
