@@ -287,8 +287,26 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
             for (int i = 0; i < started; i++) sum[of_hit[i]].w_m2[b] += brought[b][i];
 }
 
+enum { close_most = 64 };
+
+/* Of the listed entities those within whose reach a place lies. */
+static int list_close(int close[close_most], const GatherScene *scene, const Hits *hits, int i,
+                      const double *entity_reach_m, const int *list, int listed)
+{
+    int count = 0;
+    for (int k = 0; k < listed && count < close_most; k++) {
+        const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
+        const double       far_m = e->radius_m + entity_reach_m[list[k]];
+        double             square = 0;
+        for (int c = 0; c < 3; c++) square += (e->centre_enu[c] - hits->p_enu[c][i]) * (e->centre_enu[c] - hits->p_enu[c][i]);
+        if (square < far_m * far_m) close[count++] = list[k];
+    }
+    return count;
+}
+
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
-                   double reach_m, const uint64_t *key, const int *list, int listed, VisibilityCounters *counters)
+                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   VisibilityCounters *counters)
 {
     static const double golden = 0.61803398874989485;
     Paths  paths;
@@ -300,10 +318,12 @@ void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits
     paths.rays.count = paths.rays.columns = 0;
     for (int i = 0; i < hits->count; i++) {
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
+        int          close[close_most];
+        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, entity_reach_m, list, listed);
         for (int k = 0; k < samples; k++) {
             const double v = v0 + k * golden;
             const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
-            if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, list, listed)) {
+            if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, close, closes)) {
                 paths.rays.count = at; /* would bring nothing */
                 continue;
             }

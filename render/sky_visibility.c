@@ -41,7 +41,6 @@ typedef struct SkySpot {
 
 /* An entity of the frame. */
 typedef struct SkyEntity {
-    double   reach_m;        /* from its box */
     int      columns, rows;  /* of its grid; 0: not on the image */
     double   x0_px, y0_px, step_px[2];
     double   pitch_m;        /* of the grid at its distance */
@@ -52,6 +51,7 @@ struct SkyVisibility {
     SkyVisibilityScene scene;
     int                count;
     SkyEntity         *entity;
+    double            *reach_m;   /* [entities]: from the box of each the ground is looked at */
     int               *task_entity, *task_first; /* [tasks] */
     int                tasks;
     double             px_rad;
@@ -114,14 +114,15 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     *v = (SkyVisibility){.scene = *scene, .count = visibility_count(scene->gather.visibility)};
     v->px_rad = 1 / scene->view->focal_px;
     v->entity = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->entity);
+    v->reach_m   = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->reach_m);
     v->kept_key  = arena_alloc(arena, kept_slots, sizeof *v->kept_key);
     v->kept_done = arena_alloc(arena, kept_slots, sizeof *v->kept_done);
     v->kept      = arena_alloc(arena, kept_slots, sizeof *v->kept);
-    if (!v->entity || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
+    if (!v->entity || !v->reach_m || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
     for (int k = 0; k < v->count; k++) {
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
         if (posed->model < 0) continue;
-        v->entity[k].reach_m = reach_of(posed);
+        v->reach_m[k] = reach_of(posed);
         if (plan_grid(&v->entity[k], v, posed, scene->box_px[k], arena) != STATUS_OK) return STATUS_NO_MEMORY;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -280,8 +281,8 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         w->key[i] = w->slot[slots[i]].key;
         place_ground(places, i, v, w->key[i]);
     }
-    gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m, w->key, list, listed,
-                  &unused);
+    gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
+                  v->reach_m, w->key, list, listed, &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
         const double n_enu[3] = {places->n_enu[0][i], places->n_enu[1][i], places->n_enu[2][i]};
@@ -381,7 +382,7 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int
     h->weight = 0;
     for (int k = 0; k < count; k++) {
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, near[k]);
-        const double       reach_m = v->entity[near[k]].reach_m, far_m = reach_m + e->radius_m;
+        const double       reach_m = v->reach_m[near[k]], far_m = reach_m + e->radius_m;
         v3_sub(offset, p_enu, e->centre_enu);
         if (!(v3_dot(offset, offset) < far_m * far_m)) continue;
         const double distance_m = box_distance_m(e, p_enu);
@@ -414,7 +415,7 @@ static int list_near(int *list, const SkyVisibility *v, double box[2][3], double
     for (int k = 0; k < v->count; k++) {
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, k);
         if (e->model < 0) continue;
-        const double far_m = e->radius_m + more_m + (with_reach ? v->entity[k].reach_m : 0);
+        const double far_m = e->radius_m + more_m + (with_reach ? v->reach_m[k] : 0);
         double       square = 0;
         for (int c = 0; c < 3; c++) {
             const double out = fmax(fmax(box[0][c] - e->centre_enu[c], e->centre_enu[c] - box[1][c]), 0);
@@ -466,8 +467,8 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     }
     if (places->count == 0) return;
     const int listed = list_near(w->near, v, box, look_m, false);
-    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->key, w->near, listed,
-                  &unused);
+    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, v->reach_m, w->key, w->near,
+                  listed, &unused);
     for (int k = 0; k < places->count; k++) {
         SkySpot  *spot = &e->spot[of[k]];
         SkyAnswer found;
