@@ -262,7 +262,7 @@ static Status knob_sky(Precision *p)
     Status       status = STATUS_OK;
     bench_progress(p->bench, "sky");
     for (int s = 0; s < sky_shots && status == STATUS_OK; s++) {
-        SkyRendering        fine_r = {p, finest, width, height};
+        SkyRendering        fine_r = {p, finest, width, height, false};
         const RenderRequest fine_request = sky_request(&fine_r, sky_shot[s]);
         Picture             fine, picture;
         arena_reset(p->other);
