@@ -297,7 +297,18 @@ static void ask_directly(Scratch *s, const Job *job, ProbeTask *t, Veils direct[
         if (band_of(plane) == BAND_OPTICAL)
             b = request->optical == OPTICAL_RGB ? (AirBand)band_at[plane - picture_optical]
                                                 : request->optical == OPTICAL_NIR ? AIR_NIR : AIR_PAN;
+        float        open_w_m2[hits_capacity];
         const float *around = request->sky_samples > 0 ? s->gathered.w_m2[b] : NULL;
+        if (!around && s->any_open) {
+            const double level_w_m2 = b >= AIR_MWIR ? job->air->ground_w_m2_sr[b] * pi_rad
+                                                    : optical_ground_w_m2((int)b, job->air, materials);
+            for (int i = 0; i < count; i++) {
+                const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
+                open_w_m2[i] = (float)((double)s->open.factor[b][i] * (air_sky_on_plane(job->air, b, n_enu) +
+                                                                       level_w_m2 * 0.5 * (1 - n_enu[2])));
+            }
+            around = open_w_m2;
+        }
         float       *out = s->radiance[b];
         if (b >= AIR_MWIR)
             thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k,

@@ -3,9 +3,11 @@
 #include "render/gather.h"
 
 #include "render/optical.h"
+#include "render/parts.h"
 #include "render/thermal.h"
 
-enum { bounces = 2, stream_first = 40, stream_next = 41 }; /* streams of random numbers, nobody else's */
+enum { bounces = 2, change_bounces = 3, stream_first = 40, stream_next = 41,
+       stream_change = 42 }; /* streams of random numbers, nobody else's */
 
 typedef struct Paths {
     Rays rays;
@@ -16,6 +18,7 @@ typedef struct Paths {
     uint16_t material[hits_capacity];
     float texture[hits_capacity], temp_k[hits_capacity];
     uint8_t shadow[hits_capacity];
+    bool from_ground[hits_capacity]; /* gather_change: the ground's own light stays as it is there */
 } Paths;
 
 /* A direction about n, its cosine with n distributed as cosines are; u, v in [0, 1). */
@@ -29,6 +32,38 @@ static void cosine_direction(double d[3], const double n[3], double u, double v)
     const double s = sqrt(u), c = sqrt(1 - u), turn = 2 * pi_rad * v;
     for (int k = 0; k < 3; k++) d[k] = c * n[k] + s * (cos(turn) * t[k] + sin(turn) * b[k]);
     v3_normalize(d, d);
+}
+
+/* Whether a ray may meet the box of a listed entity within reach. */
+static bool may_meet(const GatherScene *scene, const double o_enu[3], const double d_enu[3], double reach_m,
+                     const int *list, int listed)
+{
+    for (int k = 0; k < listed; k++) {
+        const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
+        double             offset[3], o[3], d[3], near_m = 0, far_m = reach_m;
+        if (e->model < 0) continue;
+        v3_sub(offset, e->centre_enu, o_enu);
+        const double along = v3_dot(offset, d_enu), square = v3_dot(offset, offset) - along * along;
+        if (square > e->radius_m * e->radius_m || along < -e->radius_m || along > reach_m + e->radius_m) continue;
+        v3_sub(offset, o_enu, e->p_enu);
+        m3_tmul_v3(o, e->r_enu_from_body, offset);
+        m3_tmul_v3(d, e->r_enu_from_body, d_enu);
+        for (int c = 0; c < 3; c++) {
+            const double per = 1 / d[c], a = (e->box_low[c] - o[c]) * per, b = (e->box_high[c] - o[c]) * per;
+            /* a ray along a face gives NaN there, which leaves the span as it is */
+            near_m = fmax(near_m, fmin(a, b));
+            far_m  = fmin(far_m, fmax(a, b));
+        }
+        if (near_m <= far_m + 1e-6) return true;
+    }
+    return false;
+}
+
+static bool ray_may_meet(const GatherScene *scene, const Rays *rays, int i, double reach_m, const int *list, int listed)
+{
+    const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
+    const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+    return may_meet(scene, o_enu, d_enu, reach_m, list, listed);
 }
 
 /* Adds a ray that leaves hit `from` of hits. */
@@ -57,9 +92,10 @@ static double reflectance(const Material *m, AirBand band)
 }
 
 /* What all paths of a block met: materials, temperatures, shadows. */
-static void resolve(Paths *p, const GatherScene *scene, unsigned bands, VisibilityCounters *counters)
+static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const int *list, int listed,
+                    VisibilityCounters *counters)
 {
-    visibility_first_hit(&p->hits, scene->visibility, &p->rays, NULL, -1, -1, counters);
+    visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
         p->texture[i] = 1;
         const uint32_t entity = p->hits.entity[i];
@@ -118,7 +154,7 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
 
     for (int bounce = 0; bounce < bounces && p->rays.count > 0; bounce++) {
         const bool last = bounce == bounces - 1;
-        resolve(p, scene, bands, counters);
+        resolve(p, scene, bands, NULL, -1, counters);
         float rho[AIR_BAND_COUNT][hits_capacity];
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!(bands >> b & 1)) continue;
@@ -172,4 +208,140 @@ void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, uns
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1)
             for (int i = 0; i < hits->count; i++) out->w_m2[b][i] = (float)(sum[b][i] * pi_rad / samples);
+}
+
+/* ---- what things close by change -------------------------------------------------------------- */
+
+typedef struct Change {
+    double w_m2[AIR_BAND_COUNT];
+    int blocked, sunlit, parts, inside;
+} Change;
+
+static void count_first(Change *to, const Paths *p, int i, const GatherScene *scene)
+{
+    const Hits *hits = &p->hits;
+    to->blocked++;
+    to->parts += hits->entity[i] != 0;
+    to->inside += hits->inside[i];
+    double along = 0;
+    for (int c = 0; c < 3; c++) along += hits->n_enu[c][i] * scene->air->sun_d_enu[c];
+    to->sunlit += !p->shadow[i] && along > 0;
+}
+
+static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsigned bands, double reach_m,
+                          const double ground[AIR_BAND_COUNT], const uint64_t *key, const int *list, int listed,
+                          VisibilityCounters *counters)
+{
+    double    brought[AIR_BAND_COUNT][hits_capacity];
+    int       of_hit[hits_capacity];
+    const int started = p->rays.count;
+    for (int b = 0; b < AIR_BAND_COUNT; b++) memset(brought[b], 0, (size_t)started * sizeof *brought[b]);
+    for (int i = 0; i < started; i++) p->of_path[i] = i, of_hit[i] = p->of_hit[i];
+
+    for (int bounce = 0; bounce < change_bounces && p->rays.count > 0; bounce++) {
+        for (int i = 0; i < p->rays.count; i++) p->rays.far_m[i] = reach_m;
+        resolve(p, scene, bands, list, listed, counters);
+        const int count = p->hits.count;
+        p->rays.count = 0;
+        for (int i = 0; i < count; i++) {
+            const int of = p->of_hit[i];
+            if (!(p->hits.range_m[i] < INFINITY)) continue;
+            if (p->from_ground[i] && !p->hits.entity[i]) continue;
+            if (bounce == 0) count_first(&sum[of], p, i, scene);
+            const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
+            const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
+            float        share[AIR_BAND_COUNT];
+            PlanePlace   plane;
+            SkyPlace     sky;
+            air_plane_place(&plane, scene->air, n_enu);
+            if (d_enu[2] >= 0) air_sky_place(&sky, scene->air, d_enu);
+            for (int b = 0; b < AIR_BAND_COUNT; b++) {
+                if (!(bands >> b & 1)) continue;
+                double       rho;
+                const double shown = met(&rho, p, i, scene, (AirBand)b, ground[b], false) +
+                                     rho * (air_plane_there(scene->air, (AirBand)b, &plane) / pi_rad +
+                                            ground[b] * 0.5 * (1 - n_enu[2]));
+                const double open = d_enu[2] < 0 ? ground[b] : air_sky_there(&scene->air->sky_light[b], &sky);
+                brought[b][p->of_path[i]] += p->share[b][i] * (shown - open);
+                share[b] = 2 * p->share[b][i] * (float)rho;
+            }
+            /* half of them go on, for two; closed up: no slot is read after a later path was written to it */
+            if (bounce == change_bounces - 1 || (p->of_sample[i] >> bounce & 1)) continue;
+            const uint64_t to = key[of];
+            const uint32_t draw = (uint32_t)(2 * (p->of_sample[i] * change_bounces + bounce));
+            const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_change, draw, to),
+                                 random_uniform(0, stream_change, draw + 1, to));
+            /* from the ground, too, only parts change what comes */
+            if (!p->hits.entity[i] && !ray_may_meet(scene, &p->rays, at, reach_m, list, listed)) {
+                p->rays.count = at;
+                continue;
+            }
+            p->of_hit[at] = of, p->of_sample[at] = p->of_sample[i], p->of_path[at] = p->of_path[i];
+            p->from_ground[at] = !p->hits.entity[i];
+            for (int b = 0; b < AIR_BAND_COUNT; b++)
+                if (bands >> b & 1) p->share[b][at] = share[b];
+        }
+    }
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1)
+            for (int i = 0; i < started; i++) sum[of_hit[i]].w_m2[b] += brought[b][i];
+}
+
+enum { close_most = 64 };
+
+/* Of the listed entities those within whose reach a place lies. */
+static int list_close(int close[close_most], const GatherScene *scene, const Hits *hits, int i,
+                      const double *entity_reach_m, const int *list, int listed)
+{
+    int count = 0;
+    for (int k = 0; k < listed && count < close_most; k++) {
+        const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
+        const double       far_m = e->radius_m + entity_reach_m[list[k]];
+        double             square = 0;
+        for (int c = 0; c < 3; c++) square += (e->centre_enu[c] - hits->p_enu[c][i]) * (e->centre_enu[c] - hits->p_enu[c][i]);
+        if (square < far_m * far_m) close[count++] = list[k];
+    }
+    return count;
+}
+
+void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   VisibilityCounters *counters)
+{
+    static const double golden = 0.61803398874989485;
+    Paths  paths;
+    Change sum[hits_capacity];
+    double ground[AIR_BAND_COUNT] = {0};
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1) ground[b] = ground_radiance(scene, (AirBand)b);
+    memset(sum, 0, (size_t)hits->count * sizeof *sum);
+    paths.rays.count = paths.rays.columns = 0;
+    for (int i = 0; i < hits->count; i++) {
+        const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
+        int          close[close_most];
+        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, entity_reach_m, list, listed);
+        for (int k = 0; k < samples; k++) {
+            const double v = v0 + k * golden;
+            const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
+            if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, close, closes)) {
+                paths.rays.count = at; /* would bring nothing */
+                continue;
+            }
+            paths.of_hit[at] = i, paths.of_sample[at] = k;
+            paths.from_ground[at] = !hits->entity[i];
+            for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = 1;
+            if (paths.rays.count < hits_capacity) continue;
+            follow_change(sum, &paths, scene, bands, reach_m, ground, key, list, listed, counters);
+            paths.rays.count = 0;
+        }
+    }
+    if (paths.rays.count > 0)
+        follow_change(sum, &paths, scene, bands, reach_m, ground, key, list, listed, counters);
+    for (int i = 0; i < hits->count; i++) {
+        const Change *s = &sum[i];
+        out[i] = (GatherChange){.blocked = (float)s->blocked / (float)samples,
+                                .sunlit = (float)s->sunlit / (float)samples,
+                                .inside = s->parts ? (float)s->inside / (float)s->parts : 0};
+        for (int b = 0; b < AIR_BAND_COUNT; b++) out[i].w_m2[b] = (float)(s->w_m2[b] * pi_rad / samples);
+    }
 }

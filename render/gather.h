@@ -30,4 +30,19 @@ typedef struct Gathered {
 void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
                   const uint64_t *key, VisibilityCounters *counters);
 
+/* What parts and shadows close by change of the light that a place would get from open sky and level, sunlit ground. */
+typedef struct GatherChange {
+    float w_m2[AIR_BAND_COUNT]; /* irradiance, exact less open; of the bands asked for, else 0 */
+    float blocked, sunlit;      /* shares of its directions that meet something, and that meet what the sun shines on */
+    float inside;               /* of those that met parts, the share met from within: a place inside a body has 1 */
+} GatherChange;
+
+/* out[hits->count]. Only what is nearer than reach_m counts, and of the listed entities alone, which must hold all of
+ * those; places on the ground look only towards those within whose own reach, entity_reach_m[entities] beyond their
+ * sphere, they lie. From places on the ground the ground is not looked for: only parts change their light. Three bounces; the
+ * open form is taken away direction by direction, so that places which see nothing but open sky get 0, without noise. */
+void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   VisibilityCounters *counters);
+
 #endif

@@ -286,6 +286,7 @@ static void shade_bands(Scratch *s, const Job *job)
         out[b] = s->radiance[b];
         if (b < optical_channel_count) block.texture[b] = s->texture[b];
         if (gathered) block.around_w_m2[b] = s->gathered.w_m2[b];
+        else if (s->any_open) block.open[b] = s->open.factor[b];
     }
     surface_light_shade(out, &job->surface_light, &block);
     shade_beyond(s, job, out);
@@ -356,6 +357,8 @@ void shade_block(Scratch *s, const Job *job)
     resolve_textures(s, job);
     trace_veils(s, job);
     if (job->request->sky_samples > 0) gather_around(s, job);
+    s->any_open = job->sky && render_air_bands(s->block.bands, job->request->optical) &&
+                  sky_visibility_open(&s->open, job->sky, s->sky, &s->hits, &s->counters.visibility);
     shade_bands(s, job);
     const double t1 = wall_clock_s();
     if (has_band(s->block.bands, BAND_RADAR)) shade_radar(s, job);
@@ -677,6 +680,34 @@ static Status allocate_job(Job *job, int workers, Arena *arena)
     return STATUS_OK;
 }
 
+static void ask_sky(void *user, int worker, int task)
+{
+    const Job *job = user;
+    sky_visibility_task(job->sky, job->scratch[worker]->sky, task);
+}
+
+/* After the boxes. */
+static Status prepare_sky(Job *job, Pool *pool, Arena *arena)
+{
+    const RenderRequest *request = job->request;
+    const World         *world   = job->world;
+    const unsigned       bands   = render_air_bands(request->bands, request->optical);
+    if (!request->sky_visibility || request->sky_samples > 0 || !bands || job->snapshot->count == 0) return STATUS_OK;
+    double (*box_px)[4] = arena_alloc(arena, (size_t)job->snapshot->count, sizeof *box_px);
+    if (!box_px) return STATUS_NO_MEMORY;
+    for (int k = 0; k < job->snapshot->count; k++)
+        for (int c = 0; c < 4; c++) box_px[k][c] = job->boxes[k].projected ? job->boxes[k].projected_box[c] : NAN;
+    const SkyVisibilityScene scene = {
+        .gather = {job->visibility, job->air, &world->materials, world->catalog, job->snapshot},
+        .landscape = world->landscape, .view = &request->view, .box_px = (const double (*)[4])box_px,
+        .air_bands = bands, .skips_off = request->skips_off, .hidden_entity = request->hidden_entity};
+    Status status = sky_visibility_create(&job->sky, &scene, arena);
+    for (int w = 0; w < pool_threads(pool) && status == STATUS_OK; w++)
+        status = sky_worker_create(&job->scratch[w]->sky, job->sky, arena);
+    if (status == STATUS_OK) pool_run(pool, sky_visibility_tasks(job->sky), ask_sky, job);
+    return status;
+}
+
 /* Planes that only the search for edges wanted. */
 static void forget_truth(Picture *picture)
 {
@@ -743,8 +774,10 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     job.visibility = visibility;
     status = surface_light_prepare(&job.surface_light, air, &world->materials, arena);
     if (status != STATUS_OK) return status;
-    if (request->truth || request->target_samples > 0 || looks_for_edges(request))
+    if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility)
         pool_run(pool, snapshot->count, project_target, &job);
+    status = prepare_sky(&job, pool, arena);
+    if (status != STATUS_OK) return status;
     if (request->target_samples > 0) status = footprints_plan(&job, arena);
     if (status != STATUS_OK) return status;
     if (looks_for_edges(request)) mark_boxes(&job);

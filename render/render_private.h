@@ -13,6 +13,7 @@
 
 #include "render/effects.h"
 #include "render/gather.h"
+#include "render/sky_visibility.h"
 #include "render/surface_light.h"
 #include "render/render.h"
 
@@ -87,6 +88,9 @@ typedef struct Scratch {
     uint16_t       material[hits_capacity];
     uint8_t        shadow[hits_capacity], meets[hits_capacity];
     Gathered       gathered; /* with sky_samples only */
+    SkyWorker     *sky;      /* NULL: the tilt alone counts */
+    SkyOpen        open;
+    bool           any_open; /* the block's hits have factors */
     int            some_index[hits_capacity];
     double         cosine3[hits_capacity]; /* of the block's pixels, where truth is wanted */
     VeilRays       veil;
@@ -113,6 +117,7 @@ typedef struct Job {
     const Visibility    *visibility;
     EffectScene          effects;   /* smoke, dust, flames and bursts */
     SurfaceLight          surface_light;
+    SkyVisibility        *sky;       /* NULL: the tilt alone counts */
     Picture             *picture;   /* truth planes where asked for or where edges are looked for */
     Scratch            **scratch;   /* a worker */
     HiddenBy            *pairs;     /* [tiles][pairs_per_tile] */

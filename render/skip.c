@@ -16,6 +16,7 @@ static const struct {
     [SKIP_CELL]          = {"cell", "samples beside a small target: rays"},
     [SKIP_RETRACE]       = {"retrace", "first rays of refined pixels, known from their planes: rays"},
     [SKIP_SMOKE]         = {"smoke", "smoke and dust outside a block of pixels: block-volume pairs"},
+    [SKIP_LIGHT]         = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
 };
 
 const char *skip_name(Skip skip) { return rows[skip].name; }

@@ -21,6 +21,7 @@ typedef enum Skip {
     SKIP_CELL,          /* rays over a small target's box that miss it */
     SKIP_RETRACE,       /* a pixel's first ray, when more are shot: its planes still say what it met */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
+    SKIP_LIGHT,         /* light of places that a neighbour has asked for already in this frame */
     SKIP_COUNT
 } Skip;
 

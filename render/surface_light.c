@@ -257,8 +257,9 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
                     sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
         const Eight all_rho =
             band >= AIR_MWIR ? rho[band] : eight_min(rho[band] * eight_load(b->texture[band] + i), one());
-        const Eight  around =
+        Eight around =
             b->around_w_m2[band] ? eight_load(b->around_w_m2[band] + i) : eight_fma(level, below, plane[band]);
+        if (b->open[band]) around = around * eight_load(b->open[band] + i);
         Eight diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
         if (glossy) {
             const Eight gloss_rho = all_rho * of[gloss_share];

@@ -34,6 +34,7 @@ typedef struct SurfaceBlock {
     const float   *temp_k;                      /* thermal bands */
     const uint8_t *shadow;
     const float   *around_w_m2[AIR_BAND_COUNT]; /* gathered; NULL: sky and ground by what the slope sees of them */
+    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/sky_visibility.h); NULL: 1 */
     const Veils   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 

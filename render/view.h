@@ -91,6 +91,7 @@ typedef struct RenderRequest {
     OpticalChannels optical;
     double   lateral[2]; /* lateral colour of R G B: magnification of R, and of B, over that of G, less 1 */
     int      sky_samples;    /* directions a hit in which sky and surroundings are asked for light; 0: the quick form */
+    bool     sky_visibility; /* with the quick form: what stands near hides sky and ground (render/sky_visibility.h) */
     int      samples;        /* a side: samples^2 rays a pixel, on a turned grid, box-averaged. 1 .. 16 */
     int      edge_samples;   /* the same where neighbours disagree, 2 .. 16; not above samples: nowhere */
     int      target_samples; /* rays a side over the whole of a target that is small on the image, 8 .. 256; 0: as all */

@@ -46,6 +46,9 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
     return STATUS_OK;
 }
 
+int visibility_count(const Visibility *v) { return v->count; }
+const PosedEntity *visibility_posed(const Visibility *v, int index) { return &v->entity[index]; }
+
 int visibility_damage(const Visibility *v, int index) { return v->entity[index].damage; }
 
 /* ---- which entities a block may see ------------------------------------------------------- */
@@ -170,6 +173,9 @@ static void clear_hit(Hits *hits, int i)
     hits->entity[i]  = 0;
     hits->part[i]    = 0;
     hits->model[i]   = 0;
+    hits->triangle[i] = 0;
+    hits->node[i]    = 0;
+    hits->inside[i]  = 0;
     hits->surface[i] = 0;
 }
 
@@ -196,6 +202,9 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
+    hits->node[i]   = (uint16_t)hit->node;
+    hits->triangle[i] = hit->triangle;
+    hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
 }
 

@@ -39,6 +39,11 @@ typedef struct VisibilityCounters {
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
+/* Entities of the snapshot, and each as it stands; its model is -1 where it cannot be drawn (render/parts.h). */
+struct PosedEntity;
+int visibility_count(const Visibility *v);
+const struct PosedEntity *visibility_posed(const Visibility *v, int index);
+
 /* How damaged an entity is shown: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
 

@@ -32,7 +32,8 @@ RenderRequest precision_request(const Precision *p, PrecisionShot shot, int widt
     RenderRequest request = {.view = view_of(p, shot), .bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR,
                              .truth = true, .optical = OPTICAL_RGB, .samples = config.sensor.samples,
                              .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
-                             .sky_samples = config.sensor.sky_samples, .hidden_entity = -1};
+                             .sky_samples = config.sensor.sky_samples,
+                             .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0, .hidden_entity = -1};
     request.view.width  = width;
     request.view.height = height;
     return request;

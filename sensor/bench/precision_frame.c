@@ -218,13 +218,15 @@ static Status knob_targets(Precision *p)
 
 /* ---- to the sky -------------------------------------------------------------------------------- */
 
-static const int sky_samples[] = {0, 4, 16, 64, 256};
+static const int sky_samples[] = {0, 0, 4, 16, 64, 256};
+enum { sky_near = 1 }; /* the setting with sensor.sky_visibility */
 enum { sky_settings = sizeof sky_samples / sizeof *sky_samples, sky_shots = 2 };
 static const PrecisionShot sky_shot[sky_shots] = {SHOT_NEAR, SHOT_GROUND};
 
 typedef struct SkyRendering {
     Precision *p;
     int        samples, width, height;
+    bool       visibility;
 } SkyRendering;
 
 /* One ray a pixel, so that nothing else is sampled. */
@@ -232,6 +234,7 @@ static RenderRequest sky_request(const SkyRendering *r, PrecisionShot shot)
 {
     RenderRequest request = precision_request(r->p, shot, r->width, r->height);
     request.sky_samples  = r->samples;
+    request.sky_visibility = r->visibility;
     request.edge_samples = request.target_samples = 0;
     return request;
 }
@@ -259,13 +262,13 @@ static Status knob_sky(Precision *p)
     Status       status = STATUS_OK;
     bench_progress(p->bench, "sky");
     for (int s = 0; s < sky_shots && status == STATUS_OK; s++) {
-        SkyRendering        fine_r = {p, finest, width, height};
+        SkyRendering        fine_r = {p, finest, width, height, false};
         const RenderRequest fine_request = sky_request(&fine_r, sky_shot[s]);
         Picture             fine, picture;
         arena_reset(p->other);
         status = precision_render(&fine, p, sky_shot[s], &fine_request, p->other);
         for (int k = 0; k < sky_settings && status == STATUS_OK; k++) {
-            r[k] = (SkyRendering){p, sky_samples[k], width, height};
+            r[k] = (SkyRendering){p, sky_samples[k], width, height, k == sky_near};
             const RenderRequest request = sky_request(&r[k], sky_shot[s]);
             arena_reset(p->arena);
             status = precision_render(&picture, p, sky_shot[s], &request, p->arena);
@@ -277,11 +280,11 @@ static Status knob_sky(Precision *p)
     }
     if (status != STATUS_OK) return status;
     for (int k = 0; k < sky_settings; k++) {
-        if (sky_samples[k] == 0) snprintf(name[k], sizeof name[k], "by slope");
+        if (sky_samples[k] == 0) snprintf(name[k], sizeof name[k], k == sky_near ? "slope and what is near" : "by slope");
         else snprintf(name[k], sizeof name[k], "%d directions", sky_samples[k]);
         work[k] = (BenchWork){render_sky, &r[k], 1};
         point[k].setting    = name[k];
-        point[k].is_default = sky_samples[k] == 0;
+        point[k].is_default = k == sky_near;
     }
     snprintf(of, sizeof of, "a picture of %d x %d, three bands", width, height);
     snprintf(against, sizeof against, "rms, %d directions and two bounces; worst: %s", finest,

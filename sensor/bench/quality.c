@@ -71,7 +71,7 @@ static BenchFrame frame_of(const Lab *lab, int view, int samples, int edge_sampl
                                 .optical = OPTICAL_RGB,
                                 .samples = samples,
                                 .edge_samples = edge_samples,
-                                .target_samples = target_samples,
+                                .target_samples = target_samples, .sky_visibility = true,
                                 .hidden_entity = -1};
     f.request.view = bench_view(&lab->scene, views[view].back_m, views[view].above_m,
                                 views[view].hfov_deg * rad_per_deg, lab->width, lab->height);

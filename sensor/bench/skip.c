@@ -76,6 +76,7 @@ static RenderRequest request_of(const SkipBench *s, const BenchScene *scene, con
                                    quick ? 48 : 320, quick ? 32 : 216);
     return (RenderRequest){.view = view, .bands = three_bands, .truth = true, .optical = OPTICAL_RGB, .samples = 1,
                            .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
+                           .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
                            .hidden_entity = -1, .skips_off = off};
 }
 

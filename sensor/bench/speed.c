@@ -29,6 +29,7 @@ RenderRequest speed_request(const View *view, unsigned bands, bool truth)
     const Config config = config_default();
     return (RenderRequest){.view = *view, .bands = bands, .truth = truth, .optical = OPTICAL_RGB, .samples = 1,
                            .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
+                           .sky_visibility = strcmp(config.sensor.sky_visibility, "on") == 0,
                            .hidden_entity = -1};
 }
 

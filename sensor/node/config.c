@@ -21,7 +21,9 @@ static const Setting keys[] = {
     {"sensor.optical", SETTING_TEXT, AT(sensor.optical), 0, 0, "rgb|pan|nir", "",
      "three channels or one: visible, or 0.7-1.1 um"},
     {"sensor.sky_samples", SETTING_INT, AT(sensor.sky_samples), 0, 4096, NULL, "",
-     "directions a ray's hit asks for light; 0: by its slope"},
+     "directions a ray's hit asks for light; 0: by its slope, and sky_visibility"},
+    {"sensor.sky_visibility", SETTING_TEXT, AT(sensor.sky_visibility), 0, 0, "on|off", "",
+     "contact shadows: vehicles and buildings hide sky and ground from what is near them"},
     {"sensor.gimbal_limit_deg", SETTING_DOUBLE, AT(sensor.gimbal_limit_deg), 0, 180, NULL, "deg",
      "largest angle off the body axis"},
     {"sensor.gimbal_rate_dps", SETTING_DOUBLE, AT(sensor.gimbal_rate_dps), 0.01, 10000, NULL, "deg/s", "largest rate"},
@@ -200,6 +202,7 @@ Config config_default(void)
     c.sensor.gimbal_lag_s     = 0.03;
     strcpy(c.sensor.bands, "optical,mwir,lwir,radar");
     strcpy(c.sensor.optical, "rgb");
+    strcpy(c.sensor.sky_visibility, "on");
     strcpy(c.sensor.antialias, "adaptive");
     strcpy(c.sensor.mount, "auto");
     c.sensor.mount_x_m = c.sensor.mount_y_m = c.sensor.mount_z_m = NAN;

@@ -20,6 +20,7 @@ typedef struct Config {
         char   bands[64];          /* comma separated */
         char   optical[8];         /* rgb, pan or nir */
         int    sky_samples;        /* directions a hit; 0: the quick form */
+        char   sky_visibility[8];  /* with the quick form: on or off */
         double gimbal_limit_deg, gimbal_rate_dps, gimbal_lag_s;
         char   mount[48];          /* auto, or a part that the sensor goes with */
         double mount_x_m, mount_y_m, mount_z_m; /* NaN: the mount's own */

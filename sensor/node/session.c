@@ -72,6 +72,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
                                .optical = config_optical(config),
                                .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
                                .sky_samples = config->sensor.sky_samples,
+                               .sky_visibility = strcmp(config->sensor.sky_visibility, "on") == 0,
                                .samples = config->sensor.samples, .hidden_entity = eye->hidden,
                                .budget = strcmp(config->quality.budget, "on") == 0,
                                .skips_off = s->shared->no_skip ? skips_all_off : 0};

@@ -72,7 +72,8 @@ static RenderRequest request_of(int n)
                            33 + (int)dice(n, 7, 0, 40), 33 + (int)dice(n, 8, 0, 30));
     RenderRequest request = {.view = view, .bands = 1 + (unsigned)dice(n, 9, 0, 15), .truth = true, .optical = OPTICAL_RGB,
                              .samples = dice(n, 10, 0, 1) < 0.25 ? 2 : 1, .edge_samples = dice(n, 11, 0, 1) < 0.7 ? 4 : 0,
-                             .target_samples = dice(n, 12, 0, 1) < 0.7 ? 32 : 0, .hidden_entity = dice(n, 13, 0, 1) < 0.3 ? 0 : -1};
+                             .target_samples = dice(n, 12, 0, 1) < 0.7 ? 32 : 0, .hidden_entity = dice(n, 13, 0, 1) < 0.3 ? 0 : -1,
+                             .sky_visibility = n % 3 != 2};
     if (request.bands >> BAND_RADAR & 1) request.profile_bins = 16, request.profile_bin_m = 4, request.profile_near_m = back_m - 30;
     return request;
 }
