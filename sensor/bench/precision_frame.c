@@ -135,6 +135,7 @@ static RenderRequest target_request(const Precision *p, int size, int turn, doub
 {
     RenderRequest request = precision_request(p, target_shot(size), side_px, side_px);
     request.view.focal_px = px * precision_go_round(&request.view, p, turn) / 7.4;
+    request.sky_visibility = false; /* its grid follows the size on the picture; its error has a row of its own */
     return request;
 }
 
