@@ -77,8 +77,11 @@ void detector_display_rgb(void *out, const float *const in[3], size_t count, con
     for (size_t i = 0; i < count; i++) {
         const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, shown = fmax(mean * d.scale + d.shift, 0);
         const bool   has_hue = mean > 0 && mean < INFINITY;
+        /* beyond full scale: the brightest channel to full scale, the others with it */
+        const double most = fmax(fmax(in[0][i], in[1][i]), in[2][i]) / mean;
+        const double kept = has_hue && shown * most > 1 ? 1 / most : shown;
         for (size_t c = 0; c < 3; c++)
-            display_write(out, 3 * i + c, &d, has_hue ? shown * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
+            display_write(out, 3 * i + c, &d, has_hue ? kept * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
     }
 }
 
