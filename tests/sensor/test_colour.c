@@ -113,7 +113,7 @@ static void bands_see(double w[3], const double *reflectance)
     for (int c = 0; c < 3; c++) w[c] = sum_of(daylight, reflectance, NULL, 20 - 10 * c, 11, true);
 }
 
-/* One pixel from radiance to the screen's light: colour, level from black to white, 16 bits, and back by sRGB's curve. */
+/* One pixel from radiance to the screen's light: colour, level from black to white, 16 bits; back by sRGB's curve. */
 static void shown_as(double rgb[3], const double w[3], const DisplayColour *colour, double white)
 {
     float    in[3] = {(float)w[0], (float)w[1], (float)w[2]};
