@@ -19,6 +19,9 @@ void display_colour(DisplayColour *out, const double white[3], double zero, doub
     }
 }
 
+/* No call to a library in the loop over pixels, as fmin is one. */
+static inline double least_of(double a, double b) { return a < b ? a : b; }
+
 void display_colour_apply(float *const out[3], const float *const in[3], size_t count, const DisplayColour *colour)
 {
     for (size_t i = 0; i < count; i++) {
@@ -28,11 +31,11 @@ void display_colour_apply(float *const out[3], const float *const in[3], size_t 
             for (int c = 0; c < 3; c++) out[c][i] = (float)seen[c];
             continue;
         }
-        for (int c = 0; c < 3; c++) balanced[c] = fmin((seen[c] - colour->zero) * colour->gain[c], colour->most);
+        for (int c = 0; c < 3; c++) balanced[c] = least_of((seen[c] - colour->zero) * colour->gain[c], colour->most);
         for (int c = 0; c < 3; c++)
             rgb[c] = matrix[c][0] * balanced[0] + matrix[c][1] * balanced[1] + matrix[c][2] * balanced[2];
         const double grey  = luminance[0] * rgb[0] + luminance[1] * rgb[1] + luminance[2] * rgb[2];
-        const double least = fmin(fmin(rgb[0], rgb[1]), rgb[2]);
+        const double least = least_of(least_of(rgb[0], rgb[1]), rgb[2]);
         const double share = grey > 0 && least < 0 ? grey / (grey - least) : 1;
         for (int c = 0; c < 3; c++)
             out[c][i] = (float)(colour->zero + (share < 1 ? grey + share * (rgb[c] - grey) : rgb[c]));
