@@ -11,6 +11,13 @@ double optical_ground_w_m2(int channel, const Air *air, const Materials *materia
            (air->sun_w_m2[channel] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[channel]);
 }
 
+void optical_white(double w_m2_sr[3], const Air *air)
+{
+    static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
+    for (int c = 0; c < 3; c++)
+        w_m2_sr[c] = (air->sun_w_m2[rgb[c]] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[rgb[c]]) / pi_rad;
+}
+
 float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *v, int i)
 {
     double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];

@@ -21,4 +21,8 @@ float optical_beyond(int channel, const Air *air, double ground_w_m2, const doub
 /* What level, sunlit ground of the mean land sends up, W/m2. */
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials);
 
+/* What white, level, diffuse ground in the open sends up under this sun and sky, R G B, W/(m2 sr): what displays balance
+ * their white by. Of an Air that answers these three bands. */
+void   optical_white(double w_m2_sr[3], const Air *air);
+
 #endif

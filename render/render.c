@@ -762,6 +762,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     choose_quanta(&job);
 
     Status status = allocate_planes(&picture, request, snapshot->count, arena);
+    if (status == STATUS_OK && picture.optical[1]) optical_white(picture.white_w_m2_sr, air);
     if (status == STATUS_OK)
         status = effects_scene(&job.effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
                                world->materials.ground_rho, render_air_bands(request->bands, request->optical), arena);

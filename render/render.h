@@ -95,6 +95,7 @@ typedef struct RenderTimes {
 typedef struct Picture {
     int       width, height;
     float    *optical[3];           /* R G B, or pan or near infrared in [0] alone: W/(m2 sr) */
+    double    white_w_m2_sr[3];     /* R G B: of white, level ground in the open (optical_white); 0 without RGB */
     float    *mwir, *lwir;          /* W/(m2 sr) */
     float    *radar;                /* relative */
     double   *profile;              /* [profile_bins][radar_bounces], relative power */

@@ -160,6 +160,7 @@ void chain_destroy(Chain *c)
 const uint16_t *chain_counts(const Chain *c, int channel) { return c->channel[channel].count; }
 const float    *chain_values(const Chain *c, int channel) { return c->channel[channel].value; }
 double          chain_step_e(const Chain *c) { return c->step_e; }
+double          chain_full(const Chain *c) { return c->full; }
 
 /* ---- figures ---------------------------------------------------------------------------------- */
 

@@ -41,5 +41,7 @@ double chain_sigma(const Chain *chain, int channel, double radiance_w_m2_sr);
 double chain_netd_k(const Chain *chain, double temp_k);
 /* Electrons a count. */
 double chain_step_e(const Chain *chain);
+/* The greatest count. */
+double chain_full(const Chain *chain);
 
 #endif

@@ -75,10 +75,15 @@ void detector_display_rgb(void *out, const float *const in[3], size_t count, con
     Display d;
     display_prepare(&d, config, level);
     for (size_t i = 0; i < count; i++) {
-        const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, shown = fmax(mean * d.scale + d.shift, 0);
+        const double mean = ((double)in[0][i] + in[1][i] + in[2][i]) / 3, lit = mean * d.scale + d.shift;
+        const double shown = lit > 0 ? lit : 0;
         const bool   has_hue = mean > 0 && mean < INFINITY;
+        /* beyond full scale: the brightest channel to full scale, the others with it */
+        const float  brighter = in[0][i] > in[1][i] ? in[0][i] : in[1][i];
+        const double most = (brighter > in[2][i] ? brighter : in[2][i]) / mean;
+        const double kept = has_hue && shown * most > 1 ? 1 / most : shown;
         for (size_t c = 0; c < 3; c++)
-            display_write(out, 3 * i + c, &d, has_hue ? shown * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
+            display_write(out, 3 * i + c, &d, has_hue ? kept * (in[c][i] / mean) : in[c][i] * d.scale + d.shift);
     }
 }
 

@@ -12,7 +12,7 @@ void quantise_counts(uint16_t *out, const float *in, size_t count, double step, 
 /* Quantisation to config->bits: monotone, saturating, rounding to nearest. out: uint8_t or uint16_t [count]. */
 void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level);
 /* Three planes to RGB interleaved. The level is that of their mean; a pixel's colours keep their ratios (a black level
- * taken off each channel would turn haze into colour). out: uint8_t or uint16_t [3 * count]. */
+ * taken off each channel would turn haze into colour), also beyond full scale. out: uint8_t or uint16_t [3 * count]. */
 void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
                           DetectorLevel level);
 

@@ -1,5 +1,6 @@
 #include "sensor/node/frame_files.h"
 
+#include "sensor/detector/colour.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/quantise.h"
 #include "sensor/publish/image_file.h"
@@ -375,6 +376,24 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     return d;
 }
 
+/* White balance of this frame's day, in radiance or in counts. Photons of a band are in proportion to its radiance, so
+ * white is asked for at a radiance that any sensor can count. */
+static DisplayColour colour_of(const FrameFiles *frame)
+{
+    const Chain  *chain = frame->chain[BAND_OPTICAL];
+    const double *white = frame->picture->white_w_m2_sr, mean = (white[0] + white[1] + white[2]) / 3;
+    DisplayColour colour;
+    if (!chain || !(mean > 0)) {
+        display_colour(&colour, white, chain ? chain_counts_at(chain, 0, 0) : 0, INFINITY);
+        return colour;
+    }
+    const double zero = chain_counts_at(chain, 0, 0);
+    double       counts[3];
+    for (int c = 0; c < 3; c++) counts[c] = chain_counts_at(chain, c, white[c] / mean) - zero;
+    display_colour(&colour, counts, zero, chain_full(chain) - zero);
+    return colour;
+}
+
 static Status write_raw(const FrameFiles *frame, int band, int planes)
 {
     const Chain *chain = frame->chain[band];
@@ -426,7 +445,7 @@ static Status write_png(const FrameFiles *frame, int band)
     } else {
         const float         *in[3] = {NULL, NULL, NULL}, *out[3] = {noisy, noisy + count, noisy + 2 * count};
         const int            planes   = band_radiance(in, p, band);
-        const DetectorConfig detector = detector_of(frame, band);
+        DetectorConfig       detector = detector_of(frame, band);
         if (chain) {
             chain_run(chain, in, &p->small, frame->frame, frame->rate_px_s);
             for (int c = 0; c < planes; c++) out[c] = chain_values(chain, c);
@@ -435,6 +454,15 @@ static Status write_png(const FrameFiles *frame, int band)
             for (int c = 0; c < planes; c++)
                 detector_noise(noisy + (size_t)c * count, in[c], 0, count, detector.noise_sigma,
                                (uint64_t)frame->config->seed, (uint32_t)(3 * band + c), (uint32_t)frame->frame);
+        }
+        if (rgb) {
+            float *const        coloured[3] = {noisy, noisy + count, noisy + 2 * count};
+            const DisplayColour colour      = colour_of(frame);
+            display_colour_apply(coloured, out, count, &colour);
+            for (int c = 0; c < 3; c++) out[c] = coloured[c];
+            /* counts of white whose bands' mean is 1 W/(m2 sr) */
+            if (chain && colour.white > 0)
+                detector.level_high = colour.zero + colour.white * frame->config->detector.optical_high_w_m2_sr;
         }
         const DetectorLevel level = follow_level(frame, band, &detector, detector_level(&detector, out, planes, count));
         frame->level[band].shown  = level;

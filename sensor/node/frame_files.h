@@ -16,7 +16,7 @@ typedef struct FrameLevel {
     bool          known;
     double        time_s;
     DetectorLevel level;
-    DetectorLevel shown;            /* of the last display made: what its black and white stand for */
+    DetectorLevel shown;            /* of the last display made: what its black and white stand for; R G B: balanced */
 } FrameLevel;
 
 typedef struct FrameFiles {

@@ -1,0 +1,397 @@
+/* Displayed colours against those that an eye's responses give to the same spectra; white at any height of the sun. */
+#include "tests/check.h"
+#include "tests/render/hand_world.h"
+#include "tests/sensor/colour_spectra.h"
+
+#include "render/optical.h"
+#include "sensor/detector/chain.h"
+#include "sensor/detector/colour.h"
+#include "sensor/detector/quantise.h"
+#include "sensor/node/frame_files.h"
+#include "sensor/publish/image_file.h"
+
+/* ---- colorimetry, which the program has none of --------------------------------------------------- */
+
+static double sum_of(const double *x, const double *y, const double *z, int from, int points, bool trapezoid)
+{
+    double sum = 0;
+    for (int i = 0; i < points; i++)
+        sum += (trapezoid && (i == 0 || i == points - 1) ? 0.5 : 1) * x[from + i] * (y ? y[from + i] : 1) *
+               (z ? z[from + i] : 1);
+    return sum;
+}
+
+/* XYZ over that of white. reflectance: NULL for white. */
+static void eye_sees(double over_white[3], const double *reflectance)
+{
+    for (int k = 0; k < 3; k++)
+        over_white[k] = sum_of(daylight, observer[k], reflectance, 0, spectrum_points, false) /
+                        sum_of(daylight, observer[k], NULL, 0, spectrum_points, false);
+}
+
+/* CIE 1976 L* a* b*. */
+static void lab_of(double lab[3], const double over_white[3])
+{
+    double f[3];
+    for (int k = 0; k < 3; k++) {
+        const double t = over_white[k], edge = 6.0 / 29;
+        f[k] = t > edge * edge * edge ? cbrt(t) : t / (3 * edge * edge) + 4.0 / 29;
+    }
+    lab[0] = 116 * f[1] - 16, lab[1] = 500 * (f[0] - f[1]), lab[2] = 200 * (f[1] - f[2]);
+}
+
+/* Linear sRGB to the same; IEC 61966-2-1. */
+static void lab_of_rgb(double lab[3], const double rgb[3])
+{
+    static const double xyz_from_rgb[3][3] = {
+        {0.4124, 0.3576, 0.1805}, {0.2126, 0.7152, 0.0722}, {0.0193, 0.1192, 0.9505}};
+    double over_white[3];
+    for (int k = 0; k < 3; k++) {
+        const double *m = xyz_from_rgb[k];
+        over_white[k] = (m[0] * rgb[0] + m[1] * rgb[1] + m[2] * rgb[2]) / (m[0] + m[1] + m[2]);
+    }
+    lab_of(lab, over_white);
+}
+
+static double hue_deg(const double lab[3])
+{
+    const double h = atan2(lab[2], lab[1]) / rad_per_deg;
+    return h < 0 ? h + 360 : h;
+}
+
+/* CIEDE2000, all weights 1: CIE 142. */
+static double ciede2000(const double a[3], const double b[3])
+{
+    const double c_mean = 0.5 * (hypot(a[1], a[2]) + hypot(b[1], b[2])), c7 = pow(c_mean, 7), big = pow(25, 7);
+    const double g = 0.5 * (1 - sqrt(c7 / (c7 + big)));
+    const double p[3] = {a[0], (1 + g) * a[1], a[2]}, q[3] = {b[0], (1 + g) * b[1], b[2]};
+    const double cp = hypot(p[1], p[2]), cq = hypot(q[1], q[2]), hp = hue_deg(p), hq = hue_deg(q);
+    double       dh = cp * cq > 0 ? hq - hp : 0;
+    if (dh > 180) dh -= 360;
+    if (dh < -180) dh += 360;
+    const double dl = q[0] - p[0], dc = cq - cp, dH = 2 * sqrt(cp * cq) * sin(0.5 * dh * rad_per_deg);
+    const double l = 0.5 * (p[0] + q[0]), c = 0.5 * (cp + cq);
+    double       h = hp + hq;
+    if (cp * cq > 0) h = fabs(hp - hq) <= 180 ? 0.5 * h : h < 360 ? 0.5 * (h + 360) : 0.5 * (h - 360);
+    const double t = 1 - 0.17 * cos((h - 30) * rad_per_deg) + 0.24 * cos(2 * h * rad_per_deg) +
+                     0.32 * cos((3 * h + 6) * rad_per_deg) - 0.20 * cos((4 * h - 63) * rad_per_deg);
+    const double l50 = (l - 50) * (l - 50), cc7 = pow(c, 7);
+    const double sl = 1 + 0.015 * l50 / sqrt(20 + l50), sc = 1 + 0.045 * c, sh = 1 + 0.015 * c * t;
+    const double turn = 30 * exp(-pow((h - 275) / 25, 2));
+    const double rt = -2 * sqrt(cc7 / (cc7 + big)) * sin(2 * turn * rad_per_deg);
+    const double x = dl / sl, y = dc / sc, z = dH / sh;
+    return sqrt(x * x + y * y + z * z + rt * y * z);
+}
+
+/* Sharma, Wu and Dalal, Color Res. Appl. 30, 21, 2005, four pairs of the table; and four ColorChecker patches as the
+ * maker publishes them in sRGB. */
+static void the_judge_is_right(void **state)
+{
+    (void)state;
+    static const double pair[4][7] = {{50, 2.6772, -79.7751, 50, 0, -82.7485, 2.0425},
+                                      {50, 2.4900, -0.0010, 50, -2.4900, 0.0009, 7.1792},
+                                      {50, 2.5, 0, 73, 25, -18, 27.1492},
+                                      {60.2574, -34.0099, 36.2677, 60.4626, -34.1751, 39.4387, 1.2644}};
+    for (int k = 0; k < 4; k++) CHECK_NEAR(ciede2000(pair[k], pair[k] + 3), pair[k][6], 1e-4);
+    static const struct { int patch; double code[3]; } known[] = {{0, {115, 82, 68}}, {3, {87, 108, 67}},
+                                                                  {13, {70, 148, 73}}, {21, {122, 122, 121}}};
+    for (int k = 0; k < 4; k++) {
+        double seen[3], lab[3], rgb[3], want[3];
+        eye_sees(seen, patch[known[k].patch].reflectance);
+        lab_of(lab, seen);
+        for (int c = 0; c < 3; c++) rgb[c] = pow((known[k].code[c] / 255 + 0.055) / 1.055, 2.4);
+        lab_of_rgb(want, rgb);
+        CHECK(ciede2000(lab, want) < 2.5);
+    }
+}
+
+/* ---- displayed ------------------------------------------------------------------------------------ */
+
+/* What the three bands hold of a spectrum, R G B. */
+static void bands_see(double w[3], const double *reflectance)
+{
+    for (int c = 0; c < 3; c++) w[c] = sum_of(daylight, reflectance, NULL, 20 - 10 * c, 11, true);
+}
+
+/* One pixel from radiance to the screen's light: colour, level from black to white, 16 bits; back by sRGB's curve. */
+static void shown_as(double rgb[3], const double w[3], const DisplayColour *colour, double white)
+{
+    float    in[3] = {(float)w[0], (float)w[1], (float)w[2]};
+    float   *plane[3] = {in, in + 1, in + 2};
+    uint16_t code[3];
+    DetectorConfig config = detector_default_config();
+    config.bits = 16;
+    config.display_gamma = true;
+    if (colour) display_colour_apply(plane, (const float *const *)plane, 1, colour);
+    detector_display_rgb(code, (const float *const *)plane, 1, &config, (DetectorLevel){0, white});
+    for (int c = 0; c < 3; c++) {
+        const double x = code[c] / 65535.0;
+        rgb[c] = x <= 0.04045 ? x / 12.92 : pow((x + 0.055) / 1.055, 2.4);
+    }
+}
+
+/* mean and greatest CIEDE2000; hue: of each, as shown. */
+static void difference(double *mean, double *most, double *hue, const Spectrum *of, int count, bool balanced)
+{
+    double        white[3];
+    DisplayColour colour;
+    bands_see(white, daylight);
+    for (int c = 0; c < 3; c++) white[c] = sum_of(daylight, NULL, NULL, 20 - 10 * c, 11, true);
+    display_colour(&colour, white, 0, INFINITY);
+    *mean = *most = 0;
+    for (int i = 0; i < count; i++) {
+        double w[3], rgb[3], seen[3], want[3], got[3];
+        bands_see(w, of[i].reflectance);
+        shown_as(rgb, w, balanced ? &colour : NULL, colour.white);
+        eye_sees(seen, of[i].reflectance);
+        lab_of(want, seen);
+        lab_of_rgb(got, rgb);
+        const double d = ciede2000(want, got);
+        *mean += d / count;
+        *most = fmax(*most, d);
+        if (hue) hue[i] = hue_deg(got);
+    }
+}
+
+/* Figures of the header, and what bands shown as they are would give: green grass and olive paint in mint. */
+static void colours_are_those_an_eye_sees(void **state)
+{
+    (void)state;
+    double mean, most, hue[matter_count], raw_mean, raw_most, raw_hue[matter_count];
+    difference(&mean, &most, NULL, patch, patch_count, true);
+    print_message("ColorChecker: CIEDE2000 %.2f on average, %.2f at most\n", mean, most);
+    CHECK(mean < 3.1 && most < 7.5);
+    difference(&mean, &most, hue, matter, matter_count, true);
+    difference(&raw_mean, &raw_most, raw_hue, matter, matter_count, false);
+    print_message("materials: %.2f, %.2f; grass at %.0f degrees; bands as they are: %.2f, %.2f; %.0f\n", mean, most,
+                  hue[0], raw_mean, raw_most, raw_hue[0]);
+    CHECK(mean < 1.6 && most < 3.7);
+    CHECK(hue[0] > 110 && hue[0] < 135);
+    CHECK(raw_mean > 2 * mean && raw_hue[0] > hue[0]);
+}
+
+/* ---- the day -------------------------------------------------------------------------------------- */
+
+static int elevation_of(double sun_enu[3], double deg)
+{
+    sun_enu[0] = 0, sun_enu[1] = -cos(deg * rad_per_deg), sun_enu[2] = sin(deg * rad_per_deg);
+    return 0;
+}
+
+/* Radiance of level, diffuse ground of these reflectances as the renderer shades it, near by. */
+static void ground_sends(double w[3], const float rho[3])
+{
+    static const int       channel[3] = {AIR_R, AIR_G, AIR_B};
+    static Hits            hits;
+    static Rays            rays;
+    static const uint16_t  material[hits_capacity];
+    static const uint8_t   shadow[hits_capacity];
+    static float           texture[hits_capacity], out[hits_capacity];
+    Material               row = {.gloss = 0};
+    const Materials        materials = {.count = 1, .material = &row};
+    hits.count = rays.count = 1;
+    hits.n_enu[2][0] = hits.n_geo[2][0] = 1;
+    hits.range_m[0] = 1e-3;
+    rays.d_enu[2][0] = -1;
+    texture[0] = 1;
+    for (int c = 0; c < 3; c++) {
+        row.rho[channel[c]] = rho[c];
+        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, shadow, NULL, NULL,
+                      NULL);
+        w[c] = out[0];
+    }
+}
+
+/* A white sheet is white within a code, dawn to noon, by radiance and by a camera's counts; grass of the material
+ * table is grass. */
+static void white_is_white_at_any_height_of_the_sun(void **state)
+{
+    (void)state;
+    static const double deg[] = {-8, -3, 0, 2, 5, 10, 20, 30, 45, 60, 75, 90};
+    static const float  white_rho[3] = {0.7f, 0.7f, 0.7f};
+    const int           grass = materials_find(&hand.world.materials, "grass_green");
+    SensorPreset        preset;
+    Chain              *chain;
+    CHECK(grass >= 0);
+    assert_int_equal(preset_read(&preset, "etc/sensors.csv", "tv"), STATUS_OK);
+    preset.optical = OPTICAL_RGB;
+    preset_refresh(&preset);
+    assert_int_equal(chain_create(&chain, &preset, 32, 32, 1, 1), STATUS_OK);
+    double balance_noon = 0, balance_low = 0;
+    for (int k = 0; k < (int)(sizeof deg / sizeof *deg); k++) {
+        double sun_enu[3], white[3], w[3], sheet[3], rgb[3], lab[3];
+        elevation_of(sun_enu, deg[k]);
+        arena_reset(hand.air_arena);
+        hand_air_on(sun_enu, 2);
+        optical_white(white, &hand.air);
+        DisplayColour colour;
+        display_colour(&colour, white, 0, INFINITY);
+        ground_sends(sheet, white_rho);
+        for (int bits = 8; bits <= 16; bits += 8) {
+            float    in[3] = {(float)sheet[0], (float)sheet[1], (float)sheet[2]}, *plane[3] = {in, in + 1, in + 2};
+            uint16_t wide[3];
+            uint8_t  narrow[3];
+            DetectorConfig config = detector_default_config();
+            config.bits = bits;
+            config.display_gamma = true;
+            display_colour_apply(plane, (const float *const *)plane, 1, &colour);
+            detector_display_rgb(bits == 16 ? (void *)wide : narrow, (const float *const *)plane, 1, &config,
+                                 (DetectorLevel){0, colour.white});
+            for (int c = 0; c < 3; c++) {
+                const int code = bits == 16 ? wide[c] >> 8 : narrow[c];
+                const int next = bits == 16 ? wide[(c + 1) % 3] >> 8 : narrow[(c + 1) % 3];
+                CHECK(abs(code - next) <= 1);
+                CHECK(code >= 217 && code <= 219); /* sRGB of 0.7 */
+            }
+        }
+        /* a camera's counts of the sheet, without their noise: the same */
+        const double zero = chain_counts_at(chain, 0, 0), full = chain_full(chain) - zero;
+        const double scale = 0.3 * full / (chain_counts_at(chain, 0, white[0]) - zero); /* exposed so */
+        double       counts[3];
+        for (int c = 0; c < 3; c++) counts[c] = chain_counts_at(chain, c, white[c] * scale) - zero;
+        display_colour(&colour, counts, zero, full);
+        float in[3], *plane[3] = {in, in + 1, in + 2};
+        for (int c = 0; c < 3; c++) in[c] = (float)chain_counts_at(chain, c, sheet[c] * scale);
+        display_colour_apply(plane, (const float *const *)plane, 1, &colour);
+        for (int c = 0; c < 3; c++) CHECK_NEAR((in[c] - zero) / (0.7 * colour.white), 1, 2e-3);
+
+        display_colour(&colour, white, 0, INFINITY);
+        const Material *m = &hand.world.materials.material[grass];
+        ground_sends(w, (const float[3]){m->rho[AIR_R], m->rho[AIR_G], m->rho[AIR_B]});
+        shown_as(rgb, w, &colour, colour.white);
+        lab_of_rgb(lab, rgb);
+        CHECK(hue_deg(lab) > 110 && hue_deg(lab) < 135);
+        if (deg[k] == 90) balance_noon = white[2] / white[0];
+        if (deg[k] == 10) balance_low = white[2] / white[0];
+    }
+    CHECK(balance_noon > 1.1 * balance_low); /* there was something to balance */
+    chain_destroy(chain);
+}
+
+/* ---- edges ---------------------------------------------------------------------------------------- */
+
+/* Too colourful for a screen, or too bright: the hue stays. Not finite: not touched. No light: as it is. */
+static void hue_stays_at_the_ends(void **state)
+{
+    (void)state;
+    DisplayColour colour;
+    float         r[5] = {0, 1, 3, NAN, 0}, g[5] = {1, 0, 2, 1, 0}, b[5] = {0, 0, 1, INFINITY, 0};
+    float *const  plane[3] = {r, g, b};
+    display_colour(&colour, (double[3]){1, 1, 1}, 0, INFINITY);
+    display_colour_apply(plane, (const float *const *)plane, 5, &colour);
+    CHECK(g[0] > 0.8 && r[0] > 0 && fabs(b[0]) < 1e-6); /* a green that blue would be taken from */
+    CHECK(r[1] > 0.5 && fabs(g[1]) < 1e-6 && b[1] > 0);
+    CHECK(isnan(r[3]) && g[3] == 1 && isinf(b[3]) && r[4] == 0);
+    double before[3], after[3];
+    static const double full_green[3] = {0.1380, 1.1569, -0.1236};
+    lab_of_rgb(before, full_green);
+    lab_of_rgb(after, (double[3]){r[0], g[0], b[0]});
+    CHECK_NEAR(hue_deg(after), hue_deg(before), 8);
+
+    uint8_t        code[3 * 5];
+    DetectorConfig config = detector_default_config();
+    detector_display_rgb(code, (const float *const *)plane, 3, &config, (DetectorLevel){0, 1});
+    CHECK(code[6] == 255); /* 3 : 2 : 1 and brighter than white by far */
+    CHECK_NEAR(code[7] / 255.0, g[2] / r[2], 0.003);
+    CHECK_NEAR(code[8] / 255.0, b[2] / r[2], 0.003);
+
+    /* counts: one channel full means that white is full, not that it has a colour */
+    display_colour(&colour, (double[3]){1000, 1500, 1200}, 16, 4000);
+    float        full[3] = {4016, 4016, 4016};
+    float *const one[3] = {full, full + 1, full + 2};
+    display_colour_apply(one, (const float *const *)one, 1, &colour);
+    CHECK_NEAR(full[0], full[1], 0.01);
+    CHECK_NEAR(full[2], full[1], 0.01);
+    CHECK_NEAR(full[1], 16 + 4000 * (3700.0 / 3) / 1500, 0.01);
+
+    const double dark[2][3] = {{0, 1, 1}, {NAN, 1, 1}};
+    for (int k = 0; k < 2; k++) {
+        display_colour(&colour, dark[k], 0, INFINITY);
+        CHECK(colour.gain[0] == 1 && colour.gain[2] == 1 && colour.white == 0);
+    }
+}
+
+/* ---- frames --------------------------------------------------------------------------------------- */
+
+/* render() says what white is, and the picture's file shows it so; EXR planes are not touched. */
+static void a_frame_is_balanced_by_its_own_day(void **state)
+{
+    (void)state;
+    double sun_enu[3], white[3];
+    elevation_of(sun_enu, 20);
+    hand_air_on(sun_enu, 2);
+    hand_clear();
+    const View    view = hand_view((const double[3]){0, 0, 100}, (const double[3]){0, 1, -1}, 16, 16, 100);
+    RenderRequest request = hand_request(&view);
+    request.bands = 1 << BAND_OPTICAL;
+    request.optical = OPTICAL_RGB;
+    Picture picture = hand_render(&request, hand.pool);
+    optical_white(white, &hand.air);
+    CHECK(white[0] > 0);
+    assert_memory_equal(picture.white_w_m2_sr, white, sizeof white);
+
+    /* its planes as a white sheet, shades of it on the left */
+    float kept[3];
+    for (int i = 0; i < 256; i++)
+        for (int c = 0; c < 3; c++) picture.optical[c][i] = (float)(white[c] * (i % 16) / 16);
+    for (int c = 0; c < 3; c++) kept[c] = picture.optical[c][15];
+    Config        config = config_default();
+    Chain *const  chain[BAND_COUNT] = {NULL};
+    FrameLevel    level[BAND_COUNT] = {0};
+    config.detector.noise = 0;
+    config.detector.raw = false;
+    char           folder[temp_path_size], path[temp_path_size + 64];
+    static uint8_t rgb[256 * 3];
+    CHECK(temp_folder(folder));
+    assert_int_equal(frame_files_prepare_displays(folder, request.bands, 0), STATUS_OK);
+    FrameFiles       files = {.out = folder, .config = &config, .world = &hand.world, .picture = &picture,
+                              .snapshot = &hand.snapshot, .request = &request, .host = "h", .config_sha256 = "0",
+                              .frame = 0, .png = true, .chain = chain, .level = level};
+    snprintf(path, sizeof path, "%s/frames/optical/000000.png", folder);
+
+    /* by radiance; then by counts of a camera without noise, at a level by itself and at one by hand */
+    SensorPreset preset;
+    Chain       *camera, *chains[BAND_COUNT] = {NULL};
+    assert_int_equal(preset_read(&preset, "etc/sensors.csv", "tv"), STATUS_OK);
+    preset.optical     = OPTICAL_RGB;
+    preset.noise_scale = preset.bad_share = 0;
+    preset_refresh(&preset);
+    assert_int_equal(chain_create(&camera, &preset, 16, 16, 1, 1), STATUS_OK);
+    chains[BAND_OPTICAL] = camera;
+    for (int pass = 0; pass < 3; pass++) {
+        if (pass > 0) files.chain = chains, chain_expose(camera, (const float *const *)picture.optical);
+        if (pass == 2) {
+            strcpy(config.detector.level, "manual");
+            config.detector.optical_high_w_m2_sr = (white[0] + white[1] + white[2]) / 3;
+        }
+        level[BAND_OPTICAL].known = false;
+        assert_int_equal(frame_files_write_displays(&files, hand.pool), STATUS_OK);
+        assert_int_equal(image_read_png(rgb, path), STATUS_OK);
+        for (int i = 0; i < 256; i++) /* a count of the camera is up to a code at the dark end */
+            for (int c = 0; c < 2; c++)
+                CHECK(abs(rgb[3 * i + c] - rgb[3 * i + c + 1]) <= (pass == 0 ? 1 : 4));
+        CHECK(rgb[3 * 14] > 220 && rgb[3 * 1] < 110);
+        if (pass == 2) CHECK(rgb[3 * 8] >= 186 && rgb[3 * 8] <= 190); /* sRGB of 8 / 16 */
+    }
+    chain_destroy(camera);
+    for (int c = 0; c < 3; c++) CHECK(picture.optical[c][15] == kept[c]);
+    remove(path);
+}
+
+static int open_all(void **state)
+{
+    (void)state;
+    return hand_open(true);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_judge_is_right),
+        cmocka_unit_test(colours_are_those_an_eye_sees),
+        cmocka_unit_test(white_is_white_at_any_height_of_the_sun),
+        cmocka_unit_test(hue_stays_at_the_ends),
+        cmocka_unit_test(a_frame_is_balanced_by_its_own_day),
+    };
+    return cmocka_run_group_tests(tests, open_all, hand_close);
+}
