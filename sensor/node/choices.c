@@ -160,7 +160,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
     const Track *target = NULL;
     double       most_m = -1;
 
-    for (int i = 0; i < survey->track_count; i++) /* land first, then anybody; who went farthest */
+    for (int i = 0; i < survey->track_count; i++) /* land entities first, then any; the one that went farthest */
         if (choice_is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
             target = &survey->track[i];
             most_m = path_m(target);

@@ -52,7 +52,7 @@ void choice_say_night(Choices *choices, unsigned bands, double unix_s, const Hos
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
-/* Who is set onto the ground: nobody, those that an invented landscape does not fit, or all that stand on it. */
+/* Which entities are set onto the ground: none, those that invented ground does not fit, or all that stand on it. */
 typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_MISFITS, GROUND_CONTACT_ALL } GroundContact;
 
 /* The ground: of the files of terrain.*, else the invented landscape with its sea, fitted to the log (see

@@ -238,7 +238,7 @@ static void add_flight(Gathering *g, int t)
     const Shot   *shot   = track->type.kind == dis_kind_munition ? choice_shot_of(survey, track->id) : NULL;
     const Track  *target = shot ? survey_track(survey, shot->hit) : NULL;
     const bool   *fixed  = g->e->fixed + g->e->first[t];
-    /* a hit that names nobody: what the host's own was found to have hit */
+    /* a hit without an entity: what the host's own was found to have hit */
     if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
         target = survey_track(survey, g->aim);
     for (int i = 0; i + 1 < track->count; i++)

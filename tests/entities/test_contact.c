@@ -171,7 +171,7 @@ static void misfits_alone_are_set_onto_an_invented_ground(void **state)
         if (row[n].left_m == row[n].above_m) assert_memory_equal(&e, &before, sizeof e); /* to the bit */
         if (row[n].type.kind != 1 || row[n].type.domain != 1)
             if (row[n].type.kind != 3) assert_memory_equal(e.r_ecef_from_body, before.r_ecef_from_body, sizeof e.r_ecef_from_body);
-        e = before; /* all: nobody that stands is excepted, ships are not meant */
+        e = before; /* all: no standing entity is excepted; ships are not meant */
         contact_set(&e, &all, &box);
         if (contact_applies(row[n].type)) CHECK_NEAR(contact_above_m(&all, e.p_ecef), 0, 2e-3);
         else assert_memory_equal(&e, &before, sizeof e);

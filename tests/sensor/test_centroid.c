@@ -428,7 +428,7 @@ static void threads_and_skips_make_no_difference(void **state)
     CHECK(memcmp(first, again, sizeof first) == 0);
 }
 
-/* Handing cells on changes no plane; asked for by nobody, there are none. */
+/* Handing cells on changes no plane; without a request there are none. */
 static void planes_do_not_know_of_cells(void **state)
 {
     (void)state;

@@ -109,7 +109,7 @@ static SurfaceClass surface_under(const Landscape *land, const TrackPoint *point
 }
 
 /* A village with one tank: the ground is where any of them stands. */
-static void whoever_stands_says_where_the_ground_is(void **state)
+static void standing_entities_say_where_the_ground_is(void **state)
 {
     (void)state;
     Exercise     *e = fresh();
@@ -143,7 +143,7 @@ static void a_helicopter_that_hangs_is_not_parked(void **state)
         const int parked = e->survey.track_count;
         stand(e, helicopter, 30, 40, 300.5, 0, 8);          /* among soldiers, as high as they */
         stand(e, helicopter, 60, 60, 320, 0, 8);            /* hangs 20 m above them, to the millimetre */
-        stand(e, helicopter, 5000, 0, 340, 0, 8);           /* nobody knows */
+        stand(e, helicopter, 5000, 0, 340, 0, 8);           /* unknown */
         stand(e, jet, -5000, 0, 310, 0, 8);                 /* wings do not hang */
         stand(e, jet, -6000, 0, 310, 60, 8);                /* flies */
         stand(e, helicopter, 25, 30, 300, 0, 2);            /* too short to tell */
@@ -151,7 +151,7 @@ static void a_helicopter_that_hangs_is_not_parked(void **state)
         for (int n = 0; n < 8; n++) frozen->point[n].frozen = true;
         Track *sways = stand(e, helicopter, 35, 50, 300, 0, 8);
         for (int n = 0; n < 8; n++) sways->point[n].p_ecef[0] += 0.02 * (n & 1);
-        if (!soldiers) /* without anybody to compare with */
+        if (!soldiers) /* without neighbours to compare with */
             for (int t = 0; t < parked; t++) e->track[t].type = (DisEntityType){.kind = 4};
         gather(&said, e);
         CHECK(said.stance[parked] == (soldiers ? STANCE_LANDED : STANCE_FLIES));
@@ -287,7 +287,7 @@ static int close_catalog(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(whoever_stands_says_where_the_ground_is),
+        cmocka_unit_test(standing_entities_say_where_the_ground_is),
         cmocka_unit_test(a_helicopter_that_hangs_is_not_parked),
         cmocka_unit_test(a_misfit_is_set_onto_it_and_said),
         cmocka_unit_test(ships_float_and_tanks_stay_dry),

@@ -17,7 +17,7 @@ seen "$tmp/out" >"$tmp/seen"
 check "targets are there" is "$(wc -l <"$tmp/seen")" '>' 40
 check "all of four words" [ -z "$(awk 'NF != 4' "$tmp/seen")" ]
 check "no fraction beyond 0 .. 1" [ -z "$(awk '$2 != "none" && !($2 >= 0 && $2 <= 1)' "$tmp/seen")" ]
-check "whole, and nobody named; hidden, and somebody" \
+check "whole, and no occluder named; hidden, and an occluder" \
     [ -z "$(awk '$2 != "none" && ($2 == 1) != ($4 == "-")' "$tmp/seen")" ]
 check "nor at two decimals" [ -z "$(awk '$2 != "none" && (sprintf("%.2f", $2) == "1.00") != ($4 == "-")' "$tmp/seen")" ]
 check "a box where there are pixels" [ -z "$(awk '($1 > 0) != ($3 == "box")' "$tmp/seen")" ]

@@ -110,7 +110,7 @@ static void true_hills_are_believed(void **state)
     count = add(fix, count, 1, 0, 0, 0);
     count = add(fix, count, 2, 30, 0, 30);
     assert_int_equal(outvoted(fix, count), 0);
-    count = 0; /* who belongs to nobody is not judged here */
+    count = 0; /* places of no voter are not judged here */
     for (int n = 0; n < 5; n++) count = add(fix, count, 0, 40 * n, 0, n == 2 ? 30 : 0);
     assert_int_equal(outvoted(fix, count), 0);
     fix[0].voter = 6;
