@@ -19,8 +19,8 @@ steps() {
 replay "$tmp/air.pcap" "$tmp/own" "${span[@]}" --set detector.agc_s=0
 replay "$tmp/air.pcap" "$tmp/default" "${span[@]}"
 check "14 frames" [ "$(levels "$tmp/default" | wc -l)" = 14 ]
-check "each by itself: it jumps" is "$(steps "$tmp/own")" '>' 0.4
-check "by default: it does not" is "$(steps "$tmp/default")" '<' 0.15
+check "each by itself: it jumps" is "$(steps "$tmp/own")" '>' 0.2
+check "by default: it does not" is "$(steps "$tmp/default")" '<' 0.05
 
 # The closed form: to each frame's own level by 1 - exp(-0.2 s / 2 s), from the first one's.
 worst=$(paste -d' ' <(levels "$tmp/own") <(levels "$tmp/default") | awk '

@@ -81,7 +81,7 @@ done
 
 replay "$data/vrf-dis7-gaz69-straight.pcap" "$tmp/gaz" --rate 0.2
 check "gaz69-straight: no missile, and still shown" [ $code = 0 ]
-check "gaz69-straight: the truck is in the truth" grep -qE '"model": *"truck"' "$tmp/gaz/truth.jsonl"
+check "gaz69-straight: the GAZ-69 is in the truth" grep -qE '"model": *"jeep"' "$tmp/gaz/truth.jsonl"
 run replay "$data/singles.pcap" --out "$tmp/singles" --size 96x64 --rate 0.5
 check "singles: ends by itself" [ $code -lt 124 ]
 finish
