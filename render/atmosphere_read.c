@@ -2,6 +2,7 @@
  * into what is smooth between the points: ratios to an estimate, logarithms. */
 #include "render/atmosphere_private.h"
 
+#include <dirent.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -503,6 +504,25 @@ static void number_shapes(Atmosphere *atmosphere)
 
 Status atmosphere_open(Atmosphere **out, const char *model) { return atmosphere_open_at(out, model, NAN); }
 
+/* Says which models there are, by their folders. */
+static Status no_model(const char *model)
+{
+    char folder[1024], path[1400], list[512] = "";
+    struct dirent **entry;
+    const int count = etc_path(folder, sizeof folder, "atmosphere") ? scandir(folder, &entry, NULL, alphasort) : -1;
+    for (int i = 0; i < count; i++) {
+        const size_t length = strlen(list);
+        snprintf(path, sizeof path, "%s/%s/visibilities.csv", folder, entry[i]->d_name);
+        if (access(path, F_OK) == 0)
+            snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", entry[i]->d_name);
+        free(entry[i]);
+    }
+    if (count >= 0) free(entry);
+    log_error("atmosphere: no model %s; there are: %s (weather.atmosphere); etc/atmosphere/README.md is the format",
+              model, list);
+    return STATUS_BAD_VALUE;
+}
+
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m)
 {
     char name[96], folder[512];
@@ -520,6 +540,7 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         log_error("atmosphere: path too long: model=%s", model);
         return STATUS_BAD_VALUE;
     }
+    if (access(folder, F_OK) != 0) return no_model(model);
     Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);
     if (!atmosphere) {
         log_error("atmosphere: out of memory for model %s", model);

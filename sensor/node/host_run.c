@@ -147,6 +147,15 @@ static void say_visibility(Choices *choices, const Config *config, const Atmosph
                    "infrared (weather.visibility_m)", config->weather.visibility_m);
 }
 
+/* The air's model stands on the ground, wherever that is: high ground has the temperature of low ground. */
+static void say_air_temp(Choices *choices, const Config *config, const Atmosphere *atmosphere, double ground_m)
+{
+    const double here_k = atmosphere_temp_k(atmosphere, 0), high_k = atmosphere_temp_k(atmosphere, ground_m);
+    if (isnan(config->weather.air_temp_k) && ground_m > 500)
+        choice_add(choices, "air: %.0f C at the ground, as the model has it at its own; it has %.0f C at the %.0f m "
+                   "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
+}
+
 /* World and all that is said of it. */
 static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, Choices *choices, Run *run,
                      const DisEntityId *host)
@@ -166,6 +175,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
         status = atmosphere_open_at(&world->atmosphere, o->config.weather.atmosphere, o->config.weather.visibility_m);
     if (status != STATUS_OK) return status;
     say_visibility(choices, &o->config, world->atmosphere);
+    say_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
     choice_say_night(choices, run->bands, *unix_s, plan, &frame);

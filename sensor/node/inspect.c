@@ -12,6 +12,7 @@
 #include "entities/catalog.h"
 #include "terrain/geodesy.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <time.h>
@@ -418,7 +419,7 @@ static Status print_shapes(const Findings *f)
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     const Status status = catalog_open(&catalog, path, sag_m);
     if (status != STATUS_OK) return status;
-    printf("\nShapes (of etc/catalog.csv: length x width x height m)\n");
+    printf("\nShapes (of etc/catalog.csv: length x width x height m; from the ground, of hulls from the keel)\n");
     for (int i = 0; i < f->entities.count; i++) {
         const EntityRow *row = row_at(&f->entities, i);
         const DisEntityType type = row->type;
@@ -436,7 +437,8 @@ static Status print_shapes(const Findings *f)
             printf("  %-22s nothing is seen of it\n", text);
         else
             printf("  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
-                   model->height_m, index == 0 ? " (no row of the catalog: a stand-in)" : "");
+                   fmax(model->box_high[2], 0) - model->box_low[2],
+                   index == 0 ? " (no row of the catalog: a stand-in)" : "");
     }
     catalog_close(catalog);
     return STATUS_OK;

@@ -34,6 +34,10 @@ check "malformed PDUs: no raw bytes on the screen" not raw
 run inspect "$tmp/bad.pcap" --pdus tsv
 check "malformed PDUs: still 27 columns everywhere" [ "$(columns)" = 27 ]
 
+exercise aircraft "$tmp/aircraft.pcap"
+run inspect "$tmp/aircraft.pcap"
+check "heights of aircraft are from the ground, F-16: 5.09 m" grep -q 'aircraft, 15.1 x 9.45 x 5.09$' "$tmp/stdout"
+
 head -c 3000 "$tmp/demo.pcap" >"$tmp/cut.pcap"
 run inspect "$tmp/cut.pcap"
 check "a truncated log is shown" [ $code = 0 ]
