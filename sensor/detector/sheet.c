@@ -88,7 +88,7 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
         k = strcmp(key, "name") == 0 ? name_entry : strcmp(key, "sensor_type") == 0 ? type_entry : all_entries;
     if (k == all_entries) {
         text_escape(safe, sizeof safe, key, strnlen(key, 40));
-        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h and the README list them", lines->path, line,
+        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h lists them, etc/sensors/example_flir2.sheet shows them", lines->path, line,
                   safe);
         return STATUS_BAD_VALUE;
     }
