@@ -29,6 +29,7 @@ static const struct Field {
     {"width_px", 0, 0},            {"height_px", 0, 0},           {"entity", 0, 0},      {"marking", 0, 0},
     {"type", 0, 0},                {"model", 0, 0},               {"occluded_by", 0, 0}, {"gimbal_at_limit", 0, 0},
     {"name", 0, 0},                {"bands", 0, 0},               {"frame", 0, 0},
+    {"scene_rate_px_s", 0.01, 1e-5},
 };
 
 /* The word that names a value: the last without a place in a list. */
@@ -70,6 +71,7 @@ static Channel channel_of(const char *path)
     if (strncmp(path, "sun", 3) == 0) return CHANNEL_SUN;
     if (strncmp(path, "targets", 7) == 0) return channel_of_target(path);
     if (strncmp(path, "error", 5) == 0) return CHANNEL_ERROR;
+    if (ends_with(path, "].scene_rate_px_s")) return CHANNEL_TARGETS; /* by the range of what the axis meets */
     return CHANNEL_POSE;
 }
 
