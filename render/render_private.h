@@ -4,7 +4,7 @@
  *   boxes       every entity's box on the image                          render_targets.c
  *   footprints  small targets, sampled over their own boxes              footprint.c
  *   base        every pixel, small targets taken away                    render.c
- *   edges       pixels whose neighbours disagree, again with more rays   edges.c decides, render.c shades
+ *   edges       pixels whose neighbours disagree, again with more rays   edges.c decides, refine.c shades
  *   put on      the footprints, over the pixels                          footprint.c
  * What is summed over tiles (pixels on target, radiance of targets, the range profile) is summed in integers, so the
  * order in which threads finish cannot show. */
@@ -151,6 +151,16 @@ double pixel_cosine3(const View *view, int x, int y);
 
 /* ---- render.c -------------------------------------------------------------------------------- */
 
+typedef struct Tile {
+    int x0, y0, x1, y1; /* px */
+} Tile;
+
+/* view_ray for all samples, in arrays. */void make_rays(Rays *rays, const Block *block, const View *view);
+/* What stands in the air before the block's hits. */void trace_veils(Scratch *s, const Job *job);
+/* Eye rays of the block's pixels, and what they meet. */void trace_block(Scratch *s, const Job *job, int listed);
+/* Entities that a tile's own samples may see: small targets are left to their footprints. */int  list_entities(Scratch *s, const Job *job, const Tile *tile);
+/* The pixels of a task. */
+Tile tile_of(const Job *job, int task);
 /* Eye rays of the block's pixels, what they meet, and shade_block. pairs NULL: areas of targets are not counted. */
 void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs);
 /* Rays to the sun from the block's hits, where one of its bands shows shadows. */
@@ -159,6 +169,11 @@ void trace_shadows(Scratch *s, const Job *job);
 void shade_block(Scratch *s, const Job *job);
 /* Share of a sample's light that the block's veil takes in a band, 0 .. 1; 0 for the radar. */
 double veil_taken(const Scratch *s, const Job *job, Band band, int sample);
+
+/* ---- refine.c -------------------------------------------------------------------------------- */
+
+/* A pool task: decides what a tile's pixels deserve (edges.c), and does it. */
+void refine_tile(void *job, int worker, int task);
 
 /* ---- render_targets.c ------------------------------------------------------------------------ */
 
