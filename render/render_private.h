@@ -155,12 +155,17 @@ typedef struct Tile {
     int x0, y0, x1, y1; /* px */
 } Tile;
 
-/* view_ray for all samples, in arrays. */void make_rays(Rays *rays, const Block *block, const View *view);
-/* What stands in the air before the block's hits. */void trace_veils(Scratch *s, const Job *job);
-/* Eye rays of the block's pixels, and what they meet. */void trace_block(Scratch *s, const Job *job, int listed);
-/* Entities that a tile's own samples may see: small targets are left to their footprints. */int  list_entities(Scratch *s, const Job *job, const Tile *tile);
+/* view_ray for all samples, in arrays. */
+void make_rays(Rays *rays, const Block *block, const View *view);
+/* What stands in the air before the block's hits. */
+void trace_veils(Scratch *s, const Job *job);
+/* Eye rays of the block's pixels, and what they meet. */
+void trace_block(Scratch *s, const Job *job, int listed);
+/* Entities that a tile's own samples may see: small targets are left to their footprints. */
+int  list_entities(Scratch *s, const Job *job, const Tile *tile);
 /* The pixels of a task. */
 Tile tile_of(const Job *job, int task);
+
 /* Eye rays of the block's pixels, what they meet, and shade_block. pairs NULL: areas of targets are not counted. */
 void render_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs);
 /* Rays to the sun from the block's hits, where one of its bands shows shadows. */
