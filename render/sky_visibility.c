@@ -27,7 +27,7 @@ static const double grid_px = 2.75, lattice_px = 3.5;
 
 /* What a place answered. */
 typedef struct SkyAnswer {
-    float factor[AIR_BAND_COUNT];
+    float factor[8]; /* by AirBand, and one to spare */
     float blocked, sunlit, inside; /* as GatherChange; inside 1: nor is it there */
 } SkyAnswer;
 
@@ -179,11 +179,20 @@ typedef struct SkyHit {
 typedef struct SkyCell {
     int64_t  column, row;
     uint32_t block;
-    bool     known, differ; /* all corners, and they do */
+    bool     known, differ, any_inside; /* all corners; they do; of those */
     const SkySlot *corner[4];
 } SkyCell;
 
+/* At which step hits of a finest cell ended. */
+typedef struct SkyEnd {
+    double   column, row;
+    uint32_t block;
+    int8_t   from, last, step;
+    bool     force;
+} SkyEnd;
+
 struct SkyWorker {
+    SkyEnd       end;
     SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
     SkySlot      slot[known_slots];
     uint32_t     block;
@@ -334,33 +343,41 @@ static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibi
         cell->known = true;
         for (int k = 0; k < 4; k++) cell->known &= cell->corner[k]->known;
         cell->differ = cell->known && places_differ(cell->corner);
+        for (int k = 0; k < 4; k++) cell->any_inside |= cell->known && cell->corner[k]->place.inside > 0.5f;
     }
     return cell;
 }
 
-static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkySlot *const s[4],
-                const double weight[4])
+/* In floats, eight bands at a time: factors are no better. Places within a body say nothing about those beside it. */
+static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell, const double weight[4])
 {
-    double sum = 0, all = 0;
-    for (int k = 0; k < 4; k++) {
-        all += weight[k];
-        if (s[k]->place.inside <= 0.5f) sum += weight[k];
-    }
-    const bool outside = sum > 1e-3; /* places within a body say nothing about those beside it */
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(v->scene.air_bands >> b & 1)) continue;
-        double mean = 0;
+    Eight  mean = eight_all(0);
+    double sum = 1;
+    float  factor[8];
+    if (cell->any_inside) {
+        sum = 0;
         for (int k = 0; k < 4; k++)
-            if (!outside || s[k]->place.inside <= 0.5f) mean += weight[k] * (double)s[k]->place.factor[b];
-        mean /= outside ? sum : all;
-        out->factor[b][i] = (float)(1 + (double)h->weight * (mean - 1));
+            if (cell->corner[k]->place.inside <= 0.5f) sum += weight[k];
     }
+    const bool outside = cell->any_inside && sum > 1e-3;
+    for (int k = 0; k < 4; k++)
+        if (!outside || cell->corner[k]->place.inside <= 0.5f)
+            mean += eight_all(outside ? weight[k] / sum : weight[k]) * eight_load(cell->corner[k]->place.factor);
+    eight_store(factor, eight_all(1) + eight_all((double)h->weight) * (mean - eight_all(1)));
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
 
-/* True: done. */
+/* True: done. All hits of one of the finest cells that start alike end alike: the last such is remembered. */
 static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, const Hits *hits)
 {
-    SkyHit *h = &w->hit[i];
+    SkyHit       *h = &w->hit[i];
+    const double  per_m = v->cells_per_m[h->last_step + lattice_steps];
+    const SkyEnd  like = {.column = floor(hits->p_enu[0][i] * per_m), .row = floor(hits->p_enu[1][i] * per_m),
+                          .block = w->block, .from = h->step, .last = h->last_step, .force = h->force};
+    if (like.block == w->end.block && like.column == w->end.column && like.row == w->end.row &&
+        like.from == w->end.from && like.last == w->end.last && like.force == w->end.force)
+        h->step = w->end.step, h->force = false;
     for (;;) {
         double         weight[4];
         const SkyCell *cell = cell_about(weight, w, v, h->step, hits, i);
@@ -370,7 +387,8 @@ static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, co
             h->force = false;
             continue;
         }
-        mix(out, i, v, h, cell->corner, weight);
+        mix(out, i, v, h, cell, weight);
+        w->end = like, w->end.step = h->step;
         return true;
     }
 }
