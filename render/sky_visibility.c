@@ -8,7 +8,7 @@
 #include <stdatomic.h>
 
 enum {
-    ground_directions = 40, grid_directions = 32, /* a place */
+    ground_directions = 32, grid_directions = 28, /* a place */
     kept_slots    = 1 << 15,   /* places on the ground, of the frame */
     kept_probes   = 16,
     known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */
@@ -19,10 +19,10 @@ enum {
     task_places = 32,
 };
 static const double look_m = 50;          /* what is farther from a place changes nothing there */
-static const double hidden_share = 0.01;  /* of a level plane's light: less is left out */
+static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
-static const double differ = 0.12;        /* shares of directions: places that differ more are looked at more finely */
-static const double cell_reach = 0.35; /* coarsest cells, of the reach */
+static const double differ = 0.15;        /* shares of directions: places that differ more are looked at more finely */
+static const double cell_reach = 0.45; /* coarsest cells, of the reach */
 static const double grid_px = 2.75, lattice_px = 3.5;
 
 /* What a place answered. */
@@ -124,7 +124,8 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     v->kept_key  = arena_alloc(arena, kept_slots, sizeof *v->kept_key);
     v->kept_done = arena_alloc(arena, kept_slots, sizeof *v->kept_done);
     v->kept      = arena_alloc(arena, kept_slots, sizeof *v->kept);
-    if (!v->entity || !v->reach_m || !v->first_step || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
+    if (!v->entity || !v->reach_m || !v->first_step || !v->kept_key || !v->kept_done || !v->kept)
+        return STATUS_NO_MEMORY;
     for (int k = 0; k < v->count; k++) {
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
         if (posed->model < 0) continue;
@@ -234,7 +235,7 @@ static bool find_kept(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
     return false;
 }
 
-/* Whoever comes first writes; all would write the same. */
+/* The first thread to come writes; all would write the same. */
 static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
 {
     if (!skips(v->scene.skips_off, SKIP_LIGHT)) return;
@@ -326,7 +327,8 @@ static bool places_differ(const SkySlot *const s[4])
 }
 
 /* The cell about a hit and the weights of its corners, some of which may not be known yet. */
-static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibility *v, int step, const Hits *hits, int i)
+static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibility *v, int step, const Hits *hits,
+                                 int i)
 {
     const double  per_m = v->cells_per_m[step + lattice_steps];
     const double  x = hits->p_enu[0][i] * per_m, y = hits->p_enu[1][i] * per_m;
@@ -349,7 +351,8 @@ static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibi
 }
 
 /* In floats, eight bands at a time: factors are no better. Places within a body say nothing about those beside it. */
-static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell, const double weight[4])
+static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell,
+                const double weight[4])
 {
     Eight  mean = eight_all(0);
     double sum = 1;
@@ -399,7 +402,8 @@ static double box_distance_m(const PosedEntity *e, const double p_enu[3])
     v3_sub(offset, p_enu, e->p_enu);
     m3_tmul_v3(p_body, e->r_enu_from_body, offset);
     for (int c = 0; c < 3; c++) {
-        const double out = fmax(fmax(e->box_low[c] - p_body[c], p_body[c] - e->box_high[c]), 0);
+        const double below = e->box_low[c] - p_body[c], above = p_body[c] - e->box_high[c];
+        const double out = below > 0 ? below : above > 0 ? above : 0;
         square += out * out;
     }
     return sqrt(square);
@@ -435,8 +439,9 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int
 static void grow(double box[2][3], const Hits *hits, int i)
 {
     for (int c = 0; c < 3; c++) {
-        box[0][c] = fmin(box[0][c], hits->p_enu[c][i]);
-        box[1][c] = fmax(box[1][c], hits->p_enu[c][i]);
+        const double at = hits->p_enu[c][i];
+        box[0][c] = at < box[0][c] ? at : box[0][c];
+        box[1][c] = at > box[1][c] ? at : box[1][c];
     }
 }
 
