@@ -202,8 +202,8 @@ void recall_ground(Scratch *s, const Job *job)
         view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
         s->hits.range_m[i] = p->range_m[px];
         s->hits.entity[i]  = 0;
-        s->hits.part[i] = s->hits.model[i] = s->hits.node[i] = 0;
-        s->hits.triangle[i] = 0, s->hits.inside[i] = 0;
+        s->hits.part[i] = s->hits.model[i] = 0;
+        s->hits.inside[i] = 0;
         s->rays.far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
             s->rays.o_enu[k][i] = view->p_enu[k];

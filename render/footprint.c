@@ -281,8 +281,6 @@ static void keep_target(const Footprint *f, Scratch *s)
         to->entity[kept]    = from->entity[i];
         to->part[kept]      = from->part[i];
         to->model[kept]     = from->model[i];
-        to->node[kept]      = from->node[i];
-        to->triangle[kept]  = from->triangle[i];
         to->inside[kept]    = from->inside[i];
         to->surface[kept]   = from->surface[i];
         for (int k = 0; k < 3; k++) {

@@ -7,7 +7,9 @@
 #include "render/thermal.h"
 
 enum { bounces = 2, change_bounces = 3, stream_first = 40, stream_next = 41,
-       stream_change = 42 }; /* streams of random numbers, nobody else's */
+       stream_change = 42 }; /* streams of random numbers, used here only */
+
+static const double golden_ratio = 0.61803398874989485, leave_offset_m = 1e-3; /* the latter as visibility_shadow's */
 
 typedef struct Paths {
     Rays rays;
@@ -21,17 +23,14 @@ typedef struct Paths {
     bool from_ground[hits_capacity]; /* gather_change: the ground's own light stays as it is there */
 } Paths;
 
-/* A direction about n, its cosine with n distributed as cosines are; u, v in [0, 1). */
-static void cosine_direction(double d[3], const double n[3], double u, double v)
+/* Two directions at right angles to n and to each other. */
+static void axes_across(double t[3], double b[3], const double n[3])
 {
-    double t[3] = {0, 0, 0}, b[3];
+    t[0] = t[1] = t[2] = 0;
     t[fabs(n[0]) < 0.6 ? 0 : 1] = 1;
     v3_add_scaled(t, t, -v3_dot(t, n), n);
     v3_normalize(t, t);
     v3_cross(b, n, t);
-    const double s = sqrt(u), c = sqrt(1 - u), turn = 2 * pi_rad * v;
-    for (int k = 0; k < 3; k++) d[k] = c * n[k] + s * (cos(turn) * t[k] + sin(turn) * b[k]);
-    v3_normalize(d, d);
 }
 
 /* Whether a ray may meet the box of a listed entity within reach. */
@@ -50,9 +49,10 @@ static bool may_meet(const GatherScene *scene, const double o_enu[3], const doub
         m3_tmul_v3(d, e->r_enu_from_body, d_enu);
         for (int c = 0; c < 3; c++) {
             const double per = 1 / d[c], a = (e->box_low[c] - o[c]) * per, b = (e->box_high[c] - o[c]) * per;
-            /* a ray along a face gives NaN there, which leaves the span as it is */
-            near_m = fmax(near_m, fmin(a, b));
-            far_m  = fmin(far_m, fmax(a, b));
+            const double in_m = a < b ? a : b, out_m = a < b ? b : a;
+            /* a ray along a face gives NaN there, which leaves the span as it is; fmax would be a call */
+            near_m = in_m > near_m ? in_m : near_m;
+            far_m  = out_m < far_m ? out_m : far_m;
         }
         if (near_m <= far_m + 1e-6) return true;
     }
@@ -66,24 +66,47 @@ static bool ray_may_meet(const GatherScene *scene, const Rays *rays, int i, doub
     return may_meet(scene, o_enu, d_enu, reach_m, list, listed);
 }
 
-/* Adds a ray that leaves hit `from` of hits. */
-static int leave(Rays *rays, const Hits *hits, int from, double u, double v)
+/* Where rays leave a hit from. */
+typedef struct Base {
+    double n_enu[3], n_geo[3], t_enu[3], b_enu[3], o_enu[3];
+} Base;
+
+static void base_at(Base *out, const Hits *hits, int from)
 {
-    static const double offset_m = 1e-3; /* as visibility_shadow's */
-    const double n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
-    const double n_geo[3] = {hits->n_geo[0][from], hits->n_geo[1][from], hits->n_geo[2][from]};
+    for (int k = 0; k < 3; k++) {
+        out->n_enu[k] = hits->n_enu[k][from];
+        out->n_geo[k] = hits->n_geo[k][from];
+        out->o_enu[k] = hits->p_enu[k][from] + leave_offset_m * out->n_geo[k];
+    }
+    axes_across(out->t_enu, out->b_enu, out->n_enu);
+}
+
+/* Adds a ray whose cosine with the normal is distributed as cosines are: u in [0, 1), turn: cosine and sine. */
+static int leave_base(Rays *rays, const Base *base, double u, const double turn[2])
+{
+    const double s = sqrt(u), c = sqrt(1 - u);
     const int at = rays->count++;
     double d_enu[3];
-    cosine_direction(d_enu, n_enu, u, v);
+    for (int k = 0; k < 3; k++)
+        d_enu[k] = c * base->n_enu[k] + s * (turn[0] * base->t_enu[k] + turn[1] * base->b_enu[k]);
+    v3_normalize(d_enu, d_enu);
     /* an interpolated normal sends some into the facet itself: mirrored out of it */
-    const double out = v3_dot(d_enu, n_geo);
-    if (out < 0) v3_add_scaled(d_enu, d_enu, -2 * out, n_geo);
+    const double out = v3_dot(d_enu, base->n_geo);
+    if (out < 0) v3_add_scaled(d_enu, d_enu, -2 * out, base->n_geo);
     for (int k = 0; k < 3; k++) {
-        rays->o_enu[k][at] = hits->p_enu[k][from] + offset_m * n_geo[k];
+        rays->o_enu[k][at] = base->o_enu[k];
         rays->d_enu[k][at] = d_enu[k];
     }
     rays->far_m[at] = INFINITY;
     return at;
+}
+
+/* Adds a ray that leaves hit `from` of hits; u, v in [0, 1). */
+static int leave(Rays *rays, const Hits *hits, int from, double u, double v)
+{
+    Base base;
+    base_at(&base, hits, from);
+    return leave_base(rays, &base, u, (const double[2]){cos(2 * pi_rad * v), sin(2 * pi_rad * v)});
 }
 
 static double reflectance(const Material *m, AirBand band)
@@ -92,10 +115,11 @@ static double reflectance(const Material *m, AirBand band)
 }
 
 /* What all paths of a block met: materials, temperatures, shadows. */
-static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const int *list, int listed,
+static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const int *list, int listed, bool parts_alone,
                     VisibilityCounters *counters)
 {
-    visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
+    if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, list, listed, counters);
+    else visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
         p->texture[i] = 1;
         const uint32_t entity = p->hits.entity[i];
@@ -154,7 +178,7 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
 
     for (int bounce = 0; bounce < bounces && p->rays.count > 0; bounce++) {
         const bool last = bounce == bounces - 1;
-        resolve(p, scene, bands, NULL, -1, counters);
+        resolve(p, scene, bands, NULL, -1, false, counters);
         float rho[AIR_BAND_COUNT][hits_capacity];
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!(bands >> b & 1)) continue;
@@ -186,7 +210,6 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
 void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
                   const uint64_t *key, VisibilityCounters *counters)
 {
-    static const double golden = 0.61803398874989485;
     Paths paths;
     double sum[AIR_BAND_COUNT][hits_capacity] = {{0}};
 
@@ -195,7 +218,7 @@ void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, uns
         if (!(hits->range_m[i] < INFINITY)) continue;
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
         for (int k = 0; k < samples; k++) {
-            const double v = v0 + k * golden;
+            const double v = v0 + k * golden_ratio;
             const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
             paths.of_hit[at] = i, paths.of_sample[at] = k;
             for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = 1;
@@ -211,6 +234,64 @@ void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, uns
 }
 
 /* ---- what things close by change -------------------------------------------------------------- */
+
+/* The bright ring about the sun, apart from the rest of the sky: it is a few per cent of the sky's light within 1 % of
+ * the directions, and would be most of the noise. ring_w_m2 is what the sky has there above its radiance at the ring's
+ * edge, on a plane facing the sun. A place has directions of its own towards the ring; what paths meet later on sees
+ * it where the sun shines there. */
+enum { ring_node = 6, ring_directions = 4, ring_sample = -1 };
+static const double ring_rad = 3.14159265358979323846 * ring_node * ring_node / (air_sky_angles * air_sky_angles);
+
+typedef struct Open {
+    bool   ring; /* the sun is up */
+    double across_enu[2][3]; /* with the sun's direction, a right-angled triad */
+    double ring_w_m2[AIR_BAND_COUNT];
+    double ground[AIR_BAND_COUNT]; /* radiance of level, open ground */
+} Open;
+
+static double ring_radiance(const AirSky *sky, const SkyPlace *at, const SkyPlace *edge)
+{
+    return air_sky_there(sky, at) - air_sky_there(sky, edge);
+}
+
+/* At the edge of the ring, for a direction within it. */
+static SkyPlace ring_edge(const SkyPlace *at)
+{
+    SkyPlace edge = *at;
+    if (edge.angle < ring_node) edge.angle = ring_node, edge.angle_share = 0;
+    return edge;
+}
+
+static void ring_direction(double d_enu[3], const Open *open, const double sun_d_enu[3], double off_rad,
+                           double turn_rad)
+{
+    const double c = cos(off_rad), x = sin(off_rad) * cos(turn_rad), y = sin(off_rad) * sin(turn_rad);
+    for (int k = 0; k < 3; k++) d_enu[k] = c * sun_d_enu[k] + x * open->across_enu[0][k] + y * open->across_enu[1][k];
+}
+
+static void open_light(Open *out, const GatherScene *scene, unsigned bands)
+{
+    enum { offs = 16, turns = 3 };
+    const Air    *air = scene->air;
+    const double *sun = air->sun_d_enu;
+    *out = (Open){.ring = sun[2] > 0};
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1) out->ground[b] = ground_radiance(scene, (AirBand)b);
+    if (!out->ring) return;
+    axes_across(out->across_enu[0], out->across_enu[1], sun);
+    for (int i = 0; i < offs * turns; i++) {
+        const double off_rad = ring_rad * (i / turns + 0.5) / offs;
+        double       d_enu[3];
+        ring_direction(d_enu, out, sun, off_rad, 2 * pi_rad * (i % turns) / turns);
+        if (d_enu[2] < 0) continue;
+        SkyPlace at;
+        air_sky_place(&at, air, d_enu);
+        const SkyPlace edge = ring_edge(&at);
+        const double   sr = 2 * pi_rad * ring_rad * sin(off_rad) / (offs * turns);
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            if (bands >> b & 1) out->ring_w_m2[b] += ring_radiance(&air->sky_light[b], &at, &edge) * cos(off_rad) * sr;
+    }
+}
 
 typedef struct Change {
     double w_m2[AIR_BAND_COUNT];
@@ -229,7 +310,7 @@ static void count_first(Change *to, const Paths *p, int i, const GatherScene *sc
 }
 
 static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsigned bands, double reach_m,
-                          const double ground[AIR_BAND_COUNT], const uint64_t *key, const int *list, int listed,
+                          const Open *open, const uint64_t *key, const int *list, int listed,
                           VisibilityCounters *counters)
 {
     double    brought[AIR_BAND_COUNT][hits_capacity];
@@ -240,13 +321,20 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
 
     for (int bounce = 0; bounce < change_bounces && p->rays.count > 0; bounce++) {
         for (int i = 0; i < p->rays.count; i++) p->rays.far_m[i] = reach_m;
-        resolve(p, scene, bands, list, listed, counters);
+        bool parts_alone = true; /* the ground is not looked for from the ground */
+        for (int i = 0; i < p->rays.count; i++) parts_alone &= p->from_ground[i];
+        resolve(p, scene, bands, list, listed, parts_alone, counters);
         const int count = p->hits.count;
         p->rays.count = 0;
         for (int i = 0; i < count; i++) {
             const int of = p->of_hit[i];
             if (!(p->hits.range_m[i] < INFINITY)) continue;
             if (p->from_ground[i] && !p->hits.entity[i]) continue;
+            if (p->of_sample[i] == ring_sample) {
+                for (int b = 0; b < AIR_BAND_COUNT; b++)
+                    if (bands >> b & 1) brought[b][p->of_path[i]] -= p->share[b][i];
+                continue;
+            }
             if (bounce == 0) count_first(&sum[of], p, i, scene);
             const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
             const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
@@ -254,15 +342,20 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
             PlanePlace   plane;
             SkyPlace     sky;
             air_plane_place(&plane, scene->air, n_enu);
-            if (d_enu[2] >= 0) air_sky_place(&sky, scene->air, d_enu);
+            if (d_enu[2] >= 0) {
+                air_sky_place(&sky, scene->air, d_enu);
+                if (open->ring) sky = ring_edge(&sky);
+            }
+            const double ring = p->shadow[i] ? fmax(v3_dot(n_enu, scene->air->sun_d_enu), 0) / pi_rad : 0;
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 if (!(bands >> b & 1)) continue;
                 double       rho;
-                const double shown = met(&rho, p, i, scene, (AirBand)b, ground[b], false) +
+                const double ground = open->ground[b];
+                const double shown = met(&rho, p, i, scene, (AirBand)b, ground, false) +
                                      rho * (air_plane_there(scene->air, (AirBand)b, &plane) / pi_rad +
-                                            ground[b] * 0.5 * (1 - n_enu[2]));
-                const double open = d_enu[2] < 0 ? ground[b] : air_sky_there(&scene->air->sky_light[b], &sky);
-                brought[b][p->of_path[i]] += p->share[b][i] * (shown - open);
+                                            ground * 0.5 * (1 - n_enu[2]) - ring * open->ring_w_m2[b]);
+                const double behind = d_enu[2] < 0 ? ground : air_sky_there(&scene->air->sky_light[b], &sky);
+                brought[b][p->of_path[i]] += p->share[b][i] * (shown - behind);
                 share[b] = 2 * p->share[b][i] * (float)rho;
             }
             /* half of them go on, for two; closed up: no slot is read after a later path was written to it */
@@ -298,45 +391,88 @@ static int list_close(int close[close_most], const GatherScene *scene, const Hit
         const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
         const double       far_m = e->radius_m + entity_reach_m[list[k]];
         double             square = 0;
-        for (int c = 0; c < 3; c++) square += (e->centre_enu[c] - hits->p_enu[c][i]) * (e->centre_enu[c] - hits->p_enu[c][i]);
+        for (int c = 0; c < 3; c++) {
+            const double off_m = e->centre_enu[c] - hits->p_enu[c][i];
+            square += off_m * off_m;
+        }
         if (square < far_m * far_m) close[count++] = list[k];
     }
     return count;
+}
+
+/* Adds the ray n of those towards the ring, whose shares are what it takes away when it meets something; -1: it points
+ * into the surface or below the horizon. */
+static int leave_to_ring(Paths *p, const Hits *hits, int from, const GatherScene *scene, unsigned bands,
+                         const Open *open, int n, int samples, double u, double v)
+{
+    const double off_rad = ring_rad * (n + u) / ring_directions;
+    const double n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
+    double       d_enu[3];
+    ring_direction(d_enu, open, scene->air->sun_d_enu, off_rad, 2 * pi_rad * (v + n * golden_ratio));
+    const double along = v3_dot(d_enu, n_enu);
+    if (along <= 0 || d_enu[2] < 0) return -1;
+    const int at = p->rays.count++;
+    for (int k = 0; k < 3; k++) {
+        p->rays.o_enu[k][at] = hits->p_enu[k][from] + leave_offset_m * hits->n_geo[k][from];
+        p->rays.d_enu[k][at] = d_enu[k];
+    }
+    SkyPlace place;
+    air_sky_place(&place, scene->air, d_enu);
+    const SkyPlace edge = ring_edge(&place);
+    const double   share = along * 2 * ring_rad * sin(off_rad) * samples / ring_directions;
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (bands >> b & 1)
+            p->share[b][at] = (float)(share * ring_radiance(&scene->air->sky_light[b], &place, &edge));
+    return at;
+}
+
+/* By the angle whose cosine and sine are `by`: rounding stays below 1e-13 over all directions of a place. */
+static void v2_turn(double turn[2], const double by[2])
+{
+    const double x = turn[0] * by[0] - turn[1] * by[1];
+    turn[1] = turn[0] * by[1] + turn[1] * by[0];
+    turn[0] = x;
 }
 
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
                    double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters)
 {
-    static const double golden = 0.61803398874989485;
     Paths  paths;
+    Open   open;
     Change sum[hits_capacity];
-    double ground[AIR_BAND_COUNT] = {0};
-    for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (bands >> b & 1) ground[b] = ground_radiance(scene, (AirBand)b);
+    const double golden_turn[2] = {cos(2 * pi_rad * golden_ratio), sin(2 * pi_rad * golden_ratio)};
+    open_light(&open, scene, bands);
     memset(sum, 0, (size_t)hits->count * sizeof *sum);
     paths.rays.count = paths.rays.columns = 0;
     for (int i = 0; i < hits->count; i++) {
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
         int          close[close_most];
         const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, entity_reach_m, list, listed);
-        for (int k = 0; k < samples; k++) {
-            const double v = v0 + k * golden;
-            const int at = leave(&paths.rays, hits, i, (k + u0) / samples, v - floor(v));
+        double       turn[2] = {cos(2 * pi_rad * v0), sin(2 * pi_rad * v0)};
+        Base         base;
+        base_at(&base, hits, i);
+        for (int k = 0; k < samples + (open.ring ? ring_directions : 0); k++) {
+            const int at = k < samples ? leave_base(&paths.rays, &base, (k + u0) / samples, turn)
+                                       : leave_to_ring(&paths, hits, i, scene, bands, &open, k - samples, samples,
+                                                       u0, v0);
+            v2_turn(turn, golden_turn);
+            if (at < 0) continue;
             if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, close, closes)) {
                 paths.rays.count = at; /* would bring nothing */
                 continue;
             }
-            paths.of_hit[at] = i, paths.of_sample[at] = k;
+            paths.of_hit[at] = i;
             paths.from_ground[at] = !hits->entity[i];
-            for (int b = 0; b < AIR_BAND_COUNT; b++) paths.share[b][at] = 1;
+            paths.of_sample[at] = k < samples ? k : ring_sample;
+            for (int b = 0; b < AIR_BAND_COUNT && k < samples; b++) paths.share[b][at] = 1;
             if (paths.rays.count < hits_capacity) continue;
-            follow_change(sum, &paths, scene, bands, reach_m, ground, key, list, listed, counters);
+            follow_change(sum, &paths, scene, bands, reach_m, &open, key, list, listed, counters);
             paths.rays.count = 0;
         }
     }
     if (paths.rays.count > 0)
-        follow_change(sum, &paths, scene, bands, reach_m, ground, key, list, listed, counters);
+        follow_change(sum, &paths, scene, bands, reach_m, &open, key, list, listed, counters);
     for (int i = 0; i < hits->count; i++) {
         const Change *s = &sum[i];
         out[i] = (GatherChange){.blocked = (float)s->blocked / (float)samples,

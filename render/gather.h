@@ -2,8 +2,8 @@
  *
  * The quick form of render/optical.c and thermal.c sees sky and level ground by a surface's tilt; this one sees what
  * really stands there: a shadowed wall, a warm engine deck, the dark under a hull. Each direction is followed to what
- * it meets, lit by the sun or emitting by itself, and from there in one more direction; what that meets is lit the quick
- * way. Everything met counts as diffuse. Cost: 2 x samples first hits and shadow rays a hit. The error falls with
+ * it meets, lit by the sun or emitting by itself, and from there in one more direction; what that meets is lit the
+ * quick way. Everything met counts as diffuse. Cost: 2 x samples first hits and shadow rays a hit. The error falls with
  * samples^-0.5 or faster; test_gather.c holds it against two other renderers. */
 #ifndef RENDER_GATHER_H
 #define RENDER_GATHER_H
@@ -39,8 +39,9 @@ typedef struct GatherChange {
 
 /* out[hits->count]. Only what is nearer than reach_m counts, and of the listed entities alone, which must hold all of
  * those; places on the ground look only towards those within whose own reach, entity_reach_m[entities] beyond their
- * sphere, they lie. From places on the ground the ground is not looked for: only parts change their light. Three bounces; the
- * open form is taken away direction by direction, so that places which see nothing but open sky get 0, without noise. */
+ * sphere, they lie. From places on the ground the ground is not looked for: only parts change their light. Three
+ * bounces; the open form is subtracted direction by direction, so that places which see nothing but open sky get 0,
+ * without noise. The bright ring about the sun has directions of its own, for it would be most of the noise. */
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
                    double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters);

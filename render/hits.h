@@ -24,8 +24,6 @@ typedef struct Hits {
     uint32_t entity[hits_capacity];     /* snapshot index + 1; 0: ground or sky */
     uint16_t part[hits_capacity];       /* part index of the model + 1; 0: ground or sky */
     uint16_t model[hits_capacity];      /* of the catalog, where entity > 0 */
-    uint32_t triangle[hits_capacity];   /* of the model, where entity > 0 */
-    uint16_t node[hits_capacity];       /* of the posed entity's nodes that have triangles, where entity > 0 */
     uint8_t  inside[hits_capacity];     /* 1: a part was met from the inner side of its surface */
     uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
 } Hits;

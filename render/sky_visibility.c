@@ -8,7 +8,7 @@
 #include <stdatomic.h>
 
 enum {
-    ground_directions = 64, grid_directions = 40, /* a place */
+    ground_directions = 32, grid_directions = 28, /* a place */
     kept_slots    = 1 << 15,   /* places on the ground, of the frame */
     kept_probes   = 16,
     known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */
@@ -19,32 +19,31 @@ enum {
     task_places = 32,
 };
 static const double look_m = 50;          /* what is farther from a place changes nothing there */
-static const double hidden_share = 0.01;  /* of a level plane's light: less is left out */
+static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
-static const double differ = 0.2;         /* shares of directions: places that differ more are looked at more finely */
+static const double differ = 0.15;        /* shares of directions: places that differ more are looked at more finely */
+static const double cell_reach = 0.45; /* coarsest cells, of the reach */
 static const double grid_px = 2.75, lattice_px = 3.5;
 
 /* What a place answered. */
 typedef struct SkyAnswer {
-    float factor[AIR_BAND_COUNT];
+    float factor[8]; /* by AirBand, and one to spare */
     float blocked, sunlit, inside; /* as GatherChange; inside 1: nor is it there */
 } SkyAnswer;
 
-/* One place on an entity. */
-typedef struct SkySpot {
-    bool   there;
-    uint16_t part;
-    float    p_m[3]; /* ENU, from the entity's centre */
-    float    n_enu[3];
-    float    factor[8]; /* by AirBand, and one to spare */
-} SkySpot;
+/* Places on an entity, in columns; where nothing of it was met the normal is 0. */
+enum { SPOT_X, SPOT_Y, SPOT_Z, SPOT_NORMAL_X, SPOT_NORMAL_Y, SPOT_NORMAL_Z, SPOT_PART, spot_values };
+typedef struct SkySpots {
+    float *value[spot_values]; /* m, ENU, from the entity's centre; and which part */
+    float (*factor)[8];        /* by AirBand, and one to spare */
+} SkySpots;
 
 /* An entity of the frame. */
 typedef struct SkyEntity {
     int      columns, rows;  /* of its grid; 0: not on the image */
     double   x0_px, y0_px, step_px[2];
     double   pitch_m;        /* of the grid at its distance */
-    SkySpot *spot;           /* [rows * columns] */
+    SkySpots spot;           /* [rows * columns], and eight more */
 } SkyEntity;
 
 struct SkyVisibility {
@@ -52,6 +51,8 @@ struct SkyVisibility {
     int                count;
     SkyEntity         *entity;
     double            *reach_m;   /* [entities]: from the box of each the ground is looked at */
+    int8_t            *first_step; /* [entities]: log2 of the coarsest cells about it, m */
+    double             cells_per_m[coarsest_log2_m + lattice_steps + 1]; /* by step */
     int               *task_entity, *task_first; /* [tasks] */
     int                tasks;
     double             px_rad;
@@ -87,8 +88,11 @@ static Status plan_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity 
     e->x0_px = x0, e->y0_px = y0;
     e->step_px[0] = (x1 - x0) / e->columns, e->step_px[1] = (y1 - y0) / e->rows;
     e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step_px[0], e->step_px[1]);
-    e->spot = arena_alloc(arena, (size_t)(e->columns * e->rows), sizeof *e->spot);
-    return e->spot ? STATUS_OK : STATUS_NO_MEMORY;
+    const size_t spots = (size_t)(e->columns * e->rows) + 8;
+    bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL;
+    for (int k = 0; k < spot_values; k++)
+        got = (e->spot.value[k] = arena_alloc(arena, spots, sizeof *e->spot.value[k])) != NULL && got;
+    return got ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 static Status plan_tasks(SkyVisibility *v, Arena *arena)
@@ -115,14 +119,19 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     v->px_rad = 1 / scene->view->focal_px;
     v->entity = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->entity);
     v->reach_m   = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->reach_m);
+    v->first_step = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->first_step);
+    for (int k = 0; k <= coarsest_log2_m + lattice_steps; k++) v->cells_per_m[k] = ldexp(1, lattice_steps - k);
     v->kept_key  = arena_alloc(arena, kept_slots, sizeof *v->kept_key);
     v->kept_done = arena_alloc(arena, kept_slots, sizeof *v->kept_done);
     v->kept      = arena_alloc(arena, kept_slots, sizeof *v->kept);
-    if (!v->entity || !v->reach_m || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
+    if (!v->entity || !v->reach_m || !v->first_step || !v->kept_key || !v->kept_done || !v->kept)
+        return STATUS_NO_MEMORY;
     for (int k = 0; k < v->count; k++) {
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
         if (posed->model < 0) continue;
         v->reach_m[k] = reach_of(posed);
+        v->first_step[k] = (int8_t)clamp(floor(log2(fmax(cell_reach * v->reach_m[k], 1e-9))), -lattice_steps,
+                                         coarsest_log2_m);
         if (plan_grid(&v->entity[k], v, posed, scene->box_px[k], arena) != STATUS_OK) return STATUS_NO_MEMORY;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -171,10 +180,20 @@ typedef struct SkyHit {
 typedef struct SkyCell {
     int64_t  column, row;
     uint32_t block;
+    bool     known, differ, any_inside; /* all corners; they do; of those */
     const SkySlot *corner[4];
 } SkyCell;
 
+/* At which step hits of a finest cell ended. */
+typedef struct SkyEnd {
+    double   column, row;
+    uint32_t block;
+    int8_t   from, last, step;
+    bool     force;
+} SkyEnd;
+
 struct SkyWorker {
+    SkyEnd       end;
     SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
     SkySlot      slot[known_slots];
     uint32_t     block;
@@ -216,7 +235,7 @@ static bool find_kept(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
     return false;
 }
 
-/* Whoever comes first writes; all would write the same. */
+/* The first thread to come writes; all would write the same. */
 static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
 {
     if (!skips(v->scene.skips_off, SKIP_LIGHT)) return;
@@ -294,25 +313,6 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
 
 /* ---- the ground about a hit ---------------------------------------------------------------------------- */
 
-/* The corners of a cell and their weights. False: some are not known yet. */
-static bool corners_of(const SkySlot *corner[4], double weight[4], SkyWorker *w, const SkyVisibility *v,
-                       const SkyHit *h, const Hits *hits, int i)
-{
-    const double  per_m = exp2(-h->step), x = hits->p_enu[0][i] * per_m, y = hits->p_enu[1][i] * per_m;
-    const double  fx = x - floor(x), fy = y - floor(y);
-    const int64_t column = (int64_t)floor(x), row = (int64_t)floor(y), each = (int64_t)1 << (h->step + lattice_steps);
-    SkyCell      *cell = &w->cell[h->step + lattice_steps];
-    bool          known = true;
-    for (int k = 0; k < 4; k++) weight[k] = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
-    if (cell->block != w->block || cell->column != column || cell->row != row) {
-        *cell = (SkyCell){column, row, w->block, {NULL}};
-        for (int k = 0; k < 4; k++)
-            cell->corner[k] = slot_of(w, v, ground_key((column + (k & 1)) * each, (row + (k >> 1)) * each));
-    }
-    for (int k = 0; k < 4; k++) known &= (corner[k] = cell->corner[k])->known;
-    return known;
-}
-
 static bool places_differ(const SkySlot *const s[4])
 {
     float low[3] = {1, 1, 1}, high[3] = {0, 0, 0};
@@ -326,39 +326,72 @@ static bool places_differ(const SkySlot *const s[4])
     return high[0] - low[0] > (float)differ || high[1] - low[1] > (float)differ || high[2] > low[2];
 }
 
-static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkySlot *const s[4],
-                const double weight[4])
+/* The cell about a hit and the weights of its corners, some of which may not be known yet. */
+static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibility *v, int step, const Hits *hits,
+                                 int i)
 {
-    double sum = 0, all = 0;
-    for (int k = 0; k < 4; k++) {
-        all += weight[k];
-        if (s[k]->place.inside <= 0.5f) sum += weight[k];
-    }
-    const bool outside = sum > 1e-3; /* places within a body say nothing about those beside it */
-    for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        if (!(v->scene.air_bands >> b & 1)) continue;
-        double mean = 0;
+    const double  per_m = v->cells_per_m[step + lattice_steps];
+    const double  x = hits->p_enu[0][i] * per_m, y = hits->p_enu[1][i] * per_m;
+    const double  left = floor(x), low = floor(y), fx = x - left, fy = y - low;
+    const int64_t column = (int64_t)left, row = (int64_t)low, each = (int64_t)1 << (step + lattice_steps);
+    SkyCell      *cell = &w->cell[step + lattice_steps];
+    for (int k = 0; k < 4; k++) weight[k] = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
+    if (cell->block != w->block || cell->column != column || cell->row != row) {
+        *cell = (SkyCell){.column = column, .row = row, .block = w->block};
         for (int k = 0; k < 4; k++)
-            if (!outside || s[k]->place.inside <= 0.5f) mean += weight[k] * (double)s[k]->place.factor[b];
-        mean /= outside ? sum : all;
-        out->factor[b][i] = (float)(1 + (double)h->weight * (mean - 1));
+            cell->corner[k] = slot_of(w, v, ground_key((column + (k & 1)) * each, (row + (k >> 1)) * each));
     }
+    if (!cell->known) {
+        cell->known = true;
+        for (int k = 0; k < 4; k++) cell->known &= cell->corner[k]->known;
+        cell->differ = cell->known && places_differ(cell->corner);
+        for (int k = 0; k < 4; k++) cell->any_inside |= cell->known && cell->corner[k]->place.inside > 0.5f;
+    }
+    return cell;
 }
 
-/* True: done. */
+/* In floats, eight bands at a time: factors are no better. Places within a body say nothing about those beside it. */
+static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell,
+                const double weight[4])
+{
+    Eight  mean = eight_all(0);
+    double sum = 1;
+    float  factor[8];
+    if (cell->any_inside) {
+        sum = 0;
+        for (int k = 0; k < 4; k++)
+            if (cell->corner[k]->place.inside <= 0.5f) sum += weight[k];
+    }
+    const bool outside = cell->any_inside && sum > 1e-3;
+    for (int k = 0; k < 4; k++)
+        if (!outside || cell->corner[k]->place.inside <= 0.5f)
+            mean += eight_all(outside ? weight[k] / sum : weight[k]) * eight_load(cell->corner[k]->place.factor);
+    eight_store(factor, eight_all(1) + eight_all((double)h->weight) * (mean - eight_all(1)));
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
+}
+
+/* True: done. All hits of one of the finest cells that start alike end alike: the last such is remembered. */
 static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, const Hits *hits)
 {
-    SkyHit *h = &w->hit[i];
+    SkyHit       *h = &w->hit[i];
+    const double  per_m = v->cells_per_m[h->last_step + lattice_steps];
+    const SkyEnd  like = {.column = floor(hits->p_enu[0][i] * per_m), .row = floor(hits->p_enu[1][i] * per_m),
+                          .block = w->block, .from = h->step, .last = h->last_step, .force = h->force};
+    if (like.block == w->end.block && like.column == w->end.column && like.row == w->end.row &&
+        like.from == w->end.from && like.last == w->end.last && like.force == w->end.force)
+        h->step = w->end.step, h->force = false;
     for (;;) {
         double         weight[4];
-        const SkySlot *s[4];
-        if (!corners_of(s, weight, w, v, h, hits, i)) return false;
-        if (h->step > h->last_step && (places_differ(s) || h->force)) {
+        const SkyCell *cell = cell_about(weight, w, v, h->step, hits, i);
+        if (!cell->known) return false;
+        if (h->step > h->last_step && (cell->differ || h->force)) {
             h->step--;
             h->force = false;
             continue;
         }
-        mix(out, i, v, h, s, weight);
+        mix(out, i, v, h, cell, weight);
+        w->end = like, w->end.step = h->step;
         return true;
     }
 }
@@ -369,7 +402,8 @@ static double box_distance_m(const PosedEntity *e, const double p_enu[3])
     v3_sub(offset, p_enu, e->p_enu);
     m3_tmul_v3(p_body, e->r_enu_from_body, offset);
     for (int c = 0; c < 3; c++) {
-        const double out = fmax(fmax(e->box_low[c] - p_body[c], p_body[c] - e->box_high[c]), 0);
+        const double below = e->box_low[c] - p_body[c], above = p_body[c] - e->box_high[c];
+        const double out = below > 0 ? below : above > 0 ? above : 0;
         square += out * out;
     }
     return sqrt(square);
@@ -378,8 +412,9 @@ static double box_distance_m(const PosedEntity *e, const double p_enu[3])
 static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int i, const int *near, int count)
 {
     const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
-    double       offset[3], coarse_m = INFINITY, body_m = INFINITY;
+    double       offset[3], body_m = INFINITY;
     h->weight = 0;
+    h->step = coarsest_log2_m;
     for (int k = 0; k < count; k++) {
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, near[k]);
         const double       reach_m = v->reach_m[near[k]], far_m = reach_m + e->radius_m;
@@ -389,22 +424,24 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int
         const double weight = clamp((1 - distance_m / reach_m) / fade_share, 0, 1);
         if (!(weight > 0)) continue;
         h->weight = fmaxf(h->weight, (float)weight);
-        coarse_m = fmin(coarse_m, 0.35 * reach_m);
+        if (v->first_step[near[k]] < h->step) h->step = v->first_step[near[k]];
         body_m    = fmin(body_m, distance_m);
     }
     if (!(h->weight > 0)) return;
-    const double px_m = hits->range_m[i] * v->px_rad;
-    h->step = (int8_t)clamp(floor(log2(coarse_m)), -lattice_steps, coarsest_log2_m);
-    h->last_step = (int8_t)clamp(fmax(ceil(log2(lattice_px * px_m) - 0.5), h->step - finer_most), -lattice_steps, coarsest_log2_m);
-    h->force = body_m < exp2(h->step);
+    int          shown; /* log2 of what the picture shows, rounded */
+    const double half = frexp(lattice_px * hits->range_m[i] * v->px_rad, &shown);
+    if (half <= 0.70710678118654752) shown--;
+    h->last_step = (int8_t)clamp(fmax(shown, h->step - finer_most), -lattice_steps, coarsest_log2_m);
+    h->force = body_m * v->cells_per_m[h->step + lattice_steps] < 1;
     if (h->last_step > h->step) h->step = h->last_step;
 }
 
 static void grow(double box[2][3], const Hits *hits, int i)
 {
     for (int c = 0; c < 3; c++) {
-        box[0][c] = fmin(box[0][c], hits->p_enu[c][i]);
-        box[1][c] = fmax(box[1][c], hits->p_enu[c][i]);
+        const double at = hits->p_enu[c][i];
+        box[0][c] = at < box[0][c] ? at : box[0][c];
+        box[1][c] = at > box[1][c] ? at : box[1][c];
     }
 }
 
@@ -470,39 +507,52 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, v->reach_m, w->key, w->near,
                   listed, &unused);
     for (int k = 0; k < places->count; k++) {
-        SkySpot  *spot = &e->spot[of[k]];
-        SkyAnswer found;
-        double    n_enu[3];
+        const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;
+        SkyAnswer     found;
+        double        n_enu[3];
         for (int c = 0; c < 3; c++) {
             n_enu[c] = places->n_geo[c][k];
-            spot->n_enu[c] = (float)n_enu[c];
-            spot->p_m[c] = (float)(places->p_enu[c][k] - visibility_posed(scene->visibility, index)->centre_enu[c]);
+            e->spot.value[SPOT_NORMAL_X + c][of[k]] = (float)n_enu[c];
+            e->spot.value[SPOT_X + c][of[k]] = (float)(places->p_enu[c][k] - centre_enu[c]);
         }
         answer(&found, v, n_enu, &w->change[k]);
-        memcpy(spot->factor, found.factor, sizeof found.factor);
-        spot->there = true, spot->part = places->part[k];
+        memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
+        e->spot.value[SPOT_PART][of[k]] = places->part[k];
     }
 }
 
-/* Adds spots of columns and rows from, to (not beyond), each `step`, by how alike they are to a hit: of its part, facing
- * its way, in its plane, and near. Returns the sum of weights. */
+/* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
+ * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
 static float add_spots(Eight *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
                        const float n_enu[3], uint16_t part)
 {
-    static const float other_part = 0.05f;
-    const float        square_m2 = (float)(e->pitch_m * e->pitch_m), least_m2 = 0.1f * square_m2;
-    float              all = 0;
+    static const float    other_part = 0.05f;
+    const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
+    const float *const   *value = (const float *const *)e->spot.value;
+    const Eight           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
+    const Eight           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
+    float                 all = 0, each[8];
+    Eight                 p[3], n[3];
+    for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
     for (int row = span[1]; row < span[3]; row += step)
-        for (int column = span[0]; column < span[2]; column += step) {
-            const SkySpot *s = &e->spot[row * e->columns + column];
-            const float along = n_enu[0] * s->n_enu[0] + n_enu[1] * s->n_enu[1] + n_enu[2] * s->n_enu[2];
-            if (!(along > 0)) continue; /* or is not there */
-            const float x = s->p_m[0] - p_m[0], y = s->p_m[1] - p_m[1], z = s->p_m[2] - p_m[2];
-            const float off = n_enu[0] * x + n_enu[1] * y + n_enu[2] * z, a2 = along * along, a4 = a2 * a2;
-            const float weight = (s->part == part ? 1 : other_part) * a4 * a4 * square_m2 * square_m2 /
-                                 ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off));
-            all += weight;
-            *sum += _mm256_set1_ps(weight) * eight_load(s->factor);
+        for (int column = span[0]; column < span[2]; column += 8) {
+            const int   at = row * e->columns + column;
+            const int   lanes = span[2] - column < 8 ? span[2] - column : 8;
+            const Eight along = n[0] * eight_load(value[SPOT_NORMAL_X] + at) +
+                                n[1] * eight_load(value[SPOT_NORMAL_Y] + at) +
+                                n[2] * eight_load(value[SPOT_NORMAL_Z] + at);
+            const Eight x = eight_load(value[SPOT_X] + at) - p[0], y = eight_load(value[SPOT_Y] + at) - p[1];
+            const Eight z = eight_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
+            const Eight facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
+            const Eight same = _mm256_cmp_ps(eight_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
+            const Eight share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
+            eight_store(each, share * a4 * a4 * square_m2 * square_m2 /
+                                  ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
+            for (int k = 0; k < lanes; k++) {
+                if (!(each[k] > 0)) continue; /* faces away, or is not there */
+                all += each[k];
+                *sum += _mm256_set1_ps(each[k]) * eight_load(e->spot.factor[at + k]);
+            }
         }
     return all;
 }
@@ -522,7 +572,7 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
     const View        *view = v->scene.view;
     const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
     const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    double             offset_enu[3], p_cam[3];
+    double             offset_enu[3], p_cam[3], image_px[2];
     float              p_m[3], factor[8];
     int                span[4];
     if (e->columns == 0) return;
@@ -531,10 +581,9 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
         p_m[c] = (float)(hits->p_enu[c][i] - centre_enu[c]);
     }
     m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
-    const double x = 0.5 * view->width + view->focal_px * p_cam[0] / p_cam[2];
-    const double y = 0.5 * view->height + view->focal_px * p_cam[1] / p_cam[2];
-    const int    column = (int)clamp(floor((x - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
-    const int    row = (int)clamp(floor((y - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
+    view_project(image_px, view, p_cam);
+    const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
+    const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
     Eight        sum = eight_all(0);
     float        all = 0;
     for (int more = 1; more <= 4 && !(all > enough); more += 3) {
@@ -545,7 +594,7 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
     if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
         span_about(span, e, 0, 0, grid_most);
         sum = eight_all(0);
-        all = add_spots(&sum, e, span, e->columns > 16 || e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
+        all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
     }
     if (!(all > 1e-12f)) return;
     eight_store(factor, sum * eight_all(1 / (double)all));

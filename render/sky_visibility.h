@@ -1,18 +1,21 @@
 /* render/sky_visibility.h: how much of the open light reaches places near vehicles and buildings: contact shadows.
  *
- * By its tilt alone a surface sees the whole sky above it and level, sunlit ground below. Beside a vehicle, under a hull
- * and on a side whose own shadow lies before it that is wrong by factors. Here places are asked in many directions what
- * stands there instead (gather_change), and a hit takes the factor of the places about it:
+ * By its tilt alone a surface sees the whole sky above it and level, sunlit ground below. Beside a vehicle, under a
+ * hull and on a side whose own shadow lies before it that is wrong by factors. Here directions from a set of places
+ * find what stands there instead (gather_change), and a hit takes the factor interpolated between the places about it:
  *
  *   ground    places of a square lattice that is fixed to the ground, finer where they disagree and never finer than
- *             the picture shows; asked when a hit needs them, kept for the frame
- *   entities  what the eye sees of each on a grid over its box on the image, about 5 px apart and never fewer than 3 x 3,
- *             asked before the tiles; a hit takes those about it that face its way. The grid moves with the entity
+ *             the picture shows; computed when a hit needs them, kept for the frame
+ *   entities  what the eye sees of each on a grid over its box on the image, 2.75 px apart, at least 3 x 3 and at most
+ *             48 x 48, computed before the tiles; a hit takes those about it that face its way. The grid moves with the
+ *             entity
  *
- * A place's answer depends on nothing but the scene and the view, so it is the same whichever thread asks first. Only
- * within reach of an entity (beyond, it hides less than 1 % of a level plane's sky) the ground is looked at. Terrain that
- * hides the sky is not seen, and mirrors see none of this. How right: tests/sensor/test_sky_visibility.c against
- * gather_light, tests/system/test_sky_mitsuba.py against another path tracer. */
+ * A place's answer depends on nothing but the scene and the view, so it is the same whichever thread computes it. The
+ * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Terrain that
+ * hides the sky is not seen, and mirrors see none of this.
+ *
+ * Error against gather_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 2 to 4 % rms on shadowed ground,
+ * 5 to 13 % where less than 40 % of the open light comes, 4 to 13 % on sides away from the sun. */
 #ifndef RENDER_SKY_VISIBILITY_H
 #define RENDER_SKY_VISIBILITY_H
 
@@ -42,7 +45,7 @@ int  sky_visibility_tasks(const SkyVisibility *v);
 void sky_visibility_task(SkyVisibility *v, SkyWorker *worker, int task);
 
 typedef struct SkyOpen {
-    float factor[AIR_BAND_COUNT][hits_capacity]; /* of the light that the tilt alone would give; 1 where nothing is near */
+    float factor[AIR_BAND_COUNT][hits_capacity]; /* of the light that the tilt alone gives; 1 where nothing is near */
 } SkyOpen;
 
 /* False: nothing near any of the hits, and nothing written; else the factors of the frame's bands. */

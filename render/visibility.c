@@ -173,8 +173,6 @@ static void clear_hit(Hits *hits, int i)
     hits->entity[i]  = 0;
     hits->part[i]    = 0;
     hits->model[i]   = 0;
-    hits->triangle[i] = 0;
-    hits->node[i]    = 0;
     hits->inside[i]  = 0;
     hits->surface[i] = 0;
 }
@@ -202,8 +200,6 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     store_normals(hits, i, n_geo, n_enu, d);
     hits->entity[i] = (uint32_t)entity + 1;
     hits->model[i]  = (uint16_t)posed->model;
-    hits->node[i]   = (uint16_t)hit->node;
-    hits->triangle[i] = hit->triangle;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
 }
@@ -263,8 +259,8 @@ static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int c
     return true;
 }
 
-void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
-                          int hidden, VisibilityCounters *counters)
+static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                      bool ground, VisibilityCounters *counters)
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
@@ -313,7 +309,9 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         until_m[i] = hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
         counters->skipped[SKIP_GROUND_BEHIND] += behind && hits->entity[i];
     }
-    if (skips(v->skips_off, SKIP_GROUND_BELOW) && ground_lies_below(v, hits->entity, count, o, d, until_m)) {
+    if (!ground) {
+        for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
+    } else if (skips(v->skips_off, SKIP_GROUND_BELOW) && ground_lies_below(v, hits->entity, count, o, d, until_m)) {
         for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
         counters->skipped[SKIP_GROUND_BELOW] += (uint64_t)count;
     } else {
@@ -324,7 +322,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         if (hits->range_m[i] <= limit_m[i]) hits->entity[i] = 0;
         else hits->range_m[i] = limit_m[i];
     }
-    counters->rays_ground += (uint64_t)count;
+    if (ground) counters->rays_ground += (uint64_t)count;
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
     counters->skipped[SKIP_SPHERE] += offered - asked;
@@ -340,6 +338,18 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
     if (v->landscape) classify_ground(hits, v->landscape);
+}
+
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                          VisibilityCounters *counters)
+{
+    first_hit(hits, v, rays, list, list_count, hidden, true, counters);
+}
+
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                           VisibilityCounters *counters)
+{
+    first_hit(hits, v, rays, list, list_count, -1, false, counters);
 }
 
 /* ---- shadows ------------------------------------------------------------------------------ */

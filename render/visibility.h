@@ -63,6 +63,10 @@ int visibility_block_entities(int *list, const Visibility *v, const View *view, 
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                           int hidden, VisibilityCounters *counters);
 
+/* The same as if there were no ground. */
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                           VisibilityCounters *counters);
+
 /* 1 where something (anybody, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
  * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
