@@ -1,9 +1,11 @@
 #include "sensor/node/choices.h"
+#include "sensor/node/player.h"
 
 #include "dis/enumerations.h"
 #include "render/view.h"
 #include "terrain/sun.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/player.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -231,6 +233,18 @@ static bool has_ended(const Survey *survey, const Track *track, const Config *co
            survey->last_s - last->t_s > config->entities.timeout_s;
 }
 
+/* Whatever its category says: a munition that was never anywhere else, and never said that it moves, is no flight. */
+static bool lies(const Track *track)
+{
+    static const double still_m = 1;
+    for (int i = 0; i < track->count; i++) {
+        double moved[3];
+        v3_sub(moved, track->point[i].p_ecef, track->point[0].p_ecef);
+        if (v3_length(moved) > still_m || v3_length(track->point[i].v_ecef_mps) > munition_still_mps) return false;
+    }
+    return true;
+}
+
 /* Longest flight among munitions, guided or not; mines do not fly. impact: only those whose Detonation says entity
  * impact. NULL: none. */
 static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
@@ -242,6 +256,7 @@ static const Track *longest_flight(const Survey *survey, const Config *config, b
         const Shot  *shot  = choice_shot_of(survey, track->id);
         if (track->type.kind != dis_kind_munition || track->type.category == dis_munition_fixed) continue;
         if ((track->type.category == dis_munition_guided) != guided) continue;
+        if (!guided && lies(track)) continue;
         if (config->causal && has_ended(survey, track, config)) continue;
         if (impact && !(shot && shot->result == dis_result_entity_impact)) continue;
         const double end_s    = shot && isfinite(shot->detonation_s) ? shot->detonation_s

@@ -21,15 +21,20 @@ static void say_sea(Choices *choices, const GroundEvidence *e)
                afloat + submerged, afloat + submerged == 1 ? "" : "s", afloat + submerged == 1 ? " was" : "s were",
                on_land(e) ? "a shore half-way to what is on land" : "to the horizon, nothing is on land");
     if (submerged)
-        choice_add(choices, "sea: %d submarine%s under water and not seen, the water is opaque", submerged,
-                   submerged == 1 ? " stays" : "s stay");
+        choice_add(choices, "sea: %d submarine%s under water and cannot be seen: the water is opaque", submerged,
+                   submerged == 1 ? " is" : "s are");
 }
 
 /* After the misfits are known: those it is not fitted to. */
 static void say_invented(Choices *choices, const Landscape *landscape, const GroundEvidence *e, int misfits)
 {
-    choice_add(choices, "ground: invented, fitted to %d land entities and %d ground impacts within %.2f m (terrain.*)",
-               on_land(e) - misfits, e->impacts, landscape->fit_worst_m);
+    const int fitted = on_land(e) - misfits;
+    if (fitted == 0 && e->impacts == 0)
+        choice_add(choices, "ground: invented, nothing is known to stand on it (terrain.*)");
+    else
+        choice_add(choices,
+                   "ground: invented, fitted to %d land entit%s and %d ground impact%s within %.2f m (terrain.*)",
+                   fitted, fitted == 1 ? "y" : "ies", e->impacts, e->impacts == 1 ? "" : "s", landscape->fit_worst_m);
     say_sea(choices, e);
     if (landscape->fixes_dropped > 0)
         choice_add(choices, "ground: %d of %d places contradict others or a flight path and were left out",
@@ -207,15 +212,15 @@ static Status say_fit(Choices *choices, GroundContact contact, const Landscape *
         char         id[dis_id_text_size], marking[48];
         dis_entity_id_text(id, track->id);
         text_escape(marking, sizeof marking, track->marking, strnlen(track->marking, 11));
-        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s%s%s by %+.1f m", k ? ", " : "", id,
-                      *marking ? " " : "", marking, misfit[k].above_m);
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s%s%s, sent %.1f m %s it", k ? "; " : "", id,
+                      *marking ? " " : "", marking, fabs(misfit[k].above_m), misfit[k].above_m < 0 ? "under" : "above");
         if (n >= (int)sizeof text) break;
     }
     const char *what = contact == GROUND_CONTACT_NONE ? (count == 1 ? "stays off it" : "stay off it")
                        : count == 1                   ? "is set onto it"
                                                       : "are set onto it";
     if (count && contact != GROUND_CONTACT_ALL)
-        choice_add(choices, "ground: %d %s not fit it and %s, %s%s (terrain.ground)", count,
+        choice_add(choices, "ground: %d %s not fit it and %s: %s%s (terrain.ground)", count,
                    count == 1 ? "entity does" : "entities do", what, text,
                    count > most_named ? " ..." : "");
     free(misfit);

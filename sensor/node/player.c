@@ -169,15 +169,31 @@ static bool munition_known(const Munitions *m, DisEntityId id)
     return false;
 }
 
+/* From the octets of its velocity, three big-endian floats. */
+static bool lies(const uint8_t *velocity)
+{
+    double sum = 0;
+    for (int i = 0; i < 3; i++, velocity += 4) {
+        const uint32_t bits = (uint32_t)velocity[0] << 24 | (uint32_t)velocity[1] << 16 |
+                              (uint32_t)velocity[2] << 8 | velocity[3];
+        float v;
+        memcpy(&v, &bits, sizeof v);
+        sum += (double)v * (double)v;
+    }
+    return !(sum > munition_still_mps * munition_still_mps);
+}
+
+/* Guided ones from their first report on; others from the first in which they move. */
 static void note_munition(Player *player, const uint8_t *pdu, size_t octets)
 {
-    enum { id_octet = 12, kind_octet = 20, category_octet = 24 };
-    if (octets <= category_octet || pdu[kind_octet] != dis_kind_munition ||
+    enum { id_octet = 12, kind_octet = 20, category_octet = 24, velocity_octet = 36 };
+    if (octets < velocity_octet + 12 || pdu[kind_octet] != dis_kind_munition ||
         pdu[category_octet] == dis_munition_fixed)
         return;
     const uint8_t    *at = pdu + id_octet;
     const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]),
                             (uint16_t)(at[4] << 8 | at[5])};
+    if (pdu[category_octet] != dis_munition_guided && lies(pdu + velocity_octet)) return;
     Munitions *m = pdu[category_octet] == dis_munition_guided ? &player->guided : &player->unguided;
     if (!munition_known(m, id)) m->id[m->count++ % munitions_kept] = id;
 }

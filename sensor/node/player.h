@@ -30,12 +30,14 @@ double player_time_s(const Player *player, double capture_s);
 double player_arrival_s(const Player *player, double t_s);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
+enum { munition_still_mps = 1 }; /* an unguided munition slower than this lies there, as mines of any category do */
+
 /* Target of the latest Fire fed that names this munition. */
 bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
 /* Of the munitions that were fed, who carries the sensor now. munition: in, who does (0:0:0: none so far). A guided one
  * (SISO-REF-010, category 1) that is in the table stays; else the guided one heard first of those in the table; else who
- * carries it, while it is there; else the one heard first that is neither guided nor fixed. Fixed ones (category 3:
- * mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are known. */
+ * carries it, while it is there; else the one heard first that is neither guided nor fixed and has moved. Fixed ones
+ * (category 3: mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are known. */
 bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
 const DisCounters *player_counters(const Player *player); /* everything added, and what the table refused of it */

@@ -62,11 +62,13 @@ static void find_node(Session *s, const Model *model, int index)
     s->mount_model = index;
     s->mount_node  = mount_node(&s->mount, model);
     if (s->mount_node != mount_missing) return;
-    char   names[200];
+    char   names[400];
     size_t n = 0;
     *names   = 0;
     for (int i = 0; i < model->node_count && n + 1 < sizeof names; i++)
-        n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", i ? ", " : "", model->node[i].name);
+        if (strncmp(model->node[i].name, "wheel", 5) != 0) /* a tank has a dozen and more */
+            n += (size_t)snprintf(names + n, sizeof names - n, "%s%s", n ? ", " : "", model->node[i].name);
+    if (n >= sizeof names) snprintf(names + sizeof names - 5, 5, " ...");
     log_warn("host %s: sensor.mount: its model %s has no part '%s', so the sensor sits as with auto; it has: %s",
              s->host_text, model->name, s->mount.part, names);
     s->mount_node = mount_body;

@@ -237,9 +237,15 @@ static void a_guided_munition_goes_before_any_other_and_a_mine_never(void **stat
     tracks[3].type.category = tracks[4].type.category = 3; /* mines, too */
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.host.entity == 21 && says(&choices, "of unguided munitions"));
-    tracks[2].type.category = 3;
+    for (int i = 1; i < 4; i++) points[2][i].p_ecef[1] = points[2][0].p_ecef[1]; /* of any category, but it lies there */
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10 && says(&choices, "no munition flies here"));
+    points[2][0].v_ecef_mps[2] = 90; /* not so one that says that it flies */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.host.entity == 21);
+    tracks[2].type.category = 3;
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(dis_entity_id_is_none(plan.host) && plan.aim.entity == 10);
 }
 
 /* exercise.host: observer, with whatever flies; with its aim, and the default one. */

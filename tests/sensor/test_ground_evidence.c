@@ -203,8 +203,8 @@ static void a_misfit_is_set_onto_it_and_said(void **state)
         for (int t = 0; t < 4; t++) CHECK_NEAR(off_m(&land, e, t), 0, 0.05);
         CHECK_NEAR(off_m(&land, e, 4), lie_m[k], 5);
         CHECK(says(&choices, "fitted to 4 land entities"));
-        CHECK(says(&choices, "ground: 1 entity does not fit it and is set onto it, 1:1:5 E5 by "));
-        snprintf(want, sizeof want, "by %c", lie_m[k] < 0 ? '-' : '+');
+        CHECK(says(&choices, "ground: 1 entity does not fit it and is set onto it: 1:1:5 E5, sent "));
+        snprintf(want, sizeof want, " m %s it", lie_m[k] < 0 ? "under" : "above");
         CHECK(says(&choices, want) && says(&choices, "(terrain.ground)"));
         landscape_destroy(&land);
         if (k > 0) continue;
@@ -246,9 +246,9 @@ static void ships_float_and_tanks_stay_dry(void **state)
     CHECK_NEAR(off_m(&land, e, 9), 0, 0.05);
     for (int n = 0; n < 8; n++) CHECK(surface_under(&land, &e->track[10].point[n]) == SURFACE_WATER);
     CHECK(says(&choices, "sea: flat at 40.0 m above the ellipsoid, where 6 ships or submarines were; a shore"));
-    CHECK(says(&choices, "sea: 1 submarine stays under water and not seen"));
+    CHECK(says(&choices, "sea: 1 submarine is under water and cannot be seen"));
     CHECK(says(&choices, "fitted to 4 land entities"));
-    CHECK(says(&choices, "1 entity does not fit it and is set onto it, 1:1:8 E8 by +30.0 m"));
+    CHECK(says(&choices, "1 entity does not fit it and is set onto it: 1:1:8 E8, sent 30.0 m above it"));
     for (int n = 0; n < 16; n++) { /* nothing hides the missile's way */
         double p_enu[3];
         enu_from_ecef(p_enu, &frame, e->track[11].point[n].p_ecef);

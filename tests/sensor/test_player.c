@@ -189,15 +189,15 @@ static void munitions_and_their_targets_are_known_when_they_were_heard(void **st
 }
 
 /* Heard one a second: a mine, a shell, a second shell, a missile, a second missile, a mine; the first missile is taken away
- * at 106, the second at 107. Categories by SISO-REF-010: 1 guided, 2 ballistic, 3 fixed. */
+ * at 106, the second at 107; and one (37) that lies there until it is thrown. Categories by SISO-REF-010: 1 guided, 2 ballistic, 3 fixed. */
 static void the_guided_one_carries_the_sensor_and_then_the_next(void **state)
 {
     (void)state;
     static const struct { uint16_t entity; uint8_t category; uint32_t gone; } say[] = {
         {30, 3, 0}, {31, 2, 0}, {32, 2, 0}, {33, 1, 0}, {34, 1, 0}, {35, 3, 0}, {33, 1, 1u << 23}, {34, 1, 1u << 23},
-        {31, 2, 1u << 23}, {36, 0, 0}, {32, 2, 1u << 23}, {36, 0, 1u << 23}};
+        {31, 2, 1u << 23}, {36, 0, 0}, {32, 2, 1u << 23}, {36, 0, 1u << 23}, {37, 2, 0}, {37, 2, 0}};
     enum { says = sizeof say / sizeof *say };
-    static const uint16_t want[says] = {0, 31, 31, 33, 33, 33, 34, 31, 32, 32, 36, 0};
+    static const uint16_t want[says] = {0, 31, 31, 33, 33, 33, 34, 31, 32, 32, 36, 0, 0, 37};
     uint8_t      octets[says][256];
     DisDatagram  heard[says];
     EntityTable *table = make_table();
@@ -206,7 +206,8 @@ static void the_guided_one_carries_the_sensor_and_then_the_next(void **state)
         DisEntityState pdu = {.header = {.version = 7, .exercise = 1, .type = dis_pdu_entity_state, .family = 1,
                                          .timestamp = (uint32_t)((100.0 + k) / 3600 * 2147483648.0) << 1},
                               .id = {1, 1, say[k].entity}, .type = {2, 9, 225, say[k].category, 1, 1, 0},
-                              .appearance = say[k].gone, .p_ecef = {6378137, 10.0 * k, 0}, .dead_reckoning = 1};
+                              .appearance = say[k].gone, .velocity_mps = {0, k == 12 ? 0.5f : -50, 0},
+                              .p_ecef = {6378137, 10.0 * k, 0}, .dead_reckoning = 2};
         const size_t   n   = dis_encode_entity_state(octets[k], sizeof octets[k], &pdu);
         CHECK(n > 0);
         heard[k] = (DisDatagram){.capture_s = 1000 + k, .octets = (uint32_t)n, .bytes = octets[k]};

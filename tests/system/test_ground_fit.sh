@@ -44,10 +44,12 @@ for off in -30 20; do
   - {name: Tank, type: tank, count: 4, spacing_m: 40, route_m: [[0, 0], [150, 0]], speed_mps: 5}
   - {name: Odd, type: tank, route_m: [[-160, 0], [-10, 0]], speed_mps: 5, height_m: $off}
 EOF
+    where=above
+    [ "$off" -lt 0 ] && where=under
     whole "column$off" 4 5
     check "column$off: fitted to the four" said 'fitted to 4 land entities'
     check "column$off: the fifth is set onto it, and that is said" \
-        said "1 entity does not fit it and is set onto it, 1:3001:5 Odd 5 by .${off#-}\\..*terrain\\.ground"
+        said "1 entity does not fit it and is set onto it: 1:3001:5 Odd 5, sent ${off#-}\\.. m $where it.*terrain\\.ground"
 done
 
 case_of coast 0 <<'EOF'
@@ -57,7 +59,7 @@ case_of coast 0 <<'EOF'
 EOF
 whole coast 1 3
 check "coast: the sea is said" said 'sea: flat at 0\.0 m .*shore half-way'
-check "coast: and who is under it" said '1 submarine stays under water'
+check "coast: and who is under it" said '1 submarine is under water'
 replay "$tmp/coast.pcap" "$tmp/deep" --rate 0.2 --no-files --bands optical --set exercise.aim=1:3001:4
 check "coast: the submarine is not seen" grep -qE '"entity":"1:3001:4"[^}]*"visible_fraction":0\.0' "$tmp/deep/truth.jsonl"
 
