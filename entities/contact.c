@@ -70,7 +70,7 @@ static bool is_airborne(const SnapshotEntity *e, const double up_ecef[3])
     return v > (e->type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
 }
 
-/* How much of the way to the ground an entity goes, p_enu being its base: 1 where everybody does. */
+/* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are set on it. */
 static double share_of(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3],
                        const double up_ecef[3], double way_m)
 {

@@ -2,7 +2,7 @@
  * and in all sums over pixels. */
 #include "render/render_private.h"
 
-/* One way to do better by a pixel, and whose turn it is. */
+/* One kind of refinement, and the pixels that get it. */
 typedef struct Refinement {
     unsigned has, lacks; /* RefineFlag: pixels with all of these and none of those */
     unsigned bands;

@@ -56,7 +56,7 @@ Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
 typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_MISFITS, GROUND_CONTACT_ALL } GroundContact;
 
 /* The ground: of the files of terrain.*, else the invented landscape with its sea, fitted to the log (see
- * ground_evidence.h). contact: who is set onto it (terrain.ground). Who comes later is set onto it all the same. */
+ * ground_evidence.h). contact: which entities are set onto it (terrain.ground); later ones too. */
 Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
                      const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
 

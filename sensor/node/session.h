@@ -20,7 +20,7 @@ typedef struct SessionShared {
     double         unix_s;    /* Unix time of exercise time 0 */
     unsigned       bands;
     bool           no_skip;
-    GroundContact  contact;   /* who is set onto the world's ground */
+    GroundContact  contact;   /* which entities are set onto the world's ground */
     bool           live;      /* a file that cannot be written does not end it */
     const char    *config_sha256;
     const Sensors *sensors;

@@ -49,7 +49,7 @@ static void the_sensor_goes_from_one_to_the_next(void **state)
     static LabFrame all[lab_most_frames];
     for (int k = 0; k < lab.shots; k++) {
         const double t_s = lab.shot[k].t_s - lab.first_s;
-        if (fabs(remainder(t_s, 0.5)) < 0.02) continue; /* who is there at the very moment is another test's */
+        if (fabs(remainder(t_s, 0.5)) < 0.02) continue; /* reports at the very moment have a test of their own */
         CHECK(expected(t_s) != 0 && lab.shot[k].host.entity == expected(t_s));
     }
     CHECK(abs(lab.shots - 20 * (35 + 13) / 10) <= 3); /* 0.5 .. 4 s and 4.5 .. 5.8 s */
