@@ -62,7 +62,7 @@ static void still(uint16_t entity, DisEntityType type, const double p_enu[3], do
 {
     for (int k = 0; k <= 4; k++) {
         LabReport r = {.t_s = 100 + k, .entity = entity, .type = type, .p_enu = {p_enu[0], p_enu[1], p_enu[2]}};
-        lab_attitude(r.r_enu_from_body, heading_rad, 0, 0);
+        test_attitude(r.r_enu_from_body, heading_rad, 0, 0);
         lab_say(&r);
     }
 }
@@ -125,7 +125,7 @@ static void a_turning_vehicle_smears_by_its_rate(void **state)
             lab_forget();
             for (int k = 0; k <= 4; k++) {
                 LabReport r = {.t_s = 100 + k, .entity = 1, .type = tank, .w_body_rps = {0, 0, w_rps}};
-                lab_attitude(r.r_enu_from_body, 1 + w_rps * k, 0, 0);
+                test_attitude(r.r_enu_from_body, 1 + w_rps * k, 0, 0);
                 lab_say(&r);
             }
             strcpy(config.exercise.host, "1:1:1");
@@ -162,7 +162,7 @@ static void an_aircraft_sees_the_ground_go_by(void **state)
             for (int k = 0; k <= 4; k++) {
                 LabReport r = {.t_s = 100 + k, .entity = 1, .type = plane,
                                .p_enu = {v[0] * (k - 2), v[1] * (k - 2), height_m}, .v_enu_mps = {v[0], v[1], 0}};
-                lab_attitude(r.r_enu_from_body, heading, 0, 0);
+                test_attitude(r.r_enu_from_body, heading, 0, 0);
                 lab_say(&r);
             }
             strcpy(config.exercise.host, "1:1:1");
@@ -199,7 +199,7 @@ static void a_missile_holds_its_aim(void **state)
                 const double t_s = 0.1 * k, noise = causal ? 1e-3 * sin(7.0 * k) : 0;
                 LabReport r = {.t_s = 100 + t_s, .entity = 2, .type = missile,
                                .p_enu = {300, v[1] * (t_s - 5), 60 + v[2] * (t_s - 5)}, .v_enu_mps = {0, v[1], v[2]}};
-                lab_attitude(r.r_enu_from_body, noise, pitch, 0);
+                test_attitude(r.r_enu_from_body, noise, pitch, 0);
                 lab_say(&r);
             }
             strcpy(config.exercise.host, causal ? "munition" : "1:1:2");
@@ -240,7 +240,7 @@ static void a_turning_missile_smears_along_the_right_axes(void **state)
         for (int k = 0; k <= 40; k++) { /* pitches up about a fixed point; no velocity */
             const double t_s = 0.1 * k;
             LabReport    r = {.t_s = 100 + t_s, .entity = 2, .type = missile, .p_enu = {0, 0, 300}, .w_body_rps = {0, q_rps, 0}};
-            lab_attitude(r.r_enu_from_body, heading, -0.5 + q_rps * t_s, 0);
+            test_attitude(r.r_enu_from_body, heading, -0.5 + q_rps * t_s, 0);
             lab_say(&r);
         }
         strcpy(config.exercise.host, "1:1:2");
@@ -269,7 +269,7 @@ static void a_sensor_far_out_moves_with_the_turn(void **state)
         lab_forget();
         for (int k = 0; k <= 4; k++) {
             LabReport r = {.t_s = 100 + k, .entity = 1, .type = tank, .w_body_rps = {0, 0, w_rps}};
-            lab_attitude(r.r_enu_from_body, 2 + w_rps * k, 0, 0);
+            test_attitude(r.r_enu_from_body, 2 + w_rps * k, 0, 0);
             lab_say(&r);
         }
         strcpy(config.exercise.host, "1:1:1");

@@ -10,7 +10,7 @@ static void flies(uint16_t entity, DisEntityType type, double from_s, double to_
         LabReport r = {.t_s = 100 + t_s, .entity = entity, .type = type, .v_enu_mps = {0, 100, -5},
                        .p_enu = {20.0 * entity, 100 * t_s - 800, 150 - 5 * t_s}};
         if (taken_away && t_s > to_s - 0.1) r.appearance = 1u << 23;
-        lab_attitude(r.r_enu_from_body, 0, -0.05, 0);
+        test_attitude(r.r_enu_from_body, 0, -0.05, 0);
         lab_say(&r);
     }
 }
@@ -21,7 +21,7 @@ static void scene(void)
 {
     lab_forget();
     LabReport r = {.entity = 9, .type = tank};
-    lab_attitude(r.r_enu_from_body, 0, 0, 0);
+    test_attitude(r.r_enu_from_body, 0, 0, 0);
     for (int k = 0; k < 6; k++) {
         r.t_s = 100 + k;
         lab_say(&r);

@@ -80,7 +80,7 @@ static void the_sensor_goes_with_the_turret(void **state)
     const double turret = 30 * rad_per_deg, gun = 8 * rad_per_deg, ahead[3] = {1, 0, 0}, nothing[3] = {0, 0, 0};
     LabReport    r = {.entity = 1, .type = tank, .p_enu = {3, 4, 5}, .turret_rad = turret, .gun_rad = gun};
     int          turret_node = -1, gun_node = -1;
-    lab_attitude(r.r_enu_from_body, 1.1, 0.1, -0.2);
+    test_attitude(r.r_enu_from_body, 1.1, 0.1, -0.2);
     for (int n = 0; n < model->node_count; n++) {
         if (model->node[n].dis_class == 4096) turret_node = n;
         if (model->node[n].dis_class == 4416) gun_node = n;
@@ -125,7 +125,7 @@ static void the_sensor_sits_where_it_is_put(void **state)
     (void)state;
     const Model *model = catalog_model(lab.catalog, catalog_find(lab.catalog, plane, &(Origin){0}, NULL));
     LabReport    r = {.entity = 1, .type = plane, .p_enu = {3, 4, 500}};
-    lab_attitude(r.r_enu_from_body, 4, 0.3, 0.5);
+    test_attitude(r.r_enu_from_body, 4, 0.3, 0.5);
     for (int given = 0; given < 2; given++) {
         Config config = config_default();
         double eye[3], d[3], want[3];
@@ -168,8 +168,8 @@ static void an_aim_beyond_the_gimbal_is_said(void **state)
     for (int k = 0; k <= 40; k++) {
         LabReport host = {.t_s = 100 + 0.5 * k, .entity = 1, .type = tank, .w_body_rps = {0, 0, w_rps}};
         LabReport aim = {.t_s = 100 + 0.5 * k, .entity = 2, .type = tank, .p_enu = {0, 200, 0}};
-        lab_attitude(host.r_enu_from_body, w_rps * 0.5 * k, 0, 0);
-        lab_attitude(aim.r_enu_from_body, 0, 0, 0);
+        test_attitude(host.r_enu_from_body, w_rps * 0.5 * k, 0, 0);
+        test_attitude(aim.r_enu_from_body, 0, 0, 0);
         lab_say(&host);
         lab_say(&aim);
     }
@@ -197,7 +197,7 @@ static void a_part_that_is_not_there_is_said(void **state)
     Config    config = config_default();
     LabReport r = {.entity = 1, .type = plane, .p_enu = {0, 0, 500}};
     double    eye[3], d[3], with_auto[3];
-    lab_attitude(r.r_enu_from_body, 4, 0, 0);
+    test_attitude(r.r_enu_from_body, 4, 0, 0);
     report(&r);
     strcpy(config.exercise.host, "1:1:1");
     lab_run(&config, 1, 10, 1);

@@ -4,6 +4,7 @@
 #include "entities/dead_reckoning.h"
 #include "sensor/node/seeker.h"
 #include "terrain/local_frame.h"
+#include "tests/sensor/attitude.h"
 
 static Seeker head(double limit_deg, double rate_dps, double lag_s)
 {
@@ -150,20 +151,6 @@ static void as_sent(double r_enu_from_body[9], const double meant[9])
     m3_tmul(r_enu_from_body, frame.r_ecef_from_enu, r_ecef);
 }
 
-/* x forward at this heading and pitch, then rolled. */
-static void pitched(double r[9], double heading_rad, double pitch_rad, double roll_rad)
-{
-    const double sh = sin(heading_rad), ch = cos(heading_rad), sp = sin(pitch_rad), cp = cos(pitch_rad);
-    const double x[3] = {sh * cp, ch * cp, sp}, y[3] = {ch, -sh, 0};
-    double       z[3];
-    v3_cross(z, x, y);
-    for (int i = 0; i < 3; i++) {
-        r[3 * i]     = x[i];
-        r[3 * i + 1] = cos(roll_rad) * y[i] + sin(roll_rad) * z[i];
-        r[3 * i + 2] = cos(roll_rad) * z[i] - sin(roll_rad) * y[i];
-    }
-}
-
 static void tick(double cam[9], Seeker *s, const double r_enu_from_body[9])
 {
     static const double ahead[3] = {1, 0, 0};
@@ -190,7 +177,7 @@ static void a_vertical_dive_does_not_roll(void **state)
             double cam[9], first[9], meant[9], r[9], most = 0, directions = 0;
             for (int k = 0; k < 400; k++) {
                 const double lean = 3e-7 * sin(1.7 * k), roll = spin * 0.01 * k;
-                pitched(meant, heading + lean, -0.5 * pi_rad + 3e-7 * cos(0.9 * k), roll);
+                test_attitude(meant, heading + lean, -0.5 * pi_rad + 3e-7 * cos(0.9 * k), roll);
                 as_sent(r, meant);
                 tick(cam, &s, r);
                 if (k == 0) {
@@ -236,7 +223,7 @@ static void beside_the_vertical_the_picture_is_upright(void **state)
         for (double heading = 0; heading < 6.2; heading += 0.3) {
             Seeker s = head(60, 1e4, 0);
             double cam[9], exact[9], meant[9], r[9], d[3];
-            pitched(meant, heading, -0.5 * pi_rad + off, 0.3);
+            test_attitude(meant, heading, -0.5 * pi_rad + off, 0.3);
             for (int i = 0; i < 3; i++) d[i] = meant[3 * i];
             camera_upright(exact, d);
             as_sent(r, meant);
@@ -253,7 +240,7 @@ static void the_first_look_down_has_the_nose_on_top(void **state)
     for (double heading = 0; heading < 6.2; heading += 0.4) {
         Seeker s = head(120, 1e4, 0);
         double cam[9], r[9];
-        pitched(r, heading, 0, 0);
+        test_attitude(r, heading, 0, 0);
         seeker_step(&s, below);
         seeker_roll(&s, r);
         seeker_camera(cam, &s, r);
@@ -268,7 +255,7 @@ static void the_picture_may_be_held_rolled(void **state)
     Seeker s = head(60, 1e4, 0);
     double cam[9], r[9];
     s.config.roll_rad = 0.4;
-    pitched(r, 0, 0, 0.9);
+    test_attitude(r, 0, 0, 0.9);
     tick(cam, &s, r);
     const double want[9] = {cos(0.4), -sin(0.4), 0, 0, 0, 1, -sin(0.4), -cos(0.4), 0};
     for (int k = 0; k < 9; k++) CHECK_NEAR(cam[k], want[k], 1e-12);
