@@ -2,6 +2,7 @@
 #include "tests/check.h"
 
 #include "sensor/node/player.h"
+#include "tests/sensor/open_catalog.h"
 
 #include <unistd.h>
 
@@ -9,21 +10,6 @@ enum { report_count = 3 };
 
 static uint8_t     bytes[report_count][256];
 static DisDatagram datagram[report_count];
-static Catalog    *catalog;
-
-static int open_catalog(void **state)
-{
-    (void)state;
-    char path[512];
-    return etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.05) == STATUS_OK ? 0 : -1;
-}
-
-static int close_catalog(void **state)
-{
-    (void)state;
-    catalog_close(catalog);
-    return 0;
-}
 
 /* Entity k reports at stamp_s[k] seconds past the hour and is received at capture_s[k]. */
 static DisLog make_log(const double stamp_s[report_count], const double capture_s[report_count])

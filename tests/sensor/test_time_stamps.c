@@ -6,6 +6,7 @@
 #include "tests/check.h"
 
 #include "sensor/node/player.h"
+#include "tests/sensor/open_catalog.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -28,21 +29,6 @@ static const char *const kind_name[KIND_COUNT] = {
 
 static uint8_t     bytes[2 * most_reports][octets_most];
 static DisDatagram datagram[2 * most_reports];
-static Catalog    *catalog;
-
-static int open_catalog(void **state)
-{
-    (void)state;
-    char path[512];
-    return etc_path(path, sizeof path, "catalog.csv") && catalog_open(&catalog, path, 0.05) == STATUS_OK ? 0 : -1;
-}
-
-static int close_catalog(void **state)
-{
-    (void)state;
-    catalog_close(catalog);
-    return 0;
-}
 
 static uint32_t good_stamp(double sim_s, bool absolute)
 {
