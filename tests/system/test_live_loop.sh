@@ -27,7 +27,9 @@ check "and complained of once" [ "$(grep -c 'cannot write' "$tmp/loop.out")" -le
 made=$(numbered "$tmp/loop" | wc -l)
 check "truth of every frame" [ "$(wc -l <"$tmp/loop/truth.jsonl")" = "$made" ]
 check "frames after the pictures ended" [ "$made" -gt $((lines + 3)) ]
-whole=$(find "$tmp/loop/elsewhere/lwir" -name '*.exr' | wc -l)
+# a frame is whole with its six files: the folder may go away between two of one frame
+whole=$(find "$tmp/loop/elsewhere" -regex '.*/\(optical\|lwir\|truth\)/[0-9]*\.\(exr\|png\)' -printf '%f\n' | cut -d. -f1 |
+    sort | uniq -c | awk '$1 == 6' | wc -l)
 lacking=$(($(live_counter "$tmp/loop" files_failed) + $(live_counter "$tmp/loop" files_left_out)))
 check "$whole frames with files and $lacking without are all $made" [ $((whole + lacking)) = "$made" ]
 check "raw counts of the sensor beside them" [ "$(find "$tmp/loop/raw/lwir" -name '*.png' | wc -l)" -ge 5 ]
