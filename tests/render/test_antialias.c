@@ -1,6 +1,6 @@
 /* Adaptive antialiasing against the picture that has all the rays everywhere: the same bits where it refined, close
  * elsewhere, few rays on bare ground, and the same picture for any number of threads, with and without skips, and
- * whatever else was asked for. labels: threads */
+ * whatever else was asked for. labels: slow threads */
 #include "tests/render/hand_world.h"
 
 static const double sun_enu[3] = {-0.48, 0.36, 0.8};

@@ -9,7 +9,7 @@
  * another region than the 2000 have. (The percentiles of this half by itself are printed; they are a property of the
  * meshes: 2.1, 9.7, 4.2 and 5.7 mm at 99 %, which the second judge confirms ray by ray.)
  * The second judges importer and tracer alone, and there the tolerance is single-precision vertices: 6e-8 of 20 m,
- * over the sine of the angle of incidence. */
+ * over the sine of the angle of incidence. labels: slow */
 #include "tests/check.h"
 
 #include <unistd.h>

@@ -1,5 +1,5 @@
 /* A lens that distorts: its formula and the way back against long double and OpenCV's numbers, which lenses are
- * refused, culling that never loses anything, boxes, areas and solid angles. */
+ * refused, culling that never loses anything, boxes, areas and solid angles. labels: slow */
 #include "tests/check.h"
 
 #include "tests/render/hand_world.h"
@@ -53,16 +53,16 @@ static void there_and_back(void **state)
 {
     (void)state;
     int good = 0;
-    for (int n = 0; n < 200; n++) {
+    for (int n = 0; n < 60; n++) {
         Lens   lens;
         double half[2];
         if (!draw_lens(&lens, half, n)) continue;
         good++;
-        for (int i = 0; i < 200; i++) {
+        for (int i = 0; i < 80; i++) {
             /* within the picture, and up to four times beyond, where the image runs straight on */
             const double far = i % 4 == 0 ? 4 : 1;
-            const double x = far * half[0] * draw(n * 200 + i, 7, -1, 1),
-                         y = far * half[1] * draw(n * 200 + i, 8, -1, 1);
+            const double x = far * half[0] * draw(n * 80 + i, 7, -1, 1),
+                         y = far * half[1] * draw(n * 80 + i, 8, -1, 1);
             double       at[2], image[2];
             lens_back(at, &lens, x, y);
             lens_image(image, &lens, at[0], at[1]);
@@ -74,7 +74,7 @@ static void there_and_back(void **state)
             CHECK(fabs(image[0]) > half[0] || fabs(image[1]) > half[1]);
         }
     }
-    CHECK(good > 150);
+    CHECK(good > 45);
 }
 
 static void arrays_give_the_bits_of_single_points(void **state)
@@ -98,7 +98,7 @@ static void lenses_that_fold_are_refused(void **state)
     const double p[2] = {0, 0}, half[2] = {0.5, 0.5};
     Lens         lens;
     /* r (1 - r2 k) turns back at r = sqrt(1 / 3k); the picture's corner, on the image, must lie below 2/3 of that */
-    for (int n = 1; n < 60; n++) {
+    for (int n = 1; n < 60; n += 3) {
         const double k[3] = {-0.02 * n, 0, 0}, turn = sqrt(1 / (0.06 * n)), highest = 2.0 / 3 * turn;
         const bool   folds = lens_room * hypot(0.5, 0.5) > highest;
         const bool   clearly = lens_room * hypot(0.5, 0.5) < 0.9 * highest;
@@ -118,12 +118,12 @@ static void lenses_that_fold_are_refused(void **state)
 static void boxes_hold_what_is_in_them(void **state)
 {
     (void)state;
-    for (int n = 0; n < 100; n++) {
+    for (int n = 0; n < 30; n++) {
         Lens   lens;
         double half[2];
         if (!draw_lens(&lens, half, n)) continue;
-        for (int b = 0; b < 40; b++) {
-            const int    i = n * 40 + b;
+        for (int b = 0; b < 20; b++) {
+            const int    i = n * 20 + b;
             const double far = b % 5 == 0 ? 1.5 : 1, w = half[0] * draw(i, 0, 0.01, b % 7 ? 0.2 : 1);
             double       image[4] = {far * half[0] * draw(i, 1, -1, 1), far * half[1] * draw(i, 2, -1, 1)}, box[4];
             image[2] = image[0] + w, image[3] = image[1] + w;
@@ -156,7 +156,7 @@ static View distorted_view(int width, int height, double hfov_rad, double corner
 }
 
 /* The solid angle of the picture: pixel by pixel from the renderer, and by Gauss's divergence of the undistorted
- * outline: the sum of spherical triangles from the boresight to 4 x 4000 points of it (Van Oosterom & Strackee, 1983).
+ * outline: the sum of spherical triangles from the boresight to 4 x 1000 points of it (Van Oosterom & Strackee, 1983).
  */
 static void pixels_fill_the_picture_s_solid_angle(void **state)
 {
@@ -168,7 +168,7 @@ static void pixels_fill_the_picture_s_solid_angle(void **state)
         for (int y = 0; y < view.height; y++)
             for (int x = 0; x < view.width; x++) sum += view_pixel_share(&view, x, y);
         sum /= view.focal_px * view.focal_px;
-        enum { side = 4000 };
+        enum { side = 1000 };
         Real want = 0, before[3] = {0};
         for (int i = 0; i <= 4 * side; i++) {
             const double along = i % side / (double)side;

@@ -1,6 +1,6 @@
 /* In-band intensity of a target that fills the picture, or a hundredth of a pixel: against closed forms, wherever the
  * pixels fall. No air: a plate of radiance L and area A sends L A cos(tilt); a Lambertian sphere under the sun
- * rho E a^2 (2 / 3 pi) (sin p + (pi - p) cos p) at phase angle p; one that glows by itself L pi a^2. */
+ * rho E a^2 (2 / 3 pi) (sin p + (pi - p) cos p) at phase angle p; one that glows by itself L pi a^2. labels: slow */
 #include "tests/render/hand_world.h"
 
 static const double eye_enu[3] = {0, 0, 3000};

@@ -1,5 +1,5 @@
 /* What frames say of their own error against frames of 16 x 16 rays, of finer ground, and without tables; the rest of
- * the scenes are in test_error_budget_deep.c. And: planes do not change, nor the budget with threads. */
+ * the scenes are in test_error_budget_deep.c. And: planes do not change, nor the budget with threads. labels: slow */
 #include "tests/sensor/error_scenes.h"
 
 static const ErrorScene scenes[] = {

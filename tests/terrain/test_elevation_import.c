@@ -2,7 +2,7 @@
  *
  * The judge: gdaltransform takes random fractional pixels to longitude and latitude, gdallocationinfo reads the four
  * posts about each, the bilinear height between them goes through GeographicLib to ENU. Our surface must lie there
- * within what the import says resampling cost. EGM96 has its own test. */
+ * within what the import says resampling cost. EGM96 has its own test. labels: slow */
 #include "tests/check.h"
 
 #include "terrain/elevation_import.h"
