@@ -25,11 +25,12 @@ static HealthReason hear(const HealthSample *s, double patience)
     if (s->away) return HEALTH_AWAY;
     /* until they have timed out: who stands still may report once a minute */
     if ((s->making && s->entities > 0) || silent_s < quiet_s * patience) return HEALTH_FINE;
+    if (s->now_s - s->any_s >= nothing_s && patience > 0) return HEALTH_NOTHING;
     if (s->pdus) return HEALTH_NO_ENTITY;
     if (others(s)) return HEALTH_OTHER_EXERCISE;
     if (s->junk) return HEALTH_JUNK;
     if (s->own && s->usable == 0) return HEALTH_OWN;
-    return silent_s < nothing_s * patience ? HEALTH_FINE : HEALTH_NOTHING;
+    return patience > 0 ? HEALTH_FINE : HEALTH_NOTHING;
 }
 
 static HealthReason show(const HealthSample *s, double patience)
@@ -136,81 +137,81 @@ static const char *send_advice(int error)
 void health_text(char out[health_text_size], HealthReason reason, const HealthSample *s, const HealthNames *n)
 {
     char         exercises[120];
-    const double silent_s = s->now_s - s->usable_s;
+    const size_t size = health_text_size;
     switch (reason) {
     case HEALTH_FINE: *out = 0; break;
     case HEALTH_AWAY:
-        snprintf(out, health_text_size, "the network of %s is not there (`ip address` shows what is)", n->where);
+        snprintf(out, size, "the network of %s is not there (`ip address` shows what is)", n->where);
         break;
     case HEALTH_OTHER_EXERCISE: {
         const int first = list_exercises(exercises, sizeof exercises, s);
-        snprintf(out, health_text_size, "only other exercises are heard on %s: %s; this node hears exercise %d: "
+        snprintf(out, size, "only other exercises are heard on %s: %s; this node hears exercise %d: "
                  "--set exercise.exercise=%d hears that one, -2 all", n->where, exercises, n->exercise, first);
         break;
     }
     case HEALTH_NO_ENTITY:
-        snprintf(out, health_text_size, "DIS is heard on %s, but no Entity State with a usable place: %llu PDUs, the latest "
-                 "of type %d (%s); `pitviper record --for 10 -o heard.pcapng`, then `pitviper inspect heard.pcapng` shows "
-                 "them", n->where, (unsigned long long)s->pdus, s->type, dis_pdu_type_name(s->type));
+        snprintf(out, size, "DIS is heard on %s, but no Entity State with a usable place: %llu PDUs, the latest "
+                 "of type %d (%s); `pitviper record --for 10 -o heard.pcapng`, then `pitviper inspect heard.pcapng` "
+                 "shows them", n->where, (unsigned long long)s->pdus, s->type, dis_pdu_type_name(s->type));
         break;
     case HEALTH_OWN:
-        snprintf(out, health_text_size, "all %llu datagrams heard on %s come from %d:%d, this node's own site and "
+        snprintf(out, size, "all %llu datagrams heard on %s come from %d:%d, this node's own site and "
                  "application, and are ignored: another node or simulator uses them too; --set node.application=%d",
                  (unsigned long long)s->own, n->where, n->site, n->application,
                  n->application < 65533 ? n->application + 1 : 1);
         break;
     case HEALTH_JUNK:
-        snprintf(out, health_text_size, "only what is no DIS is heard on %s: %llu malformed datagrams; another port may carry "
+        snprintf(out, size, "only what is no DIS is heard on %s: %llu malformed datagrams; another port may carry "
                  "the exercise (--port, --address); `pitviper record --for 10 -o heard.pcapng` keeps them to look at",
                  n->where, (unsigned long long)s->junk);
         break;
     case HEALTH_NOTHING:
-        snprintf(out, health_text_size, "nothing heard on %s for %.0f s; `pitviper record --for 5 -o heard.pcapng` shows "
-                 "what comes at all; --port, --address and --interface say where", n->where, silent_s);
+        snprintf(out, size, "nothing heard on %s for %.0f s; `pitviper record --for 5 -o heard.pcapng` shows "
+                 "what comes at all; --port, --address and --interface say where", n->where, s->now_s - s->any_s);
         break;
     case HEALTH_NO_HOST:
-        snprintf(out, health_text_size, "host %s is not heard so far, and no frame is made until it is; %d other entities "
+        snprintf(out, size, "host %s is not heard so far, and no frame is made until it is; %d other entities "
                  "are heard (--host ID of one of them, munition or observer)", n->host, s->entities);
         break;
     case HEALTH_HOST_GONE:
-        snprintf(out, health_text_size, "host %s is gone, and no frame is made until it is back; %d other entities are there "
+        snprintf(out, size, "host %s is gone, and no frame is made until it is back; %d other entities are there "
                  "(--host ID of one of them, munition or observer)", n->host, s->entities);
         break;
     case HEALTH_NO_MUNITION:
-        snprintf(out, health_text_size, "no munition flies so far, and no frame is made until one does; %d entities are heard "
+        snprintf(out, size, "no munition flies so far, and no frame is made until one does; %d entities are heard "
                  "(--host observer looks at them meanwhile, --host ID rides on one)", s->entities);
         break;
     case HEALTH_MUNITION_GONE:
-        snprintf(out, health_text_size, "%s is gone and no other munition flies: no frame is made until one does (--host "
+        snprintf(out, size, "%s is gone and no other munition flies: no frame is made until one does (--host "
                  "observer looks at the %d entities meanwhile)", n->host, s->entities);
         break;
     case HEALTH_ALONE:
-        snprintf(out, health_text_size, "frames show no entity: none but the host is there (`pitviper record` keeps what comes)");
+        snprintf(out, size, "frames show no entity: none but the host is there (`pitviper record` keeps what comes)");
         break;
     case HEALTH_NO_VIEW:
-        snprintf(out, health_text_size, "frames show no entity: none of %d is in the field of view, the nearest is %.1f km away "
+        snprintf(out, size, "frames show no entity: none of %d is in the field of view, the nearest is %.1f km away "
                  "(--set exercise.aim=ID looks at one, sensor.hfov_deg widens, --host observer circles one)", s->others,
                  1e-3 * s->nearest_m);
         break;
     case HEALTH_HIDDEN:
-        snprintf(out, health_text_size, "frames show no entity: what is in the field of view is hidden by the ground, the water "
+        snprintf(out, size, "frames show no entity: what is in the field of view is hidden by the ground, the water "
                  "or others (--host ID of another, --set observer.height_m or exercise.aim)");
         break;
     case HEALTH_NOT_SENT:
-        snprintf(out, health_text_size, "publish.dis: nothing can be sent to %s: %s%s", n->to, strerror(s->error),
+        snprintf(out, size, "publish.dis: nothing can be sent to %s: %s%s", n->to, strerror(s->error),
                  send_advice(s->error));
         break;
     case HEALTH_LOST:
-        snprintf(out, health_text_size, "datagrams lost: in the kernel %llu, in the queue %llu; a larger network.queue_mb or "
+        snprintf(out, size, "datagrams lost: in the kernel %llu, in the queue %llu; a larger network.queue_mb or "
                  "net.core.rmem_max, or a higher sensor.rate_hz, helps", (unsigned long long)s->lost_kernel,
                  (unsigned long long)s->lost_queue);
         break;
     case HEALTH_LATE:
-        snprintf(out, health_text_size, "frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a "
+        snprintf(out, size, "frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a "
                  "lower --rate helps", (unsigned long long)s->late);
         break;
     case HEALTH_EARLY:
-        snprintf(out, health_text_size, "entities were heard, and it ended before the first frame was due; a longer --for, or "
+        snprintf(out, size, "entities were heard, and it ended before the first frame was due; a longer --for, or "
                  "a shorter exercise.listen_s");
         break;
     }
@@ -220,9 +221,15 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
 
 void health_begin(Health *h, double now_s)
 {
-    *h = (Health){.sample = {.now_s = now_s, .usable_s = now_s, .frame_s = now_s, .in_view_s = now_s,
+    *h = (Health){.sample = {.now_s = now_s, .usable_s = now_s, .any_s = now_s, .frame_s = now_s, .in_view_s = now_s,
                              .visible_s = now_s, .lost_s = -INFINITY, .late_s = -INFINITY, .nearest_m = NAN}};
     for (int t = 0; t < HEALTH_TOPICS; t++) h->said_s[t] = -INFINITY;
+}
+
+void health_own(Health *h, double now_s)
+{
+    h->sample.own++;
+    h->sample.any_s = now_s;
 }
 
 void health_heard(Health *h, const DisDatagram *datagram, int exercise, bool checked, double now_s)
@@ -241,6 +248,7 @@ void health_heard(Health *h, const DisDatagram *datagram, int exercise, bool che
         s->type = header.type;
         usable |= header.type == dis_pdu_entity_state && (!checked || opening_usable(&header, pdu));
     }
+    s->any_s = now_s;
     s->junk += !any;
     if (!usable) return;
     s->usable++;
@@ -327,8 +335,8 @@ void health_check(Health *h, const LiveCounters *counters, const HealthNames *na
 void health_line(char out[health_line_size], const Health *h, double frames_hz, double latency_s)
 {
     const HealthSample *s = &h->sample;
-    size_t              n = (size_t)snprintf(out, health_line_size, "%d entities  %.1f frames/s  %llu late", s->entities,
-                                             frames_hz, (unsigned long long)s->late);
+    size_t n = (size_t)snprintf(out, health_line_size, "%d entities  %.1f frames/s  %llu late", s->entities, frames_hz,
+                                (unsigned long long)s->late);
     if (isfinite(latency_s)) n += (size_t)snprintf(out + n, health_line_size - n, "  %.0f ms", 1e3 * latency_s);
     n += (size_t)snprintf(out + n, health_line_size - n, "  %llu lost",
                           (unsigned long long)(s->lost_kernel + s->lost_queue));

@@ -37,7 +37,7 @@ typedef enum HealthHost { HEALTH_OBSERVER, HEALTH_BY_ID, HEALTH_MUNITION } Healt
 typedef struct HealthSample {
     double     now_s;
     /* heard since the last Entity State that could be used, or since the beginning */
-    double     usable_s;        /* when that was */
+    double     usable_s, any_s; /* when that was; of the latest datagram, whatever it was */
     uint64_t   usable;          /* how many there were, ever */
     uint64_t   junk, own;       /* datagrams */
     uint64_t   pdus;            /* of the exercise to hear */
@@ -93,6 +93,7 @@ typedef struct Health {
 } Health;
 
 void health_begin(Health *health, double now_s);
+void health_own(Health *health, double now_s); /* a datagram of this node's own site and application */
 /* A datagram of others. exercise: the one to hear; -1: any. checked: only a report with a usable place counts. */
 void health_heard(Health *health, const DisDatagram *datagram, int exercise, bool checked, double now_s);
 void health_making(Health *health, double now_s); /* the choices are made, the first frame is due */

@@ -80,7 +80,7 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
         out->packet_s = out->capture_s;
         if (opening_own(out, &l->run.options.config)) {
             l->run.own++;
-            l->health.sample.own++;
+            health_own(&l->health, wall_clock_s());
             continue;
         }
         health_heard(&l->health, out, exercise_to_hear(l), !l->player, wall_clock_s());
