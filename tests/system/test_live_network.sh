@@ -45,9 +45,9 @@ node other --address 127.0.0.1 --port 3010 "${few[@]}" --for 60 --set exercise.e
 node junk --address 127.0.0.1 --port 3011 "${few[@]}" --for 60
 node itself --address 127.0.0.1 --port 3012 "${few[@]}" --for 60 --set node.site=1 --set node.application=3001
 node hostless --address 127.0.0.1 --port 3013 "${few[@]}" --for 60 --host 9:9:9
-node routeless --port 3014 "${few[@]}" --for 60 --set publish.dis=sensor # to 255.255.255.255
+node routeless --port 3014 "${few[@]}" --for 60 --frames 3 --set publish.dis=sensor # to 255.255.255.255
 # a broadcast within this machine reaches both
-node seeker --address 127.255.255.255 --port 3020 "${few[@]}" --for 60 --set publish.dis=sensor
+node seeker --address 127.255.255.255 --port 3020 "${few[@]}" --for 60 --frames 6 --set publish.dis=sensor
 heard_by seeker 'listening on' 20
 second=(--out "$tmp/observer" --address 127.255.255.255 --port 3020 "${few[@]}" --for 60 --set publish.dis=sensor
     --set node.application=2 --host observer --frames 8)
@@ -120,7 +120,7 @@ done
 for name in routeless seeker observer; do check "$name: makes frames" frames_made $name 2; done
 check "hostless: knows others" heard_by hostless '^ground:' 20
 sleep 0.3
-for name in other junk itself hostless routeless seeker; do kill -INT "${node[$name]}"; done
+for name in other junk itself hostless; do kill -INT "${node[$name]}"; done
 because() { # NAME TEXT: it made nothing, and said that
     ended "$1" 20
     check "$1: ends with 1 ($code)" [ $code = 1 ]
