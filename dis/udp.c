@@ -20,7 +20,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32, pause_ms = 100, look_ms = 1000 };
+enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32,
+       pause_ms = 100, look_ms = 1000 };
 
 static const int64_t ns_per_s = 1000000000;
 

@@ -298,15 +298,16 @@ static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Conf
         plan->end_s   = fmax(plan->end_s, shot && shot->detonation_s > end_s ? shot->detonation_s : end_s);
     }
     if (!isfinite(plan->start_s)) {
-        log_error("replay: exercise.host: munition: none flies in the log, which has %d munition%s, mines and what lies "
-                  "still included, among %d entities; `pitviper inspect LOG` lists them, --host ID or --host observer shows "
-                  "what there is", munitions, munitions == 1 ? "" : "s", survey->track_count);
+        log_error("replay: exercise.host: munition: none flies in the log, which has %d munition%s, mines and what "
+                  "lies still included, among %d entities; `pitviper inspect LOG` lists them, --host ID or --host "
+                  "observer shows what there is", munitions, munitions == 1 ? "" : "s", survey->track_count);
         return STATUS_BAD_VALUE;
     }
     const Track *flight = longest_flight(survey, config, true, false);
     if (!flight) flight = longest_flight(survey, config, false, false);
     const Shot *shot = flight ? choice_shot_of(survey, flight->id) : NULL;
-    if (shot && dis_entity_id_is_none(plan->aim)) plan->aim = dis_entity_id_is_none(shot->target) ? shot->hit : shot->target;
+    if (shot && dis_entity_id_is_none(plan->aim))
+        plan->aim = dis_entity_id_is_none(shot->target) ? shot->hit : shot->target;
     return STATUS_OK;
 }
 

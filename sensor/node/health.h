@@ -1,7 +1,7 @@
 /* sensor/node/health.h: why a live node is silent, said once when the reason changes, with what helps.
  *
- * What is heard, shown, sent, lost and left out are five topics, each with a reason of its own that is a function of the
- * counters alone. A reason must last before it is said: heartbeats may be 5 s apart. */
+ * What is heard, shown, sent, lost and left out are five topics, each with a reason of its own that is a function of
+ * the counters alone. A reason must last before it is said: heartbeats may be 5 s apart. */
 #ifndef SENSOR_NODE_HEALTH_H
 #define SENSOR_NODE_HEALTH_H
 

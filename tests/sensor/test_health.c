@@ -184,6 +184,13 @@ static void hear(Health *h, int exercise, double now_s)
     health_heard(h, &datagram, 7, true, now_s);
 }
 
+static void show(Health *h, double now_s)
+{
+    h->sample.frames++;
+    h->sample.missing = 0;
+    h->sample.frame_s = h->sample.in_view_s = h->sample.visible_s = now_s;
+}
+
 static void each_change_is_said_once(void **state)
 {
     (void)state;
@@ -200,15 +207,15 @@ static void each_change_is_said_once(void **state)
         if (now_s >= 40 && now_s < 100 && tenth % 10 == 0) hear(&h, 7, now_s), hear(&h, 3, now_s);
         if (tenth == 450) health_making(&h, now_s);
         h.sample.entities = now_s >= 40 && now_s < 112;
-        if (now_s >= 45 && now_s < 112) h.sample.frames++, h.sample.frame_s = h.sample.in_view_s = h.sample.visible_s = now_s;
+        if (now_s >= 45 && now_s < 112) show(&h, now_s);
         if (now_s >= 50 && now_s < 60) c.send_failed++;
         if (now_s >= 60 && now_s < 70) c.sent++;
         if (now_s >= 70 && now_s < 75) c.lost_queue++;
         health_check(&h, &c, &names, now_s);
     }
     log_set_sink(NULL, NULL);
-    static const char *const want[] = {"nothing heard on 239.1.2.3 port 3000 for 10 s", "only other exercises are heard",
-                                       "nothing can be sent to 255.255.255.255 port 3000", "sending to 255",
+    static const char *const want[] = {"nothing heard on 239.1.2.3 port 3000 for 10 s",
+                                       "only other exercises are heard", "nothing can be sent to 255.255.255.255 port 3000", "sending to 255",
                                        "datagrams lost: in the kernel 0, in the queue 1", "nothing heard"};
     CHECK(said == sizeof want / sizeof *want);
     for (int i = 0; i < said; i++) CHECK(strstr(lines[i], want[i]) && (levels[i] == LOG_WARN) == (i != 3));
@@ -229,7 +236,7 @@ static void what_flickers_is_said_once_a_minute(void **state)
         const bool there = s / 6 % 2 == 0; /* six seconds in turn */
         h.sample.entities = 1;
         h.sample.missing += !there;
-        if (there) h.sample.frames++, h.sample.missing = 0, h.sample.frame_s = h.sample.in_view_s = h.sample.visible_s = s;
+        if (there) show(&h, s);
         health_check(&h, &c, &names, s);
     }
     log_set_sink(NULL, NULL);
