@@ -125,8 +125,8 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     *plan = (Plan){.config = config};
     if (config->interface[0] && !(plan->interface = if_nametoindex(config->interface))) {
         list_interfaces(text);
-        log_error("udp: interface: there is no `%s` on this machine, and none is waited for; it has: %s", config->interface,
-                  text);
+        log_error("udp: interface: there is no `%s` on this machine, and none is waited for; it has: %s",
+                  config->interface, text);
         return STATUS_BAD_VALUE;
     }
     snprintf(text, sizeof text, "%d", config->port);

@@ -215,7 +215,9 @@ static void each_change_is_said_once(void **state)
     }
     log_set_sink(NULL, NULL);
     static const char *const want[] = {"nothing heard on 239.1.2.3 port 3000 for 10 s",
-                                       "only other exercises are heard", "nothing can be sent to 255.255.255.255 port 3000", "sending to 255",
+                                       "only other exercises are heard",
+                                       "nothing can be sent to 255.255.255.255 port 3000",
+                                       "sending to 255",
                                        "datagrams lost: in the kernel 0, in the queue 1", "nothing heard"};
     CHECK(said == sizeof want / sizeof *want);
     for (int i = 0; i < said; i++) CHECK(strstr(lines[i], want[i]) && (levels[i] == LOG_WARN) == (i != 3));
