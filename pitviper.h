@@ -43,6 +43,9 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
 void log_hush(bool hushed);
+/* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
+ * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
+void log_status(const char *text);
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -4,12 +4,14 @@
 #include <pthread.h>
 #include <stdarg.h>
 #include <stdio.h>
+#include <unistd.h>
 
 static pthread_mutex_t log_lock = PTHREAD_MUTEX_INITIALIZER;
 static LogSink        *log_sink;
 static void           *log_user;
 static LogLevel        log_lowest = LOG_INFO;
 static _Thread_local bool hushed_here;
+static char            status_line[256]; /* what the terminal shows below what is logged */
 
 const char *status_name(Status status)
 {
@@ -53,8 +55,24 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
         if (log_sink)
             log_sink(log_user, level, line);
         else
-            fprintf(stderr, "%s%s\n", level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line);
+            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "", level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line,
+                    status_line);
     }
+    pthread_mutex_unlock(&log_lock);
+}
+
+void log_status(const char *text)
+{
+    pthread_mutex_lock(&log_lock);
+    const bool shown = *status_line != 0, may = !log_sink && log_lowest <= LOG_INFO && isatty(STDERR_FILENO);
+    if (may && text) {
+        snprintf(status_line, sizeof status_line, "  %s", text);
+        fprintf(stderr, "\r\x1b[K%s", status_line);
+    } else if (shown) {
+        *status_line = 0;
+        fputs("\r\x1b[K", stderr);
+    }
+    fflush(stderr);
     pthread_mutex_unlock(&log_lock);
 }
 

@@ -240,7 +240,11 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     const Moment now = {timestamp, capture_s};
 
     /* All bits zero: a sender that does not stamp. */
-    if (timestamp == 0) return ruler_s;
+    if (timestamp == 0) {
+        clock->doubts.unstamped++;
+        return ruler_s;
+    }
+    clock->doubts.stamped++;
 
     Sender *sender = find_sender(&is_new, clock, key);
     if (!sender) return ruler_s;

@@ -1,12 +1,15 @@
 /* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
  *
- * Two locks, in this order. receive: who may take from the socket and give out arrival times (the thread, or for a
- * moment whoever closes a tick). queue: the ring and the counters, held for as long as some copies take. */
+ * Three locks, in this order. receive: who may take from the socket and give out arrival times (the thread, or for a
+ * moment whoever closes a tick). sending: the socket itself, which a network that went and came back replaces. queue:
+ * the ring and the counters, held for as long as some copies take. */
 #include "dis/udp.h"
+#include "dis/udp_link.h"
 #include "dis/udp_socket.h"
 
 #include <assert.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <linux/sock_diag.h>
 #include <poll.h>
 #include <pthread.h>
@@ -17,7 +20,8 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32, pause_ms = 100 };
+enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32,
+       pause_ms = 100, look_ms = 1000 };
 
 static const int64_t ns_per_s = 1000000000;
 
@@ -36,6 +40,11 @@ struct DisUdp {
     int              socket, wake; /* wake: an eventfd that ends the thread; -1 in a sender */
     DisSocketAddress to;
     char             name[dis_udp_where_size];
+    DisUdpConfig     config;
+    DisTie           tie;
+    DisLink          link;         /* of the receiving thread; in a sender under sending */
+    pthread_mutex_t  sending;      /* socket and to are replaced under it, and under receive */
+    int64_t          looked_ns;    /* sender: when the link was looked at last */
 
     /* under receive */
     pthread_mutex_t  receive;
@@ -59,6 +68,7 @@ struct DisUdp {
 
     atomic_bool          closing, stopping;
     atomic_uint_fast64_t sent, send_failed;
+    atomic_int           send_error, away; /* errno of the latest; the link's state */
     bool                 running;
     pthread_t            thread;
 };
@@ -81,7 +91,13 @@ int64_t dis_udp_now_ns(void)
     return (int64_t)now.tv_sec * ns_per_s + now.tv_nsec;
 }
 
-void dis_udp_destination(uint8_t to[16], const DisUdp *udp) { dis_socket_address_octets16(to, &udp->to); }
+void dis_udp_destination(uint8_t to[16], const DisUdp *udp)
+{
+    DisUdp *u = (DisUdp *)udp; /* a lock */
+    pthread_mutex_lock(&u->sending);
+    dis_socket_address_octets16(to, &u->to);
+    pthread_mutex_unlock(&u->sending);
+}
 
 /* ---- the queue: all under its lock ----------------------------------------------------------------- */
 
@@ -165,14 +181,18 @@ DisUdpCounters dis_udp_counters(const DisUdp *udp)
     DisUdp   *u = (DisUdp *)udp; /* locks and the kernel's count: nothing the caller sees as a change */
     uint32_t  info[SK_MEMINFO_VARS] = {0};
     socklen_t octets = sizeof info;
+    pthread_mutex_lock(&u->sending); /* and the kernel's count stays this socket's */
     const bool told = u->wake >= 0 && getsockopt(u->socket, SOL_SOCKET, SO_MEMINFO, info, &octets) == 0 &&
                       octets > SK_MEMINFO_DROPS * sizeof *info;
     pthread_mutex_lock(&u->queue);
     if (told) note_drops(u, info[SK_MEMINFO_DROPS]);
     DisUdpCounters counters = u->counters;
     pthread_mutex_unlock(&u->queue);
+    pthread_mutex_unlock(&u->sending);
     counters.sent = atomic_load(&u->sent);
     counters.send_failed = atomic_load(&u->send_failed);
+    counters.send_error = atomic_load(&u->send_error);
+    counters.away = atomic_load(&u->away) != DIS_LINK_UP;
     return counters;
 }
 
@@ -244,14 +264,71 @@ static void complain(DisUdp *u)
     u->complained = true;
 }
 
+/* ---- a network that goes and comes: under the receive lock, in a sender under sending ------------------------ */
+
+/* In the place of the old one, whose number stays: nobody else has to know. False: not now. */
+static bool remake_socket(DisUdp *u)
+{
+    int              made;
+    DisSocketAddress to;
+    DisTie           tie;
+    const bool       listens = u->link.listens;
+    log_hush(true); /* it is tried again each second */
+    const Status status = dis_udp_socket(&made, &to, &tie, &u->config, listens);
+    log_hush(false);
+    if (status != STATUS_OK) return false;
+    if (listens) {
+        dis_udp_counters(u); /* what the old one lost */
+        pthread_mutex_lock(&u->sending);
+        pthread_mutex_lock(&u->queue);
+        u->kernel_drops = 0;
+        pthread_mutex_unlock(&u->queue);
+    }
+    dup3(made, u->socket, O_CLOEXEC);
+    u->to  = to;
+    u->tie = tie;
+    if (listens) pthread_mutex_unlock(&u->sending);
+    close(made);
+    u->link.lost = false;
+    return true;
+}
+
+/* True: all is well now. */
+static bool look_after_link(DisUdp *u)
+{
+    bool remake;
+    dis_link_read(&u->link, u->socket, &u->to, &u->tie);
+    dis_link_say(&u->link, u->name, &u->config);
+    dis_link_look(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
+    if (remake) {
+        const bool made = remake_socket(u);
+        if (made) dis_link_look(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
+        else u->link.lost = true;
+    }
+    dis_link_say(&u->link, u->name, &u->config);
+    const DisLinkState state = u->link.lost ? DIS_LINK_GONE : u->link.state;
+    atomic_store(&u->away, (int)state);
+    return state == DIS_LINK_UP;
+}
+
 static void *receive_loop(void *user)
 {
     DisUdp       *u = user;
-    struct pollfd what[2] = {{.fd = u->socket, .events = POLLIN}, {.fd = u->wake, .events = POLLIN}};
+    struct pollfd what[3] = {{.fd = u->socket, .events = POLLIN},
+                             {.fd = u->wake, .events = POLLIN},
+                             {.fd = u->link.watch, .events = POLLIN}};
+    int64_t       looked_ns = dis_udp_now_ns();
     while (!atomic_load(&u->stopping)) {
         int64_t newest_ns;
-        poll(what, 2, -1);
-        if (!what[0].revents) continue;
+        const int ready = poll(what, 3, dis_link_unsaid(&u->link) ? pause_ms : look_ms);
+        const int64_t now_ns = dis_udp_now_ns();
+        if (ready == 0 || what[2].revents || llabs(now_ns - looked_ns) >= look_ms * 1000000ll) {
+            pthread_mutex_lock(&u->receive);
+            look_after_link(u);
+            pthread_mutex_unlock(&u->receive);
+            looked_ns = now_ns;
+        }
+        if (ready <= 0 || !what[0].revents) continue;
         pthread_mutex_lock(&u->receive);
         /* a flood must not keep whoever closes a tick from its turn */
         while (atomic_load(&u->closing)) pthread_cond_wait(&u->turn, &u->receive);
@@ -280,15 +357,37 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
 
 /* ---- sending ------------------------------------------------------------------------------------------ */
 
-Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
+static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
 {
     ssize_t sent;
     do
         sent = sendto(u->socket, bytes, octets, MSG_DONTWAIT | MSG_NOSIGNAL, &u->to.any,
                       dis_socket_address_octets(&u->to));
     while (sent < 0 && errno == EINTR);
-    if (sent < 0) {
+    return sent >= 0;
+}
+
+/* Who listens has a thread that looks after the link; a sender looks when it fails, and whether it is back. */
+static bool sender_may_go_on(DisUdp *u)
+{
+    const int64_t now_ns = dis_udp_now_ns();
+    if (u->link.listens || llabs(now_ns - u->looked_ns) < pause_ms * 1000000ll) return false;
+    u->looked_ns = now_ns;
+    return look_after_link(u);
+}
+
+Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
+{
+    pthread_mutex_lock(&u->sending);
+    bool      sent = send_once(u, bytes, octets);
+    const int error = errno;
+    if (!sent && sender_may_go_on(u)) sent = send_once(u, bytes, octets);
+    else if (sent && atomic_load(&u->away)) sender_may_go_on(u);
+    pthread_mutex_unlock(&u->sending);
+    if (!sent) {
+        atomic_store(&u->send_error, error);
         atomic_fetch_add(&u->send_failed, 1);
+        errno = error;
         return STATUS_IO;
     }
     atomic_fetch_add(&u->sent, 1);
@@ -312,8 +411,10 @@ static DisUdp *make(const DisUdpConfig *config)
 {
     DisUdp *u = calloc(1, sizeof *u);
     if (!u) return NULL;
-    u->socket = u->wake = -1;
+    u->socket = u->wake = u->link.watch = -1;
+    u->config = *config;
     dis_udp_where(u->name, config);
+    pthread_mutex_init(&u->sending, NULL);
     pthread_mutex_init(&u->receive, NULL);
     pthread_mutex_init(&u->queue, NULL);
     pthread_cond_init(&u->turn, NULL);
@@ -325,20 +426,25 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config)
 {
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
-    const Status status = dis_udp_socket(&u->socket, &u->to, config, false);
-    if (status != STATUS_OK)
+    const Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, false);
+    if (status != STATUS_OK) {
         dis_udp_close(u);
-    else
-        *out = u;
-    return status;
+        return status;
+    }
+    look_after_link(u);
+    *out = u;
+    return STATUS_OK;
 }
 
 Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
 {
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
-    Status status = dis_udp_socket(&u->socket, &u->to, config, true);
+    u->link.listens = true;
+    u->link.watch   = dis_link_watch(); /* first: what happens while the socket is made is announced */
+    Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
+    look_after_link(u);
 
     u->ring_octets = (uint64_t)config->queue_octets / unit * unit;
     u->ring = aligned_alloc(unit, u->ring_octets);
@@ -373,6 +479,8 @@ void dis_udp_close(DisUdp *u)
     }
     if (u->socket >= 0) close(u->socket);
     if (u->wake >= 0) close(u->wake);
+    if (u->link.watch >= 0) close(u->link.watch);
+    pthread_mutex_destroy(&u->sending);
     pthread_cond_destroy(&u->arrived);
     pthread_cond_destroy(&u->turn);
     pthread_mutex_destroy(&u->queue);

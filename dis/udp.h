@@ -2,7 +2,10 @@
  *
  * A thread of its own takes datagrams off the socket as they come, so that nobody who is busy loses any; what it took
  * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds. Memory is taken at
- * dis_udp_open and never grows, whatever the network sends. Linux only. */
+ * dis_udp_open and never grows, whatever the network sends. Linux only.
+ *
+ * A network that goes away - its interface deleted or set down, its address taken, the way to the group lost - is said
+ * once, and once when it is back; what must be bound or joined anew then is. */
 #ifndef DIS_UDP_H
 #define DIS_UDP_H
 
@@ -37,6 +40,8 @@ typedef struct DisUdpCounters {
     uint64_t lost_kernel;       /* came and found the socket full: the kernel's own count */
     uint64_t lost_queue;        /* nobody took them in time */
     uint64_t sent, send_failed;
+    int      send_error;        /* errno of the latest that failed */
+    bool     away;              /* the interface, its address or the way to the group is not there, which was said */
 } DisUdpCounters;
 
 typedef struct DisUdp DisUdp;

@@ -69,7 +69,7 @@ static bool is_broadcast(struct in_addr address)
     return found;
 }
 
-static bool is_own(const DisSocketAddress *address)
+bool dis_udp_is_own(const DisSocketAddress *address)
 {
     uint8_t         wanted[16], one[16];
     struct ifaddrs *all = NULL;
@@ -101,7 +101,7 @@ static Reach reach_of(const DisSocketAddress *to)
     } else if (IN6_IS_ADDR_MULTICAST(&to->v6.sin6_addr)) {
         return REACH_GROUP;
     }
-    return is_own(to) ? REACH_OWN : REACH_PEER;
+    return dis_udp_is_own(to) ? REACH_OWN : REACH_PEER;
 }
 
 static bool check_range(const char *what, int value, int low, int high)
@@ -125,7 +125,8 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     *plan = (Plan){.config = config};
     if (config->interface[0] && !(plan->interface = if_nametoindex(config->interface))) {
         list_interfaces(text);
-        log_error("udp: interface: there is no `%s` on this machine; it has: %s", config->interface, text);
+        log_error("udp: interface: there is no `%s` on this machine, and none is waited for; it has: %s",
+                  config->interface, text);
         return STATUS_BAD_VALUE;
     }
     snprintf(text, sizeof text, "%d", config->port);
@@ -169,7 +170,8 @@ static Status refused(const Plan *plan, const char *what)
     char        interfaces[text_size], text[text_size + 64];
     switch (error) {
     case EADDRINUSE:
-        next = "; another program has the port: choose another port or end it (`ss -ulpn` shows which)";
+        next = "; another program has the port: choose another port or end it (`ss -ulpn` shows which); several "
+               "programs hear one exercise by a broadcast (127.255.255.255 within this machine) or a multicast group";
         break;
     case EACCES:
     case EPERM:
@@ -232,14 +234,41 @@ static bool bind_to(const Plan *plan, int socket)
     return bind(socket, &at.any, dis_socket_address_octets(&at)) == 0;
 }
 
-static bool join(const Plan *plan, int socket)
+static bool membership(int socket, const DisSocketAddress *to, unsigned interface, int v4, int v6)
 {
-    if (plan->to.any.sa_family == AF_INET6) {
-        const struct ipv6_mreq group = {plan->to.v6.sin6_addr, plan->interface};
-        return setsockopt(socket, IPPROTO_IPV6, IPV6_ADD_MEMBERSHIP, &group, sizeof group) == 0;
+    if (to->any.sa_family == AF_INET6) {
+        const struct ipv6_mreq group = {to->v6.sin6_addr, interface};
+        return setsockopt(socket, IPPROTO_IPV6, v6, &group, sizeof group) == 0;
     }
-    const struct ip_mreqn group = {.imr_multiaddr = plan->to.v4.sin_addr, .imr_ifindex = (int)plan->interface};
-    return setsockopt(socket, IPPROTO_IP, IP_ADD_MEMBERSHIP, &group, sizeof group) == 0;
+    const struct ip_mreqn group = {.imr_multiaddr = to->v4.sin_addr, .imr_ifindex = (int)interface};
+    return setsockopt(socket, IPPROTO_IP, v4, &group, sizeof group) == 0;
+}
+
+bool dis_udp_join(int socket, const DisSocketAddress *group, unsigned interface)
+{
+    return membership(socket, group, interface, IP_ADD_MEMBERSHIP, IPV6_ADD_MEMBERSHIP);
+}
+
+bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface)
+{
+    return membership(socket, group, interface, IP_DROP_MEMBERSHIP, IPV6_DROP_MEMBERSHIP);
+}
+
+/* Whether another socket hears all addresses on the port: of what is sent to one address, only one of them gets any. */
+static bool port_shared(int port)
+{
+    static const char *const tables[2] = {"/proc/net/udp", "/proc/net/udp6"};
+    char     line[512], address[40];
+    unsigned local;
+    bool     shared = false;
+    for (int t = 0; t < 2 && !shared; t++) {
+        FILE *table = fopen(tables[t], "r");
+        while (table && !shared && fgets(line, sizeof line, table))
+            shared = sscanf(line, " %*u: %39[0-9A-Fa-f]:%x", address, &local) == 2 && (int)local == port &&
+                     strspn(address, "0") == strlen(address);
+        if (table) fclose(table);
+    }
+    return shared;
 }
 
 static Status listen_there(const Plan *plan, int socket)
@@ -251,12 +280,18 @@ static Status listen_there(const Plan *plan, int socket)
     if (!set_flag(socket, SOL_SOCKET, SO_TIMESTAMPNS, 1) || !set_flag(socket, SOL_SOCKET, SO_RXQ_OVFL, 1))
         return refused(plan, "get arrival times for");
     set_buffer(socket, SO_RCVBUFFORCE, SO_RCVBUF, receive_buffer_octets);
+    const bool other = plan->reach == REACH_BROADCAST && port_shared(plan->config->port);
     if (!bind_to(plan, socket)) return refused(plan, "listen on");
-    if (plan->reach == REACH_GROUP && !join(plan, socket)) return refused(plan, "join");
+    if (plan->reach == REACH_GROUP && !dis_udp_join(socket, &plan->to, plan->interface))
+        return refused(plan, "join");
+    if (other)
+        log_info("udp: another program of this machine listens on port %d, too: a broadcast (127.255.255.255 within "
+                 "this machine) or a multicast group reaches all of them, what is sent to one address only one",
+                 plan->config->port);
     return STATUS_OK;
 }
 
-Status dis_udp_socket(int *out, DisSocketAddress *to, const DisUdpConfig *config, bool listen)
+Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpConfig *config, bool listen)
 {
     Plan   plan;
     Status status = read_config(&plan, config);
@@ -282,6 +317,7 @@ Status dis_udp_socket(int *out, DisSocketAddress *to, const DisUdpConfig *config
         return status;
     }
     *out = made;
-    *to = plan.to;
+    *to  = plan.to;
+    *tie = (DisTie){plan.interface, narrow, listen && plan.reach == REACH_GROUP, listen && plan.reach == REACH_OWN};
     return STATUS_OK;
 }

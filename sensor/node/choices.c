@@ -29,6 +29,11 @@ bool choice_is_land(const Track *track)
     return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_land;
 }
 
+static bool dives(const Track *track)
+{
+    return track->type.kind == dis_kind_platform && track->type.domain == dis_domain_subsurface;
+}
+
 bool choice_flies(const Track *track)
 {
     return track->type.kind == dis_kind_munition ||
@@ -167,6 +172,8 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
             target = &survey->track[i];
             most_m = path_m(target);
         }
+    for (int i = 0; !target && i < survey->track_count; i++) /* water is opaque */
+        if (!dives(&survey->track[i])) target = &survey->track[i];
     for (int i = 0; !target && i < survey->track_count; i++) target = &survey->track[i];
     if (!target) {
         log_error("replay: the log holds no entity with a usable position; `pitviper inspect LOG` says what it holds");
@@ -270,25 +277,60 @@ static const Track *longest_flight(const Survey *survey, const Config *config, b
     return longest;
 }
 
+static bool may_fly(const Track *track)
+{
+    return track->type.kind == dis_kind_munition && track->type.category != dis_munition_fixed &&
+           (track->type.category == dis_munition_guided || !lies(track));
+}
+
+/* From the first report of any munition that flies to the end of the last; the frame is where the longest flight goes. */
+static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Config *config)
+{
+    int munitions = 0;
+    plan->start_s = INFINITY, plan->end_s = -INFINITY;
+    for (int i = 0; i < survey->track_count; i++) {
+        const Track *track = &survey->track[i];
+        const Shot  *shot  = choice_shot_of(survey, track->id);
+        munitions += track->type.kind == dis_kind_munition;
+        if (!may_fly(track)) continue;
+        const double end_s = track->point[track->count - 1].t_s;
+        plan->start_s = fmin(plan->start_s, track->point[0].t_s);
+        plan->end_s   = fmax(plan->end_s, shot && shot->detonation_s > end_s ? shot->detonation_s : end_s);
+    }
+    if (!isfinite(plan->start_s)) {
+        log_error("replay: exercise.host: munition: none flies in the log, which has %d munition%s, mines and what "
+                  "lies still included, among %d entities; `pitviper inspect LOG` lists them, --host ID or --host "
+                  "observer shows what there is", munitions, munitions == 1 ? "" : "s", survey->track_count);
+        return STATUS_BAD_VALUE;
+    }
+    const Track *flight = longest_flight(survey, config, true, false);
+    if (!flight) flight = longest_flight(survey, config, false, false);
+    const Shot *shot = flight ? choice_shot_of(survey, flight->id) : NULL;
+    if (shot && dis_entity_id_is_none(plan->aim))
+        plan->aim = dis_entity_id_is_none(shot->target) ? shot->hit : shot->target;
+    return STATUS_OK;
+}
+
+static Status plan_munitions(HostPlan *out, Choices *choices, const Survey *survey, const Config *config)
+{
+    HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
+    choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is "
+               "a notional one (exercise.host)");
+    if (*config->exercise.aim) dis_entity_id_parse(&plan.aim, config->exercise.aim);
+    else choice_add(choices, "aim: the target of its Fire PDU once that is heard, till then along the body axis "
+                    "(exercise.aim)");
+    const Status status = config->causal ? STATUS_OK : span_of_munitions(&plan, survey, config);
+    if (status == STATUS_OK) *out = plan;
+    return status;
+}
+
 Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const Config *config)
 {
     char        name[who_size];
     DisEntityId host;
     Status      status = aim_is_heard(survey, config);
     if (status != STATUS_OK) return status;
-    if (strcmp(config->exercise.host, host_munition) == 0) {
-        if (!config->causal) {
-            log_error("replay: exercise.host: munition: needs --causal; without it the host is chosen from the whole "
-                      "log");
-            return STATUS_BAD_VALUE;
-        }
-        HostPlan plan = {.any_munition = true, .munition = true, .start_s = survey->last_s, .end_s = survey->last_s};
-        choice_add(choices, "host: the munitions that appear, guided ones first, one after the other; their seeker is "
-                   "a notional one (exercise.host)");
-        choose_aim(&plan, choices, survey, config);
-        *out = plan;
-        return STATUS_OK;
-    }
+    if (strcmp(config->exercise.host, host_munition) == 0) return plan_munitions(out, choices, survey, config);
     if (strcmp(config->exercise.host, host_observer) == 0) return plan_observer(out, choices, survey, config, true);
     if (*config->exercise.host) {
         if (!dis_entity_id_parse(&host, config->exercise.host) || dis_entity_id_is_none(host)) {
@@ -333,6 +375,12 @@ static void say_doubts(Choices *choices, const Survey *survey)
         choice_add(choices, "time stamps of %s%d more senders are no clock: `pitviper inspect` lists them",
                    survey->doubts.count == exercise_clock_doubts_listed ? "at least " : "",
                    survey->doubts.count - most_lines);
+    if (survey->doubts.unstamped > 0 && survey->doubts.stamped == 0)
+        choice_add(choices, "clock: no PDU has a time stamp, all are 0: every PDU counts from its arrival");
+    else if (survey->doubts.unstamped > 0)
+        choice_add(choices, "clock: %llu of %llu PDUs have no time stamp (0): they count from their arrival; `pitviper "
+                   "inspect` says whose", (unsigned long long)survey->doubts.unstamped,
+                   (unsigned long long)(survey->doubts.unstamped + survey->doubts.stamped));
 }
 
 Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame)
@@ -363,8 +411,9 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
         text_to_unix_s(&ten_local_s, "2026-06-21T10:00:00Z");
         *unix_s = ten_local_s - frame->origin.lon_rad / (2 * pi_rad) * 86400 - survey->first_s;
         choice_add(choices, "time of day: local solar 10:00 on 21 June, %s (exercise.utc)",
-                   survey->absolute_stamps > 0 ? "the absolute stamps of the log do not agree"
-                                               : "the log does not say");
+                   survey->absolute_stamps > 1    ? "the absolute stamps of the log do not agree"
+                   : survey->absolute_stamps == 1 ? "the log's one absolute stamp is too little to go by"
+                                                  : "the log does not say");
     }
     return STATUS_OK;
 }

@@ -21,7 +21,7 @@ void choice_add(Choices *choices, const char *format, ...) __attribute__((format
 /* Who carries the sensor, over which span of exercise time, and what it looks at. */
 typedef struct HostPlan {
     DisEntityId host;      /* 0:0:0: the stand-off observer, or whoever comes */
-    bool        any_munition; /* causal: the munitions that appear are the host, one after the other: player_munition */
+    bool        any_munition; /* the munitions that appear are the host, one after the other: player_munition */
     DisEntityId aim;       /* 0:0:0: none known: along the body axis, or the place below */
     double      start_s, end_s;
     double      p_aim_ecef[3]; /* where to look when there is no aim entity; valid for an observer */

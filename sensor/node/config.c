@@ -100,7 +100,7 @@ static const Setting keys[] = {
      "date and time of the first PDU, 2026-06-21T10:00:00Z"},
     {"exercise.host", SETTING_TEXT, AT(exercise.host), 0, 0, NULL, "",
      "site:application:entity that carries the sensor; observer: a stand-off one; munition: those that appear, guided "
-     "ones first, one after the other (run, replay --causal)"},
+     "ones first, one after the other"},
     {"exercise.aim", SETTING_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},
     {"exercise.from_s", SETTING_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
     {"exercise.to_s", SETTING_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},

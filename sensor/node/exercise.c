@@ -264,8 +264,10 @@ static void wait_until(double until_s)
 static void show_progress(const Exercise *exercise)
 {
     const ExerciseCounts *counts = exercise_counts(exercise);
-    fprintf(stderr, "\r  %.0f s  %d entities  %llu PDUs  %llu datagrams   ", exercise_time(exercise),
-            exercise_heard(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams);
+    char                  text[160];
+    snprintf(text, sizeof text, "%.0f s  %d entities  %llu PDUs  %llu datagrams", exercise_time(exercise),
+             exercise_heard(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams);
+    log_status(text);
 }
 
 static double epoch_of(const Scenario *scenario, bool live)
@@ -283,7 +285,6 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
     Exercise *exercise;
     Status    status = exercise_create(&exercise, cast, epoch_unix_s, take_datagram, run);
     if (status != STATUS_OK) return status;
-    const bool   terminal = isatty(STDERR_FILENO);
     const double begun_s = wall_clock_s();
     double       shown_s = begun_s, time_s = 0;
     for (bool more = true; more && !stop_asked();) {
@@ -291,12 +292,12 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
         if (stop_asked()) break;
         time_s = exercise_time(exercise);
         more   = exercise_step(exercise);
-        if (terminal && wall_clock_s() - shown_s >= 1) {
+        if (wall_clock_s() - shown_s >= 1) {
             show_progress(exercise);
             shown_s = wall_clock_s();
         }
     }
-    if (terminal) fputs("\r\x1b[K", stderr);
+    log_status(NULL);
     exercise_finish(exercise);
 
     const ExerciseCounts *counts = exercise_counts(exercise);
@@ -358,10 +359,16 @@ int exercise_command(int argc, char **argv)
     if (dis_recorder_close(run.recorder) != STATUS_OK) status = STATUS_IO;
     if (run.udp) {
         const DisUdpCounters counters = dis_udp_counters(run.udp);
-        if (counters.send_failed)
-            log_warn("exercise: %llu of %llu datagrams were not taken by the network",
+        if (counters.send_failed && !counters.sent) {
+            log_error("exercise: --send %s: none of %llu datagrams could be sent: %s; `ip route get` says where they "
+                      "would leave, --interface names another way", o.send, (unsigned long long)counters.send_failed,
+                      strerror(counters.send_error));
+            status = STATUS_IO;
+        } else if (counters.send_failed) {
+            log_warn("exercise: --send %s: %llu of %llu datagrams were not taken by the network: %s", o.send,
                      (unsigned long long)counters.send_failed,
-                     (unsigned long long)(counters.sent + counters.send_failed));
+                     (unsigned long long)(counters.sent + counters.send_failed), strerror(counters.send_error));
+        }
         dis_udp_close(run.udp);
     }
     cast_destroy(cast);

@@ -227,6 +227,17 @@ static Status say_fit(Choices *choices, GroundContact contact, const Landscape *
     return STATUS_OK;
 }
 
+/* An eye above the water sees nothing of an aim that is under it. */
+static void say_sunken_aim(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
+{
+    char         id[dis_id_text_size];
+    const Track *aim = survey_track(survey, plan->aim);
+    if (!aim || e->stance[aim - survey->track] != STANCE_SUBMERGED) return;
+    dis_entity_id_text(id, plan->aim);
+    choice_add(choices, "aim: %s is under water, so pictures show the sea above it; exercise.aim=ID looks at another%s", id,
+               dis_entity_id_is_none(plan->host) ? ", --host ID rides on one" : "");
+}
+
 Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
                      const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
 {
@@ -244,6 +255,7 @@ Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, c
     if (status == STATUS_OK && !real) status = say_fit(choices, set, out, survey, &e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
         status = say_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);
+    if (status == STATUS_OK) say_sunken_aim(choices, survey, &e, plan);
     if (status == STATUS_OK) *contact = set;
     ground_evidence_free(&e);
     return status;

@@ -6,6 +6,7 @@
 #include "dis/udp.h"
 #include "sensor/bench/quality.h"
 #include "sensor/node/frame_files.h"
+#include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/quality.h"
@@ -18,7 +19,7 @@
 #include <time.h>
 #include <unistd.h>
 
-static const double  silent_s = 10, remind_s = 60, flush_s = 0.5, show_s = 0.5;
+static const double  flush_s = 0.5, show_s = 1;
 static const int64_t look_ns = 100000000; /* a signal may come to another thread: looked for so often */
 
 typedef struct Live {
@@ -28,17 +29,20 @@ typedef struct Live {
     bool         record_whole;      /* all that was heard is in it */
     char         where[dis_udp_where_size];
     LiveCounters counters;
+    Health       health;
+    double       health_s;          /* when it was looked at last */
+    char         host[dis_id_text_size]; /* at the end */
+    char         to[dis_udp_address_size + 16]; /* where it sends, for people */
     /* what was heard before the choices, each datagram its own memory */
     DisDatagram *heard;
     int          heard_count, heard_capacity;
     DisHeader    first;             /* of the first usable Entity State */
     const Player *player;           /* once there is one */
     /* wall clock, s */
-    double       begun_s, heard_s, flushed_s, shown_s, late_said_s, lost_said_s;
-    bool         silence_said;
-    uint64_t     late_said, lost_said;
-    double       rate_from_s;       /* of the rate that is shown */
-    int          rate_from;
+    double       begun_s, flushed_s, shown_s;
+    uint64_t     shown_frames;      /* by then */
+    int64_t      due_ns;            /* Unix time of the frame that is made */
+    double       latency_s;         /* from then until it was made, the worst since shown_s; NaN: none */
 } Live;
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
@@ -58,6 +62,12 @@ static void flush_recording(Live *l)
     l->flushed_s = now_s;
 }
 
+/* -1: any. Before the choices, what was asked for. */
+static int exercise_to_hear(const Live *l)
+{
+    return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
+}
+
 /* The next datagram of somebody else, not after until_ns. All that comes off the socket is recorded. */
 static bool take(DisDatagram *out, Live *l, int64_t until_ns)
 {
@@ -70,10 +80,10 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
         out->packet_s = out->capture_s;
         if (opening_own(out, &l->run.options.config)) {
             l->run.own++;
+            health_own(&l->health, wall_clock_s());
             continue;
         }
-        l->heard_s      = wall_clock_s();
-        l->silence_said = false;
+        health_heard(&l->health, out, exercise_to_hear(l), !l->player, wall_clock_s());
         return true;
     }
     return false;
@@ -89,32 +99,37 @@ static void read_counters(Live *l)
     l->counters.lost_queue  = c.lost_queue;
     l->counters.sent        = c.sent;
     l->counters.send_failed = c.send_failed;
+    l->health.sample.error  = c.send_error;
+    l->health.sample.away   = c.away;
 }
 
-/* Each thing once, then a minute of silence about it. */
-static void say_troubles(Live *l)
+static HealthNames names_of(const Live *l, const Session *session)
 {
+    const Config *config = &l->run.options.config;
+    return (HealthNames){.where = l->where, .to = l->to, .exercise = exercise_to_hear(l), .site = config->node.site,
+                         .application = config->node.application,
+                         .host = session ? session_host(session) : config->exercise.host};
+}
+
+/* Why it is silent, as it changes, and the line of a terminal; session: NULL before there is one. About ten times a
+ * second. */
+static void look_at_health(Live *l, const Session *session)
+{
+    char         line[health_line_size];
     const double now_s = wall_clock_s();
+    if (now_s - l->health_s < 1e-9 * look_ns) return;
+    l->health_s = now_s;
     read_counters(l);
-    if (!l->silence_said && now_s - l->heard_s >= silent_s) {
-        log_warn("run: nothing heard on %s for %.0f s; going on. `pitviper record --for 5 -o heard.pcapng` shows "
-                 "what comes at all; --port, --address and --interface say where", l->where, silent_s);
-        l->silence_said = true;
-    }
-    if (lost(&l->counters) > l->lost_said && now_s - l->lost_said_s >= remind_s) {
-        log_warn("run: datagrams lost: in the kernel %llu, in the queue %llu; a larger network.queue_mb or "
-                 "net.core.rmem_max, or a higher sensor.rate_hz, helps", (unsigned long long)l->counters.lost_kernel,
-                 (unsigned long long)l->counters.lost_queue);
-        l->lost_said   = lost(&l->counters);
-        l->lost_said_s = now_s;
-    }
-    if (l->counters.frames_late > l->late_said && now_s - l->late_said_s >= remind_s) {
-        log_warn("run: frames left out: %llu, their time had passed; a smaller --size, fewer --bands or a lower --rate "
-                 "helps",
-                 (unsigned long long)l->counters.frames_late);
-        l->late_said   = l->counters.frames_late;
-        l->late_said_s = now_s;
-    }
+    if (session) l->health.sample.entities = session_entities(session);
+    const HealthNames names = names_of(l, session);
+    health_check(&l->health, &l->counters, &names, now_s);
+    if (now_s - l->shown_s < show_s) return;
+    const uint64_t frames = l->health.sample.frames;
+    health_line(line, &l->health, (double)(frames - l->shown_frames) / (now_s - l->shown_s), l->latency_s);
+    log_status(line);
+    l->shown_frames = frames;
+    l->shown_s      = now_s;
+    l->latency_s    = NAN;
 }
 
 /* ---- listening --------------------------------------------------------------------------------- */
@@ -172,7 +187,7 @@ static Status listen_first(bool *heard, Live *l)
             break;
         }
         flush_recording(l);
-        say_troubles(l);
+        look_at_health(l, NULL);
         const int64_t look = dis_udp_now_ns() + look_ns;
         dis_udp_wait(l->udp, until_ns < look ? until_ns + 1 : look);
     }
@@ -182,11 +197,15 @@ static Status listen_first(bool *heard, Live *l)
 
 /* ---- publishing -------------------------------------------------------------------------------- */
 
+/* Every frame made: noted, and sent where that is asked for. */
 static void publish_frame(void *user, const FrameRecord *frame)
 {
     Live         *l      = user;
     const Config *config = &l->run.options.config;
     uint8_t       pdu[dis_smallest_mtu];
+    l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
+    health_frame(&l->health, frame, wall_clock_s());
+    if (strcmp(config->publish.dis, "off") == 0) return;
     const bool    truth = strcmp(config->publish.dis, "truth") == 0;
     const DisRecordSender sender = {.version = l->first.version,
                                     .exercise = (uint8_t)(l->run.exercise >= 0 ? l->run.exercise : l->first.exercise),
@@ -198,23 +217,6 @@ static void publish_frame(void *user, const FrameRecord *frame)
 }
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
-
-static void show_progress(Live *l, const Session *session, int number, bool end)
-{
-    const double now_s = wall_clock_s();
-    if (!isatty(STDERR_FILENO)) return;
-    if (end) {
-        fputs("\r\x1b[K", stderr);
-        return;
-    }
-    if (now_s - l->shown_s < show_s) return;
-    const int made = session_result(session)->frames;
-    fprintf(stderr, "\r  frame %d  %.1f /s  %d entities  %llu late  %llu lost   ", number,
-            (made - l->rate_from) / (now_s - l->rate_from_s), session_entities(session),
-            (unsigned long long)l->counters.frames_late, (unsigned long long)lost(&l->counters));
-    l->rate_from   = made;
-    l->rate_from_s = l->shown_s = now_s;
-}
 
 static Status feed(Live *l, Player *player, int64_t until_ns)
 {
@@ -230,12 +232,13 @@ static Status feed(Live *l, Player *player, int64_t until_ns)
 }
 
 /* Until that Unix time has passed, taking in what comes. False: it is over. */
-static Status wait_until(bool *there, Live *l, Player *player, int64_t until_ns)
+static Status wait_until(bool *there, Live *l, const Session *session, Player *player, int64_t until_ns)
 {
     for (;;) {
         const int64_t now_ns = dis_udp_now_ns();
         *there = now_ns > until_ns;
         if (*there || over(l)) return STATUS_OK;
+        look_at_health(l, session);
         const int64_t         wake_ns = until_ns < now_ns + look_ns ? until_ns + 1 : now_ns + look_ns;
         const struct timespec wake    = {(time_t)(wake_ns / 1000000000), (long)(wake_ns % 1000000000)};
         clock_nanosleep(CLOCK_REALTIME, TIMER_ABSTIME, &wake, NULL);
@@ -270,8 +273,11 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     double         last   = -1; /* number of the last frame */
     const double   from_s = fmax(plan->start_s, o->config.exercise.from_s); /* NaN: none */
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
-    l->player      = player;
-    l->rate_from_s = wall_clock_s();
+    l->player = player;
+    health_making(&l->health, wall_clock_s());
+    l->health.sample.host = plan->any_munition                      ? HEALTH_MUNITION
+                            : dis_entity_id_is_none(plan->host) ? HEALTH_OBSERVER
+                                                                : HEALTH_BY_ID;
     while (status == STATUS_OK && !over(l) && !(o->frames && session_result(session)->frames >= o->frames)) {
         const double now_s  = player_time_s(player, dis_unix_s(dis_udp_now_ns()));
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
@@ -280,18 +286,21 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         if (t_s > o->config.exercise.to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
         bool          there, shown;
-        status = wait_until(&there, l, player, until_ns);
+        status = wait_until(&there, l, session, player, until_ns);
         if (status != STATUS_OK || !there) break;
         if (last >= 0 && n > last + 1) l->counters.frames_late += (uint64_t)(n - last - 1);
         last = n;
         dis_udp_close_tick(l->udp, until_ns);
         status = feed(l, player, until_ns);
+        l->due_ns = until_ns;
         if (status == STATUS_OK) status = session_frame(&shown, session, (int)n, t_s);
+        if (status == STATUS_OK && !shown) l->health.sample.missing++;
         flush_recording(l);
-        say_troubles(l);
-        show_progress(l, session, (int)n, false);
+        look_at_health(l, session);
     }
-    show_progress(l, session, 0, true);
+    log_status(NULL);
+    snprintf(l->host, sizeof l->host, "%s", session_host(session));
+    l->health.sample.entities = session_entities(session);
     conclude(l);
     return status;
 }
@@ -315,6 +324,7 @@ static Status open_network(Live *l)
     udp.ttl          = config->network.ttl;
     udp.queue_octets = config->network.queue_mb << 20;
     dis_udp_where(l->where, &udp);
+    snprintf(l->to, sizeof l->to, "%s port %d", *udp.address ? udp.address : "255.255.255.255", udp.port);
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
@@ -342,6 +352,48 @@ static Status measure_machine(Live *l)
     return config_set(config, "quality.machine_factor", text, "run");
 }
 
+static void say_summary(const Live *l)
+{
+    const LiveCounters *c = &l->counters;
+    char                sent[80] = "";
+    if (l->health.sample.publishes)
+        snprintf(sent, sizeof sent, "; PDUs sent %llu, not sent %llu", (unsigned long long)c->sent,
+                 (unsigned long long)c->send_failed);
+    log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames made %llu, left out %llu%s",
+             (unsigned long long)c->datagrams, (unsigned long long)l->run.own, (unsigned long long)lost(c),
+             (unsigned long long)l->health.sample.frames, (unsigned long long)c->frames_late, sent);
+    if (c->files_failed || c->files_left_out)
+        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
+                 "--no-files leaves more time", (unsigned long long)c->files_left_out,
+                 (unsigned long long)c->files_failed);
+}
+
+/* A run that made nothing of what it was told to make was no success: no frame, no file of any frame, no PDU of any. */
+static Status verdict(Live *l)
+{
+    HealthSample *s = &l->health.sample;
+    char          text[health_text_size];
+    HealthNames   names = names_of(l, NULL);
+    if (*l->host) names.host = l->host;
+    s->now_s = wall_clock_s();
+    if (s->frames == 0) {
+        health_text(text, health_final(s), s, &names);
+        log_error("run: ended before the first frame: %s", text);
+        return STATUS_IO;
+    }
+    if (s->publishes && l->counters.sent == 0 && l->counters.send_failed > 0) {
+        health_text(text, HEALTH_NOT_SENT, s, &names);
+        log_error("run: %s", text);
+        return STATUS_IO;
+    }
+    if (l->run.options.config.publish.files && l->counters.files_failed + l->counters.files_left_out >= s->frames) {
+        log_error("run: none of %llu frames has its files in %s; see above", (unsigned long long)s->frames,
+                  l->run.options.out);
+        return STATUS_IO;
+    }
+    return STATUS_OK;
+}
+
 static Status run_node(Live *l)
 {
     bool   heard;
@@ -351,26 +403,20 @@ static Status run_node(Live *l)
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
     if (status != STATUS_OK) return status;
-    l->begun_s = l->heard_s = wall_clock_s();
+    l->begun_s = l->shown_s = wall_clock_s();
+    health_begin(&l->health, l->begun_s);
+    l->health.sample.publishes = strcmp(l->run.options.config.publish.dis, "off") != 0;
     log_info("run: listening on %s; Ctrl-C ends it", l->where);
     status = listen_first(&heard, l);
-    if (status != STATUS_OK || !heard) {
+    log_status(NULL);
+    if (status == STATUS_OK && heard) {
+        status = run_survey(&l->run, &l->run.view);
+        if (status == STATUS_OK) status = run_host(&l->run, NULL);
+    } else {
         conclude(l);
-        if (status == STATUS_OK)
-            log_info("run: ended before the first frame: %llu datagrams heard",
-                     (unsigned long long)l->counters.datagrams);
-        return status;
     }
-    status = run_survey(&l->run, &l->run.view);
-    if (status == STATUS_OK) status = run_host(&l->run, NULL);
-    log_info("run: %llu datagrams heard, %llu of them our own; lost %llu; frames left out %llu",
-             (unsigned long long)l->counters.datagrams, (unsigned long long)l->run.own,
-             (unsigned long long)lost(&l->counters), (unsigned long long)l->counters.frames_late);
-    if (l->counters.files_failed || l->counters.files_left_out)
-        log_warn("run: frames without their files: %llu for want of time, %llu could not be written; --no-png or "
-                 "--no-files leaves more time", (unsigned long long)l->counters.files_left_out,
-                 (unsigned long long)l->counters.files_failed);
-    return status;
+    say_summary(l);
+    return status == STATUS_OK ? verdict(l) : status;
 }
 
 int run_command(int argc, char **argv)
@@ -383,10 +429,10 @@ int run_command(int argc, char **argv)
     l->run.options.config.causal = true;
     l->run.live                  = &l->counters;
     l->run.user                  = l;
-    if (strcmp(l->run.options.config.publish.dis, "off") != 0) l->run.publish = publish_frame;
+    l->run.publish               = publish_frame;
     memcpy(name, l->run.options.config.record.path, sizeof name);
     if (*name) l->run.log_name = basename(name);
-    l->late_said_s = l->lost_said_s = -INFINITY;
+    l->latency_s = NAN;
 
     stop_by_signals();
     thread_flush_denormals();

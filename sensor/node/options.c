@@ -33,7 +33,7 @@ static const struct Row {
      "but for a display's automatic level (detector.agc_s)"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
      "site:application:entity that carries the sensor, or observer; may be\n"
-     "given several times; munition, with --causal: as `run` has it"},
+     "given several times; munition, alone: those that fly, guided ones\nfirst, one after the other"},
     {"host", HOST, IN_RUN, NULL, "ID",
      "site:application:entity that carries the sensor, now or later; observer;\n"
      "munition: those that appear, guided ones first, one after the other\n(default: chosen)"},
@@ -77,7 +77,9 @@ static void print_help(CommandName command)
         "\n"
         "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
         "(exercise.listen_s), and shows frame after frame until it is told to stop (Ctrl-C). It sends nothing unless asked\n"
-        "(--set publish.dis=sensor, or truth). What --record kept shows the same pictures again, to the bit.\n\n"};
+        "(--set publish.dis=sensor, or truth). What --record kept shows the same pictures again, to the bit. It says why it\n"
+        "is silent, once when the reason changes. It ends with 1 when it made no frame, or of what it was told to publish\n"
+        "nothing could be sent or written, and says why.\n\n"};
     fputs(about[command], stdout);
     for (int i = 0; i < row_count; i++) {
         const struct Row *row = &rows[i];

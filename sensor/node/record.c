@@ -7,7 +7,6 @@
 
 #include <getopt.h>
 #include <stdio.h>
-#include <unistd.h>
 
 typedef struct Options {
     const char  *out;
@@ -122,9 +121,11 @@ static uint64_t lost(const DisUdpCounters *counters) { return counters->lost_ker
 static void show_progress(Recording *r, double now_s)
 {
     const DisUdpCounters counters = dis_udp_counters(r->udp);
-    fprintf(stderr, "\r  %llu datagrams  %.0f /s  %llu lost  %.0f s   ", (unsigned long long)r->datagrams,
-            (double)(r->datagrams - r->shown) / (now_s - r->shown_s), (unsigned long long)lost(&counters),
-            now_s - r->begun_s);
+    char                 text[160];
+    snprintf(text, sizeof text, "%llu datagrams  %.0f /s  %llu lost  %.0f s%s", (unsigned long long)r->datagrams,
+             (double)(r->datagrams - r->shown) / (now_s - r->shown_s), (unsigned long long)lost(&counters),
+             now_s - r->begun_s, counters.away ? "  the network is gone" : "");
+    log_status(text);
     r->shown = r->datagrams;
     r->shown_s = now_s;
 }
@@ -134,14 +135,13 @@ static Status record(Recording *r, double for_s)
 {
     const int64_t look_ns = 100000000; /* a signal does not end a wait */
     const double  flush_s = 0.5, show_s = 1;
-    const bool    terminal = isatty(STDERR_FILENO);
     const double  end_s = r->begun_s + for_s;
     Status        status = STATUS_OK;
     bool          more = false;
     while (status == STATUS_OK && !stop_asked() && r->left != 0) {
         const double now_s = wall_clock_s();
         if (now_s >= end_s) break;
-        if (terminal && now_s - r->shown_s >= show_s) show_progress(r, now_s);
+        if (now_s - r->shown_s >= show_s) show_progress(r, now_s);
         if (now_s - r->flushed_s >= flush_s) {
             status = dis_recorder_flush(r->recorder);
             r->flushed_s = now_s;
@@ -150,7 +150,7 @@ static Status record(Recording *r, double for_s)
         const int64_t wait_ns = (int64_t)(1e9 * fmin(1e-9 * (double)look_ns, end_s - now_s));
         if (more || dis_udp_wait(r->udp, dis_udp_now_ns() + wait_ns)) status = write_waiting(r, INT64_MAX, &more);
     }
-    if (terminal) fputs("\r\x1b[K", stderr);
+    log_status(NULL);
 
     const int64_t last_ns = dis_udp_now_ns();
     if (r->left != 0) dis_udp_close_tick(r->udp, last_ns);
@@ -190,6 +190,9 @@ int record_command(int argc, char **argv)
     if (dis_recorder_close(r.recorder) != STATUS_OK) status = STATUS_IO;
     log_info("record: %s: %llu datagrams, %llu octets in %.1f s; lost %llu", o.out, (unsigned long long)r.datagrams,
              (unsigned long long)r.octets, spent_s, (unsigned long long)lost(&counters));
+    if (r.datagrams == 0)
+        log_warn("record: nothing came on %s; --port, --address and --interface say where to listen, `ss -ulpn` and "
+                 "`ip address` show what there is", where);
     if (lost(&counters))
         log_warn("record: this machine was too slow for some: lost in the kernel %llu, in the queue %llu; a larger "
                  "net.core.rmem_max or a faster disk helps",

@@ -86,8 +86,13 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     }
     if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0) {
-        log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
-                  session_host(session));
+        if (plan->any_munition)
+            log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
+                      "inspect %s` lists who was there, --host ID or --host observer shows what there is", from_s, to_s,
+                      o->log);
+        else
+            log_error("replay: %s was never there at a frame's time; see `pitviper inspect`, --from, --to and --rate",
+                      session_host(session));
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;

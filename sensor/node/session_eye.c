@@ -140,6 +140,9 @@ static void find_host(Session *s)
         dis_entity_id_text(aim, plan->aim);
         log_info("aim: %s, the target of its Fire PDU", aim);
     }
+    const Shot *shot = s->shared->config->causal || !plan->any_munition ? NULL
+                                                                        : choice_shot_of(s->shared->survey, plan->host);
+    if (shot && dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(shot->hit)) plan->aim = shot->hit;
 }
 
 /* Axes of the local frame: what upright means. */
@@ -214,7 +217,7 @@ void session_advance(Session *s, double t_s)
     for (double tick_s; (tick_s = (double)s->tick / seeker_ticks_per_s) <= t_s; s->tick++) {
         player_feed(s->player, s->table, tick_s);
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
-        if (s->shared->config->causal) find_host(s);
+        if (s->shared->config->causal || s->plan.any_munition) find_host(s);
         step_gimbal(s, tick_s);
     }
     player_feed(s->player, s->table, t_s);

@@ -80,6 +80,17 @@ static void stamps_that_are_no_clock_are_said(void **state)
     choices.count = 0;
     CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "local solar 10:00 on 21 June, the absolute stamps of the log do not agree"));
+    choices.count = 0;
+    survey.absolute_stamps = 1;
+    survey.absolute_left_out = 0;
+    survey.doubts = (ExerciseClockDoubts){.unstamped = 7, .stamped = 93};
+    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(says(&choices, "21 June, the log's one absolute stamp is too little to go by"));
+    CHECK(says(&choices, "clock: 7 of 100 PDUs have no time stamp (0)"));
+    choices.count = 0;
+    survey.doubts.stamped = 0;
+    CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
+    CHECK(says(&choices, "clock: no PDU has a time stamp, all are 0"));
 }
 
 static void the_time_of_day_comes_from_the_best_that_is_known(void **state)
@@ -209,9 +220,12 @@ static void a_causal_host_is_one_that_is_still_there(void **state)
     config.exercise.aim[0] = 0;
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
     CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && dis_entity_id_is_none(plan.aim));
-    config.causal = false; /* a whole log is chosen from, not waited for */
+    config.causal = false; /* of a whole log: from the first that flies to the end of the last */
+    assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_OK);
+    CHECK(plan.any_munition && dis_entity_id_is_none(plan.host) && plan.start_s == 0 && plan.end_s == 29);
+    survey.track_count = 1; /* a vehicle */
     assert_int_equal(choose_host(&plan, &choices, &survey, &config), STATUS_BAD_VALUE);
-    CHECK(strstr(check_said, "--causal"));
+    CHECK(strstr(check_said, "none flies in the log") && strstr(check_said, "--host observer"));
 }
 
 /* A mine that lies there all the time, a shell that hits, a missile that hits nothing, another that flies longer; all

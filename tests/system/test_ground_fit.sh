@@ -63,6 +63,19 @@ check "coast: and who is under it" said '1 submarine is under water'
 replay "$tmp/coast.pcap" "$tmp/deep" --rate 0.2 --no-files --bands optical --set exercise.aim=1:3001:4
 check "coast: the submarine is not seen" grep -qE '"entity":"1:3001:4"[^}]*"visible_fraction":0\.0' "$tmp/deep/truth.jsonl"
 
+check "coast: an aim under water is said" said 'aim: 1:3001:4 is under water, so pictures show the sea above it; exercise.aim=ID'
+case_of lone 0 <<'EOF'
+  - {name: Deep, type: 1.4.225.1.1.0.0, route_m: [[1300, -300], [1400, -200]], speed_mps: 4, height_m: -40}
+EOF
+replay "$tmp/lone.pcap" "$tmp/lone" --rate 0.1 --no-files --bands lwir
+check "lone submarine: said" said 'aim: 1:3001:1 is under water, so pictures show the sea above it; .*--host ID rides'
+case_of pair 0 <<'EOF'
+  - {name: Deep, type: 1.4.225.1.1.0.0, route_m: [[1300, -300], [1400, -200]], speed_mps: 4, height_m: -40}
+  - {name: Ship, type: 1.3.225.6.1.0.0, route_m: [[1500, 0], [1700, 200]], speed_mps: 8}
+EOF
+replay "$tmp/pair.pcap" "$tmp/pair" --rate 0.1 --no-files --bands lwir
+check "submarine and ship: the ship is looked at" said 'aim: 1:3001:2 Ship 2, circled'
+
 # the same bits however many threads, and with nothing skipped
 few=(--rate 0.1 --no-png --bands optical,lwir --set observer.range_m=900 --set observer.height_m=300 --set sensor.hfov_deg=60)
 replay "$tmp/coast.pcap" "$tmp/one" "${few[@]}" --threads 1

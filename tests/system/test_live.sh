@@ -36,11 +36,11 @@ node told --address 127.0.0.1 --port $port
 heard_by told 'listening on' 10
 kill -INT "${node[told]}"
 ended told 10
-check "told to stop: ends well" [ $code = 0 ]
+check "told to stop before anything was heard: ends with 1" [ $code = 1 ]
 check "told to stop: says that it had not begun" grep -q 'before the first frame' "$tmp/told.out"
 ended silent 30
-check "silence: ends well" [ $code = 0 ]
-check "silence: said once, with port and next step" [ "$(grep -c "nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
+check "silence: ends with 1" [ $code = 1 ]
+check "silence: said once, with port and next step" [ "$(grep -c "^warning: run: nothing heard.*port $silent_port.*--port" "$tmp/silent.out")" = 1 ]
 
 for name in "${nodes[@]}"; do
     ended $name 60

@@ -28,6 +28,7 @@ quick=(--no-png --bands lwir --size 32x24 --rate 5)
 exercise demo "$tmp/relative.pcap"
 replay "$tmp/relative.pcap" "$tmp/relative" "${quick[@]}"
 check "proper stamps: replays" [ $code = 0 ]
+cp "$tmp/stdout" "$tmp/relative.said"
 check "proper stamps: none is doubted" grep -q '"stamps_doubted":0' <(run_json "$tmp/relative")
 path "$tmp/relative" >"$tmp/path"
 
@@ -48,6 +49,24 @@ try constant "stand still"
 # two seconds of listening are too few to tell what they count
 try milliseconds "count something else than time" --causal --host munition
 try half-rate "run at 0.5 times the rate of their arrivals" --causal --host munition
+
+exercise demo "$tmp/none.pcap" dis.stamps=none
+replay "$tmp/none.pcap" "$tmp/none" "${quick[@]}" --rate 0.2
+check "no stamps: said" grep -q 'clock: no PDU has a time stamp, all are 0: every PDU counts from its arrival' "$tmp/stdout"
+check "stamps: none lacks" [ "$(grep -c 'has a time stamp' "$tmp/relative.said")" = 0 ]
+
+# ---- --host munition of a recording: the demo's one missile is what is chosen by itself, to the bit
+replay "$tmp/relative.pcap" "$tmp/munition" "${quick[@]}" --host munition
+check "munition: replays" [ $code = 0 ]
+check "munition: is followed" complained 'host: 1:3001:41, the first guided munition'
+check "munition: the frames of the missile chosen by name" same_hashes "$tmp/relative" "$tmp/munition"
+exercise no-missile "$tmp/no-missile.pcap" duration_s=5
+replay "$tmp/no-missile.pcap" "$tmp/no-missile" "${quick[@]}" --host munition
+check "munition: none flies: exit code" [ $code = 1 ]
+check "munition: none flies: what to do" complained 'none flies in the log, which has 0 munitions.*--host ID or --host observer'
+check "munition: none flies: one line" [ "$(wc -l <"$tmp/stderr")" = 1 ]
+replay "$tmp/no-missile.pcap" "$tmp/no-missile" "${quick[@]}" --host munition --causal
+check "munition: none flies, causal: what to do" complained 'none flew at a frame.*--host ID or --host observer'
 
 run inspect "$tmp/half-rate.pcap"
 check "inspect says it" grep -q "time stamps of 1:3001 run at 0.5 times" "$tmp/stdout"

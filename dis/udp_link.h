@@ -1,0 +1,45 @@
+/* dis/udp_link.h: whether what a socket hears and sends by is still there: its interface, its address, its group; for
+ * udp.c only.
+ *
+ * An interface that is deleted and made anew has another index: the socket that was bound to it, and the group that was
+ * joined on it, are deaf for ever, without an error. So the kernel's own announcements (rtnetlink(7)) are read, and the
+ * state is looked at once a second besides, where there are none. */
+#ifndef DIS_UDP_LINK_H
+#define DIS_UDP_LINK_H
+
+#include "dis/udp_socket.h"
+
+typedef enum DisLinkState {
+    DIS_LINK_UP,
+    DIS_LINK_GONE,       /* the named interface does not exist */
+    DIS_LINK_DOWN,       /* it does, and is set down */
+    DIS_LINK_NO_CARRIER, /* it is set up, and nothing is at its other end */
+    DIS_LINK_NO_ADDRESS, /* the address that is listened on is no longer one of this machine's */
+    DIS_LINK_NO_ROUTE,   /* no interface leads to the group */
+} DisLinkState;
+
+typedef struct DisLink {
+    int          watch;        /* announcements; -1: none, or a sender */
+    bool         listens;
+    bool         lost;         /* its interface was deleted since the socket was made */
+    DisLinkState state, said;  /* said: what was last logged */
+    int64_t      since_ns;     /* of the state; monotonic */
+} DisLink;
+
+/* To be polled for POLLIN; -1 where the system has none. */
+int  dis_link_watch(void);
+/* Reads all announcements; notes whether an interface that the socket depends on was deleted. */
+void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const DisTie *tie);
+/* Looks, and joins the group anew where no interface was named. remake: the socket must be made anew; lost is cleared
+ * by the caller then. Once a second and after announcements. */
+void dis_link_look(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
+                   const DisUdpConfig *config);
+/* Of the last read or look: one line when it is no longer up, one when it is again; one more when the reason is another
+ * for two seconds. where: of dis_udp_where. dis_link_unsaid: it wants to be asked again in a tenth of a second. */
+static inline bool dis_link_unsaid(const DisLink *link) { return link->state != link->said; }
+void dis_link_say(DisLink *link, const char *where, const DisUdpConfig *config);
+/* `the interface eth0 is down`, for people. */
+enum { dis_link_text_size = 256 };
+void dis_link_text(char out[dis_link_text_size], DisLinkState state, const DisUdpConfig *config);
+
+#endif
