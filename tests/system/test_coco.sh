@@ -53,8 +53,15 @@ def check(out, min_pixels, min_visible, *wanted):
             path = f"{out}/frames/truth/{frame:06d}.exr"
             subprocess.run(["oiiotool", path, "--ch", "entity", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
             info = subprocess.run(["oiiotool", "--info", "-v", path], check=True, capture_output=True, text=True).stdout
-            ids = [l for l in info.splitlines() if "entity_ids" in l][0].split('"')[1].split(",")
+            ids, materials = ([l for l in info.splitlines() if key in l][0].split('"')[1].split(",") for key in ("entity_ids", "material_names"))
             planes[frame] = np.array(Image.open(f"{out}/x.tif")), ids
+            # value k of every truth plane is the k-th name, and 0 is none
+            subprocess.run(["oiiotool", path, "--ch", "material", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
+            material, entity = np.array(Image.open(f"{out}/x.tif")), planes[frame][0]
+            vehicle = [k + 1 for k, name in enumerate(ids) if not name.endswith(":31")]
+            of_vehicles = {materials[v - 1] for v in np.unique(material[np.isin(entity, vehicle)])}
+            assert "none" not in materials and of_vehicles <= {"paint_olive", "paint_olive_flat", "canvas", "rubber_black", "glass_window",
+                "steel_worn", "metal_dark", "metal_steel_oxidized"} and "paint_olive" in of_vehicles, of_vehicles
         return planes[frame]
     def runs(text):  # the format's description, read again: five bits a letter, the second run before added from the fourth on
         counts, value, shift = [], 0, 0
