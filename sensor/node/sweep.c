@@ -300,10 +300,10 @@ static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome
     });
 }
 
-/* The settings file, which must say to the run what it is meant to. */
-static Status write_settings(const char *path, const Options *o, const Config *config)
+/* The settings file, which must read back as the settings that the variant was tried with. */
+static Status write_settings(const char *path, const Options *o, const Variant *v, const Config *config)
 {
-    char    sha256[sha256_text_size], *text = NULL;
+    char    sha256[sha256_text_size], *text = NULL, *again = NULL;
     size_t  octets;
     Config *back   = malloc(sizeof *back);
     Status  status = back ? settings_text_of(&text, &octets, sha256, o, config) : STATUS_NO_MEMORY;
@@ -311,13 +311,18 @@ static Status write_settings(const char *path, const Options *o, const Config *c
         *back  = config_default();
         status = write_file(path, text, octets);
     }
-    free(text);
     if (status == STATUS_OK) status = config_read(back, path);
-    const char *key = status == STATUS_OK ? config_difference(config, back) : NULL;
+    if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
+    if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
+        const char *key = config_difference(config, back);
+        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose another",
+                  path, key ? key : "a setting");
+        status = STATUS_BAD_VALUE;
+    }
     free(back);
-    if (!key) return status;
-    log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose another", path, key);
-    return STATUS_BAD_VALUE;
+    free(text);
+    free(again);
+    return status;
 }
 
 static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const Config *config)
@@ -331,8 +336,8 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     snprintf(path, sizeof path, "%s/variant.json", folder);
     unlink(path);
     snprintf(path, sizeof path, "%s/settings.yaml", folder);
-    if (write_settings(path, s->options, config) != STATUS_OK) {
-        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written");
+    if (write_settings(path, s->options, v, config) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written, or not be read back");
         return;
     }
     const double begun_s = wall_clock_s();

@@ -104,8 +104,9 @@ Status coco_merge_close(CocoMerge *m, bool whole)
     if (m->open)
         status = coco_file_close(&m->file, json_pack("{s:s,s:s,s:i}", "description", "pitviper replay --sweep", "version",
                                                      PITVIPER_VERSION, "variants", m->variants), whole);
-    if (!m->open || !whole || status != STATUS_OK) {
-        char path[coco_path_size + 16];
+    char path[coco_path_size + 16];
+    snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* beside it: coco.json is that run's own */
+    if ((!m->open || !whole || status != STATUS_OK) && access(path, F_OK) != 0) {
         snprintf(path, sizeof path, "%s/coco.json", m->folder);
         unlink(path);
     }

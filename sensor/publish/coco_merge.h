@@ -11,7 +11,7 @@ typedef struct CocoMerge CocoMerge;
 Status coco_merge_open(CocoMerge **out, const char *folder);
 /* FOLDER/NAME/coco.json. One at a time is in memory. STATUS_IO, STATUS_BAD_VALUE: logged. */
 Status coco_merge_add(CocoMerge *merge, const char *name);
-/* Names the file; an earlier sweep's goes when there is none now. Not whole, or after a failure: there is none. NULL is
+/* Names the file; an earlier sweep's goes when there is none now, but not a plain run's. Not whole, or after a failure: there is none. NULL is
  * fine. */
 Status coco_merge_close(CocoMerge *merge, bool whole);
 

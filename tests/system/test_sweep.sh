@@ -90,12 +90,12 @@ sweep "$tmp/fails.yaml" "$tmp/f"
 check "again: the failed one is tried" [ "$(statuses "$tmp/f")" = ' 1 "status":"failed" 1 "status":"kept" ' ]
 
 # options that are no settings, and such as are flags for one; a setting that needs the sensor of an axis
-printf 'mode: zip\naxes: {seed: [1, 2], sensor.hfov_deg: [3, 6], weather.visibility_m: 9000, sensor.table: etc/sensors/example_flir2.sheet}\n' >"$tmp/zip.yaml"
-options=(--to 1367 --causal --no-png --only 14 --no-skip --set detector.smear=false)
+printf 'mode: zip\naxes: {seed: [1, 2], sensor.hfov_deg: [3, 6], weather.visibility_m: 9000, sensor.table: %s}\n' "$PWD/etc/sensors/example_flir2.sheet" >"$tmp/zip.yaml"
+options=(--to 1367 --causal --no-png --only 14 --no-skip --set detector.smear=false --set quality.table=etc/quality.csv)
 sweep "$tmp/zip.yaml" "$tmp/z" "${options[@]}"
 check "zip: two" [ "$(statuses "$tmp/z")" = ' 2 "status":"made" ' ]
 replay "$tmp/demo.pcap" "$tmp/flags" "${few[@]}" "${options[@]}" --seed 2 --set sensor.hfov_deg=6 --set weather.visibility_m=9000 \
-    --set sensor.table=etc/sensors/example_flir2.sheet
+    --set sensor.table="$PWD/etc/sensors/example_flir2.sheet"
 zipped=$tmp/z/$(folders "$tmp/z" | sed -n 2p)
 check "zip: the options are a variant's too" same_hashes "$tmp/flags" "$zipped"
 check "zip: the same counts of the sensor, and truth" [ "$(cd "$tmp/flags" && cat raw/lwir/*.png truth.jsonl | sha256sum)" = \
@@ -158,6 +158,8 @@ sweep "$tmp/none.yaml" "$tmp/slip"
 check "no such file" [ "$code" != 0 ]
 sweep "$tmp/grid.yaml" "$tmp/slip" --host 1:3001:41 --host 1:3001:42
 check "several hosts: an axis" complained 'make exercise.host an axis'
+sweep "$tmp/same.yaml" "$tmp/odd" --set record.path=$'a\nb'
+check "a setting that no file holds: said, not lost" complained 'variant 1, .*its settings cannot be written, or not be read back'
 sweep "$tmp/grid.yaml" "$tmp/slip" --coco --no-files
 check "what does not go together, in no variant" complained 'publish.coco: needs pictures in files'
 # bytes of no sense end in a line, not in a crash (run counts exit codes above 123 as failures)
