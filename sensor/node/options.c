@@ -11,8 +11,8 @@ enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP,
 
 static const char *const names[] = {"replay", "run"};
 
-/* In the order of the help. key: the setting that the option is short for; of one without an argument with its value. What
- * changes settings alone reaches the variants of a sweep in their settings file (in_settings), and all else that is not
+/* In the order of the help. key: the setting that the option is short for; of one without an argument with its value.
+ * What changes settings alone reaches the variants of a sweep in their settings file (in_settings), and all else that is not
  * the sweep's own (of_sweep) as it was given, on their command lines. */
 static const struct Row {
     const char *name;

@@ -37,8 +37,8 @@ typedef struct Options {
 int options_parse(Options *o, CommandName command, int argc, char **argv);
 const char *options_command(const Options *o); /* `replay`, `run` */
 
-/* The command line of a variant of a sweep: a run with these options but for the settings, which it reads from a file, and
- * its folder. argv: points into o and to the two paths, NULL behind the last. */
+/* The command line of a variant of a sweep: a run with these options but for the settings, which it reads from a file,
+ * and its folder. argv: points into o and to the two paths, NULL behind the last. */
 void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out);
 
 /* The table itself, for what must treat every option. False: not one of the command's. */

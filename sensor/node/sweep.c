@@ -315,8 +315,8 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
     if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
         const char *key = config_difference(config, back);
-        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose another",
-                  path, key ? key : "a setting");
+        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose "
+                  "another", path, key ? key : "a setting");
         status = STATUS_BAD_VALUE;
     }
     free(back);

@@ -185,8 +185,8 @@ Status sweep_draw(Sweep *sweep, const char *path)
     }
     free(seen.sha256);
     if (status == STATUS_OK && found < sweep->count) {
-        log_error("sweep: %s:%d: count: only %d of %d draws differ among 200000 tries; lower count, or widen a range", path,
-                  sweep->count_line, found, sweep->count);
+        log_error("sweep: %s:%d: count: only %d of %d draws differ among 200000 tries; lower count, or widen a "
+                  "range", path, sweep->count_line, found, sweep->count);
         status = STATUS_BAD_VALUE;
     }
     return status;

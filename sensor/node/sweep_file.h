@@ -44,7 +44,7 @@ typedef struct Sweep {
 /* base: what values are tried on. On failure *out holds nothing. */
 Status sweep_read(Sweep *out, const char *path, const Config *base);
 void   sweep_close(Sweep *sweep);
-/* Random: which draws the variants are, count of them that differ. Logs with path and line where there are not so many. */
+/* Random: which draws the variants are, count of them that differ. Logs with path and line when there are fewer. */
 Status sweep_draw(Sweep *sweep, const char *path);
 void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw, int axis);
 /* As a command line would give it. */

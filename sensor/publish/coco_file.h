@@ -1,5 +1,5 @@
-/* sensor/publish/coco_file.h: coco.json as it grows: images go straight into the file, annotations wait in another, which
- * is read back at the end; memory does not grow with them. Private to the folder. */
+/* sensor/publish/coco_file.h: coco.json as it grows: images go straight into the file, annotations wait in another,
+ * which is read back at the end; memory does not grow with them. Private to the folder. */
 #ifndef SENSOR_PUBLISH_COCO_FILE_H
 #define SENSOR_PUBLISH_COCO_FILE_H
 

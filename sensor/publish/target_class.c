@@ -129,7 +129,7 @@ static const struct Rule {
     {1, 2, any, {2, 2}, {any, any}, ATTACK_AIRCRAFT},
     {1, 2, any, {3, 3}, {any, any}, BOMBER},
     {1, 2, any, {4, 4}, {any, any}, TRANSPORT_AIRCRAFT},
-    {1, 2, any, {5, 8}, {any, any}, SURVEILLANCE_AIRCRAFT}, /* patrol, electronic warfare, reconnaissance, surveillance */
+    {1, 2, any, {5, 8}, {any, any}, SURVEILLANCE_AIRCRAFT}, /* patrol, EW, reconnaissance, surveillance */
     {1, 2, any, {20, 26}, {any, any}, HELICOPTER},
     {1, 2, any, {40, 40}, {any, any}, TRAINER},
     {1, 2, any, {50, 50}, {any, any}, UAV},
@@ -186,7 +186,10 @@ static const struct Rule {
     {9, any, any, {any, any}, {any, any}, RADAR},
 };
 
-static bool within(const int16_t range[2], int value) { return range[0] == any || (value >= range[0] && value <= range[1]); }
+static bool within(const int16_t range[2], int value)
+{
+    return range[0] == any || (value >= range[0] && value <= range[1]);
+}
 
 int target_class(DisEntityType type)
 {

@@ -93,7 +93,8 @@ static void every_mask_reads_back(void **state)
     uint32_t plane[most * most];
     uint8_t  mask[most * most];
     for (uint32_t n = 0; n < 600; n++) {
-        const int width  = 1 + (int)(random_uniform(1, 0, n, 0) * most), height = 1 + (int)(random_uniform(1, 0, n, 1) * most);
+        const int width  = 1 + (int)(random_uniform(1, 0, n, 0) * most);
+        const int height = 1 + (int)(random_uniform(1, 0, n, 1) * most);
         const int count  = 1 + (int)(random_uniform(1, 0, n, 2) * 4), block = 1 + (int)(random_uniform(1, 0, n, 3) * 9);
         const double fill = random_uniform(1, 0, n, 4);
         for (int y = 0; y < height; y++)
@@ -118,7 +119,8 @@ static void every_mask_reads_back(void **state)
                     const bool is = plane[y * width + x] == (uint32_t)k + 1;
                     CHECK(mask[x * height + y] == is);
                     pixels += is;
-                    CHECK(!is || (x >= extent[k].box[0] && x < extent[k].box[2] && y >= extent[k].box[1] && y < extent[k].box[3]));
+                    const int *box = extent[k].box;
+                    CHECK(!is || (x >= box[0] && x < box[2] && y >= box[1] && y < box[3]));
                 }
             CHECK(pixels == extent[k].pixels);
         }

@@ -7,7 +7,10 @@
 
 static char folder[64];
 
-static void path_of(char path[256], const char *name, const char *file) { snprintf(path, 256, "%s/%s/%s", folder, name, file); }
+static void path_of(char path[256], const char *name, const char *file)
+{
+    snprintf(path, 256, "%s/%s/%s", folder, name, file);
+}
 
 static void put(const char *name, const char *text)
 {

@@ -76,8 +76,8 @@ static void draws_differ(void **state)
         assert_int_equal(read_text(sweep, text), STATUS_BAD_VALUE);
         CHECK(strstr(check_said, ":2: count: 7 different draws are asked for, but the axes have 6 combinations"));
     }
-    CHECK(read_text(six, "mode: random\ncount: 4\naxes: {weather.visibility_m: [5000, 5e3, 23000.0, 23000], seed: [1, 2]}\n") ==
-          STATUS_OK);
+    CHECK(read_text(six, "mode: random\ncount: 4\naxes: {weather.visibility_m: [5000, 5e3, 23000.0, 23000], seed: [1, 2]}"
+                         "\n") == STATUS_OK);
     CHECK(distinct(six) == 4);
     sweep_close(six);
     free(sweep);
@@ -127,7 +127,8 @@ static void none_is_favoured(void **state)
     char   text[256], a[sweep_value_size], b[sweep_value_size];
     CHECK(sweep);
     for (int seed = 0; seed < 1200; seed++) {
-        snprintf(text, sizeof text, "mode: random\ncount: 2\ndraw: %d\naxes: {seed: [0, 1, 2], radar.bins: {from: 64, to: 67}}\n", seed);
+        snprintf(text, sizeof text,
+                 "mode: random\ncount: 2\ndraw: %d\naxes: {seed: [0, 1, 2], radar.bins: {from: 64, to: 67}}\n", seed);
         if (read_text(sweep, text) != STATUS_OK) fail_msg("%s", check_said);
         sweep_value(a, sweep, 1, 0); /* the second: it passed over what the first is */
         sweep_value(b, sweep, 1, 1);
