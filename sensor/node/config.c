@@ -125,6 +125,10 @@ static const Setting keys[] = {
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "in a replay: each frame also without what it looks at, or without any entity, and both without noise"},
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "", "in a replay: coco.json, boxes and masks of what is seen"},
+    {"publish.coco_min_pixels", SETTING_INT, AT(publish.coco_min_pixels), 1, 1000000, NULL, "px",
+     "targets with fewer pixels in their masks are marked in coco.json to be ignored (iscrowd)"},
+    {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
+     "the same for those of which less than this share is seen"},
     {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "pcapng file for all that `run` hears; empty: none"},
     {"weather.atmosphere", SETTING_TEXT, AT(weather.atmosphere), 0, 0, NULL, "",
      "us1976, midlat_summer, or another of etc/atmosphere"},
@@ -242,6 +246,7 @@ Config config_default(void)
     strcpy(c.publish.pairs, "off");
     c.publish.files                 = true;
     c.publish.png                   = true;
+    c.publish.coco_min_pixels       = 1;
     strcpy(c.weather.atmosphere, "us1976");
     c.weather.visibility_m          = 23000;
     c.weather.air_temp_k            = NAN;
@@ -386,6 +391,18 @@ void config_write(FILE *to, const Config *config)
           "# change it. A key without a value is chosen by the program, which prints its choice. `pitviper check FILE`\n"
           "# says whether a file is good.\n", to);
     settings_write(to, &table, config, none);
+}
+
+const char *config_difference(const Config *a, const Config *b)
+{
+    char in_a[8192], in_b[8192];
+    for (int i = 0; i < key_count; i++) {
+        const SettingTable one = {.module = table.module, .row = &keys[i], .count = 1};
+        settings_text(in_a, sizeof in_a, &one, a);
+        settings_text(in_b, sizeof in_b, &one, b);
+        if (strcmp(in_a, in_b) != 0 || a->given[i] != b->given[i]) return keys[i].name;
+    }
+    return NULL;
 }
 
 void config_write_settings(FILE *to, const Config *config) { settings_write(to, &table, config, config->given); }

@@ -70,6 +70,8 @@ typedef struct Config {
         bool   files, png;
         char   pairs[8];           /* off, target or all */
         bool   coco;
+        int    coco_min_pixels;    /* smaller and more hidden targets are there to be ignored */
+        double coco_min_visible;
     } publish;
     struct {
         char   path[1024];         /* empty: nothing is recorded */
@@ -127,6 +129,8 @@ Status config_check(const Config *config);
 void   config_write(FILE *to, const Config *config);
 /* A file that reads back as *config: what was given stands there, all else commented out. */
 void   config_write_settings(FILE *to, const Config *config);
+/* The first key that the two do not have alike, or that only one has been given; NULL: none. */
+const char *config_difference(const Config *a, const Config *b);
 /* `key = value` of those that were given, a line each, indented. */
 void   config_write_given(FILE *to, const Config *config);
 /* The canonical text: every key and value, in table order; those that change no picture (network, publish, record, the

@@ -218,12 +218,13 @@ static char *entity_ids(const Snapshot *snapshot)
     return text;
 }
 
+/* Value k of the material plane is the k-th: without "none", which is 0. */
 static char *material_names(const Materials *materials)
 {
     const size_t size = (size_t)materials->count * sizeof materials->material->name + 1;
     char        *text = calloc(size, 1);
-    for (int i = 0, n = 0; text && i < materials->count; i++)
-        n += snprintf(text + n, size - (size_t)n, "%s%s", i ? "," : "", materials->material[i].name);
+    for (int i = 1, n = 0; text && i < materials->count; i++)
+        n += snprintf(text + n, size - (size_t)n, "%s%s", i > 1 ? "," : "", materials->material[i].name);
     return text;
 }
 

@@ -1,3 +1,5 @@
+/* sensor/node/options.c: the options of replay and run: their table, their help, how a line of them is read, and how
+ * those of a sweep reach its variants. */
 #include "sensor/node/options.h"
 
 #include <getopt.h>
@@ -5,12 +7,13 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, ONLY, COCO, SWEEP,
-      HELP, KEY };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, ONLY, SWEEP, HELP, KEY };
 
 static const char *const names[] = {"replay", "run"};
 
-/* In the order of the help. key: the setting that the option is short for. */
+/* In the order of the help. key: the setting that the option is short for; of one without an argument with its value.
+ * What changes settings alone reaches the variants of a sweep in their settings file (in_settings), and all else that is not
+ * the sweep's own (of_sweep) as it was given, on their command lines. */
 static const struct Row {
     const char *name;
     int         what, where;
@@ -43,18 +46,18 @@ static const struct Row {
     {"threads", THREADS, IN_BOTH, NULL, "N", "default: one for each processor"},
     {"seed", KEY, IN_BOTH, "seed", "N", "of everything random (default: 1)"},
     {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds a second, or max (default: max)"},
-    {"causal", CAUSAL, IN_REPLAY, NULL, NULL,
+    {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
      "use only what had been received by each frame and by each choice: the\nframes that `pitviper run` makes of it, to the bit"},
     {"for", FOR, IN_RUN, NULL, "S", "stop after so many seconds (default: never)"},
     {"frames", FRAMES, IN_RUN, NULL, "N", "stop after so many frames (default: never)"},
     {"record", KEY, IN_RUN, "record.path", "LOG", "all that is heard, into a pcapng file that `replay --causal` shows again"},
     {"no-skip", NO_SKIP, IN_BOTH, NULL, NULL, "compute what is known to change nothing; the pictures stay the same to\nthe bit"},
     {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
-    {"no-png", NO_PNG, IN_BOTH, NULL, NULL, "no display pictures, only EXR"},
-    {"no-files", NO_FILES, IN_BOTH, NULL, NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"no-png", KEY, IN_BOTH, "publish.png=false", NULL, "no display pictures, only EXR"},
+    {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no pictures in files: truth.jsonl and run.json alone"},
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
      "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
-    {"coco", COCO, IN_REPLAY, NULL, NULL, "DIR/coco.json: boxes and masks in COCO's format"},
+    {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
      "one run for each combination of the settings in a YAML file, in folders\nof DIR, with manifest.jsonl and manifest.html; again: goes on"},
     {"help", HELP, IN_BOTH, NULL, NULL, "this"},
@@ -118,7 +121,7 @@ static bool set_size(Config *config, const char *text)
            config_set(config, "sensor.height_px", x + 1, "--size") == STATUS_OK;
 }
 
-static bool set_pair(Config *config, const char *text)
+static bool set_pair(Config *config, const char *text, const char *source)
 {
     char        key[64];
     const char *equals = strchr(text, '=');
@@ -128,7 +131,7 @@ static bool set_pair(Config *config, const char *text)
     }
     memcpy(key, text, (size_t)(equals - text));
     key[equals - text] = 0;
-    return config_set(config, key, equals + 1, "--set") == STATUS_OK;
+    return config_set(config, key, equals + 1, source) == STATUS_OK;
 }
 
 static bool whole(int *out, const char *name, const char *text, long long low, long long high)
@@ -188,10 +191,12 @@ static bool take(Options *o, const struct Row *row, const char *text)
     bool ok = true;
     snprintf(source, sizeof source, "--%s", row->name);
     switch (row->what) {
-    case KEY: return config_set(&o->config, row->key, text, source) == STATUS_OK;
+    case KEY:
+        if (!row->argument) return set_pair(&o->config, row->key, source);
+        return config_set(&o->config, row->key, text, source) == STATUS_OK;
     case OUT: o->out = text; return true;
     case SIZE: return set_size(&o->config, text);
-    case SET: return set_pair(&o->config, text);
+    case SET: return set_pair(&o->config, text, source);
     case HOST: return add_host(o, text);
     case THREADS: return whole(&o->threads, row->name, text, 1, 256);
     case FRAMES: return whole(&o->frames, row->name, text, 1, 1000000000);
@@ -204,23 +209,72 @@ static bool take(Options *o, const struct Row *row, const char *text)
         ok = text_to_double(&o->for_s, text) && o->for_s > 0 && o->for_s <= 1e8;
         if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0", text);
         return ok;
-    case CAUSAL: o->config.causal = true; return true;
     case NO_SKIP: o->no_skip = true; return true;
     case ISA:
         ok = strcmp(text, "avx2") == 0 || strcmp(text, "sse4.2") == 0 || strcmp(text, "avx512") == 0;
         if (!ok) log_error("options: --isa: '%s' is not avx2, sse4.2 or avx512", text);
         o->isa = text;
         return ok;
-    case NO_PNG: o->config.publish.png = false; return true;
     case ONLY: return parse_only(o, text);
-    case COCO: o->config.publish.coco = true; return true;
     case SWEEP: o->sweep = text; return true;
-    case NO_FILES: o->config.publish.files = false; return true;
     default: return true; /* CONFIG was read before */
     }
 }
 
+/* ---- a sweep's variants ---------------------------------------------------------------------- */
+
+static bool in_settings(const struct Row *row)
+{
+    return row->what == KEY || row->what == SIZE || row->what == SET || row->what == CONFIG || row->what == HOST;
+}
+
+static bool of_sweep(const struct Row *row) { return row->what == OUT || row->what == SWEEP || row->what == HELP; }
+
+/* To the bit, whatever they say: a variant that was made with another is kept. */
+static bool same_products(const struct Row *row)
+{
+    return row->what == THREADS || row->what == SPEED || row->what == NO_SKIP || row->what == ISA;
+}
+
+/* What a variant is told on its command line. A new option is among it until its row says otherwise. */
+static bool note_given(Options *o, const struct Row *row, const char *text)
+{
+    if (in_settings(row) || of_sweep(row)) return true;
+    if (o->given_count == options_given_max) {
+        log_error("options: --%s: the %dth option that is no setting; there is room for %d", row->name,
+                  options_given_max + 1, options_given_max);
+        return false;
+    }
+    OptionGiven *given = &o->given[o->given_count++];
+    *given = (OptionGiven){.argument = row->argument ? text : NULL, .same_products = same_products(row)};
+    snprintf(given->flag, sizeof given->flag, "--%s", row->name);
+    return true;
+}
+
+void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out)
+{
+    const char *const fixed[] = {"pitviper", names[o->command], "--config", settings, "--out", out};
+    int               n       = 0;
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) argv[n++] = fixed[i];
+    for (int i = 0; i < o->given_count; i++) {
+        argv[n++] = o->given[i].flag;
+        if (o->given[i].argument) argv[n++] = o->given[i].argument;
+    }
+    argv[n++] = "--";
+    argv[n++] = o->log;
+    argv[n]   = NULL;
+}
+
 /* ---- the line -------------------------------------------------------------------------------- */
+
+int options_count(void) { return row_count; }
+
+bool options_option(const char **name, bool *argument, CommandName command, int i)
+{
+    *name     = rows[i].name;
+    *argument = rows[i].argument != NULL;
+    return rows[i].where >> command & 1;
+}
 
 static void list_options(struct option list[row_count + 1], CommandName command)
 {
@@ -273,7 +327,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
             print_help(command);
             return 1 + 0;
         }
-        if (!row || !take(o, row, optarg)) {
+        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) {
             fprintf(stderr, "see `pitviper %s --help`\n", name);
             return 1 + 2;
         }
@@ -293,5 +347,6 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
                   o->config.publish.coco ? "coco" : "pairs");
         return 1 + 2;
     }
+    if (o->sweep) return 0; /* its axes are settings too: what must go together is checked of each variant */
     return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
 }

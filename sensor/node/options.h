@@ -4,9 +4,19 @@
 
 #include "sensor/node/config.h"
 
-enum { options_hosts_max = 64, options_only_max = 256 };
+enum {
+    options_hosts_max = 64, options_only_max = 256, options_given_max = 64,
+    options_variant_argv = 9 + 2 * options_given_max,
+};
 
 typedef enum CommandName { COMMAND_REPLAY, COMMAND_RUN } CommandName;
+
+/* An option that is no setting, as it stood on the line. */
+typedef struct OptionGiven {
+    char        flag[40];      /* --name */
+    const char *argument;      /* NULL: it takes none */
+    bool        same_products; /* it changes no product */
+} OptionGiven;
 
 typedef struct Options {
     CommandName command;
@@ -17,6 +27,8 @@ typedef struct Options {
     bool        no_skip;
     const char *host[options_hosts_max]; /* several of them, ids; one is in the configuration */
     int         only_count, only[options_only_max]; /* frames to be made, ascending, each once; 0: all */
+    int         given_count;
+    OptionGiven given[options_given_max]; /* in order; those that are settings are in config, the sweep's own left out */
     Config      config;
 } Options;
 
@@ -24,5 +36,13 @@ typedef struct Options {
  * help was asked for (0), or something was wrong and is logged (2). */
 int options_parse(Options *o, CommandName command, int argc, char **argv);
 const char *options_command(const Options *o); /* `replay`, `run` */
+
+/* The command line of a variant of a sweep: a run with these options but for the settings, which it reads from a file,
+ * and its folder. argv: points into o and to the two paths, NULL behind the last. */
+void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out);
+
+/* The table itself, for what must treat every option. False: not one of the command's. */
+int  options_count(void);
+bool options_option(const char **name, bool *argument, CommandName command, int i);
 
 #endif

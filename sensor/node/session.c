@@ -283,7 +283,9 @@ static Status open_session(Session *s)
     s->truth_patience = (Patience){.what = "lines in truth.jsonl"};
     if (shared->live) return config->publish.files ? open_writer(s) : STATUS_OK;
     if (config->publish.coco)
-        status = coco_open(&s->coco, s->out, config->publish.png ? "png" : "exr", shared->config_sha256, config->seed);
+        status = coco_open(&s->coco, s->out, config->publish.png ? "png" : "exr",
+                           (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible},
+                           shared->config_sha256, config->seed);
     if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0)
         status = pairs_open(&s->pairs, shared, s->out, raw);
     return status;

@@ -1,9 +1,11 @@
+/* sensor/node/sweep.c: `replay --sweep`: tries every variant, then runs one after another, each a process of its own. */
 #include "sensor/node/sweep.h"
 
 #include "sensor/node/contact_sheet.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/sweep_file.h"
+#include "sensor/publish/coco_merge.h"
 #include "sensor/publish/variant_record.h"
 
 #include <errno.h>
@@ -19,6 +21,7 @@ typedef struct Variant {
     int  number;               /* of the file, 0 is the first */
     char name[name_size];
     char config_sha256[sha256_text_size];
+    char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones make the same run */
 } Variant;
 
 typedef struct SweepRun {
@@ -29,6 +32,7 @@ typedef struct SweepRun {
     char           log_sha256[sha256_text_size];
     FILE          *manifest;
     ContactSheet   sheet;
+    CocoMerge     *coco;
     int            made, kept, failed;
 } SweepRun;
 
@@ -83,14 +87,44 @@ static Status name_variant(char name[name_size], const Sweep *sweep, int number)
     return status;
 }
 
+/* Options that are no settings, but change what is made: they belong to what a variant is. */
+static void write_again(FILE *file, const Options *o)
+{
+    char escaped[1024];
+    fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n# Again: pitviper replay LOG --config THIS");
+    for (int i = 0; i < o->given_count; i++) {
+        const OptionGiven *given = &o->given[i];
+        if (given->same_products) continue;
+        if (given->argument) text_escape(escaped, sizeof escaped, given->argument, strlen(given->argument));
+        fprintf(file, " %s%s%s", given->flag, given->argument ? " " : "", given->argument ? escaped : "");
+    }
+    fputc('\n', file);
+}
+
+/* All settings, as the file that the run reads. */
+static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const Options *o,
+                               const Config *config)
+{
+    *text      = NULL;
+    FILE *file = open_memstream(text, octets);
+    if (!file) return STATUS_NO_MEMORY;
+    write_again(file, o);
+    config_write_settings(file, config);
+    return fclose(file) == 0 ? sha256_bytes(sha256, *text, *octets) : STATUS_NO_MEMORY;
+}
+
 static Status try_variant(Variant *variant, const SweepRun *s)
 {
-    char   words[words_size];
+    char   words[words_size], *text = NULL;
+    size_t octets;
     Run   *run = calloc(1, sizeof *run); /* too large for a stack */
     if (!run) return STATUS_NO_MEMORY;
     run->options  = *s->options;
     Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
     if (status == STATUS_OK) status = config_check(&run->options.config);
+    if (status == STATUS_OK)
+        status = settings_text_of(&text, &octets, variant->settings_sha256, s->options, &run->options.config);
+    free(text);
     if (status == STATUS_OK) status = run_prepare(run);
     if (status == STATUS_OK) {
         strcpy(variant->config_sha256, run->config_sha256);
@@ -103,11 +137,11 @@ static Status try_variant(Variant *variant, const SweepRun *s)
     return status;
 }
 
-static int by_name(const void *a, const void *b)
+static int by_settings(const void *a, const void *b)
 {
     const Variant *x = a, *y = b;
-    const int      names = strcmp(x->name, y->name);
-    return names ? names : (x->number > y->number) - (x->number < y->number);
+    const int      settings = strcmp(x->settings_sha256, y->settings_sha256);
+    return settings ? settings : (x->number > y->number) - (x->number < y->number);
 }
 
 static int by_number(const void *a, const void *b)
@@ -116,13 +150,14 @@ static int by_number(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-/* Random draws from short lists meet again: the first of them is run. */
+/* A list may say a value twice: the first of its variants is run. */
 static void drop_repeated(SweepRun *s)
 {
     int kept = 0;
-    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_name);
+    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_settings);
     for (int i = 0; i < s->count; i++)
-        if (i == 0 || strcmp(s->variant[i].name, s->variant[kept - 1].name) != 0) s->variant[kept++] = s->variant[i];
+        if (i == 0 || strcmp(s->variant[i].settings_sha256, s->variant[kept - 1].settings_sha256) != 0)
+            s->variant[kept++] = s->variant[i];
     s->repeated = s->count - kept;
     s->count    = kept;
     qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_number);
@@ -160,7 +195,7 @@ static Status open_products(SweepRun *s)
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
     s->manifest = fopen(path, "w");
-    if (s->manifest) return STATUS_OK;
+    if (s->manifest) return coco_merge_open(&s->coco, o->out);
     log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
     return STATUS_IO;
 }
@@ -180,34 +215,24 @@ static bool read_run(MadeRun *out, const char *folder, const char *name)
     return made_run_read(out, path);
 }
 
+static bool has_coco(const char *folder)
+{
+    char path[path_size + 32];
+    snprintf(path, sizeof path, "%s/coco.json", folder);
+    return access(path, R_OK) == 0;
+}
+
 /* A whole run of these settings; its run.json is then the outcome's. */
-static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings_sha256)
+static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
 {
     MadeRun    variant, run;
     const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
-                       strcmp(variant.settings_sha256, settings_sha256) == 0;
+                       strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
     const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v);
     made_run_free(&variant);
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
     else made_run_free(&run);
     return kept;
-}
-
-/* All settings, as the file that the run reads. */
-static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const SweepRun *s,
-                               const Variant *v)
-{
-    Config *config = malloc(sizeof *config);
-    *text          = NULL;
-    FILE  *file    = config ? open_memstream(text, octets) : NULL;
-    Status status  = file ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) {
-        fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n");
-        config_write_settings(file, config);
-    }
-    if (file && fclose(file) != 0) status = STATUS_NO_MEMORY;
-    free(config);
-    return status == STATUS_OK ? sha256_bytes(sha256, *text, *octets) : status;
 }
 
 static Status write_file(const char *path, const char *text, size_t octets)
@@ -222,14 +247,11 @@ static Status write_file(const char *path, const char *text, size_t octets)
 /* This program again, in a process of its own. Its exit code; -1: it ended otherwise. */
 static int run_child(const Options *o, const char *folder)
 {
-    char settings[path_size + 32], said[path_size + 32], threads[16], speed[40];
+    char        settings[path_size + 32], said[path_size + 32];
+    const char *argv[options_variant_argv];
     snprintf(settings, sizeof settings, "%s/settings.yaml", folder);
     snprintf(said, sizeof said, "%s/log.txt", folder);
-    snprintf(threads, sizeof threads, "%d", o->threads);
-    snprintf(speed, sizeof speed, "%.17g", o->speed);
-    const char *argv[] = {"pitviper", "replay", "--config", settings, "--out", folder, "--threads", threads, "--isa", o->isa,
-                          "--speed", isfinite(o->speed) ? speed : "max", "--", o->log, NULL, NULL};
-    if (o->no_skip) argv[12] = "--no-skip", argv[13] = "--", argv[14] = o->log;
+    options_variant(argv, o, settings, folder);
     posix_spawn_file_actions_t files;
     pid_t                      child;
     int                        state = -1;
@@ -261,7 +283,7 @@ static void find_reason(char *why, size_t size, const char *folder, int code)
 }
 
 /* Its line of the manifest. NULL: out of memory. */
-static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome, const char *settings_sha256)
+static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome)
 {
     char        text[sweep_axes_max][sweep_value_size];
     const char *key[sweep_axes_max], *value[sweep_axes_max];
@@ -273,13 +295,37 @@ static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome
     return variant_line(&(VariantRecord){
         .name = v->name, .status = outcome->status, .error = outcome->why, .number = v->number + 1,
         .setting_count = s->sweep.axis_count, .key = key, .value = value, .config_sha256 = v->config_sha256,
-        .settings_sha256 = settings_sha256, .log_sha256 = s->log_sha256, .seconds = outcome->seconds,
+        .settings_sha256 = v->settings_sha256, .log_sha256 = s->log_sha256, .seconds = outcome->seconds,
         .run = outcome->has_run ? &outcome->run : NULL,
     });
 }
 
-static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const char *settings,
-                         size_t octets)
+/* The settings file, which must read back as the settings that the variant was tried with. */
+static Status write_settings(const char *path, const Options *o, const Variant *v, const Config *config)
+{
+    char    sha256[sha256_text_size], *text = NULL, *again = NULL;
+    size_t  octets;
+    Config *back   = malloc(sizeof *back);
+    Status  status = back ? settings_text_of(&text, &octets, sha256, o, config) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        *back  = config_default();
+        status = write_file(path, text, octets);
+    }
+    if (status == STATUS_OK) status = config_read(back, path);
+    if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
+    if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
+        const char *key = config_difference(config, back);
+        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose "
+                  "another", path, key ? key : "a setting");
+        status = STATUS_BAD_VALUE;
+    }
+    free(back);
+    free(text);
+    free(again);
+    return status;
+}
+
+static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const Config *config)
 {
     char path[path_size + 32];
     *outcome = (Outcome){.status = "failed"};
@@ -290,8 +336,8 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     snprintf(path, sizeof path, "%s/variant.json", folder);
     unlink(path);
     snprintf(path, sizeof path, "%s/settings.yaml", folder);
-    if (write_file(path, settings, octets) != STATUS_OK) {
-        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written");
+    if (write_settings(path, s->options, v, config) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written, or not be read back");
         return;
     }
     const double begun_s = wall_clock_s();
@@ -320,24 +366,31 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
     fflush(stdout);
 }
 
+/* Makes it, or keeps what is there. */
+static Status make_or_keep(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder)
+{
+    Config *config = malloc(sizeof *config);
+    Status  status = config ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && !is_kept(outcome, s, v, folder, config->publish.coco))
+        make_variant(outcome, s, v, folder, config);
+    free(config);
+    return status;
+}
+
 static Status one_variant(SweepRun *s, int place)
 {
     const Variant *v = &s->variant[place];
-    char           folder[path_size], path[path_size + 32], part[path_size + 48], settings_sha256[sha256_text_size], *settings;
-    size_t         octets;
+    char           folder[path_size], path[path_size + 32], part[path_size + 48];
     Outcome        outcome;
     if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder) return STATUS_BAD_VALUE;
-    Status status = settings_text_of(&settings, &octets, settings_sha256, s, v);
-    if (status == STATUS_OK && !is_kept(&outcome, s, v, folder, settings_sha256))
-        make_variant(&outcome, s, v, folder, settings, octets);
-    free(settings);
+    Status status = make_or_keep(&outcome, s, v, folder);
     if (status != STATUS_OK) return status;
     s->made += strcmp(outcome.status, "made") == 0;
     s->kept += strcmp(outcome.status, "kept") == 0;
     s->failed += strcmp(outcome.status, "failed") == 0;
     tell(s, v, &outcome, place);
 
-    char *text = line_of(s, v, &outcome, settings_sha256);
+    char *text = line_of(s, v, &outcome);
     if (!text) status = STATUS_NO_MEMORY;
     if (text && (fprintf(s->manifest, "%s\n", text) < 0 || fflush(s->manifest) != 0)) {
         log_error("sweep: cannot write %s/manifest.jsonl: %s", s->options->out, strerror(errno));
@@ -350,6 +403,7 @@ static Status one_variant(SweepRun *s, int place)
         if (status == STATUS_OK && rename(part, path) != 0) status = STATUS_IO;
     }
     free(text);
+    if (status == STATUS_OK && outcome.has_run && has_coco(folder)) status = coco_merge_add(s->coco, v->name);
     made_run_free(&outcome.run);
     return status;
 }
@@ -357,13 +411,17 @@ static Status one_variant(SweepRun *s, int place)
 static Status run_all(SweepRun *s)
 {
     Status status = open_products(s);
-    if (status == STATUS_OK && s->repeated > 0) printf("%d variants repeat others and are left out\n", s->repeated);
+    if (status == STATUS_OK && s->repeated > 0)
+        printf("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
+               s->repeated == 1 ? "is" : "are");
     for (int i = 0; i < s->count && status == STATUS_OK; i++) status = one_variant(s, i);
     if (s->sheet.page) {
         const Status ended = sheet_end(&s->sheet);
         if (status == STATUS_OK) status = ended;
     }
     if (s->manifest && fclose(s->manifest) != 0 && status == STATUS_OK) status = STATUS_IO;
+    const Status merged = coco_merge_close(s->coco, status == STATUS_OK);
+    if (status == STATUS_OK) status = merged;
     if (status == STATUS_OK)
         printf("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);

@@ -1,3 +1,4 @@
+/* sensor/node/sweep_file.c: reads the axes of a sweep, and says what each variant sets. */
 #include "sensor/node/sweep_file.h"
 
 #include <stdlib.h>
@@ -161,6 +162,7 @@ static Status read_root(Reading *r, const yaml_node_t *root)
     if (!random && value[2]) return refuse(r, value[2], "draw", "is for `mode: random`");
     if (random && !value[1]) return refuse(r, root, "count", "how many draws `mode: random` makes is missing, 1 .. 10000");
     r->sweep->count = (int)count;
+    if (value[1]) r->sweep->count_line = line_of(value[1]);
     if (!value[3]) return refuse(r, root, "axes", "are missing: keys with lists of values");
     return read_axes(r, "", value[3]);
 }
@@ -187,7 +189,7 @@ static Status count_variants(const Reading *r)
             longest = axis->count;
         }
     }
-    if (sweep->mode == SWEEP_RANDOM) return STATUS_OK;
+    if (sweep->mode == SWEEP_RANDOM) return sweep_draw(sweep, r->path);
     if (sweep->mode == SWEEP_GRID && product > sweep_variants_max) {
         log_error("sweep: %s: the grid has more than %d variants; shorten a list, or let `mode: random` with `count` "
                   "draw from it", r->path, sweep_variants_max);
@@ -237,34 +239,28 @@ void sweep_close(Sweep *sweep)
     for (int i = 0; i < sweep->axis_count; i++) {
         for (int k = 0; k < sweep->axis[i].count; k++) free(sweep->axis[i].value[k]);
         free(sweep->axis[i].value);
+        free(sweep->axis[i].kind_of);
+        free(sweep->axis[i].first_of);
     }
+    free(sweep->draw_of);
     *sweep = (Sweep){0};
 }
 
 /* ---- variants --------------------------------------------------------------------------------- */
 
-static int choice_of(const Sweep *sweep, int variant, int axis, double u)
-{
-    const int count = sweep->axis[axis].count;
-    if (sweep->mode == SWEEP_ZIP) return count > 1 ? variant : 0;
-    if (sweep->mode == SWEEP_RANDOM) return (int)fmin(u * count, count - 1);
-    int below = 1;
-    for (int i = axis + 1; i < sweep->axis_count; i++) below *= sweep->axis[i].count;
-    return variant / below % count;
-}
-
 void sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis)
 {
-    const SweepAxis *a = &sweep->axis[axis];
-    uint64_t         key = 14695981039346656037u; /* of the key's name, FNV-1a: another axis more moves no draw */
-    for (const char *at = a->key; *at; at++) key = (key ^ (uint8_t)*at) * 1099511628211u;
-    const double u = random_uniform((uint64_t)sweep->draw, 0x53770000u, (uint32_t)variant, key);
-    if (a->count > 0)
-        snprintf(out, sweep_value_size, "%s", a->value[choice_of(sweep, variant, axis, u)]);
-    else if (a->whole)
-        snprintf(out, sweep_value_size, "%.0f", fmin(a->low + floor(u * (a->high - a->low + 1)), a->high));
-    else
-        snprintf(out, sweep_value_size, "%.9g", clamp(a->low + u * (a->high - a->low), a->low, a->high));
+    const SweepAxis *a      = &sweep->axis[axis];
+    int              choice = a->count > 1 ? variant : 0, below = 1; /* zip */
+    if (sweep->mode == SWEEP_RANDOM) {
+        sweep_drawn_value(out, sweep, sweep->draw_of[variant], axis);
+        return;
+    }
+    if (sweep->mode == SWEEP_GRID) {
+        for (int i = axis + 1; i < sweep->axis_count; i++) below *= sweep->axis[i].count;
+        choice = variant / below % a->count;
+    }
+    snprintf(out, sweep_value_size, "%s", a->value[choice]);
 }
 
 Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int variant)

@@ -1,8 +1,8 @@
 /* sensor/node/sweep_file.h: which settings a sweep turns, from a YAML file:
  *
  *     mode: grid            # every combination, the last axis fastest (default); zip: one of each, side by side;
- *     count: 100            # random: so many draws,
- *     draw: 1               # of this seed (default 1): draw n is the same for any count
+ *     count: 100            # random: so many different draws, no more than there are combinations,
+ *     draw: 1               # of this seed (default 1): the n-th is the same for any count
  *     axes:
  *       weather.visibility_m: [5000, 23000]
  *       sensor:
@@ -27,18 +27,26 @@ typedef struct SweepAxis {
     char **value;
     double low, high;
     bool   whole;
+    int    kinds;           /* random: values that differ; 0: a range of real numbers */
+    int   *kind_of;         /* [count] of each value, 0 .. kinds - 1 */
+    int   *first_of;        /* [kinds] the first value of each */
 } SweepAxis;
 
 typedef struct Sweep {
     SweepMode mode;
     int       count, axis_count; /* count: of variants */
+    int       count_line;
     long long draw;
+    int      *draw_of;           /* [count] random: which draw a variant is */
     SweepAxis axis[sweep_axes_max];
 } Sweep;
 
 /* base: what values are tried on. On failure *out holds nothing. */
 Status sweep_read(Sweep *out, const char *path, const Config *base);
 void   sweep_close(Sweep *sweep);
+/* Random: which draws the variants are, count of them that differ. Logs with path and line when there are fewer. */
+Status sweep_draw(Sweep *sweep, const char *path);
+void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw, int axis);
 /* As a command line would give it. */
 void   sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);
 /* All axes over base; checked but for what involves several keys. */

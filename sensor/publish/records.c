@@ -1,5 +1,7 @@
 #include "sensor/publish/records.h"
 
+#include "sensor/publish/target_class.h"
+
 #include <errno.h>
 #include <gnu/libc-version.h>
 #include <jansson.h>
@@ -119,6 +121,8 @@ static json_t *target_json(const FrameRecord *r, const Target *t)
     set_text(target, "marking", entity->marking, strnlen(entity->marking, 11));
     dis_entity_type_text(type, entity->type);
     json_object_set_new(target, "type", json_string(type));
+    json_object_set_new(target, "class", json_string(target_class_name(target_class(entity->type))));
+    json_object_set_new(target, "plane_value", json_integer(t->index + 1));
     json_object_set_new(target, "model", json_string(catalog_model(r->catalog, entity->model)->name));
     set_number(target, "range_m", t->range_m);
     set_number(target, "closing_mps", t->closing_mps);

@@ -1,4 +1,8 @@
-/* sensor/publish/records.h: truth.jsonl and run.json: the names that outside tools read (see README, Products). */
+/* sensor/publish/records.h: truth.jsonl and run.json: the names that outside tools read (see README, Products).
+ *
+ * What is numbered in files: frames as the run counts them, from 0 on; pixels of boxes from 0 on; everything else - the
+ * values of the truth planes entity, part and material, plane_value, ids of coco.json, variants of a manifest - from 1
+ * on, and 0 is none. */
 #ifndef SENSOR_PUBLISH_RECORDS_H
 #define SENSOR_PUBLISH_RECORDS_H
 

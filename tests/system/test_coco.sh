@@ -1,85 +1,145 @@
 #!/usr/bin/env bash
-# replay --coco: boxes are those of truth.jsonl, masks the pixels of the truth picture, read back by others' readers:
-# pycocotools where it is there, and a decoder of run lengths written here. labels: small
+# replay --coco: masks are the pixels of the truth picture, boxes are the masks' own, and what is hidden or has no pixel is
+# left out; read by others' readers: pycocotools where it is there, and a decoder of run lengths written here. labels: small
 . "$(dirname "$0")/common.sh"
 
+# a column of trucks seen from its last: the next one fills the picture's foot, the second is 8 % visible, the third's share
+# is no whole pixel, three tanks are hidden, a far helicopter is a quarter of a pixel
+cat >"$tmp/column.yaml" <<'Y'
+vehicles:
+  - {name: Truck, id: 11, type: 1.1.222.7.1.0.0, count: 4, spacing_m: 14, behind_m: -60, route_m: [[0, 0], [400, 40]], speed_mps: 6}
+  - {name: Tank, id: 21, type: 1.1.222.1.1.1.0, count: 3, spacing_m: 9, behind_m: -190, route_m: [[0, 12], [400, 40]], speed_mps: 6}
+  - {name: Heli, id: 31, type: 1.2.225.20.1.0.0, route_m: [1400, 60], height_m: 60, heading_deg: 200}
+Y
+exercise "$tmp/column.yaml" "$tmp/column.pcap"
 exercise demo "$tmp/demo.pcap"
-few=(--from 1364 --to 1368 --bands optical,lwir)
-replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco
+column=(--host 1:3001:14 --from 1353 --to 1353 --set sensor.hfov_deg=40 --coco --set publish.coco_min_visible=0.2)
+replay "$tmp/column.pcap" "$tmp/c" "${column[@]}" --set publish.coco_min_pixels=9
 check "a replay" [ "$code" = 0 ]
 check "coco.json" [ -s "$tmp/c/coco.json" ]
 check "no parts are left" [ -z "$(find "$tmp/c" -name '*.part')" ]
-replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --coco --threads 1
-check "one thread or two: the same bytes" cmp -s "$tmp/one/coco.json" "$tmp/c/coco.json"
 # very near: boxes that fill the picture's height, and are cut by its edges
-replay "$tmp/demo.pcap" "$tmp/near" --bands lwir --rate 5 --from 1368 --to 1371 --set sensor.hfov_deg=1 --coco
-replay "$tmp/demo.pcap" "$tmp/exr" --bands lwir --from 1368 --to 1368 --no-png --coco
+replay "$tmp/demo.pcap" "$tmp/near" --bands lwir --rate 5 --from 1369.4 --to 1370 --set sensor.hfov_deg=1 --coco
+# two hosts, each with a file of its own; pairs and another number of threads change nothing in it
+missile=(--bands lwir --from 1366 --to 1366 --no-png --coco)
+replay "$tmp/demo.pcap" "$tmp/exr" --host 1:3001:41 "${missile[@]}"
 check "no displays: the radiance is named" grep -q '"file_name":"frames/lwir/[0-9]*.exr"' "$tmp/exr/coco.json"
+replay "$tmp/demo.pcap" "$tmp/two" --host 1:3001:41 --host observer "${missile[@]}" --pairs target --threads 1
+check "pairs, two hosts, one thread: the same images and annotations" \
+    cmp -s <(grep -v '^"info"' "$tmp/exr/coco.json") <(grep -v '^"info"' "$tmp/two/1-3001-41/coco.json")
 
 if python3 -c 'import numpy, PIL' 2>/dev/null && command -v oiiotool >/dev/null; then
     cat >"$tmp/check.py" <<'PY'
-import json, os, subprocess, sys
+import contextlib, io, json, os, subprocess, sys
 import numpy as np
 from PIL import Image
-out = sys.argv[1]
-coco = json.load(open(f"{out}/coco.json"))
-truth = {t["frame"]: t for t in map(json.loads, open(f"{out}/truth.jsonl"))}
-images = {i["id"]: i for i in coco["images"]}
-assert len(images) == len(coco["images"]) == sum(len(t["sensors"][0]["bands"]) for t in truth.values()), "images"
-assert len({a["id"] for a in coco["annotations"]}) == len(coco["annotations"]) > 0, "annotations"
-names = {c["id"]: c["name"] for c in coco["categories"]}
-assert len(names) == len(coco["categories"])
-for i in images.values(): assert os.path.exists(f"{out}/{i['file_name']}"), i["file_name"]
-planes = {}
-def plane(frame):
-    if frame not in planes:
-        path = f"{out}/frames/truth/{frame:06d}.exr"
-        subprocess.run(["oiiotool", path, "--ch", "entity", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
-        info = subprocess.run(["oiiotool", "--info", "-v", path], check=True, capture_output=True, text=True).stdout
-        ids = [l for l in info.splitlines() if "entity_ids" in l][0].split('"')[1].split(",")
-        planes[frame] = np.array(Image.open(f"{out}/x.tif")), ids
-    return planes[frame]
-seen, cut, tall = {}, 0, 0
-for a in coco["annotations"]:
-    image = images[a["image_id"]]
-    frame = image["frame"]
-    target = [t for t in truth[frame]["targets"] if t["entity"] == a["entity"]][0]
-    x, y, w, h = a["bbox"]
-    assert [x, y, x + w, y + h] == target["box_px"], (frame, a["bbox"], target["box_px"])
-    assert a["area"] == target["pixels"] and a["iscrowd"] == 0 and names[a["category_id"]] == target["model"]
-    assert a["range_m"] == target["range_m"] and a["visible_fraction"] == target["visible_fraction"]
-    rows, columns = a["segmentation"]["size"]
-    assert (columns, rows) == (image["width"], image["height"])
-    counts = a["segmentation"]["counts"]
-    assert sum(counts) == rows * columns and all(c > 0 for c in counts[1:]), "runs"
-    bits = np.repeat(np.arange(len(counts)) % 2, counts).reshape(columns, rows).T
-    entity, ids = plane(frame)
-    assert (bits == (entity == ids.index(a["entity"]) + 1)).all(), (frame, a["entity"], "mask")
-    seen.setdefault((frame, image["band"]), set()).add(a["entity"])
-    cut += x + w == columns or x == 0
-    tall += y == 0 and y + h == rows
-for t in truth.values():  # whoever has a box, and nobody else
-    for band in t["sensors"][0]["bands"]:
-        want = {k["entity"] for k in t["targets"] if "box_px" in k}
-        assert seen.get((t["frame"], band), set()) == want, (t["frame"], band)
-print(len(coco["annotations"]), "annotations,", cut, "cut,", tall, "from top to bottom")
 try:
     from pycocotools.coco import COCO
-except ImportError:
-    sys.exit(0)
-c = COCO(f"{out}/coco.json")
-for a in c.loadAnns(c.getAnnIds()):
-    entity, ids = plane(images[a["image_id"]]["frame"])
-    assert (c.annToMask(a) == (entity == ids.index(a["entity"]) + 1)).all()
-print("and pycocotools agrees")
+    from pycocotools.cocoeval import COCOeval
+except ImportError: COCO = None
+def check(out, min_pixels, min_visible, *wanted):
+    coco = json.load(open(f"{out}/coco.json"))
+    truth = {t["frame"]: t for t in map(json.loads, open(f"{out}/truth.jsonl"))}
+    images = {i["id"]: i for i in coco["images"]}
+    assert len(images) == len(coco["images"]) == sum(len(t["sensors"][0]["bands"]) for t in truth.values()), "images"
+    assert len({a["id"] for a in coco["annotations"]}) == len(coco["annotations"]) > 0, "annotations"
+    assert min(images) >= 1 and min(a["id"] for a in coco["annotations"]) == 1, "ids begin with 1"
+    names = {c["id"]: c["name"] for c in coco["categories"]}
+    assert len(names) == len(coco["categories"]) and min(names) == 1 and names[1] == "tank" and names[2] == "apc"
+    for i in images.values(): assert os.path.exists(f"{out}/{i['file_name']}"), i["file_name"]
+    planes = {}
+    def plane(frame):
+        if frame not in planes:
+            path = f"{out}/frames/truth/{frame:06d}.exr"
+            subprocess.run(["oiiotool", path, "--ch", "entity", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
+            info = subprocess.run(["oiiotool", "--info", "-v", path], check=True, capture_output=True, text=True).stdout
+            ids, materials = ([l for l in info.splitlines() if key in l][0].split('"')[1].split(",") for key in ("entity_ids", "material_names"))
+            planes[frame] = np.array(Image.open(f"{out}/x.tif")), ids
+            # value k of every truth plane is the k-th name, and 0 is none
+            subprocess.run(["oiiotool", path, "--ch", "material", "-d", "uint32", "-o", f"{out}/x.tif"], check=True)
+            material, entity = np.array(Image.open(f"{out}/x.tif")), planes[frame][0]
+            vehicle = [k + 1 for k, name in enumerate(ids) if not name.endswith(":31")]
+            of_vehicles = {materials[v - 1] for v in np.unique(material[np.isin(entity, vehicle)])}
+            assert "none" not in materials and of_vehicles <= {"paint_olive", "paint_olive_flat", "canvas", "rubber_black", "glass_window",
+                "steel_worn", "metal_dark", "metal_steel_oxidized"} and "paint_olive" in of_vehicles, of_vehicles
+        return planes[frame]
+    def runs(text):  # the format's description, read again: five bits a letter, the second run before added from the fourth on
+        counts, value, shift = [], 0, 0
+        for letter in text:
+            group = ord(letter) - 48
+            value |= (group & 31) << shift
+            shift += 5
+            if group & 32: continue
+            if group & 16: value -= 1 << shift
+            counts.append(value + (counts[-2] if len(counts) > 2 else 0))
+            value = shift = 0
+        return counts
+    seen, met = {}, {k: 0 for k in ("cut", "tall", "ignored", "hidden", "without_mask", "part_hidden")}
+    for a in coco["annotations"]:
+        image = images[a["image_id"]]
+        frame = image["frame"]
+        target = [t for t in truth[frame]["targets"] if t["entity"] == a["entity"]][0]
+        rows, columns = a["segmentation"]["size"]
+        assert (columns, rows) == (image["width"], image["height"])
+        counts = runs(a["segmentation"]["counts"])
+        assert sum(counts) == rows * columns and all(c > 0 for c in counts[1:]), "runs"
+        bits = np.repeat(np.arange(len(counts)) % 2, counts).reshape(columns, rows).T
+        entity, ids = plane(frame)
+        # the id of the list's place is the value in the plane, and what both records say it is
+        assert a["plane_value"] == target["plane_value"] == ids.index(a["entity"]) + 1
+        assert (bits == (entity == a["plane_value"])).all(), (frame, a["entity"], "mask")
+        y, x = np.nonzero(bits)
+        assert len(x) == a["area"] > 0, "an empty mask, or another area"
+        assert a["bbox"] == [x.min(), y.min(), x.max() + 1 - x.min(), y.max() + 1 - y.min()], (frame, a["bbox"])
+        assert a["pixels"] == target["pixels"] and names[a["category_id"]] == target["class"] and a["model"] == target["model"]
+        assert a["range_m"] == target["range_m"] and a["visible_fraction"] == target["visible_fraction"]
+        little = a["area"] < float(min_pixels) or a["visible_fraction"] < float(min_visible)
+        assert a["iscrowd"] == a["ignore"] == little, (frame, a["entity"], a["area"], a["visible_fraction"])
+        seen.setdefault((frame, image["band"]), set()).add(a["entity"])
+        met["cut"] += x.max() + 1 == columns or x.min() == 0 or y.max() + 1 == rows or y.min() == 0
+        met["tall"] += y.min() == 0 and y.max() + 1 == rows
+        met["ignored"] += little
+        met["part_hidden"] += a["visible_fraction"] < 1
+    for t in truth.values():  # what has a pixel, and nothing else
+        entity, ids = plane(t["frame"])
+        here = {ids[v - 1] for v in np.unique(entity) if v}
+        for band in t["sensors"][0]["bands"]: assert seen.get((t["frame"], band), set()) == here, (t["frame"], band)
+        met["hidden"] += sum(k["pixels"] == 0 for k in t["targets"])
+        met["without_mask"] += sum(k["pixels"] > 0 and k["entity"] not in here for k in t["targets"])
+    print(len(coco["annotations"]), "annotations", met)
+    for what in wanted: assert met[what] > 0, f"none is {what}: the scene tests nothing"
+    if not COCO: return
+    with contextlib.redirect_stdout(io.StringIO()):
+        c = COCO(f"{out}/coco.json")
+        everything = c.loadAnns(c.getAnnIds())
+        for a in everything:
+            assert (c.annToMask(a) == (plane(images[a["image_id"]]["frame"])[0] == a["plane_value"])).all()
+        # a recogniser that finds all it is asked for and nothing else; and one that finds what is to be ignored, too
+        asked = [a for a in everything if not a["iscrowd"]]
+        for found in (asked, everything):
+            for kind, key in (("segm", "segmentation"), ("bbox", "bbox")):
+                results = [{"image_id": a["image_id"], "category_id": a["category_id"], "score": 0.9, key: a[key]} for a in found]
+                json.dump(results, open(f"{out}/results.json", "w"))
+                e = COCOeval(c, c.loadRes(f"{out}/results.json"), kind)
+                e.evaluate(), e.accumulate(), e.summarize()
+                assert e.stats[0] == 1.0, (kind, e.stats)
+        # and one that misses half does not
+        results = [{"image_id": a["image_id"], "category_id": a["category_id"], "score": 0.9, "bbox": a["bbox"]} for a in asked[::2]]
+        e = COCOeval(c, c.loadRes(results), "bbox")
+        e.evaluate(), e.accumulate(), e.summarize()
+        assert len(asked) < 2 or e.stats[0] < 1
+for each in " ".join(sys.argv[1:]).split(","): check(*each.split())
+print("and pycocotools agrees" if COCO else "skipped in part: no pycocotools")
 PY
-    check "boxes and masks are the truth's" python3 "$tmp/check.py" "$tmp/c"
-    check "near, and cut by the edges" python3 "$tmp/check.py" "$tmp/near"
+    # the column; very near; two hosts
+    check "masks are the truth's" python3 "$tmp/check.py" "$tmp/c" 9 0.2 cut ignored hidden without_mask part_hidden, \
+        "$tmp/near" 1 0 cut tall, "$tmp/two/1-3001-41" 1 0, "$tmp/two/observer" 1 0
 else
     echo "skipped in part: no python3 with numpy and PIL, or no oiiotool"
 fi
 
 # whole or not at all
+few=(--bands lwir --from 1366 --to 1366)
 if [ -w /dev/full ]; then
     mkdir -p "$tmp/full" && ln -sf /dev/full "$tmp/full/coco.json.part"
     replay "$tmp/demo.pcap" "$tmp/full" "${few[@]}" --coco
@@ -91,4 +151,8 @@ replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}"
 check "an earlier run's coco.json goes" [ ! -e "$tmp/c/coco.json" ]
 replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco --no-files
 check "without files: refused" complained "publish.coco: needs pictures in files"
+for bad in coco_min_pixels=0 coco_min_visible=1.5; do
+    replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco --set publish.$bad
+    check "$bad: refused, with its range" complained "publish.${bad%=*}: '${bad#*=}' is not a .*number in [01] .. "
+done
 finish

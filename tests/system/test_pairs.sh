@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # replay --pairs: each frame with and without its target, with and without noise. What can differ between with and without
-# is bounded so: at night (no sun, no shadow) with one ray a pixel (none that also asks its neighbour's edge), radiance
-# outside the box of all the target's vertices must be the same to the bit. labels: small
+# is bounded so: at night (no sun, no shadow), without contact shadows, with one ray a pixel (none that also asks its
+# neighbour's edge), radiance outside the box of all the target's vertices must be the same to the bit. labels: small
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
 few=(--from 1366 --to 1368 --bands optical,lwir,mwir)
-night=(--set exercise.utc=2026-06-22T08:00:00Z --set sensor.antialias=off)
+night=(--set exercise.utc=2026-06-22T08:00:00Z --set sensor.antialias=off --set sensor.sky_visibility=off)
 manual=(--set detector.level=manual)
 pngs() { (cd "$1" && find . -name '*.png' | sort | xargs sha256sum); }
 same_pngs() { pngs "$1" >"$tmp/a"; pngs "$2" >"$tmp/b"; [ -s "$tmp/a" ] && cmp -s "$tmp/a" "$tmp/b"; }

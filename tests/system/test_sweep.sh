@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# replay --sweep: each variant is the run that its settings make, what is made is kept, one that fails stops no other, and
-# a file with slips runs nothing.
+# replay --sweep: each variant is the run that its settings and the user's options make, what is made is kept, one that fails
+# stops no other, and a file with slips runs nothing. That no option is lost on the way is tests/sensor/test_options.c's.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
@@ -16,18 +16,51 @@ axes:
   seed: [1, 2]
   sensor.hfov_deg: 5
 Y
-sweep "$tmp/grid.yaml" "$tmp/g"
+sweep "$tmp/grid.yaml" "$tmp/g" --coco
 check "a grid" [ "$code" = 0 ]
 check "four made" [ "$(statuses "$tmp/g")" = ' 4 "status":"made" ' ]
 check "the last axis first" grep -q '"number":2,.*"weather.visibility_m":"5000","seed":"2"' <(sed -n 2p "$tmp/g/manifest.jsonl")
 check "a page with four pictures" [ "$(grep -c '<img src="data:image/png' "$tmp/g/manifest.html")" = 4 ]
 second=$(folders "$tmp/g" | sed -n 2p)
-replay "$tmp/demo.pcap" "$tmp/direct" "${few[@]}" --set weather.visibility_m=5000 --seed 2 --set sensor.hfov_deg=5
+replay "$tmp/demo.pcap" "$tmp/direct" "${few[@]}" --set weather.visibility_m=5000 --seed 2 --set sensor.hfov_deg=5 --coco
+check "its coco.json too" cmp -s "$tmp/direct/coco.json" "$tmp/g/$second/coco.json"
 check "a variant is the run of its settings" same_hashes "$tmp/direct" "$tmp/g/$second"
 check "with their hash" [ "$(json_numbers "$tmp/direct/run.json" seed)" = 2 -a "$(grep config_sha256 "$tmp/direct/run.json")" = "$(grep config_sha256 "$tmp/g/$second/run.json")" ]
 check "which the manifest has" grep -qF "$(grep -oE '[0-9a-f]{64}' <(hashes "$tmp/direct") | head -n 1)" <(sed -n 2p "$tmp/g/manifest.jsonl")
 "$pitviper" replay "$tmp/demo.pcap" -c "$tmp/g/$second/settings.yaml" --out "$tmp/again" >/dev/null 2>&1
 check "its settings.yaml makes it again" same_hashes "$tmp/again" "$tmp/g/$second"
+# merged OUT VARIANTS: one coco.json of all, that its own reader takes
+if python3 -c 'import json' 2>/dev/null; then
+    cat >"$tmp/merged.py" <<'PY'
+import json, os, sys
+out, variants = sys.argv[1], int(sys.argv[2])
+merged = json.load(open(f"{out}/coco.json"))
+parts = [json.loads(line)["folder"] for line in open(f"{out}/manifest.jsonl")]
+own = {p: json.load(open(f"{out}/{p}/coco.json")) for p in parts}
+assert len(parts) == variants == merged["info"]["variants"]
+images = {i["id"]: i for i in merged["images"]}
+assert len(images) == len(merged["images"]) == sum(len(c["images"]) for c in own.values())
+assert sorted(a["id"] for a in merged["annotations"]) == list(range(1, len(merged["annotations"]) + 1))
+for i in images.values(): assert os.path.exists(f"{out}/{i['file_name']}"), i["file_name"]
+def plain(a, image): return {**a, "id": 0, "image_id": (image["band"], image["frame"])}
+for p, c in own.items():  # each annotation is there, at its own image
+    its = {i["id"]: i for i in c["images"]}
+    want = [plain(a, its[a["image_id"]]) for a in c["annotations"]]
+    got = [plain(a, images[a["image_id"]]) for a in merged["annotations"] if images[a["image_id"]]["variant"] == p]
+    assert want == got and len(want) > 0, p
+    assert c["categories"] == merged["categories"]
+try: from pycocotools.coco import COCO
+except ImportError: sys.exit(0)
+c = COCO(f"{out}/coco.json")
+for a in c.loadAnns(c.getAnnIds()): assert c.annToMask(a).sum() == a["area"]
+PY
+    merged() { python3 "$tmp/merged.py" "$@" >/dev/null; }
+else
+    echo "skipped in part: no python3"
+    merged() { [ -s "$1/coco.json" ]; }
+fi
+check "one coco.json of all" merged "$tmp/g" 4
+cp "$tmp/g/coco.json" "$tmp/coco.before"
 check "seeds change nothing else" [ "$(folders "$tmp/g" | sort -u | wc -l)" = 4 ]
 
 # again: kept; one spoilt, one cut short: those two are made anew, to the same bits
@@ -35,14 +68,17 @@ before=$(hashes "$tmp/g/$second")
 rm "$tmp/g/$second/run.json"
 third=$(folders "$tmp/g" | sed -n 3p)
 sed -i 's/"log_sha256":"./"log_sha256":"x/' "$tmp/g/$third/variant.json"
-sweep "$tmp/grid.yaml" "$tmp/g" --threads 1
+sweep "$tmp/grid.yaml" "$tmp/g" --coco --threads 1
 check "goes on" [ "$(statuses "$tmp/g")" = ' 2 "status":"kept" 2 "status":"made" ' ]
 check "to the same bits" [ "$before" = "$(hashes "$tmp/g/$second")" ]
+check "coco.json too" cmp -s "$tmp/coco.before" "$tmp/g/coco.json"
 printf 'axes: {seed: [3, 2, 1], weather.visibility_m: [5000, 23000], sensor.hfov_deg: 5}\n' >"$tmp/wider.yaml"
-sweep "$tmp/wider.yaml" "$tmp/g"
+sweep "$tmp/wider.yaml" "$tmp/g" --coco
+check "wider: coco.json has them all" merged "$tmp/g" 6
 check "an axis grows: what was made is kept" [ "$(statuses "$tmp/g")" = ' 4 "status":"kept" 2 "status":"made" ' ]
 sweep "$tmp/grid.yaml" "$tmp/g" --to 1367
 check "another span: nothing is kept" [ "$(statuses "$tmp/g")" = ' 4 "status":"made" ' ]
+check "without --coco: none, and none of before" [ -z "$(find "$tmp/g" -maxdepth 1 -name 'coco.json*')" ]
 
 # one that fails
 printf 'axes:\n  exercise.host: ["9:9:9", ""]\n' >"$tmp/fails.yaml"
@@ -53,24 +89,36 @@ check "one fails: said why, in one line" [ "$(grep -c 'variant 1, v[0-9a-f]*, ex
 sweep "$tmp/fails.yaml" "$tmp/f"
 check "again: the failed one is tried" [ "$(statuses "$tmp/f")" = ' 1 "status":"failed" 1 "status":"kept" ' ]
 
-printf 'mode: zip\naxes: {seed: [1, 2], sensor.hfov_deg: [3, 6], weather.visibility_m: 9000}\n' >"$tmp/zip.yaml"
-sweep "$tmp/zip.yaml" "$tmp/z" --no-png
+# options that are no settings, and such as are flags for one; a setting that needs the sensor of an axis
+printf 'mode: zip\naxes: {seed: [1, 2], sensor.hfov_deg: [3, 6], weather.visibility_m: 9000, sensor.table: %s}\n' "$PWD/etc/sensors/example_flir2.sheet" >"$tmp/zip.yaml"
+options=(--to 1367 --causal --no-png --only 14 --no-skip --set detector.smear=false --set quality.table=etc/quality.csv)
+sweep "$tmp/zip.yaml" "$tmp/z" "${options[@]}"
 check "zip: two" [ "$(statuses "$tmp/z")" = ' 2 "status":"made" ' ]
-check "zip: side by side" grep -q '"seed":"2","sensor.hfov_deg":"6","weather.visibility_m":"9000"' "$tmp/z/manifest.jsonl"
+replay "$tmp/demo.pcap" "$tmp/flags" "${few[@]}" "${options[@]}" --seed 2 --set sensor.hfov_deg=6 --set weather.visibility_m=9000 \
+    --set sensor.table="$PWD/etc/sensors/example_flir2.sheet"
+zipped=$tmp/z/$(folders "$tmp/z" | sed -n 2p)
+check "zip: the options are a variant's too" same_hashes "$tmp/flags" "$zipped"
+check "zip: the same counts of the sensor, and truth" [ "$(cd "$tmp/flags" && cat raw/lwir/*.png truth.jsonl | sha256sum)" = \
+    "$(cd "$zipped" && cat raw/lwir/*.png truth.jsonl | sha256sum)" ]
+check "zip: the frame of --only, raw counts, no display" [ "$(cd "$zipped" && find frames raw -type f | sort | xargs)" = \
+    "frames/lwir/000014.exr frames/truth/000014.exr raw/lwir/000014.png" ]
+check "zip: how it is made again" grep -qx '# Again: pitviper replay LOG --config THIS --only 14' "$zipped/settings.yaml"
+check "zip: side by side" grep -q '"seed":"2","sensor.hfov_deg":"6","weather.visibility_m":"9000",' "$tmp/z/manifest.jsonl"
 check "no pictures: words" grep -q 'sensor.hfov_deg=6' "$tmp/z/manifest.html"
 
 draws() { printf 'mode: random\ncount: %s\ndraw: %s\naxes: {sensor.hfov_deg: {from: 2, to: 6}, seed: {from: 1, to: 9}}\n' "$1" "$2"; }
 draws 2 5 >"$tmp/r2.yaml"; draws 3 5 >"$tmp/r3.yaml"; draws 2 6 >"$tmp/other.yaml"
 sweep "$tmp/r2.yaml" "$tmp/r" --no-files
 sweep "$tmp/r3.yaml" "$tmp/r" --no-files
+check "random: --no-files, and none is there" [ -z "$(find "$tmp/r" -path '*/frames*')" ]
 check "random: more draws keep the first" [ "$(statuses "$tmp/r")" = ' 2 "status":"kept" 1 "status":"made" ' ]
 check "random: within" bash -c "grep -oE 'hfov_deg\":\"[0-9.]+' '$tmp/r/manifest.jsonl' | cut -d'\"' -f3 | awk '\$1 < 2 || \$1 > 6 { bad = 1 } END { exit bad || NR != 3 }'"
 check "random: whole seeds" [ "$(grep -cE '"seed":"[1-9]"' "$tmp/r/manifest.jsonl")" = 3 ]
 sweep "$tmp/other.yaml" "$tmp/r" --no-files
 check "random: another seed, other draws" [ "$(statuses "$tmp/r")" = ' 2 "status":"made" ' ]
-printf 'mode: random\ncount: 9\naxes: {seed: [4]}\n' >"$tmp/same.yaml"
+printf 'axes: {weather.visibility_m: [9000, 9000]}\n' >"$tmp/same.yaml"
 sweep "$tmp/same.yaml" "$tmp/same" --no-files
-check "repeated draws are run once" said '8 variants repeat others'
+check "a value said twice is run once" said '1 variant repeats others'
 
 slip() { # slip WHAT PATTERN TEXT
     printf "$3" >"$tmp/slip.yaml"
@@ -90,6 +138,8 @@ slip "mode" "slip.yaml:1: mode: 'dance' is not one of grid.zip.random" 'mode: da
 slip "a stray key" "slip.yaml:1: no such key: 'seed'" 'seed: [1, 2]\n'
 slip "unequal lists" 'slip.yaml:4: sensor.hfov_deg: has 3 values, but seed has 2' 'mode: zip\naxes:\n  seed: [1, 2]\n  sensor.hfov_deg: [3, 4, 5]\n'
 slip "random without count" 'count: how many' 'mode: random\naxes: {seed: [1, 2]}\n'
+slip "more draws than there are" 'slip.yaml:2: count: 7 different draws are asked for, but the axes have 6 combinations' \
+    'mode: random\ncount: 7\naxes: {seed: [1, 2, 3], weather.visibility_m: [5000, 23000]}\n'
 slip "count out of range" "count: '0' is not a whole number in 1 .. 10000" 'mode: random\ncount: 0\naxes: {seed: [1]}\n'
 slip "count without random" 'count: .*is for `mode: random`' 'count: 3\naxes: {seed: [1]}\n'
 slip "a range in a grid" 'slip.yaml:1: seed: only `mode: random` draws' 'axes: {seed: {from: 1, to: 9}}\n'
@@ -108,6 +158,10 @@ sweep "$tmp/none.yaml" "$tmp/slip"
 check "no such file" [ "$code" != 0 ]
 sweep "$tmp/grid.yaml" "$tmp/slip" --host 1:3001:41 --host 1:3001:42
 check "several hosts: an axis" complained 'make exercise.host an axis'
+sweep "$tmp/same.yaml" "$tmp/odd" --set record.path=$'a\nb'
+check "a setting that no file holds: said, not lost" complained 'variant 1, .*its settings cannot be written, or not be read back'
+sweep "$tmp/grid.yaml" "$tmp/slip" --coco --no-files
+check "what does not go together, in no variant" complained 'publish.coco: needs pictures in files'
 # bytes of no sense end in a line, not in a crash (run counts exit codes above 123 as failures)
 for seed in 1 2 3 4 5 6; do
     awk -v s=$seed 'BEGIN { srand(s) } { line = $0; for (i = 0; i < 2; i++) { at = int(rand() * (length(line) + 1)); line = substr(line, 1, at) substr("[]{}:,&*-\x27\"%!", int(rand() * 13) + 1, 1) substr(line, at + 2) } print line }' "$tmp/grid.yaml" >"$tmp/noise.yaml"
