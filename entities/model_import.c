@@ -272,8 +272,8 @@ static Status check_materials(const Build *b)
     for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
         for (int i = 0; i < rules[k]->count; i++)
             if (!import_paints_have(b->paints, rules[k]->rule[i].value)) {
-                log_error("sidecar: %s:%d: materials: '%s' is not a row of etc/materials.csv", b->sidecar->path,
-                          rules[k]->rule[i].line, rules[k]->rule[i].value);
+                log_error("sidecar: %s:%d: materials: '%s' is not a row of etc/materials.csv, nor of your own "
+                          "(models.materials)", b->sidecar->path, rules[k]->rule[i].line, rules[k]->rule[i].value);
                 return STATUS_BAD_VALUE;
             }
     return STATUS_OK;

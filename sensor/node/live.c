@@ -202,7 +202,7 @@ static void publish_frame(void *user, const FrameRecord *frame)
 static void show_progress(Live *l, const Session *session, int number, bool end)
 {
     const double now_s = wall_clock_s();
-    if (!isatty(STDERR_FILENO)) return;
+    if (!log_shows_progress()) return;
     if (end) {
         fputs("\r\x1b[K", stderr);
         return;

@@ -134,7 +134,7 @@ static Status record(Recording *r, double for_s)
 {
     const int64_t look_ns = 100000000; /* a signal does not end a wait */
     const double  flush_s = 0.5, show_s = 1;
-    const bool    terminal = isatty(STDERR_FILENO);
+    const bool    terminal = log_shows_progress();
     const double  end_s = r->begun_s + for_s;
     Status        status = STATUS_OK;
     bool          more = false;

@@ -315,7 +315,7 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
-        printf("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+        log_say("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
                outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }
@@ -357,7 +357,7 @@ static Status one_variant(SweepRun *s, int place)
 static Status run_all(SweepRun *s)
 {
     Status status = open_products(s);
-    if (status == STATUS_OK && s->repeated > 0) printf("%d variants repeat others and are left out\n", s->repeated);
+    if (status == STATUS_OK && s->repeated > 0) log_say("%d variants repeat others and are left out\n", s->repeated);
     for (int i = 0; i < s->count && status == STATUS_OK; i++) status = one_variant(s, i);
     if (s->sheet.page) {
         const Status ended = sheet_end(&s->sheet);
@@ -365,7 +365,7 @@ static Status run_all(SweepRun *s)
     }
     if (s->manifest && fclose(s->manifest) != 0 && status == STATUS_OK) status = STATUS_IO;
     if (status == STATUS_OK)
-        printf("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+        log_say("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
     return status;
 }

@@ -13,7 +13,7 @@ static const Setting keys[] = {
     {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
      "its --set, KEY=VALUE separated by blanks or lines"},
     {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "", "or a recording: in the case's folder, or ${PITVIPER_DATA}/..."},
-    {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "", "settings of `pitviper replay`, indented below `config: |`"},
+    {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "", "settings of `pitviper replay`, indented below `config: |`; paths in them are relative to the case's folder"},
     {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "or a file of them in the case's folder"},
     {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "",
      "numbers of the frames to look at, as replay gives them"},
