@@ -1,7 +1,6 @@
 /* main.c: the commands, as one table; and the probes and benchmarks, as the rooms list them. */
 #include "dis/bench.h"
 #include "entities/bench.h"
-#include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/bench.h"
 #include "render/probe.h"
@@ -10,6 +9,7 @@
 #include "sensor/node/exercise.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/live.h"
+#include "sensor/node/model.h"
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
@@ -117,7 +117,7 @@ static const struct Command {
     {"check", check_command, "say whether a file of settings is good; or print one to begin with", true},
     {"exercise", exercise_command, "write or send an exercise from a scenario", true},
     {"record", record_command, "record the exercise on the network", false},
-    {"model", model_command, "say what a model is made of, built in or from a file", true},
+    {"model", model_command, "list models; say what one is made of, built in or from a file; draw it", true},
     {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ...", false},
     {"bench", run_bench, "measure this build on this machine: times, and the errors beside them", true},
 };

@@ -1,6 +1,7 @@
 #include "sensor/node/check.h"
 
 #include "entities/effects_history.h"
+#include "entities/heat.h"
 #include "sensor/detector/preset.h"
 #include "sensor/node/host_run.h"
 #include "terrain/geoid.h"
@@ -28,6 +29,13 @@ typedef struct Check {
     const Config *config;
     Catalog      *catalog;
 } Check;
+
+/* What one of the files has shown to be good need not be read for the next. */
+static struct {
+    bool bundled, models;
+    char air[1024];
+    double visibility_m;
+} known;
 
 /* Behind the error itself: which setting led there. False. */
 static bool blame(const Check *c, const char *key, const char *next)
@@ -88,8 +96,7 @@ static bool ground_is_good(const Check *c)
     good &= sheets_are_good(c, config->terrain.cover, "terrain.cover");
     good &= sheets_are_good(c, config->terrain.orthophoto, "terrain.orthophoto");
     if (strpbrk(table, "/.")) {
-        CoverTable cover;
-        if (cover_table_read(&cover, table) != STATUS_OK)
+        if (cover_table_check(table) != STATUS_OK)
             good = blame(c, "terrain.cover_table", "etc/cover_worldcover.csv is an example");
     }
     if (*config->terrain.geoid) {
@@ -103,10 +110,16 @@ static bool ground_is_good(const Check *c)
 
 static bool air_is_good(const Check *c)
 {
-    Atmosphere *atmosphere = NULL;
-    const bool  there =
-        atmosphere_open_at(&atmosphere, c->config->weather.atmosphere, c->config->weather.visibility_m) == STATUS_OK;
+    Atmosphere   *atmosphere = NULL;
+    const Config *config = c->config;
+    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == config->weather.visibility_m) return true;
+    const bool there =
+        atmosphere_open_at(&atmosphere, config->weather.atmosphere, config->weather.visibility_m) == STATUS_OK;
     atmosphere_close(atmosphere);
+    if (there) {
+        snprintf(known.air, sizeof known.air, "%s", config->weather.atmosphere);
+        known.visibility_m = config->weather.visibility_m;
+    }
     return there || blame(c, "weather.atmosphere", "us1976 is always there");
 }
 
@@ -116,6 +129,8 @@ static bool models_are_good(Check *c)
     static const double coarse_sag_m = 0.1; /* files are read whole, built-in shapes are known to be good */
     char      catalog[4096], materials[4096], surfaces[4096];
     Materials read = {0};
+    const bool own = etc_own("catalog.csv") || etc_own("materials.csv");
+    if (known.models && !own) return true;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(materials, sizeof materials, "materials.csv") ||
         !etc_path(surfaces, sizeof surfaces, "surfaces.csv"))
         return blame(c, "models.catalog", "its path is too long");
@@ -128,6 +143,7 @@ static bool models_are_good(Check *c)
                                           "model by itself");
     status = materials_open(&read, materials, surfaces, c->catalog);
     materials_close(&read);
+    known.models = known.models || (status == STATUS_OK && !own);
     return status == STATUS_OK || blame(c, "models.materials", "a part's material needs a row there, or in etc/materials.csv");
 }
 
@@ -136,7 +152,7 @@ static bool sensors_are_good(const Check *c)
     const char *own = etc_own("sensors.csv");
     if (own && preset_check(own) != STATUS_OK)
         return blame(c, "sensor.table", "etc/ADDING.md says what a row of sensors needs");
-    return is_bundled(c, "sensors.csv", preset_check);
+    return true;
 }
 
 static bool tables_are_good(Check *c)
@@ -145,8 +161,10 @@ static bool tables_are_good(Check *c)
     good &= sensors_are_good(c);
     good &= air_is_good(c);
     good &= ground_is_good(c);
-    good &= is_bundled(c, "heat.csv", read_heat);
-    good &= is_bundled(c, "effects.csv", read_effects);
+    if (!known.bundled)
+        known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&
+                        is_bundled(c, "effects.csv", read_effects);
+    good &= known.bundled;
     catalog_close(c->catalog);
     c->catalog = NULL;
     return good;
