@@ -24,6 +24,9 @@ static void print_import(const ModelImport *r)
     printf("scale: %g m a unit\n", r->scale_m);
     printf("origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
     printf("in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes, r->source_materials);
+    if (r->unnamed_nodes || r->shared_names)
+        printf("names: %d nodes have none, %d share theirs with another: a sidecar tells nodes apart by name and path\n",
+               r->unnamed_nodes, r->shared_names);
     printf("left out: %d meshes by the sidecar, %d without triangles, %d triangles without area\n", r->dropped_meshes,
            r->empty_meshes, r->degenerate_triangles);
     printf("lost:");

@@ -78,7 +78,7 @@ typedef struct Stage {
     Pool     *pool;
     Arena    *arena;
     int       model;
-    double    unix_s;
+    double    unix_s, place_m[2]; /* east and north of the origin */
 } Stage;
 
 /* A catalog of this model alone, for all types. */
@@ -106,6 +106,23 @@ static Status open_catalog(Stage *stage, const char *name, double sag_m)
     return status;
 }
 
+/* Where all ground about is of one kind: the nearest such place, or the origin. */
+static void find_place(Stage *stage, double about_m)
+{
+    for (int k = 0; k < 4000; k++) {
+        const double turn = 2.4 * k, away = 2 * sqrt(k) * 5, x = away * cos(turn), y = away * sin(turn);
+        const SurfaceClass here = landscape_surface(&stage->landscape, x, y);
+        bool               same = here != SURFACE_NONE;
+        for (int i = 0; i < 48 && same; i++) {
+            const double r = about_m * (1 + i / 16) / 3, a = i * pi_rad / 8;
+            same = landscape_surface(&stage->landscape, x + r * cos(a), y + r * sin(a)) == here;
+        }
+        if (!same) continue;
+        stage->place_m[0] = x, stage->place_m[1] = y;
+        return;
+    }
+}
+
 static Status open_stage(Stage *stage, const char *name, double sag_m)
 {
     const Geodetic  origin = {.lat_rad = 48 * rad_per_deg, .lon_rad = 11 * rad_per_deg};
@@ -119,6 +136,7 @@ static Status open_stage(Stage *stage, const char *name, double sag_m)
     if (status == STATUS_OK) status = atmosphere_open(&stage->world.atmosphere, "us1976");
     if (status == STATUS_OK) status = pool_create(&stage->pool, thread_processors());
     if (status == STATUS_OK && !(stage->arena = arena_create())) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK) find_place(stage, fmin(6 * catalog_model(stage->catalog, stage->model)->radius_m, 120));
     if (status == STATUS_OK && !text_to_unix_s(&stage->unix_s, "2026-06-21T09:00:00Z")) status = STATUS_BAD_VALUE;
     return status;
 }
@@ -138,7 +156,8 @@ static Status put_model(Snapshot *out, SnapshotEntity *entity, const Stage *stag
     const Model      *model = catalog_model(stage->catalog, stage->model);
     const LocalFrame *frame = &stage->world.frame;
     const double      c = cos(turn_rad), s = sin(turn_rad), r_enu_from_body[9] = {c, s, 0, s, -c, 0, 0, 0, -1};
-    const double      p_enu[3] = {0, 0, elevation_height(&stage->landscape.elevation, 0, 0, NULL)};
+    const double     *at = stage->place_m;
+    const double      p_enu[3] = {at[0], at[1], elevation_height(&stage->landscape.elevation, at[0], at[1], NULL)};
     *entity = (SnapshotEntity){.id = {1, 1, 1}, .type = {.kind = 1, .domain = 1}, .model = stage->model};
     ecef_from_enu(entity->p_ecef, frame, p_enu);
     m3_mul(entity->r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
@@ -159,11 +178,11 @@ static View view_of(double *px_per_m, const Stage *stage)
                                       k & 2 ? model->box_high[1] : model->box_low[1]));
     const double tall_m = fmax(-model->box_low[2], 0.01), low_m = fmax(model->box_high[2], 0);
     const double half_m = fmax(1.1 * reach_m, 0.75 * (tall_m + low_m) * tile_width / tile_height);
-    const double away_m = half_m / tan(0.5 * view_hfov_deg * rad_per_deg) + reach_m, down_rad = view_down_deg * rad_per_deg;
+    const double away_m = half_m / tan(0.5 * view_hfov_deg * rad_per_deg) + 0.3 * reach_m, down_rad = view_down_deg * rad_per_deg;
     View         view = {.width = tile_width, .height = tile_height,
                          .focal_px = view_focal_px(tile_width, view_hfov_deg * rad_per_deg)};
-    const double ground_m = elevation_height(&stage->landscape.elevation, 0, 0, NULL);
-    const double towards[3] = {0, cos(down_rad), -sin(down_rad)}, aim[3] = {0, 0, ground_m + 0.5 * (tall_m - low_m)};
+    const double *at = stage->place_m, ground_m = elevation_height(&stage->landscape.elevation, at[0], at[1], NULL);
+    const double towards[3] = {0, cos(down_rad), -sin(down_rad)}, aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
     v3_add_scaled(view.p_enu, aim, -away_m, towards);
     camera_upright(view.r_enu_from_cam, towards);
     *px_per_m = view.focal_px / away_m;
