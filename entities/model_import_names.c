@@ -60,7 +60,7 @@ void import_say_no_node(const ImportScene *scene, const ImportPlace *place, cons
     }
     const int near = nearest(scene, pattern);
     if (near >= 0) text_escape(safe, sizeof safe, scene->node[near].name, strlen(scene->node[near].name));
-    log_error("sidecar: %s:%d: joints: nodes: no node of the file matches '%s' (case counts, * is any text)%s%s%s; of its "
+    log_error("sidecar: %s:%d: joints: no node of the file matches '%s' (case counts, * is any text)%s%s%s; of its "
               "%d nodes %d have no name; there are: %s%s", sidecar->path, spec->line, pattern,
               near >= 0 ? "; did you mean '" : "", near >= 0 ? safe : "", near >= 0 ? "'?" : "", scene->node_count, unnamed,
               list, listed > most_listed ? " ..." : "");

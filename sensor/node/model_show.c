@@ -263,6 +263,10 @@ Status model_show(const char *name, double sag_m, const char *out)
         DisplayColour  colour;
         display.display_gamma = true;
         display_colour(&colour, white, 0, INFINITY);
+        /* as an exposure for what reflects half: the same for every model, whatever is in the picture */
+        display.auto_level = false;
+        display.level_low  = 0;
+        display.level_high = 0.5 * colour.white;
         display_colour_apply(plane, (const float *const *)plane, count, &colour);
         const float *const shown[3] = {plane[0], plane[1], plane[2]};
         detector_display_rgb(rgb, shown, count, &display, detector_level(&display, shown, 3, count));
