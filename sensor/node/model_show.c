@@ -76,7 +76,8 @@ typedef struct Stage {
     Catalog  *catalog;
     World     world;
     Pool     *pool;
-    Arena    *arena;
+    Arena    *arena, *air_arena; /* of a side; of all */
+    Air       air;
     int       model;
     double    unix_s, place_m[2]; /* east and north of the origin */
 } Stage;
@@ -129,13 +130,15 @@ static Status open_stage(Stage *stage, const char *name, double sag_m)
     LandscapeConfig config = landscape_default_config();
     LocalFrame      frame;
     config.relief_m = 0;
+    config.half_width_m = 800, config.horizon_m = 4000;
     Status status = open_catalog(stage, name, sag_m);
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
     if (status == STATUS_OK) status = landscape_create(&stage->landscape, &config, &frame, NULL, 0, NULL, 0);
     if (status == STATUS_OK) status = world_open(&stage->world, stage->catalog, &stage->landscape, &frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&stage->world.atmosphere, "us1976");
     if (status == STATUS_OK) status = pool_create(&stage->pool, thread_processors());
-    if (status == STATUS_OK && !(stage->arena = arena_create())) status = STATUS_NO_MEMORY;
+    if (status == STATUS_OK && (!(stage->arena = arena_create()) || !(stage->air_arena = arena_create())))
+        status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) find_place(stage, fmin(6 * catalog_model(stage->catalog, stage->model)->radius_m, 120));
     if (status == STATUS_OK && !text_to_unix_s(&stage->unix_s, "2026-06-21T09:00:00Z")) status = STATUS_BAD_VALUE;
     return status;
@@ -144,6 +147,7 @@ static Status open_stage(Stage *stage, const char *name, double sag_m)
 static void close_stage(Stage *stage)
 {
     arena_destroy(stage->arena);
+    arena_destroy(stage->air_arena);
     pool_destroy(stage->pool);
     world_close(&stage->world);
     landscape_destroy(&stage->landscape);
@@ -191,7 +195,8 @@ static View view_of(double *px_per_m, const Stage *stage)
 
 /* ---- the picture ----------------------------------------------------------------------------- */
 
-static Status light(Air *air, const Stage *stage, const RenderRequest *request)
+/* Sun, air and eye are the same for all sides: it is the model that turns. */
+static Status light(Stage *stage, const RenderRequest *request)
 {
     const World *world = &stage->world;
     Weather      weather = weather_default();
@@ -202,25 +207,24 @@ static Status light(Air *air, const Stage *stage, const RenderRequest *request)
     if (status != STATUS_OK) return status;
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
     const AirEye    eye = {request->view.p_enu[2], render_air_bands(request->bands, request->optical), &request->view};
-    return air_at(air, &source, &weather, &sun, &eye, stage->pool, stage->arena);
+    return air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
 }
 
 /* One side into its place of the three planes. */
-static Status draw_side(float *const plane[3], double white[3], double *px_per_m, const Stage *stage, int side)
+static Status draw_side(float *const plane[3], double white[3], double *px_per_m, Stage *stage, int side)
 {
     Snapshot       snapshot;
     SnapshotEntity entity;
     Picture        picture;
-    Air            air;
     arena_reset(stage->arena);
     const RenderRequest request = {.view = view_of(px_per_m, stage), .bands = 1u << BAND_OPTICAL, .optical = OPTICAL_RGB,
-                                   .sky_visibility = true, .samples = 2, .edge_samples = 4, .target_samples = 48,
+                                   .sky_visibility = true, .samples = 1, .edge_samples = 4, .target_samples = 48,
                                    .hidden_entity = -1};
     /* first its nose towards the eye, then clockwise from above: its right side, its tail ... */
     Status status = put_model(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
-    if (status == STATUS_OK) status = light(&air, stage, &request);
+    if (status == STATUS_OK && side == 0) status = light(stage, &request);
     if (status == STATUS_OK)
-        status = render(&picture, &stage->world, &snapshot, &request, &air, stage->pool, stage->arena);
+        status = render(&picture, &stage->world, &snapshot, &request, &stage->air, stage->pool, stage->arena);
     if (status != STATUS_OK) return status;
     memcpy(white, picture.white_w_m2_sr, 3 * sizeof *white);
     const size_t left = (size_t)(side % columns) * tile_width, top = (size_t)(side / columns) * tile_height;

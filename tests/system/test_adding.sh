@@ -8,7 +8,7 @@ mkdir "$tmp/bin" "$tmp/work"
 # as a user has it on the path; pictures small and one frame, which is all that is left out
 cat >"$tmp/bin/pitviper" <<END
 #!/bin/sh
-case \$1 in replay) exec "$real" "\$@" --only 0 --no-png --threads 2 ;; *) exec "$real" "\$@" ;; esac
+case \$1 in replay) exec "$real" "\$@" --size 64x48 --only 0 --no-png --threads 2 ;; *) exec "$real" "\$@" ;; esac
 END
 chmod +x "$tmp/bin/pitviper"
 blocks() { awk -v head="$1" '$0 ~ "^ *```" head "$" { on = 1; next } /^ *```/ { on = 0 } on' etc/ADDING.md; }
@@ -50,10 +50,10 @@ printf 'type,model,origin,length_m,width_m,height_m\n1.1.222.1,hovercraft.obj,ba
 run check "$tmp/raw/node.yaml"
 check "wrong size: figures of both" complained "c\.csv:2: .*4e\+03 x 1.2e\+04 x 6e\+03 m .* but the row says 12 x 6 x 4"
 check "wrong size: the remedy" complained "axes: '\+x \+z'.*scale: 0\.001.*millimetres"
-printf 'scale: 0.001\n' >"$tmp/raw/hovercraft.yaml"
+printf 'scale: 0.0008\n' >"$tmp/raw/hovercraft.yaml"
 printf 'type,model,origin\n1.1.222.1.*,hovercraft.obj,base\n' >"$tmp/raw/c.csv"
 run check "$tmp/raw/node.yaml"
-check "no size in the row: the type's own" complained "4 x 12 x 6 m .* but etc/catalog\.csv:[0-9]+ \(tank.*says 9\.53 x 3\.59 x 2\.6: .*axes: '\+x \+z'"
+check "no size in the row: the type's own" complained "3\.2 x 9\.6 x 4\.8 m .* but etc/catalog\.csv:[0-9]+ \(tank.*says 9\.53 x 3\.59 x 2\.6: .*axes: '\+x \+z'"
 printf "scale: 0.0254\naxes: '+x +z'\n" >"$tmp/raw/hovercraft.yaml"
 printf 'type,model,origin,length_m,width_m,height_m\n1.1.222.1,hovercraft.obj,base,12,6,4\n' >"$tmp/raw/c.csv"
 run check "$tmp/raw/node.yaml"
@@ -61,7 +61,6 @@ check "only the unit is wrong" complained 'says 12 x 6 x 4: `scale: 0\.001` in i
 
 # ---- a material
 recipe material
-check "material: the replay is of it" cmp -s "$tmp/work/hovercraft.png" "$tmp/work/hovercraft.png"
 check "material: another colour" not cmp -s "$tmp/work/hovercraft.png" "$tmp/work/orange.png"
 run check "$tmp/work/node.yaml"
 sed -i 's/models.materials.*//; /materials:/d' "$tmp/work/node.yaml"
@@ -72,7 +71,6 @@ check "material: and where that came from" complained 'node.yaml:2: models.catal
 # ---- a sensor
 recipe sensor
 check "sensor: it is what was chosen" grep -q '^lwir: my_camera, F/2' "$tmp/stdout"
-check "sensor: with its raster" grep -q '"width_px": *320\|width_px = 320\|my_camera' "$tmp/stdout"
 run replay "$tmp/work/exercise.pcap" --set sensor.table="$tmp/work/sensors.csv" --set sensor.preset=nobodys --out "$tmp/o"
 check "sensor: one that neither table has" complained "no sensor named 'nobodys' \(nor in .*sensors.csv\); there are: staring_lwir"
 run replay "$tmp/work/exercise.pcap" --set sensor.table="$tmp/work/sensors.csv" --out "$tmp/o"
