@@ -40,7 +40,7 @@ check "--set: from the current folder" seen "$tmp/o3"
 check "and it is the same configuration" [ "$(hash_of "$tmp/o1")" = "$(hash_of "$tmp/o3")" ]
 show --set models.catalog=data/c.csv --out "$tmp/o4" --size 64x48
 check "--set: not from another" [ $code = 1 ] && check "said, with the rule" complained 'models.catalog: cannot read data/c.csv: .*on the command line to the folder you are in'
-check "a pipe has no folder: as the command line" eval '"$pitviper" check <(printf "models:\n  catalog: a/data/c.csv\n") >/dev/null'
+check "a pipe has no folder: as the command line" eval '"$pitviper" check <(printf "models:\n  catalog: a/data/c.csv\n") >/dev/null 2>&1'
 
 # ---- a sweep
 printf 'axes:\n  models.catalog: [data/c.csv]\n  seed: [1]\n' >"$tmp/a/sweep.yaml"
