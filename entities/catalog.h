@@ -12,8 +12,8 @@ typedef enum Origin { ORIGIN_BASE, ORIGIN_CENTRE } Origin;
 typedef struct Catalog Catalog;
 
 /* path: a CSV with the columns type, model, origin, and perhaps length_m, width_m, height_m (ModelSize; empty: in
- * proportion, all empty: the shape's own size; of a file: the size it should have, and a warning when it has another) and
- * note; type is dotted with `*` for anything, e.g.
+ * proportion, all empty: the shape's own size; of a file: the size it should have, and a warning when it has another)
+ * and note; type is dotted with `*` for anything, e.g.
  * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
  * wins (`1.1.*.1` before `1.1.225`: the category says more of the shape than the country), then the one with fewer
  * stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's

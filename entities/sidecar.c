@@ -406,21 +406,27 @@ READ_JOINT(joint_roll_radius)
 }
 
 static const Key joint_keys[] = {
-    {"name", "text", "a name of 1 .. 95 characters", "as other joints name it in parent; else the node's own name", joint_name},
-    {"nodes", "patterns", "1 .. 16 patterns of 1 .. 95 characters", "which nodes move, with all below them; needed", joint_nodes},
+    {"name", "text", "a name of 1 .. 95 characters",
+     "as other joints name it in parent; else the node's own name", joint_name},
+    {"nodes", "patterns", "1 .. 16 patterns of 1 .. 95 characters",
+     "which nodes move, with all below them; needed", joint_nodes},
     {"parent", "text", "the name of a joint", "what it is carried by; else by the file's hierarchy", joint_parent},
     {"each", "bool", "true or false", "every node that matches is a joint of its own", joint_each},
-    {"pivot", "word or 3 numbers", "node, centre, or x y z in -1e9 .. 1e9 units of the file", "what it turns about; node: where the node stands", joint_pivot},
+    {"pivot", "word or 3 numbers", "node, centre, or x y z in -1e9 .. 1e9 units of the file",
+     "what it turns about; node: where the node stands", joint_pivot},
     {"axis", "word or 3 numbers",
      "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0",
      "else by metric: azimuth yaw, elevation pitch", joint_axis},
     {"class", "word or number", CLASS_ACCEPTED, "of the articulated parameter of DIS that moves it", joint_class},
-    {"metric", "word", "one of position, extension, x, y, z, azimuth, elevation, rotation", "and its metric", joint_metric},
+    {"metric", "word", "one of position, extension, x, y, z, azimuth, elevation, rotation",
+     "and its metric", joint_metric},
     {"limits_deg", "2 numbers", "low high in -3600 .. 3600 deg, low <= high", "of what turns", joint_limits_deg},
     {"limits_m", "2 numbers", "low high in -1000 .. 1000 m, low <= high", "of what slides", joint_limits_m},
     {"rest_deg", "number", "a number in -360 .. 360 deg", "value at which the file draws it", joint_rest_deg},
-    {"spin_rpm", "number", "a number in -1e5 .. 1e5 turns a minute", "turns by itself while the entity is active: rotors", joint_spin_rpm},
-    {"roll_radius", "word or number", "auto or a number in 0.01 .. 10 m", "of a wheel: turns as the vehicle travels; auto: by its size",
+    {"spin_rpm", "number", "a number in -1e5 .. 1e5 turns a minute",
+     "turns by itself while the entity is active: rotors", joint_spin_rpm},
+    {"roll_radius", "word or number", "auto or a number in 0.01 .. 10 m",
+     "of a wheel: turns as the vehicle travels; auto: by its size",
      joint_roll_radius},
 };
 
@@ -625,20 +631,26 @@ READ_TOP(top_joints)
 }
 
 static const Key top_keys[] = {
-    {"file", "path", "a path of 1 .. 511 characters", "the model, where it is not named as the sidecar; relative to it", top_file},
+    {"file", "path", "a path of 1 .. 511 characters",
+     "the model, where it is not named as the sidecar; relative to it", top_file},
     {"name", "text", "a name of 1 .. 95 characters", "as truth says it; else the file's name", top_name},
-    {"scale", "number", "a number in 1e-06 .. 1e+06 metres a unit", "0.001: the file is in millimetres; else 1", top_scale},
-    {"axes", "2 words", "two different of +x -x +y -y +z -z: forward and up, as in '+x +z'", "of the file; else as its format is used", top_axes},
-    {"origin", "word or 3 numbers", "auto, or x y z in -1e9 .. 1e9 units of the file", "centre of the base, in the file; auto: under the middle of what does not move",
+    {"scale", "number", "a number in 1e-06 .. 1e+06 metres a unit",
+     "0.001: the file is in millimetres; else 1", top_scale},
+    {"axes", "2 words", "two different of +x -x +y -y +z -z: forward and up, as in '+x +z'",
+     "of the file; else as its format is used", top_axes},
+    {"origin", "word or 3 numbers", "auto, or x y z in -1e9 .. 1e9 units of the file",
+     "centre of the base, in the file; auto: under the middle of what does not move",
      top_origin},
-    {"crease_deg", "number", "a number in 0 .. 180 deg", "sharper edges stay sharp where the file has no normals; else 30", top_crease},
+    {"crease_deg", "number", "a number in 0 .. 180 deg",
+     "sharper edges stay sharp where the file has no normals; else 30", top_crease},
     {"drop", "patterns", "patterns of 1 .. 95 characters", "nodes that are not there", top_drop},
     {"joints", "list", "a list, a joint a line: `- {nodes: ...}`", "what moves; their keys are below", top_joints},
     {"materials", "pattern: name", "rows of etc/materials.csv or of models.materials, 1 .. 31 characters",
      "by the names of the file's materials", top_materials},
     {"node_materials", "pattern: name", "the same", "by node, before materials", top_node_materials},
     {"roles", "pattern: name", "rows of etc/heat.csv", "what warms the part", top_roles},
-    {"damage", "mapping", "slight, moderate or destroyed, and what shows it", "each with hide: [patterns] and materials: {pattern: name}", top_damage},
+    {"damage", "mapping", "slight, moderate or destroyed, and what shows it",
+     "each with hide: [patterns] and materials: {pattern: name}", top_damage},
 };
 
 /* ---- the file --------------------------------------------------------------------------------------- */

@@ -112,7 +112,8 @@ static bool air_is_good(const Check *c)
 {
     Atmosphere   *atmosphere = NULL;
     const Config *config = c->config;
-    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == config->weather.visibility_m) return true;
+    if (strcmp(known.air, config->weather.atmosphere) == 0 && known.visibility_m == config->weather.visibility_m)
+        return true;
     const bool there =
         atmosphere_open_at(&atmosphere, config->weather.atmosphere, config->weather.visibility_m) == STATUS_OK;
     atmosphere_close(atmosphere);

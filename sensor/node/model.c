@@ -115,5 +115,7 @@ int model_command(int argc, char **argv)
         sidecar_write_keys(stdout);
         return 0;
     }
-    return refuse(argv[1], "no such action: there are list, info, show and --keys");
+    fprintf(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model show "
+            "NAME|FILE` and `model --keys`\n", argv[1]);
+    return 2;
 }

@@ -182,11 +182,13 @@ static View view_of(double *px_per_m, const Stage *stage)
                                       k & 2 ? model->box_high[1] : model->box_low[1]));
     const double tall_m = fmax(-model->box_low[2], 0.01), low_m = fmax(model->box_high[2], 0);
     const double half_m = fmax(1.1 * reach_m, 0.75 * (tall_m + low_m) * tile_width / tile_height);
-    const double away_m = half_m / tan(0.5 * view_hfov_deg * rad_per_deg) + 0.3 * reach_m, down_rad = view_down_deg * rad_per_deg;
+    const double away_m = half_m / tan(0.5 * view_hfov_deg * rad_per_deg) + 0.3 * reach_m;
+    const double down_rad = view_down_deg * rad_per_deg;
     View         view = {.width = tile_width, .height = tile_height,
                          .focal_px = view_focal_px(tile_width, view_hfov_deg * rad_per_deg)};
     const double *at = stage->place_m, ground_m = elevation_height(&stage->landscape.elevation, at[0], at[1], NULL);
-    const double towards[3] = {0, cos(down_rad), -sin(down_rad)}, aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
+    const double towards[3] = {0, cos(down_rad), -sin(down_rad)};
+    const double aim[3] = {at[0], at[1], ground_m + 0.5 * (tall_m - low_m)};
     v3_add_scaled(view.p_enu, aim, -away_m, towards);
     camera_upright(view.r_enu_from_cam, towards);
     *px_per_m = view.focal_px / away_m;
