@@ -1,7 +1,6 @@
 /* main.c: the commands, as one table; and the probes and benchmarks, as the rooms list them. */
 #include "dis/bench.h"
 #include "entities/bench.h"
-#include "entities/model_info.h"
 #include "entities/probe.h"
 #include "render/bench.h"
 #include "render/probe.h"
@@ -10,6 +9,7 @@
 #include "sensor/node/exercise.h"
 #include "sensor/node/inspect.h"
 #include "sensor/node/live.h"
+#include "sensor/node/model.h"
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
@@ -108,25 +108,31 @@ static const struct Command {
     const char *name;
     int (*run)(int argc, char **argv);
     const char *help;
+    bool        reads_tables; /* of etc/, all of them but for a few of its options */
 } commands[] = {
-    {"run", run_command, "listen to an exercise on the network and show it live"},
-    {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw"},
-    {"regress", regress_command, "show recorded exercises again and compare with what they showed"},
-    {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed"},
-    {"check", check_command, "say whether a file of settings is good; or print one to begin with"},
-    {"exercise", exercise_command, "write or send an exercise from a scenario"},
-    {"record", record_command, "record the exercise on the network"},
-    {"model", model_command, "say what a model is made of, built in or from a file"},
-    {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ..."},
-    {"bench", run_bench, "measure this build on this machine: times, and the errors beside them"},
+    {"run", run_command, "listen to an exercise on the network and show it live", true},
+    {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw", true},
+    {"regress", regress_command, "show recorded exercises again and compare with what they showed", true},
+    {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed", true},
+    {"check", check_command, "say whether a file of settings is good; or print one to begin with", true},
+    {"exercise", exercise_command, "write or send an exercise from a scenario", true},
+    {"record", record_command, "record the exercise on the network", false},
+    {"model", model_command, "list models; say what one is made of, built in or from a file; draw it", true},
+    {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ...", false},
+    {"bench", run_bench, "measure this build on this machine: times, and the errors beside them", true},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
+
+static const char common_help[] =
+    "  -q, --quiet        no choices, progress, notices or summary: warnings, errors and what was asked for alone\n"
+    "  -v, --verbose      also which tables, settings and models are read, and where the time goes\n";
 
 static void usage(FILE *to)
 {
     fputs("pitviper " PITVIPER_VERSION ": multispectral sensor simulation on DIS networks\n\n"
           "usage: pitviper COMMAND ...; `pitviper COMMAND --help` says more\n\n", to);
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
+    fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", common_help);
 }
 
 /* ---- what the shell hands over ---------------------------------------------------------------- */
@@ -140,11 +146,13 @@ static void fill_closed(void)
     if (fd > STDERR_FILENO) close(fd);
 }
 
-static bool environment_good(void)
+static bool environment_good(const struct Command *command, int argc, char **argv)
 {
     const char *etc = getenv("PITVIPER_ETC");
     struct stat there;
-    if (!etc || (stat(etc, &there) == 0 && S_ISDIR(there.st_mode))) return true;
+    bool        reads = command->reads_tables;
+    for (int i = 1; i < argc; i++) reads &= strcmp(argv[i], "--default") != 0 && strcmp(argv[i], "--keys") != 0;
+    if (!etc || (stat(etc, &there) == 0 && S_ISDIR(there.st_mode))) return !reads || etc_is_complete();
     log_error("PITVIPER_ETC: there is no folder '%s'; unset it, or name the one that holds catalog.csv", etc);
     return false;
 }
@@ -157,15 +165,44 @@ static int printed(int code)
     return code ? code : 1;
 }
 
+/* -q and -v, wherever they stand before a `--`, are taken away. False: both, and it is said. */
+static bool take_verbosity(int *argc, char **argv)
+{
+    bool quiet = false, verbose = false, open = true;
+    int  kept = 1;
+    for (int i = 1; i < *argc; i++) {
+        const bool q = open && (strcmp(argv[i], "-q") == 0 || strcmp(argv[i], "--quiet") == 0);
+        const bool v = open && (strcmp(argv[i], "-v") == 0 || strcmp(argv[i], "--verbose") == 0);
+        open &= strcmp(argv[i], "--") != 0;
+        quiet |= q, verbose |= v;
+        if (!q && !v) argv[kept++] = argv[i];
+    }
+    argv[*argc = kept] = NULL;
+    if (quiet && verbose) fputs("pitviper: --quiet and --verbose are both given; leave one out\n", stderr);
+    else if (quiet) log_set_level(LOG_WARN);
+    else if (verbose) log_set_level(LOG_DETAIL);
+    return !(quiet && verbose);
+}
+
+static bool asks_for_help(int argc, char **argv)
+{
+    for (int i = 1; i < argc && strcmp(argv[i], "--") != 0; i++)
+        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) return true;
+    return false;
+}
+
 static int run_named(int argc, char **argv)
 {
     char called[64];
     for (int i = 0; i < command_count; i++) {
         if (strcmp(argv[0], commands[i].name) != 0) continue;
-        if (!environment_good()) return 1;
+        const bool help = asks_for_help(argc, argv);
+        if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
         argv[0] = called; /* as getopt names it */
-        return commands[i].run(argc, argv);
+        const int code = commands[i].run(argc, argv);
+        if (help && code == 0) printf("\n%s", common_help);
+        return code;
     }
     fprintf(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
     return 2;
@@ -176,6 +213,7 @@ int main(int argc, char **argv)
     static char help[] = "--help";
     fill_closed();
     thread_flush_denormals(); /* a probe says what a frame computes */
+    if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         usage(stderr);
         return 2;

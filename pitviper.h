@@ -34,18 +34,26 @@ const char *status_name(Status status);
 
 /* ---- log ---------------------------------------------------------------------------------- */
 
-typedef enum LogLevel { LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
+typedef enum LogLevel { LOG_DETAIL /* hidden unless asked for */, LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
 typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
- * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below. log_hush: what the calling
- * thread says, and it alone, until told otherwise. */
+ * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below; at first below LOG_INFO.
+ * log_hush: what the calling thread says, and it alone, until told otherwise. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
 void log_hush(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
 void log_status(const char *text);
+/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and what was asked for
+ * stay. log_shows_progress: whether a line that is written over itself makes sense: not quiet, and on a terminal. */
+bool log_is_quiet(void);
+bool log_is_verbose(void);
+bool log_shows_progress(void);
+/* To standard output, what nobody asked for: choices, a summary at the end. Nothing when quiet. */
+void log_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -135,12 +143,23 @@ bool temp_file(char out[temp_path_size], const char *ending);
 /* Path of a file under etc/: $PITVIPER_ETC, else share/pitviper beside the program, the source folder or the installed
  * one. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
+/* Whether what every run reads is there; else logs what is missing, where it was looked for, and what to do. */
+bool etc_is_complete(void);
+/* A table of the user's own beside catalog.csv, materials.csv or sensors.csv of etc/: its rows go before those. path
+ * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL: none. */
+bool etc_own_set(const char *name, const char *path);
+const char *etc_own(const char *name);
 
 /* ---- settings: what people write in YAML files ------------------------------------------------ */
 
 typedef enum SettingType {
     SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
-    SETTING_NUMBERS /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
+    SETTING_NUMBERS, /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
+    /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
+     * the current one: once read, *out has them as the system takes them. */
+    SETTING_PATH,
+    SETTING_PATHS,        /* several, separated by commas */
+    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is left alone */
 } SettingType;
 
 enum { number_list_capacity = 256 };
@@ -188,9 +207,19 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
  * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
  * is set for each key met at the top. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
+/* The same; what is named in it is relative to the folder of another file, which need not be there. */
+Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file);
 /* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                     const char *source);
+/* The same as if it stood in that file, for what it names relative to the file's folder. file NULL: as settings_set. */
+Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
+                         const char *source, const char *file);
+bool   settings_is_path(const Setting *row);
+/* Paths become absolute, as far as they fit: what a file in another folder, or a hash, can hold. */
+void   settings_absolute(void *out, const SettingTable *table);
+/* The line on which a file that has been read gives a key; 0: it does not. */
+int    settings_line(const SettingTable *table, const char *name, const char *path);
 int    settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
 /* Every key and value, in table order, one a line: what is hashed. */
 void   settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);

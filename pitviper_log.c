@@ -41,6 +41,18 @@ void log_set_level(LogLevel lowest)
     pthread_mutex_unlock(&log_lock);
 }
 
+static LogLevel lowest_shown(void)
+{
+    pthread_mutex_lock(&log_lock);
+    const LogLevel lowest = log_lowest;
+    pthread_mutex_unlock(&log_lock);
+    return lowest;
+}
+
+bool log_is_quiet(void) { return lowest_shown() > LOG_INFO; }
+bool log_is_verbose(void) { return lowest_shown() <= LOG_DETAIL; }
+bool log_shows_progress(void) { return !log_is_quiet() && isatty(STDERR_FILENO); }
+
 void log_hush(bool hushed) { hushed_here = hushed; }
 
 static void log_line(LogLevel level, const char *format, va_list arguments)
@@ -55,8 +67,8 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
         if (log_sink)
             log_sink(log_user, level, line);
         else
-            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "", level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line,
-                    status_line);
+            fprintf(stderr, "%s%s%s\n%s", *status_line ? "\r\x1b[K" : "",
+                    level == LOG_ERROR ? "error: " : level == LOG_WARN ? "warning: " : "", line, status_line);
     }
     pthread_mutex_unlock(&log_lock);
 }
@@ -74,6 +86,23 @@ void log_status(const char *text)
     }
     fflush(stderr);
     pthread_mutex_unlock(&log_lock);
+}
+
+void log_say(const char *format, ...)
+{
+    va_list arguments;
+    if (log_is_quiet()) return;
+    va_start(arguments, format);
+    vprintf(format, arguments);
+    va_end(arguments);
+}
+
+void log_detail(const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    log_line(LOG_DETAIL, format, arguments);
+    va_end(arguments);
 }
 
 void log_info(const char *format, ...)

@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <yaml.h>
 
 /* ---- one value ------------------------------------------------------------------------------ */
@@ -92,7 +94,7 @@ static void say_bad(const SettingTable *table, const char *source, const Setting
     text_escape(shown, sizeof shown, value, strnlen(value, sizeof shown));
     if (row->choices)
         log_error("%s: %s: %s: '%s' is not one of %s", table->module, source, row->name, shown, row->choices);
-    else if (row->type == SETTING_TEXT)
+    else if (row->type == SETTING_TEXT || settings_is_path(row))
         log_error("%s: %s: %s: '%s' is longer than %zu characters", table->module, source, row->name, shown,
                   row->size - 1);
     else if (row->type == SETTING_BOOL)
@@ -130,7 +132,88 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
     return true;
 }
 
-static Status store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source)
+/* ---- paths ---------------------------------------------------------------------------------- */
+
+bool settings_is_path(const Setting *row)
+{
+    return row->type == SETTING_PATH || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATH;
+}
+
+/* Characters of the folder that paths in this file are relative to, with its slash. A file that is none of a folder's
+ * (a pipe, /dev/stdin) has none: they are relative to the current folder. */
+static size_t folder_of(const char *file)
+{
+    struct stat about;
+    const char *slash = file ? strrchr(file, '/') : NULL;
+    if (!slash || (stat(file, &about) == 0 && !S_ISREG(about.st_mode))) return 0;
+    return (size_t)(slash - file) + 1;
+}
+
+/* Each path behind the folder it is relative to. False: it does not fit. */
+static bool place_paths(char *out, size_t out_size, SettingType type, const char *value, const char *file)
+{
+    const size_t folder = folder_of(file);
+    size_t       n = 0;
+    char        *made = calloc(out_size, 1);
+    bool         fits = made != NULL;
+    for (const char *at = value; fits && *at;) {
+        const size_t blanks = type == SETTING_PATHS ? strspn(at, " ") : 0;
+        const size_t length = type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
+        const bool   name = type == SETTING_NAME_OR_PATH && !strpbrk(value, "/.");
+        const size_t before = blanks < length && at[blanks] != '/' && !name ? folder : 0;
+        fits = n + before + length + 1 < out_size;
+        if (!fits) break;
+        memcpy(made + n, file, before);
+        memcpy(made + n + before, at + (blanks < length ? blanks : length), blanks < length ? length - blanks : 0);
+        n += before + (blanks < length ? length - blanks : 0);
+        if (at[length]) made[n++] = ',';
+        at += length + (at[length] != 0);
+    }
+    if (fits) memcpy(out, made, out_size);
+    free(made);
+    return fits;
+}
+
+/* Of a path that is there its real one; else with the current folder before it. */
+static bool absolute(char *out, size_t out_size, const char *path)
+{
+    char       *real = realpath(path, NULL), here[4096];
+    const char *folder = path[0] == '/' || real ? "" : getcwd(here, sizeof here);
+    const int   n = folder ? snprintf(out, out_size, "%s%s%s", folder, *folder ? "/" : "", real ? real : path) : -1;
+    free(real);
+    return n >= 0 && n < (int)out_size;
+}
+
+void settings_absolute(void *out, const SettingTable *table)
+{
+    for (int i = 0; i < table->count; i++) {
+        const Setting *row = &table->row[i];
+        char          *at = (char *)out + row->offset, *made, one[4096];
+        size_t         n = 0;
+        if (!settings_is_path(row) || !*at || (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/."))) continue;
+        if (!(made = calloc(row->size, 1))) return;
+        bool fits = true;
+        for (const char *from = at; fits && *from;) {
+            const size_t length = row->type == SETTING_PATHS ? strcspn(from, ",") : strlen(from);
+            char         path[4096];
+            fits = length < sizeof path;
+            if (!fits) break;
+            snprintf(path, sizeof path, "%.*s", (int)length, from);
+            if (!length || !absolute(one, sizeof one, path)) snprintf(one, sizeof one, "%s", path);
+            n += (size_t)snprintf(made + n, row->size - n, "%s%s", one, from[length] ? "," : "");
+            fits = n < row->size;
+            from += length + (from[length] != 0);
+        }
+        if (fits) memcpy(at, made, row->size);
+        free(made);
+    }
+}
+
+/* ---- one value, stored ----------------------------------------------------------------------- */
+
+/* file: where it stands; NULL: on a command line. */
+static Status store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
+                    const char *file)
 {
     char      *at = (char *)out + row->offset;
     double     number;
@@ -155,6 +238,11 @@ static Status store(void *out, const SettingTable *table, const Setting *row, co
         if (strcmp(value, "true") != 0 && strcmp(value, "false") != 0) break;
         *(bool *)at = value[0] == 't';
         return STATUS_OK;
+    case SETTING_PATH:
+    case SETTING_PATHS:
+    case SETTING_NAME_OR_PATH:
+        if (!place_paths(at, row->size, row->type, value, file)) break;
+        return STATUS_OK;
     case SETTING_TEXT:
         if (strlen(value) >= row->size || (row->choices && !is_choice(row->choices, value))) break;
         memset(at, 0, row->size);
@@ -172,9 +260,15 @@ static Status store(void *out, const SettingTable *table, const Setting *row, co
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                     const char *source)
 {
+    return settings_set_from(out, given, table, name, value, source, NULL);
+}
+
+Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
+                         const char *source, const char *file)
+{
     const int row = settings_find(table, name);
     if (row < 0) return say_unknown(table, source, name);
-    const Status status = store(out, table, &table->row[row], value, source);
+    const Status status = store(out, table, &table->row[row], value, source, file);
     if (status == STATUS_OK && given) given[row] = true;
     return status;
 }
@@ -182,7 +276,7 @@ Status settings_set(void *out, bool *given, const SettingTable *table, const cha
 /* ---- a file --------------------------------------------------------------------------------- */
 
 typedef struct Reading {
-    const char      *path;
+    const char      *path, *file; /* file: whose folder paths are relative to */
     yaml_document_t *document;
 } Reading;
 
@@ -226,7 +320,7 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
         log_error("%s: %s: %s needs one value", table->module, source, row->name);
         return STATUS_BAD_VALUE;
     }
-    return store(out, table, row, text_of(value), source);
+    return store(out, table, row, text_of(value), source, r->file);
 }
 
 /* Ends: an item's table holds only lists that are written in the program, whatever aliases a file has. */
@@ -324,11 +418,11 @@ static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r,
     return STATUS_OK;
 }
 
-static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path,
+static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path, const char *file,
                             yaml_document_t *document)
 {
     const yaml_node_t *root = yaml_document_get_root_node(document);
-    const Reading      reading = {path, document};
+    const Reading      reading = {path, file, document};
     if (!root) return STATUS_OK;
     if (root->type != YAML_MAPPING_NODE) {
         log_error("%s: %s:%d: expected `section:` and keys below it", table->module, path, line_of(root));
@@ -341,8 +435,8 @@ static Status fill_document(void *out, bool *given, const SettingTable *table, c
     return status;
 }
 
-static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
-                    size_t octets)
+static Status parse(void *out, bool *given, const SettingTable *table, const char *path, const char *file,
+                    const char *text, size_t octets)
 {
     yaml_parser_t   parser;
     yaml_document_t document;
@@ -356,7 +450,7 @@ static Status parse(void *out, bool *given, const SettingTable *table, const cha
         yaml_parser_delete(&parser);
         return STATUS_BAD_VALUE;
     }
-    status = fill_document(out, given, table, path, &document);
+    status = fill_document(out, given, table, path, file, &document);
     yaml_document_delete(&document);
     yaml_parser_delete(&parser);
     return status;
@@ -364,13 +458,58 @@ static Status parse(void *out, bool *given, const SettingTable *table, const cha
 
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path)
 {
+    return settings_read_as(out, given, table, path, path);
+}
+
+Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file)
+{
     char  *text;
     size_t octets;
     Status status = text_read_file(&text, &octets, table->module, path, settings_file_octets);
     if (status != STATUS_OK) return status;
-    status = parse(out, given, table, path, text, octets);
+    status = parse(out, given, table, path, file, text, octets);
     free(text);
+    if (status == STATUS_OK) log_detail("%s: read %s", table->module, path);
     return status;
+}
+
+static int line_in(const SettingTable *table, yaml_document_t *document, const char *section, const char *name,
+                   const yaml_node_t *mapping)
+{
+    const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
+    int                     line = 0;
+    for (; pair < end && line == 0; pair++) {
+        char               full[key_size];
+        const yaml_node_t *key = yaml_document_get_node(document, pair->key);
+        const yaml_node_t *value = yaml_document_get_node(document, pair->value);
+        if (key->type != YAML_SCALAR_NODE) continue;
+        snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(key));
+        if (strcmp(full, name) == 0) line = line_of(key);
+        else if (!*section && value->type == YAML_MAPPING_NODE && is_section(table, full))
+            line = line_in(table, document, full, name, value);
+    }
+    return line;
+}
+
+int settings_line(const SettingTable *table, const char *name, const char *path)
+{
+    char           *text;
+    size_t          octets;
+    yaml_parser_t   parser;
+    yaml_document_t document;
+    int             line = 0;
+    if (text_read_file(&text, &octets, table->module, path, settings_file_octets) != STATUS_OK) return 0;
+    if (yaml_check(table->module, path, text, octets) == STATUS_OK && yaml_parser_initialize(&parser)) {
+        yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
+        if (yaml_parser_load(&parser, &document)) {
+            const yaml_node_t *root = yaml_document_get_root_node(&document);
+            if (root && root->type == YAML_MAPPING_NODE) line = line_in(table, &document, "", name, root);
+            yaml_document_delete(&document);
+        }
+        yaml_parser_delete(&parser);
+    }
+    free(text);
+    return line;
 }
 
 /* ---- out again ------------------------------------------------------------------------------ */
@@ -394,7 +533,10 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
         memcpy(&whole, at, sizeof whole);
         return snprintf(out, out_size, "%lld", whole);
     case SETTING_BOOL: return snprintf(out, out_size, "%s", *(const bool *)at ? "true" : "false");
-    case SETTING_TEXT: return snprintf(out, out_size, "%s", at);
+    case SETTING_TEXT:
+    case SETTING_PATH:
+    case SETTING_PATHS:
+    case SETTING_NAME_OR_PATH: return snprintf(out, out_size, "%s", at);
     case SETTING_NUMBERS:
         list = (const NumberList *)at;
         n    = snprintf(out, out_size, "[");
@@ -407,7 +549,7 @@ static int value_text(char *out, size_t out_size, const Setting *row, const void
     return 0;
 }
 
-enum { value_size = 32 * number_list_capacity };
+enum { value_size = 32 * number_list_capacity }; /* more than any text */
 
 void settings_text(char *out, size_t out_size, const SettingTable *table, const void *from)
 {
@@ -464,7 +606,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         fprintf(to, "%s# %s", indent, row->help);
         if (row->choices) fprintf(to, "%s%s", *row->help ? "; " : "", row->choices);
         else if (row->type == SETTING_BOOL) fprintf(to, "%strue or false", *row->help ? "; " : "");
-        else if (row->type != SETTING_TEXT && !isnan(row->low))
+        else if (row->type != SETTING_TEXT && !settings_is_path(row) && !isnan(row->low))
             fprintf(to, "%s%g .. %g%s%s", *row->help ? "; " : "", row->low, row->high, *row->unit ? " " : "",
                     row->unit);
         else if (*row->unit) fprintf(to, "%s%s", *row->help ? "; " : "", row->unit);
@@ -474,7 +616,7 @@ void settings_write(FILE *to, const SettingTable *table, const void *from, const
         if (row->type == SETTING_DOUBLE) memcpy(&number, (const char *)from + row->offset, sizeof number);
         const bool unset = isnan(number), hidden = unset || (shown && !shown[i]);
         fprintf(to, "%s%s%s:%s", indent, hidden ? "# " : "", key, unset ? "" : " ");
-        if (row->type == SETTING_TEXT && !is_plain(value)) put_quoted(to, value);
+        if ((row->type == SETTING_TEXT || settings_is_path(row)) && !is_plain(value)) put_quoted(to, value);
         else fputs(unset ? "" : value, to);
         fputc('\n', to);
     }

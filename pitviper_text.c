@@ -50,44 +50,6 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
     if (out_size) out[n] = 0;
 }
 
-/* Of an installation that was moved, or made with another --prefix: BIN/../share/pitviper. Empty: not known. */
-static void share_beside_program(char *out, size_t out_size)
-{
-    const ssize_t length = readlink("/proc/self/exe", out, out_size - 1);
-    out[length > 0 ? length : 0] = 0;
-    for (int i = 0; i < 2; i++) { /* the program's name, and bin */
-        char *slash = strrchr(out, '/');
-        if (slash) *slash = 0;
-    }
-    const size_t n = strlen(out);
-    if (snprintf(out + n, out_size - n, "/share/pitviper") >= (int)(out_size - n)) *out = 0;
-}
-
-static bool join(char *out, size_t out_size, const char *folder, const char *name)
-{
-    const size_t n = strlen(folder), m = strlen(name);
-    if (n + 1 + m >= out_size) return false;
-    memcpy(out, folder, n);
-    out[n] = '/';
-    memcpy(out + n + 1, name, m + 1);
-    return true;
-}
-
-bool etc_path(char *out, size_t out_size, const char *name)
-{
-    char        beside[4096];
-    const char *from_environment = getenv("PITVIPER_ETC");
-    if (from_environment) return join(out, out_size, from_environment, name);
-    share_beside_program(beside, sizeof beside);
-    const char *const folders[] = {beside, PITVIPER_ETC_DIR, PITVIPER_ETC_INSTALLED};
-    bool              fits      = false;
-    for (int i = 0; i < 3; i++) {
-        fits = join(out, out_size, folders[i], name);
-        if (fits && access(out, R_OK) == 0) break;
-    }
-    return fits;
-}
-
 /* ---- files -------------------------------------------------------------------------------- */
 
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most)
@@ -223,6 +185,7 @@ Status table_open(Table *out, const char *path)
         status = STATUS_BAD_VALUE;
         goto fail;
     }
+    log_detail("table: %s: %d rows", path, table.rows);
     *out = table;
     return STATUS_OK;
 

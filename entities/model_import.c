@@ -272,8 +272,8 @@ static Status check_materials(const Build *b)
     for (size_t k = 0; k < sizeof rules / sizeof *rules; k++)
         for (int i = 0; i < rules[k]->count; i++)
             if (!import_paints_have(b->paints, rules[k]->rule[i].value)) {
-                log_error("sidecar: %s:%d: materials: '%s' is not a row of etc/materials.csv", b->sidecar->path,
-                          rules[k]->rule[i].line, rules[k]->rule[i].value);
+                log_error("sidecar: %s:%d: materials: '%s' is not a row of etc/materials.csv, nor of your own "
+                          "(models.materials)", b->sidecar->path, rules[k]->rule[i].line, rules[k]->rule[i].value);
                 return STATUS_BAD_VALUE;
             }
     return STATUS_OK;
@@ -506,6 +506,7 @@ static Status build_model(Build *b)
     if (status != STATUS_OK) return status;
     name_model(b);
     warn_unused(b);
+    import_warn_names(b->scene, b->joints.place, b->sidecar, b->report->file);
     status = model_measure(&b->model);
     if (status == STATUS_OK) status = model_check(&b->model);
     return status == STATUS_OK ? model_edges(&b->report->edges, &b->model) : status;
@@ -529,6 +530,7 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     Build b = {.scene = &scene, .sidecar = &sidecar, .paints = &paints, .report = &filled};
     if (status == STATUS_OK) status = build_model(&b);
     if (status == STATUS_NO_MEMORY) log_error("model: no memory: file=%s", filled.file);
+    import_count_names(&filled.unnamed_nodes, &filled.shared_names, &scene);
     filled.source_nodes = scene.node_count;
     filled.source_meshes = scene.mesh_count;
     filled.source_materials = scene.material_count;
@@ -538,6 +540,9 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     import_paints_close(&paints);
     sidecar_close(&sidecar);
     if (status == STATUS_OK) {
+        log_detail("model: %s: %d nodes, %d parts, %d triangles, %.3f x %.3f x %.3f m; sidecar: %s", filled.file,
+                   b.model.node_count, b.model.part_count, b.model.triangle_count, b.model.length_m, b.model.width_m,
+                   b.model.height_m, filled.sidecar[0] ? filled.sidecar : "none");
         *out = b.model;
         if (report) *report = filled;
     } else {

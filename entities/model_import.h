@@ -45,6 +45,7 @@ typedef struct ModelImport {
     double r_body_from_file[9], p_origin_file[3];
     bool   axes_assumed;               /* from the format, nobody said */
     int    source_nodes, source_meshes, source_materials;
+    int    unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
     int    dropped_meshes;             /* by the sidecar */
     int    empty_meshes;               /* nothing left of them */
     int    degenerate_triangles;       /* dropped */

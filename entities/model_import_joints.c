@@ -319,9 +319,10 @@ static Status assign_joints(Builder *b)
         if (status != STATUS_OK) return status;
     }
     for (int j = 0; j < b->sidecar->joint_count; j++)
-        if (b->first[j] < 0)
-            return refuse_joint(b, &b->sidecar->joint[j], "no node of the file matches, or a later joint has them all",
-                                b->sidecar->joint[j].pattern[0]);
+        if (b->first[j] < 0) {
+            import_say_no_node(b->scene, b->out->place, b->sidecar, j);
+            return STATUS_BAD_VALUE;
+        }
     return STATUS_OK;
 }
 

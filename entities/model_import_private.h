@@ -106,6 +106,15 @@ bool import_matches(const char *pattern, const char *text);
 const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *scene, const ImportPlace *place, int node,
                                int damage);
 
+/* ---- model_import_names.c -------------------------------------------------------------------- */
+
+/* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
+void import_say_no_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
+/* Warns of names that a sidecar goes by and that several nodes share, and of nodes without one. */
+void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
+/* How many nodes have no name, and how many share theirs. */
+void import_count_names(int *unnamed, int *shared, const ImportScene *scene);
+
 /* ---- model_import_surface.c ------------------------------------------------------------------ */
 
 /* Which material and heat role a part gets when the sidecar does not say. */

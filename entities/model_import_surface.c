@@ -6,33 +6,45 @@
 
 /* ---- materials ---------------------------------------------------------------------------------------- */
 
-Status import_paints_open(ImportPaints *out)
+static Status read_paints(ImportPaints *paints, const char *path)
 {
-    char path[512];
     Table table;
-    ImportPaints paints = {0};
-    if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
-    const int name = table_column(&table, "name"),
+    const int name = table_column(&table, "name"), before = paints->count,
               column[3] = {table_column(&table, "rho_r"), table_column(&table, "rho_g"), table_column(&table, "rho_b")};
-    paints.name = calloc((size_t)table.rows + 1, sizeof *paints.name);
-    paints.rgb = calloc((size_t)table.rows + 1, sizeof *paints.rgb);
-    if (!paints.name || !paints.rgb) {
+    char(*names)[32] = realloc(paints->name, ((size_t)before + (size_t)table.rows + 1) * sizeof *names);
+    if (names) paints->name = names;
+    float(*rgb)[3] = realloc(paints->rgb, ((size_t)before + (size_t)table.rows + 1) * sizeof *rgb);
+    if (rgb) paints->rgb = rgb;
+    if (!names || !rgb) {
         status = STATUS_NO_MEMORY;
     } else if (name < 0 || column[0] < 0 || column[1] < 0 || column[2] < 0) {
         log_error("model: a column is missing: file=%s columns=name,rho_r,rho_g,rho_b", path);
         status = STATUS_BAD_VALUE;
     }
-    for (int r = 0; r < table.rows && status == STATUS_OK; r++, paints.count++) {
-        snprintf(paints.name[r], sizeof paints.name[r], "%s", table_text(&table, r, name));
+    for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
+        if (import_paints_have(paints, table_text(&table, r, name))) continue; /* the user's own stands in its place */
+        snprintf(paints->name[paints->count], sizeof paints->name[0], "%s", table_text(&table, r, name));
         for (int c = 0; c < 3 && status == STATUS_OK; c++) {
             double rho = 0;
             status = table_number(&rho, &table, r, column[c], 0, 1);
-            paints.rgb[r][c] = (float)rho;
+            paints->rgb[paints->count][c] = (float)rho;
         }
+        paints->count++;
     }
     table_close(&table);
+    return status;
+}
+
+Status import_paints_open(ImportPaints *out)
+{
+    char path[4096];
+    const char *own = etc_own("materials.csv");
+    ImportPaints paints = {0};
+    if (!etc_path(path, sizeof path, "materials.csv")) return STATUS_BAD_VALUE;
+    Status status = own ? read_paints(&paints, own) : STATUS_OK;
+    if (status == STATUS_OK) status = read_paints(&paints, path);
     if (status == STATUS_OK)
         *out = paints;
     else

@@ -1,29 +1,11 @@
 #include "entities/model_info.h"
 
+#include "entities/model_fit.h"
 #include "entities/model_import.h"
 #include "entities/parametric.h"
 #include "entities/sidecar.h"
 
 #include <stdlib.h>
-
-static void usage(FILE *to)
-{
-    fputs(
-        "usage: pitviper model info NAME|FILE [--sag M] [--length M] [--width M] [--height M]\n\n"
-        "Says what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
-        "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, "
-        "also\n"
-        "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is "
-        "read:\n"
-        "tank.glb, tank.yaml.\n\n"
-        "  --sag M     largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n"
-        "  --length M  a built-in model of that length, width or height, as a row of etc/catalog.csv gives it: 0.001 "
-        ".. 2000 m;\n"
-        "  --width M   what is left out is in proportion. Length and width: of the bounding box at rest; height: from "
-        "the\n"
-        "  --height M  ground, or the lowest point below it\n",
-        to);
-}
 
 static void print_import(const ModelImport *r)
 {
@@ -42,6 +24,9 @@ static void print_import(const ModelImport *r)
     printf("scale: %g m a unit\n", r->scale_m);
     printf("origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
     printf("in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes, r->source_materials);
+    if (r->unnamed_nodes || r->shared_names)
+        printf("names: %d nodes have none, %d share theirs with another: a sidecar tells nodes apart by name and path\n",
+               r->unnamed_nodes, r->shared_names);
     printf("left out: %d meshes by the sidecar, %d without triangles, %d triangles without area\n", r->dropped_meshes,
            r->empty_meshes, r->degenerate_triangles);
     printf("lost:");
@@ -115,12 +100,6 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     ModelImport report = {0};
     ModelEdges edges;
     bool imported;
-    if (sized && model_is_path(name)) {
-        log_error(
-            "model: --length, --width and --height are for built-in models; `scale` in a sidecar sizes a file: %s",
-            name);
-        return 2;
-    }
     Status status = STATUS_OK;
     imported = false;
     if (sized && parametric_known(name))
@@ -140,6 +119,11 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     else
         printf("built in, facets within %g m of their surfaces\n", model.sag_m);
     printf("size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m, model.height_m);
+    if (imported && sized) {
+        ModelFit fit;
+        model_fit(&fit, &model, &report, size, 1.1);
+        printf("size asked for: %s%s\n", fit.fits ? "as it is" : "not so: ", fit.advice);
+    }
     printf("box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n", model.box_low[0],
            model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1], model.box_high[2]);
     printf("radius: %.3f m, of every pose\n", model.radius_m);
@@ -152,28 +136,12 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     return 0;
 }
 
-int model_command(int argc, char **argv)
+int model_info_command(int argc, char **argv)
 {
     const char *name = NULL;
     double sag_m = 0.005;
     ModelSize size = {0};
-    if (argc >= 2 && (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0)) {
-        usage(stdout);
-        return 0;
-    }
-    if (argc < 2) {
-        usage(stderr);
-        return 2;
-    }
-    if (strcmp(argv[1], "info") != 0) {
-        fprintf(stderr, "pitviper model: no such action: %s; there is `pitviper model info NAME|FILE`\n", argv[1]);
-        return 2;
-    }
     for (int i = 2; i < argc; i++) {
-        if (strcmp(argv[i], "--help") == 0 || strcmp(argv[i], "-h") == 0) {
-            usage(stdout);
-            return 0;
-        }
         double *const figure[3] = {&size.length_m, &size.width_m, &size.height_m};
         static const char *const option[3] = {"--length", "--width", "--height"};
         int which = 0;
@@ -205,7 +173,7 @@ int model_command(int argc, char **argv)
         name = argv[i];
     }
     if (!name) {
-        usage(stderr);
+        fputs("usage: pitviper model info NAME|FILE; see `pitviper model --help`\n", stderr);
         return 2;
     }
     return print_info(name, &size, sag_m);

@@ -8,6 +8,7 @@ typedef struct Reader {
     const char *path;
     yaml_document_t *document;
     Sidecar *sidecar;
+    const char *accepted; /* of the key that is being read */
 } Reader;
 
 static int line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
@@ -90,8 +91,8 @@ static const struct {
     {"secondary_gun", 6016, 10},   {"secondary_launcher", 6336, 10}, {"secondary_defence", 6656, 10},
     {"secondary_radar", 6976, 10},
 };
-static const char class_accepted[] = "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. "
-                                     "_10, or a multiple of 32 in 1024 .. 8160";
+#define CLASS_ACCEPTED "primary_ or secondary_ and turret, gun, launcher, defence or radar, then _1 .. " \
+                                     "_10, or a multiple of 32 in 1024 .. 8160"
 
 static bool read_class(uint32_t *out, const char *text)
 {
@@ -179,7 +180,7 @@ static bool read_body_axis(double out[3], const char *text)
 /* ---- keys ---------------------------------------------------------------------------------------- */
 
 typedef struct Key {
-    const char *name;
+    const char *name, *type, *accepted, *help; /* accepted: values, with their unit and range */
     /* joint: NULL for a key at the top; key: its whole name, for messages */
     Status (*read)(Reader *r, SidecarJoint *joint, const char *key, const yaml_node_t *value);
 } Key;
@@ -211,6 +212,7 @@ static Status read_mapping(Reader *r, const Key *key, int key_count, SidecarJoin
             return STATUS_BAD_VALUE;
         }
         seen |= UINT64_C(1) << k;
+        r->accepted = key[k].accepted;
         const Status status = key[k].read(r, joint, full, value);
         if (status != STATUS_OK) return status;
     }
@@ -273,31 +275,30 @@ static Status read_rules(Reader *r, SidecarRules *rules, const char *key, const 
 READ_JOINT(joint_name)
 {
     return copy_text(j->name, sizeof j->name, scalar(value)) ? STATUS_OK
-                                                             : bad_value(r, value, key, "a name of 1 .. 95 characters");
+                                                             : bad_value(r, value, key, r->accepted);
 }
 
 READ_JOINT(joint_parent)
 {
     return copy_text(j->parent, sizeof j->parent, scalar(value)) ? STATUS_OK
-                                                                 : bad_value(r, value, key, "the name of a joint");
+                                                                 : bad_value(r, value, key, r->accepted);
 }
 
 READ_JOINT(joint_nodes)
 {
-    static const char accepted[] = "1 .. 16 patterns of 1 .. 95 characters";
     if (value->type == YAML_SCALAR_NODE) {
         j->pattern_count = 1;
         return copy_text(j->pattern[0], sizeof j->pattern[0], scalar(value)) ? STATUS_OK
-                                                                             : bad_value(r, value, key, accepted);
+                                                                             : bad_value(r, value, key, r->accepted);
     }
-    if (value->type != YAML_SEQUENCE_NODE) return bad_value(r, value, key, accepted);
+    if (value->type != YAML_SEQUENCE_NODE) return bad_value(r, value, key, r->accepted);
     const ptrdiff_t count = value->data.sequence.items.top - value->data.sequence.items.start;
-    if (count < 1 || count > sidecar_max_patterns) return bad_value(r, value, key, accepted);
+    if (count < 1 || count > sidecar_max_patterns) return bad_value(r, value, key, r->accepted);
     for (; j->pattern_count < count; j->pattern_count++) {
         const yaml_node_t *item =
             yaml_document_get_node(r->document, value->data.sequence.items.start[j->pattern_count]);
         if (!copy_text(j->pattern[j->pattern_count], sizeof j->pattern[0], scalar(item)))
-            return bad_value(r, item, key, accepted);
+            return bad_value(r, item, key, r->accepted);
     }
     return STATUS_OK;
 }
@@ -306,7 +307,7 @@ READ_JOINT(joint_each)
 {
     const char *text = scalar(value);
     j->each = text && strcmp(text, "true") == 0;
-    return j->each || (text && strcmp(text, "false") == 0) ? STATUS_OK : bad_value(r, value, key, "true or false");
+    return j->each || (text && strcmp(text, "false") == 0) ? STATUS_OK : bad_value(r, value, key, r->accepted);
 }
 
 READ_JOINT(joint_pivot)
@@ -318,7 +319,7 @@ READ_JOINT(joint_pivot)
     else if (text && strcmp(text, "centre") == 0)
         j->pivot = PIVOT_CENTRE;
     else if (!read_numbers(j->p_pivot_file, 3, r, value) || !numbers_within(j->p_pivot_file, 3, -1e9, 1e9))
-        return bad_value(r, value, key, "node, centre, or x y z in -1e9 .. 1e9 units of the file");
+        return bad_value(r, value, key, r->accepted);
     return STATUS_OK;
 }
 
@@ -332,29 +333,27 @@ READ_JOINT(joint_axis)
     if (read_numbers(j->axis_xyz, 3, r, value) && numbers_within(j->axis_xyz, 3, -1e9, 1e9) &&
         v3_length(j->axis_xyz) > 1e-9 && v3_normalize(j->axis_xyz, j->axis_xyz))
         return STATUS_OK;
-    return bad_value(r, value, key,
-                     "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0");
+    return bad_value(r, value, key, r->accepted);
 }
 
 READ_JOINT(joint_class)
 {
     const char *text = scalar(value);
-    return text && read_class(&j->dis_class, text) ? STATUS_OK : bad_value(r, value, key, class_accepted);
+    return text && read_class(&j->dis_class, text) ? STATUS_OK : bad_value(r, value, key, r->accepted);
 }
 
 READ_JOINT(joint_metric)
 {
     const char *text = scalar(value);
     if (text && read_metric(&j->dis_metric, text)) return STATUS_OK;
-    return bad_value(r, value, key, "one of position, extension, x, y, z, azimuth, elevation, rotation");
+    return bad_value(r, value, key, r->accepted);
 }
 
-static Status read_limits(Reader *r, SidecarJoint *j, const char *key, const yaml_node_t *value, double most,
-                          const char *accepted)
+static Status read_limits(Reader *r, SidecarJoint *j, const char *key, const yaml_node_t *value, double most)
 {
     double limit[2];
     if (!read_numbers(limit, 2, r, value) || !numbers_within(limit, 2, -most, most) || !(limit[0] <= limit[1]))
-        return bad_value(r, value, key, accepted);
+        return bad_value(r, value, key, r->accepted);
     if (j->has_limits) {
         log_error("sidecar: %s:%d: %s: limits are given in degrees and in metres; a joint turns or slides", r->path,
                   line_of(value), key);
@@ -368,7 +367,7 @@ static Status read_limits(Reader *r, SidecarJoint *j, const char *key, const yam
 
 READ_JOINT(joint_limits_deg)
 {
-    const Status status = read_limits(r, j, key, value, 3600, "low high in -3600 .. 3600 deg, low <= high");
+    const Status status = read_limits(r, j, key, value, 3600);
     j->low *= rad_per_deg;
     j->high *= rad_per_deg;
     return status;
@@ -377,13 +376,13 @@ READ_JOINT(joint_limits_deg)
 READ_JOINT(joint_limits_m)
 {
     j->slides = true;
-    return read_limits(r, j, key, value, 1000, "low high in -1000 .. 1000 m, low <= high");
+    return read_limits(r, j, key, value, 1000);
 }
 
 READ_JOINT(joint_rest_deg)
 {
     if (!read_numbers(&j->rest, 1, r, value) || !numbers_within(&j->rest, 1, -360, 360))
-        return bad_value(r, value, key, "a number in -360 .. 360 deg");
+        return bad_value(r, value, key, r->accepted);
     j->rest *= rad_per_deg;
     return STATUS_OK;
 }
@@ -391,7 +390,7 @@ READ_JOINT(joint_rest_deg)
 READ_JOINT(joint_spin_rpm)
 {
     if (!read_numbers(&j->spin_rps, 1, r, value) || !numbers_within(&j->spin_rps, 1, -1e5, 1e5))
-        return bad_value(r, value, key, "a number in -1e5 .. 1e5 turns a minute");
+        return bad_value(r, value, key, r->accepted);
     j->spin_rps *= 2 * pi_rad / 60;
     return STATUS_OK;
 }
@@ -402,24 +401,33 @@ READ_JOINT(joint_roll_radius)
     j->roll_radius_m = -1;
     if (text && strcmp(text, "auto") == 0) return STATUS_OK;
     if (!read_numbers(&j->roll_radius_m, 1, r, value) || !numbers_within(&j->roll_radius_m, 1, 0.01, 10))
-        return bad_value(r, value, key, "auto or a number in 0.01 .. 10 m");
+        return bad_value(r, value, key, r->accepted);
     return STATUS_OK;
 }
 
 static const Key joint_keys[] = {
-    {"name", joint_name},
-    {"nodes", joint_nodes},
-    {"parent", joint_parent},
-    {"each", joint_each},
-    {"pivot", joint_pivot},
-    {"axis", joint_axis},
-    {"class", joint_class},
-    {"metric", joint_metric},
-    {"limits_deg", joint_limits_deg},
-    {"limits_m", joint_limits_m},
-    {"rest_deg", joint_rest_deg},
-    {"spin_rpm", joint_spin_rpm},
-    {"roll_radius", joint_roll_radius},
+    {"name", "text", "a name of 1 .. 95 characters",
+     "as other joints name it in parent; else the node's own name", joint_name},
+    {"nodes", "patterns", "1 .. 16 patterns of 1 .. 95 characters",
+     "which nodes move, with all below them; needed", joint_nodes},
+    {"parent", "text", "the name of a joint", "what it is carried by; else by the file's hierarchy", joint_parent},
+    {"each", "bool", "true or false", "every node that matches is a joint of its own", joint_each},
+    {"pivot", "word or 3 numbers", "node, centre, or x y z in -1e9 .. 1e9 units of the file",
+     "what it turns about; node: where the node stands", joint_pivot},
+    {"axis", "word or 3 numbers",
+     "yaw, pitch, roll, forward, back, right, left, up, down, +x .. -z, or x y z not all 0",
+     "else by metric: azimuth yaw, elevation pitch", joint_axis},
+    {"class", "word or number", CLASS_ACCEPTED, "of the articulated parameter of DIS that moves it", joint_class},
+    {"metric", "word", "one of position, extension, x, y, z, azimuth, elevation, rotation",
+     "and its metric", joint_metric},
+    {"limits_deg", "2 numbers", "low high in -3600 .. 3600 deg, low <= high", "of what turns", joint_limits_deg},
+    {"limits_m", "2 numbers", "low high in -1000 .. 1000 m, low <= high", "of what slides", joint_limits_m},
+    {"rest_deg", "number", "a number in -360 .. 360 deg", "value at which the file draws it", joint_rest_deg},
+    {"spin_rpm", "number", "a number in -1e5 .. 1e5 turns a minute",
+     "turns by itself while the entity is active: rotors", joint_spin_rpm},
+    {"roll_radius", "word or number", "auto or a number in 0.01 .. 10 m",
+     "of a wheel: turns as the vehicle travels; auto: by its size",
+     joint_roll_radius},
 };
 
 /* What the keys of one joint demand of each other. */
@@ -458,7 +466,7 @@ READ_TOP(top_file)
     (void)j;
     return copy_text(r->sidecar->file, sizeof r->sidecar->file, scalar(value))
                ? STATUS_OK
-               : bad_value(r, value, key, "a path of 1 .. 511 characters");
+               : bad_value(r, value, key, r->accepted);
 }
 
 READ_TOP(top_name)
@@ -466,7 +474,7 @@ READ_TOP(top_name)
     (void)j;
     return copy_text(r->sidecar->name, sizeof r->sidecar->name, scalar(value))
                ? STATUS_OK
-               : bad_value(r, value, key, "a name of 1 .. 95 characters");
+               : bad_value(r, value, key, r->accepted);
 }
 
 READ_TOP(top_scale)
@@ -474,7 +482,7 @@ READ_TOP(top_scale)
     (void)j;
     double *scale = &r->sidecar->scale_m;
     if (!read_numbers(scale, 1, r, value) || !numbers_within(scale, 1, 1e-6, 1e6))
-        return bad_value(r, value, key, "a number in 1e-06 .. 1e+06 metres a unit");
+        return bad_value(r, value, key, r->accepted);
     return STATUS_OK;
 }
 
@@ -487,7 +495,7 @@ READ_TOP(top_axes)
     s->has_axes = second && read_axis_word(s->forward, text, (size_t)(second - text)) &&
                   read_axis_word(s->up, second + 1, strlen(second + 1)) && v3_dot(s->forward, s->up) == 0;
     return s->has_axes ? STATUS_OK
-                       : bad_value(r, value, key, "two different of +x -x +y -y +z -z: forward and up, as in '+x +z'");
+                       : bad_value(r, value, key, r->accepted);
 }
 
 READ_TOP(top_origin)
@@ -497,7 +505,7 @@ READ_TOP(top_origin)
     const char *text = scalar(value);
     if (text && strcmp(text, "auto") == 0) return STATUS_OK;
     s->has_origin = read_numbers(s->p_origin_file, 3, r, value) && numbers_within(s->p_origin_file, 3, -1e9, 1e9);
-    return s->has_origin ? STATUS_OK : bad_value(r, value, key, "auto, or x y z in -1e9 .. 1e9 units of the file");
+    return s->has_origin ? STATUS_OK : bad_value(r, value, key, r->accepted);
 }
 
 READ_TOP(top_crease)
@@ -505,7 +513,7 @@ READ_TOP(top_crease)
     (void)j;
     double *crease = &r->sidecar->crease_rad;
     if (!read_numbers(crease, 1, r, value) || !numbers_within(crease, 1, 0, 180))
-        return bad_value(r, value, key, "a number in 0 .. 180 deg");
+        return bad_value(r, value, key, r->accepted);
     *crease *= rad_per_deg;
     return STATUS_OK;
 }
@@ -580,7 +588,7 @@ READ_TOP(top_damage)
     (void)j;
     bool seen[model_damage_states] = {false};
     if (value->type != YAML_MAPPING_NODE)
-        return bad_value(r, value, key, "slight, moderate or destroyed, and what shows it");
+        return bad_value(r, value, key, r->accepted);
     for (const yaml_node_pair_t *pair = value->data.mapping.pairs.start; pair < value->data.mapping.pairs.top; pair++) {
         const yaml_node_t *word = yaml_document_get_node(r->document, pair->key);
         const char *text = scalar(word);
@@ -604,9 +612,9 @@ READ_TOP(top_joints)
 {
     (void)j;
     Sidecar *s = r->sidecar;
-    if (value->type != YAML_SEQUENCE_NODE) return bad_value(r, value, key, "a list, a joint a line: `- {nodes: ...}`");
+    if (value->type != YAML_SEQUENCE_NODE) return bad_value(r, value, key, r->accepted);
     const ptrdiff_t count = value->data.sequence.items.top - value->data.sequence.items.start;
-    if (count > sidecar_max_joints) return bad_value(r, value, key, "at most 256 joints");
+    if (count > sidecar_max_joints) return bad_value(r, value, key, r->accepted);
     s->joint = calloc((size_t)count + 1, sizeof *s->joint);
     if (!s->joint) return STATUS_NO_MEMORY;
     for (; s->joint_count < count; s->joint_count++) {
@@ -623,12 +631,26 @@ READ_TOP(top_joints)
 }
 
 static const Key top_keys[] = {
-    {"file", top_file},           {"name", top_name},
-    {"scale", top_scale},         {"axes", top_axes},
-    {"origin", top_origin},       {"crease_deg", top_crease},
-    {"drop", top_drop},           {"joints", top_joints},
-    {"materials", top_materials}, {"node_materials", top_node_materials},
-    {"roles", top_roles},         {"damage", top_damage},
+    {"file", "path", "a path of 1 .. 511 characters",
+     "the model, where it is not named as the sidecar; relative to it", top_file},
+    {"name", "text", "a name of 1 .. 95 characters", "as truth says it; else the file's name", top_name},
+    {"scale", "number", "a number in 1e-06 .. 1e+06 metres a unit",
+     "0.001: the file is in millimetres; else 1", top_scale},
+    {"axes", "2 words", "two different of +x -x +y -y +z -z: forward and up, as in '+x +z'",
+     "of the file; else as its format is used", top_axes},
+    {"origin", "word or 3 numbers", "auto, or x y z in -1e9 .. 1e9 units of the file",
+     "centre of the base, in the file; auto: under the middle of what does not move",
+     top_origin},
+    {"crease_deg", "number", "a number in 0 .. 180 deg",
+     "sharper edges stay sharp where the file has no normals; else 30", top_crease},
+    {"drop", "patterns", "patterns of 1 .. 95 characters", "nodes that are not there", top_drop},
+    {"joints", "list", "a list, a joint a line: `- {nodes: ...}`", "what moves; their keys are below", top_joints},
+    {"materials", "pattern: name", "rows of etc/materials.csv or of models.materials, 1 .. 31 characters",
+     "by the names of the file's materials", top_materials},
+    {"node_materials", "pattern: name", "the same", "by node, before materials", top_node_materials},
+    {"roles", "pattern: name", "rows of etc/heat.csv", "what warms the part", top_roles},
+    {"damage", "mapping", "slight, moderate or destroyed, and what shows it",
+     "each with hide: [patterns] and materials: {pattern: name}", top_damage},
 };
 
 /* ---- the file --------------------------------------------------------------------------------------- */
@@ -687,4 +709,24 @@ Status sidecar_read(Sidecar *out, const char *path)
     status = sidecar_parse(out, path, text, octets);
     free(text);
     return status;
+}
+
+/* ---- the keys, for people ------------------------------------------------------------------------- */
+
+static void write_keys(FILE *to, const Key *key, size_t count, const char *before)
+{
+    for (size_t i = 0; i < count; i++)
+        fprintf(to, "  %s%s: %s\n      %s\n      %s\n", before, key[i].name, key[i].type, key[i].accepted, key[i].help);
+}
+
+void sidecar_write_keys(FILE *to)
+{
+    fputs("Keys of a sidecar, NAME.yaml beside a model's file: what each takes, its range and its meaning.\n"
+          "A pattern has * and ?, and is held against a node's name and against its path from the root.\n\n", to);
+    write_keys(to, top_keys, sizeof top_keys / sizeof *top_keys, "");
+    fputs("\nKeys of a joint, `- {nodes: ...}` below joints:\n\n", to);
+    write_keys(to, joint_keys, sizeof joint_keys / sizeof *joint_keys, "joints.");
+    fputs("\nroles: ", to);
+    for (int k = 0; k < HEAT_ROLE_COUNT; k++) fprintf(to, "%s%s", k ? ", " : "", heat_role_name((HeatRole)k));
+    fputc('\n', to);
 }

@@ -82,6 +82,8 @@ Sidecar sidecar_default(void);
 Status sidecar_read(Sidecar *out, const char *path);
 /* The same from memory; path is for the messages. */
 Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t octets);
+/* Every key with its type, unit, range and meaning, from the tables that the reader goes by. */
+void   sidecar_write_keys(FILE *to);
 void   sidecar_close(Sidecar *sidecar); /* accepts zeroes */
 /* Words as the files have them; NULL where there is none (a number is then shown). */
 const char *sidecar_class_text(char out[32], uint32_t dis_class);

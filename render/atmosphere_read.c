@@ -527,18 +527,24 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
 {
     char name[96], folder[512];
     bool plain = *model && strlen(model) < 64;
+    const bool named = strpbrk(model, "/."); /* a folder */
     for (const char *c = model; *c; c++)
         plain = plain && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '_');
-    if (!plain) {
+    if (!plain && !named) {
         char shown[64];
         text_escape(shown, sizeof shown, model, strlen(model));
-        log_error("atmosphere: a model's name is of a-z, 0-9 and _, not '%s'", shown);
+        log_error("atmosphere: a model's name is of a-z, 0-9 and _, not '%s'; a folder has a dot or a slash: ./NAME", shown);
         return STATUS_BAD_VALUE;
     }
-    snprintf(name, sizeof name, "atmosphere/%s", model);
-    if (!etc_path(folder, sizeof folder, name)) {
+    if (!named) snprintf(name, sizeof name, "atmosphere/%s", model);
+    if (named ? snprintf(folder, sizeof folder, "%s", model) >= (int)sizeof folder
+              : !etc_path(folder, sizeof folder, name)) {
         log_error("atmosphere: path too long: model=%s", model);
         return STATUS_BAD_VALUE;
+    }
+    if (named && access(folder, F_OK) != 0) {
+        log_error("atmosphere: there is no folder %s (weather.atmosphere); etc/atmosphere/README.md is the format", model);
+        return STATUS_IO;
     }
     if (access(folder, F_OK) != 0) return no_model(model);
     Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);

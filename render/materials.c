@@ -38,9 +38,11 @@ static const struct {
 };
 enum { number_column_count = sizeof number_columns / sizeof *number_columns };
 
-static Status read_materials(Materials *m, const char *path)
+/* The rows of one file behind those that are there; a name that an earlier file has is left out. */
+static Status read_rows(Materials *m, const char *path)
 {
     Table table = {0};
+    const int before = m->count;
     Status status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
@@ -50,44 +52,59 @@ static Status read_materials(Materials *m, const char *path)
     for (int i = -1; i < number_column_count; i++) {
         if (i >= 0) column[i] = table_column(&table, number_columns[i].name);
         if ((i < 0 ? name_column : column[i]) >= 0) continue;
-        log_error("materials: column missing: file=%s column=%s", path, i < 0 ? "name" : number_columns[i].name);
+        log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0],
+                  i < 0 ? "name" : number_columns[i].name);
         goto done;
     }
-    if (table.rows > materials_limit) {
+    if (table.rows > materials_limit - before) {
         log_error("materials: too many rows: file=%s rows=%d limit=%d", path, table.rows, (int)materials_limit);
         goto done;
     }
-    m->material = calloc((size_t)table.rows + 1, sizeof *m->material);
-    if (!m->material) {
+    Material *larger = realloc(m->material, ((size_t)before + (size_t)table.rows + 1) * sizeof *m->material);
+    if (!larger) {
         status = STATUS_NO_MEMORY;
         goto done;
     }
-    /* row 0: absorbs everything, gives nothing back; its heat is that of dry sand */
-    m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
-                                .heat_capacity_j_kgk = 800};
-    m->count = 1;
+    m->material = larger;
     for (int row = 0; row < table.rows; row++) {
         const char *name = table_text(&table, row, name_column);
         const size_t length = strlen(name);
-        if (length == 0 || length >= sizeof m->material->name || materials_find(m, name) >= 0) {
+        const int same = materials_find(m, name);
+        if (length == 0 || length >= sizeof m->material->name || same == 0 || same >= before) {
             log_error("materials: name empty, repeated or longer than %zu: file=%s line=%d name=%s",
                       sizeof m->material->name - 1, path, table.line[row + 1], name);
             goto done;
         }
-        Material *material = &m->material[m->count++];
-        memcpy(material->name, name, length + 1);
+        Material material = {0};
+        memcpy(material.name, name, length + 1);
         for (int i = 0; i < number_column_count; i++) {
             double value;
             const Status got =
                 table_number(&value, &table, row, column[i], number_columns[i].low, number_columns[i].high);
             if (got != STATUS_OK) goto done;
-            *(float *)((char *)material + number_columns[i].offset) = (float)value;
+            *(float *)((char *)&material + number_columns[i].offset) = (float)value;
         }
+        if (same < 0) m->material[m->count++] = material; /* else the user's own row stands in its place */
     }
     status = STATUS_OK;
 done:
     table_close(&table);
     return status;
+}
+
+/* The user's own (models.materials), then those of the table. */
+static Status read_materials(Materials *m, const char *path)
+{
+    const char *own = etc_own("materials.csv");
+    Status status = STATUS_OK;
+    m->material = calloc(1, sizeof *m->material);
+    if (!m->material) return STATUS_NO_MEMORY;
+    /* row 0: absorbs everything, gives nothing back; its heat is that of dry sand */
+    m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
+                                .heat_capacity_j_kgk = 800};
+    m->count = 1;
+    if (own) status = read_rows(m, own);
+    return status == STATUS_OK ? read_rows(m, path) : status;
 }
 
 /* Row of the class of this name in a file of one row a class; logged when unknown. */

@@ -165,6 +165,12 @@ done:
     return status;
 }
 
+Status cover_table_check(const char *path)
+{
+    CoverTable table;
+    return cover_table_read(&table, path);
+}
+
 static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
 
 /* The table that knows most of the pixels; of equals the first. */

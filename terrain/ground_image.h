@@ -28,6 +28,8 @@ typedef struct CoverReport {
  * or more, as in landscape files. Failures are logged. */
 Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table, int band,
                        const Elevation *elevation, const LocalFrame *frame);
+/* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */
+Status cover_table_check(const char *path);
 void   cover_grid_free(CoverGrid grid[cover_windows]);
 SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, double y_m);
 

@@ -140,7 +140,7 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
 Status preset_read(SensorPreset *out, const char *path, const char *name)
 {
     Table  table;
-    char   known[512] = "";
+    char   known[512] = "", before[600] = "";
     Status status     = table_open(&table, path);
     if (status != STATUS_OK) return status;
     const int column = need(&table, "name");
@@ -152,10 +152,35 @@ Status preset_read(SensorPreset *out, const char *path, const char *name)
         if (strcmp(here, name) == 0 && row < 0) row = i;
         snprintf(known + length, sizeof known - length, "%s%s", i ? ", " : "", here);
     }
+    if (row < 0 && etc_own("sensors.csv")) snprintf(before, sizeof before, " (nor in %s)", etc_own("sensors.csv"));
     if (row >= 0)
         status = read_row(out, &table, row);
     else if (column >= 0)
-        log_error("sensors: %s: no sensor named '%s'; there are: %s", path, name, known);
+        log_error("sensors: %s: no sensor named '%s'%s; there are: %s", path, name, before, known);
+    table_close(&table);
+    return status;
+}
+
+Status preset_has(bool *has, const char *path, const char *name)
+{
+    Table  table;
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    const int column = need(&table, "name");
+    *has = false;
+    for (int i = 0; column >= 0 && i < table.rows; i++) *has |= strcmp(table_text(&table, i, column), name) == 0;
+    table_close(&table);
+    return column >= 0 ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+Status preset_check(const char *path)
+{
+    Table        table;
+    SensorPreset p;
+    Status       status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    if (need(&table, "name") < 0) status = STATUS_BAD_VALUE;
+    for (int i = 0; i < table.rows && status == STATUS_OK; i++) status = read_row(&p, &table, i);
     table_close(&table);
     return status;
 }

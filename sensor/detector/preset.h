@@ -31,6 +31,10 @@ typedef struct SensorPreset {
 /* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there
  * is. */
 Status preset_read(SensorPreset *out, const char *path, const char *name);
+/* Whether a table has a row of that name. */
+/* Every row of a table is read; the first that is wrong is logged. */
+Status preset_check(const char *path);
+Status preset_has(bool *has, const char *path, const char *name);
 /* What the converter gets: tdi stages look one after another at the same place, so that light and dark current add
  * up, and the noise of their reading as squares: NEdT is the root of their number better. */
 PhotonDetector preset_photons(const SensorPreset *preset);

@@ -2,6 +2,11 @@
 
 #include "dis/pdu.h"
 
+#include <errno.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #define AT(member) SETTING_AT(Config, member)
 
 static const Setting keys[] = {
@@ -43,8 +48,9 @@ static const Setting keys[] = {
      "of the stabilised picture against upright, its right side down"},
     {"sensor.preset", SETTING_TEXT, AT(sensor.preset), 0, 0, NULL, "",
      "none, or sensors of etc/sensors.csv, one a band: staring_lwir,staring_mwir,tv"},
-    {"sensor.table", SETTING_TEXT, AT(sensor.table), 0, 0, NULL, "",
-     "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), before those of sensor.preset"},
+    {"sensor.table", SETTING_PATH, AT(sensor.table), 0, 0, NULL, "",
+     "a sensor's data sheet with FLIR92's entries (etc/sensors/example_flir2.sheet), before those of sensor.preset; or "
+     "a .csv of your own sensors, as etc/sensors.csv, that sensor.preset names"},
     {"sensor.lens_k1", SETTING_DOUBLE, AT(sensor.lens_k1), -1e6, 1e6, NULL, "",
      "distortion of all bands, as OpenCV has it, tangents off the axis; in place of the first preset's"},
     {"sensor.lens_k2", SETTING_DOUBLE, AT(sensor.lens_k2), -1e9, 1e9, NULL, "", "its fourth order"},
@@ -129,9 +135,9 @@ static const Setting keys[] = {
      "targets with fewer pixels in their masks are marked in coco.json to be ignored (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
      "the same for those of which less than this share is seen"},
-    {"record.path", SETTING_TEXT, AT(record.path), 0, 0, NULL, "", "pcapng file for all that `run` hears; empty: none"},
-    {"weather.atmosphere", SETTING_TEXT, AT(weather.atmosphere), 0, 0, NULL, "",
-     "us1976, midlat_summer, or another of etc/atmosphere"},
+    {"record.path", SETTING_PATH, AT(record.path), 0, 0, NULL, "", "pcapng file for all that `run` hears; empty: none"},
+    {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
+     "us1976, midlat_summer, or another of etc/atmosphere; or a folder as those, ./NAME"},
     {"weather.visibility_m", SETTING_DOUBLE, AT(weather.visibility_m), 100, 300000, NULL, "m", "meteorological range"},
     {"weather.air_temp_k", SETTING_DOUBLE, AT(weather.air_temp_k), 220, 330, NULL, "K",
      "at the ground of the terrain's origin; with height as the atmosphere's; unset: its own"},
@@ -143,18 +149,18 @@ static const Setting keys[] = {
     {"terrain.relief_m", SETTING_DOUBLE, AT(terrain.relief_m), 0, 200, NULL, "m", "rms height of the invented hills"},
     {"terrain.spacing_m", SETTING_DOUBLE, AT(terrain.spacing_m), 0, 1000, NULL, "m",
      "between elevation posts; 0: 4 invented, else the files' own"},
-    {"terrain.elevation", SETTING_TEXT, AT(terrain.elevation), 0, 0, NULL, "",
+    {"terrain.elevation", SETTING_PATHS, AT(terrain.elevation), 0, 0, NULL, "",
      "elevation files or folders, separated by commas; empty: invented ground"},
     {"terrain.vertical", SETTING_TEXT, AT(terrain.vertical), 0, 0, "auto|geoid|ellipsoid", "",
      "what their heights are above; auto: as their CRS says, else the geoid"},
-    {"terrain.geoid", SETTING_TEXT, AT(terrain.geoid), 0, 0, NULL, "", "a .gtx grid; empty: EGM96 of proj-data"},
-    {"terrain.cover", SETTING_TEXT, AT(terrain.cover), 0, 0, NULL, "",
+    {"terrain.geoid", SETTING_PATH, AT(terrain.geoid), 0, 0, NULL, "", "a .gtx grid; empty: EGM96 of proj-data"},
+    {"terrain.cover", SETTING_PATHS, AT(terrain.cover), 0, 0, NULL, "",
      "ground cover files or folders; empty: by slope and height"},
-    {"terrain.cover_table", SETTING_TEXT, AT(terrain.cover_table), 0, 0, NULL, "",
+    {"terrain.cover_table", SETTING_NAME_OR_PATH, AT(terrain.cover_table), 0, 0, NULL, "",
      "worldcover, nlcd, fbfm40 or a CSV of code, surface; empty: by the codes met"},
     {"terrain.cover_band", SETTING_INT, AT(terrain.cover_band), 0, 1000, NULL, "",
      "band of the cover files; 0: 4 of landscape files (8 bands), else 1"},
-    {"terrain.orthophoto", SETTING_TEXT, AT(terrain.orthophoto), 0, 0, NULL, "",
+    {"terrain.orthophoto", SETTING_PATHS, AT(terrain.orthophoto), 0, 0, NULL, "",
      "photographs of the ground from above, files or folders"},
     {"terrain.ground", SETTING_TEXT, AT(terrain.ground), 0, 0, "auto|clamp|trust|fit", "",
      "set who stands on the ground onto it, leave them, or lead the ground through them; auto: fit invented ground and "
@@ -164,6 +170,10 @@ static const Setting keys[] = {
     {"observer.height_m", SETTING_DOUBLE, AT(observer.height_m), 1, 20000, NULL, "m", "above what it looks at"},
     {"observer.rate_dps", SETTING_DOUBLE, AT(observer.rate_dps), -60, 60, NULL, "deg/s",
      "of its circle, clockwise from above"},
+    {"models.catalog", SETTING_PATH, AT(models.catalog), 0, 0, NULL, "",
+     "your own rows before those of etc/catalog.csv: which model an entity type gets"},
+    {"models.materials", SETTING_PATH, AT(models.materials), 0, 0, NULL, "",
+     "your own rows before those of etc/materials.csv"},
     {"models.sag_m", SETTING_DOUBLE, AT(models.sag_m), 1e-5, 0.1, NULL, "m",
      "largest distance of a facet from its surface"},
     {"entities.timeout_s", SETTING_DOUBLE, AT(entities.timeout_s), 0.1, 1e5, NULL, "s",
@@ -183,7 +193,7 @@ static const Setting keys[] = {
      "time that a frame's rays may take, by the table's times quality.machine_factor"},
     {"quality.machine_factor", SETTING_DOUBLE, AT(quality.machine_factor), 0.001, 1000, NULL, "",
      "time on this machine over that in the table; run measures it when it is not given"},
-    {"quality.table", SETTING_TEXT, AT(quality.table), 0, 0, NULL, "",
+    {"quality.table", SETTING_PATH, AT(quality.table), 0, 0, NULL, "",
      "settings with their errors and times, by `pitviper bench quality --table FILE`; empty: etc/quality.csv"},
     {"seed", SETTING_LONG, AT(seed), 0, 2147483647, NULL, "", "of everything random"},
 };
@@ -296,10 +306,50 @@ Status config_set(Config *config, const char *name, const char *value, const cha
     return settings_set(config, config->given, &table, name, value, source);
 }
 
-Status config_read(Config *config, const char *path)
+Status config_set_from(Config *config, const char *name, const char *value, const char *source, const char *file)
+{
+    return settings_set_from(config, config->given, &table, name, value, source, file);
+}
+
+int config_line(const char *name, const char *path) { return settings_line(&table, name, path); }
+
+/* Of a .csv: sensors for sensor.preset; of anything else: one sensor. */
+static bool table_has_rows(const Config *config)
+{
+    const size_t length = strlen(config->sensor.table);
+    return length > 4 && strcasecmp(config->sensor.table + length - 4, ".csv") == 0;
+}
+
+const char *config_sheet(const Config *config) { return table_has_rows(config) ? "" : config->sensor.table; }
+
+static bool is_readable(const char *key, const char *path)
+{
+    struct stat about;
+    const int   failed = !*path || access(path, R_OK) == 0 ? 0 : errno;
+    const bool  file = !*path || stat(path, &about) != 0 || S_ISREG(about.st_mode);
+    if (failed == 0 && file) return true;
+    log_error("config: %s: cannot read %s: %s; in a file of settings paths are relative to that file, on the command line "
+              "to the folder you are in", key, path, file ? strerror(failed) : "it is no file");
+    return false;
+}
+
+Status config_own_tables(const Config *config)
+{
+    if (!is_readable("models.catalog", config->models.catalog) ||
+        !is_readable("models.materials", config->models.materials) || !is_readable("sensor.table", config->sensor.table))
+        return STATUS_BAD_VALUE;
+    const bool fits = etc_own_set("catalog.csv", config->models.catalog) &&
+                      etc_own_set("materials.csv", config->models.materials) &&
+                      etc_own_set("sensors.csv", table_has_rows(config) ? config->sensor.table : NULL);
+    return fits ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+Status config_read(Config *config, const char *path) { return config_read_as(config, path, path); }
+
+Status config_read_as(Config *config, const char *path, const char *file)
 {
     Config       filled = *config;
-    const Status status = settings_read(&filled, filled.given, &table, path);
+    const Status status = settings_read_as(&filled, filled.given, &table, path, file);
     if (status == STATUS_OK) *config = filled;
     return status;
 }
@@ -319,12 +369,17 @@ Status config_check(const Config *config)
                                             "detector.jitter_px", "detector.bad_share", "detector.ac_per_line",
                                             "detector.line_noise", "detector.smear", "detector.raw"};
     for (size_t i = 0; i < sizeof of_preset / sizeof *of_preset; i++)
-        if (strcmp(config->sensor.preset, "none") == 0 && !*config->sensor.table &&
+        if (strcmp(config->sensor.preset, "none") == 0 && !*config_sheet(config) &&
             config_given(config, of_preset[i])) {
             log_error("config: %s: needs a sensor to change; choose one with sensor.preset or sensor.table",
                       of_preset[i]);
             return STATUS_BAD_VALUE;
         }
+    if (table_has_rows(config) && strcmp(config->sensor.preset, "none") == 0) {
+        log_error("config: sensor.table: %s is a table of sensors; sensor.preset says which of its rows to take",
+                  config->sensor.table);
+        return STATUS_BAD_VALUE;
+    }
     if (!*config->terrain.elevation && config->terrain.spacing_m > 0 &&
         !(config->terrain.spacing_m >= 1 && config->terrain.spacing_m <= 30)) {
         log_error("config: terrain.spacing_m: %g is not 0 or 1 .. 30 m for invented ground", config->terrain.spacing_m);
@@ -381,6 +436,7 @@ void config_text(char *out, size_t out_size, const Config *config)
     hashed.exercise.from_s = plain.exercise.from_s;
     hashed.exercise.to_s   = plain.exercise.to_s;
     hashed.quality         = plain.quality; /* of the settings that it picks each is hashed */
+    settings_absolute(&hashed, &table);
     settings_text(out, out_size, &table, &hashed);
 }
 
@@ -405,11 +461,16 @@ const char *config_difference(const Config *a, const Config *b)
     return NULL;
 }
 
-void config_write_settings(FILE *to, const Config *config) { settings_write(to, &table, config, config->given); }
+void config_write_settings(FILE *to, const Config *config)
+{
+    Config absolute = *config;
+    settings_absolute(&absolute, &table);
+    settings_write(to, &table, &absolute, config->given);
+}
 
 void config_write_given(FILE *to, const Config *config)
 {
-    char  text[16384];
+    char  text[config_text_size];
     char *at = text;
     settings_text(text, sizeof text, &table, config);
     for (int i = 0; i < key_count && *at; i++) {

@@ -1,13 +1,14 @@
 /* sensor/node/config.h: everything a user may set, one table: key, unit, range, default, help.
  *
- * A configuration file is YAML, sections of keys. What is absent keeps its default; what is unknown, given
- * twice, or out of range stops the program with file, line, key, value and the accepted range. */
+ * A configuration file is YAML, sections of keys. Names of files in it are relative to its own folder. What is absent
+ * keeps its default; what is unknown, given twice, or out of range stops the program with file, line, key, value and the
+ * accepted range. */
 #ifndef SENSOR_NODE_CONFIG_H
 #define SENSOR_NODE_CONFIG_H
 
 #include "render/view.h"
 
-enum { config_keys_max = 256 };
+enum { config_keys_max = 256, config_paths_size = 4096, config_text_size = 65536 };
 
 typedef struct Config {
     struct {
@@ -26,7 +27,7 @@ typedef struct Config {
         double mount_x_m, mount_y_m, mount_z_m; /* NaN: the mount's own */
         double mount_yaw_deg, mount_pitch_deg, mount_roll_deg;
         char   preset[96];         /* none, or names of etc/sensors.csv, comma separated */
-        char   table[1024];        /* a sensor's sheet (sensor/detector/sheet.h); empty: none */
+        char   table[1024];        /* a sensor's sheet (sensor/detector/sheet.h), or a .csv of sensors; empty: none */
         double lens_k1, lens_k2, lens_k3, lens_p1,
             lens_p2; /* of the picture (render/lens.h); NaN: as the preset says */
         double lateral_r, lateral_b;
@@ -77,21 +78,22 @@ typedef struct Config {
         char   path[1024];         /* empty: nothing is recorded */
     } record;
     struct {
-        char   atmosphere[32];     /* a folder of etc/atmosphere */
+        char   atmosphere[1024];   /* a folder of etc/atmosphere; with a dot or a slash, any folder */
         double visibility_m, air_temp_k, pressure_mbar, wind_mps, wind_from_deg; /* air_temp_k NaN: the atmosphere's */
     } weather;
     struct {
         double relief_m, spacing_m;
-        char   elevation[1024], vertical[16], geoid[256];
-        char   cover[1024], cover_table[256];
+        char   elevation[config_paths_size], vertical[16], geoid[1024];
+        char   cover[config_paths_size], cover_table[1024];
         int    cover_band;
-        char   orthophoto[1024];
+        char   orthophoto[config_paths_size];
         char   ground[8];
     } terrain;
     struct {
         double range_m, height_m, rate_dps; /* the stand-off observer */
     } observer;
     struct {
+        char   catalog[1024], materials[1024]; /* rows before those of etc/; empty: none */
         double sag_m;
     } models;
     struct {
@@ -112,8 +114,18 @@ typedef struct Config {
 Config config_default(void);
 /* Fills over what is there. On failure logs and leaves the configuration as it was. */
 Status config_read(Config *config, const char *path);
+/* The same; paths in it are relative to the folder of `file`. */
+Status config_read_as(Config *config, const char *path, const char *file);
 /* One key, as the command line gives it: `sensor.width_px`, `720`. source names where it came from. */
 Status config_set(Config *config, const char *key, const char *value, const char *source);
+/* The same as if it stood in that file (YAML of ours): paths are relative to its folder. NULL: to the current one. */
+Status config_set_from(Config *config, const char *key, const char *value, const char *source, const char *file);
+/* The line on which a file that config_read has read gives a key; 0: it does not. */
+int    config_line(const char *key, const char *path);
+/* The sheet that sensor.table names; empty: none, or it is a table. */
+const char *config_sheet(const Config *config);
+/* The user's tables of this configuration from now on (etc_own), for the whole process. */
+Status config_own_tables(const Config *config);
 /* Whether a file or the command line has set it; the key must exist. */
 bool   config_given(const Config *config, const char *key);
 /* What a key takes. */

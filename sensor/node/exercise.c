@@ -301,14 +301,14 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
     exercise_finish(exercise);
 
     const ExerciseCounts *counts = exercise_counts(exercise);
-    printf("%.1f s, %d entities, %llu PDUs, %llu datagrams, %llu octets", fmin(time_s, cast->scenario->duration_s),
+    log_say("%.1f s, %d entities, %llu PDUs, %llu datagrams, %llu octets", fmin(time_s, cast->scenario->duration_s),
            exercise_heard(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams,
            (unsigned long long)counts->octets);
-    if (counts->malformed) printf(", %llu malformed", (unsigned long long)counts->malformed);
+    if (counts->malformed) log_say(", %llu malformed", (unsigned long long)counts->malformed);
     if (counts->lost || counts->duplicated || counts->overtaken)
-        printf(", %llu lost, %llu twice, %llu overtaken", (unsigned long long)counts->lost,
+        log_say(", %llu lost, %llu twice, %llu overtaken", (unsigned long long)counts->lost,
                (unsigned long long)counts->duplicated, (unsigned long long)counts->overtaken);
-    fputc('\n', stdout);
+    log_say("\n");
     exercise_destroy(exercise);
     return run->failed ? STATUS_IO : STATUS_OK;
 }

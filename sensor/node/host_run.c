@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-enum { path_size = 4096, config_text_size = 16384 };
+enum { path_size = 4096 };
 
 double frame_grid_s(const FrameGrid *grid, double n) { return (grid->origin + n) / grid->rate_hz; }
 
@@ -46,7 +46,9 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 Status run_prepare(Run *run)
 {
     if (!parse_bands(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
-    Status status = quality_choose(&run->options.config, &run->choices, run->bands);
+    Status status = config_own_tables(&run->options.config);
+    if (status != STATUS_OK) return status;
+    status = quality_choose(&run->options.config, &run->choices, run->bands);
     if (status != STATUS_OK) return status;
     status = sensors_choose(&run->sensors, &run->choices, &run->options.config, run->bands);
     return status == STATUS_OK ? hash_config(run->config_sha256, &run->options) : status;
@@ -57,6 +59,7 @@ Status run_survey(Run *run, const DisLog *heard)
     const Options *o = &run->options;
     char           path[path_size];
     run->exercise = choose_exercise(&run->choices, heard, &o->config);
+    log_detail("%s: %d threads, %s, config_sha256 %s", options_command(o), o->threads, o->isa, run->config_sha256);
     Status status = survey_log(&run->survey, heard, run->exercise);
     if (status != STATUS_OK) return status;
     const DisCounters *counters = &run->survey.counters;
@@ -112,6 +115,9 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
     if (result->host_count == 0) hosts[0] = host; /* still to come */
     summarise_stages(stage_ms, result);
+    for (int i = 0; i < session_stages; i++)
+        log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
+                   session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
     snprintf(path, sizeof path, "%s/run.json", out);
     const DisLogCounters *link = run->link;
     const RunRecord       record = {
@@ -179,7 +185,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
     choice_say_night(choices, run->bands, *unix_s, plan, &frame);
-    for (int i = 0; i < choices->count; i++) printf("%s\n", choices->line[i]);
+    for (int i = 0; i < choices->count; i++) log_say("%s\n", choices->line[i]);
     fflush(stdout);
     return STATUS_OK;
 }
@@ -191,8 +197,8 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     const Config *config = &run->options.config;
     const char   *name   = options_command(&run->options);
     const Status  status = write_run(run, out, host, choices, result, heard);
-    if (config->publish.files) printf("%d frames in %s/frames\n", result->frames, out);
-    else printf("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
+    if (config->publish.files) log_say("%d frames in %s/frames\n", result->frames, out);
+    else log_say("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
     if (result->at_limit > 0)
         log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
@@ -220,7 +226,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (host) {
         if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
         else dis_entity_id_text(host_text, *host);
-        printf("host: %s (--host)\n", host_text);
+        log_say("host: %s (--host)\n", host_text);
     }
     Status status = choose(&plan, &unix_s, &landscape, &contact, &choices, run, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);

@@ -16,7 +16,7 @@
 
 static void show_progress(double n, double first, double last, double begun_s)
 {
-    if (!isatty(STDERR_FILENO)) return;
+    if (!log_shows_progress()) return;
     const double done = (n - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
     fprintf(stderr, "\r  frame %.0f of %.0f  %3.0f %%  %.0f s left   %s", n - first + 1, last - first + 1, 100 * done,
             spent_s * (1 - done) / done, n == last ? "\r\x1b[K" : "");

@@ -38,8 +38,15 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
     char         path[4096];
     SensorPreset p;
     const char  *key = name ? "sensor.preset" : "sensor.table";
+    const char  *own = etc_own("sensors.csv"), *from = path;
     if (name && !etc_path(path, sizeof path, "sensors.csv")) return STATUS_BAD_VALUE;
-    const Status status = name ? preset_read(&p, path, name) : sheet_read(&p, config->sensor.table);
+    if (name && own) {
+        bool has;
+        const Status opened = preset_has(&has, own, name);
+        if (opened != STATUS_OK) return opened;
+        if (has) from = own;
+    }
+    const Status status = name ? preset_read(&p, from, name) : sheet_read(&p, config->sensor.table);
     if (status != STATUS_OK) return status;
     if (s->has[p.band]) {
         log_error("replay: %s: %s and %s are both for %s; choose one", key, s->preset[p.band].name, p.name,
@@ -122,8 +129,8 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
     const bool   named = strcmp(config->sensor.preset, "none") != 0;
     Status       status = STATUS_OK;
     *out                = s;
-    if (!named && !*config->sensor.table) return choose_lens(out, choices, config, NULL);
-    if (*config->sensor.table) status = take_sensor(&s, &first_band, config, NULL, bands);
+    if (!named && !*config_sheet(config)) return choose_lens(out, choices, config, NULL);
+    if (*config_sheet(config)) status = take_sensor(&s, &first_band, config, NULL, bands);
     strcpy(list, named ? config->sensor.preset : "");
     char *save = NULL;
     for (char *name = strtok_r(list, ",", &save); name && status == STATUS_OK; name = strtok_r(NULL, ",", &save))

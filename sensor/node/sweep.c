@@ -361,7 +361,7 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
-        printf("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+        log_say("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
                outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }
@@ -412,8 +412,8 @@ static Status run_all(SweepRun *s)
 {
     Status status = open_products(s);
     if (status == STATUS_OK && s->repeated > 0)
-        printf("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
-               s->repeated == 1 ? "is" : "are");
+        log_say("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
+                s->repeated == 1 ? "is" : "are");
     for (int i = 0; i < s->count && status == STATUS_OK; i++) status = one_variant(s, i);
     if (s->sheet.page) {
         const Status ended = sheet_end(&s->sheet);
@@ -423,7 +423,7 @@ static Status run_all(SweepRun *s)
     const Status merged = coco_merge_close(s->coco, status == STATUS_OK);
     if (status == STATUS_OK) status = merged;
     if (status == STATUS_OK)
-        printf("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+        log_say("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
     return status;
 }

@@ -29,7 +29,7 @@ static Status try_value(const Reading *r, const char *key, const char *value, in
     char   source[512];
     Config tried = *r->base;
     snprintf(source, sizeof source, "%s:%d", r->path, line);
-    return config_set(&tried, key, value, source);
+    return config_set_from(&tried, key, value, source, r->path);
 }
 
 static Status add_value(SweepAxis *axis, const Reading *r, const yaml_node_t *node)
@@ -225,7 +225,7 @@ Status sweep_read(Sweep *out, const char *path, const Config *base)
     char   *text;
     size_t  octets;
     Reading reading = {.path = path, .base = base, .sweep = out};
-    *out            = (Sweep){.draw = 1};
+    *out            = (Sweep){.path = path, .draw = 1};
     Status status   = text_read_file(&text, &octets, "sweep", path, settings_file_octets);
     if (status != STATUS_OK) return status;
     status = parse(&reading, text, octets);
@@ -271,7 +271,7 @@ Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int var
     for (int i = 0; i < sweep->axis_count && status == STATUS_OK; i++) {
         sweep_value(value, sweep, variant, i);
         snprintf(source, sizeof source, "variant %d", variant + 1);
-        status = config_set(out, sweep->axis[i].key, value, source);
+        status = config_set_from(out, sweep->axis[i].key, value, source, sweep->path);
     }
     return status;
 }

@@ -10,8 +10,8 @@
  *       exercise.utc: [2026-06-21T10:00:00Z, 2026-12-21T17:00:00Z]
  *       seed: 7                           # one value: the same for all
  *
- * Any key of `pitviper check --default`. Every value is tried before the first run; what is wrong is one logged line with
- * file, line, key, value and range. */
+ * Any key of `pitviper check --default`. Names of files are relative to the sweep's. Every value is tried before the
+ * first run; what is wrong is one logged line with file, line, key, value and range. */
 #ifndef SENSOR_NODE_SWEEP_FILE_H
 #define SENSOR_NODE_SWEEP_FILE_H
 
@@ -33,6 +33,7 @@ typedef struct SweepAxis {
 } SweepAxis;
 
 typedef struct Sweep {
+    const char *path;            /* borrowed: paths of its values are relative to its folder */
     SweepMode mode;
     int       count, axis_count; /* count: of variants */
     int       count_line;

@@ -220,7 +220,7 @@ static void print_line(const CaseResult *r)
 
 static void show_progress(const Suite *s)
 {
-    if (!isatty(STDERR_FILENO)) return;
+    if (!log_shows_progress()) return;
     const double spent_s = wall_clock_s() - s->begun_s;
     fprintf(stderr, "\r\x1b[K  %d of %d cases, %.0f s%s", s->done, s->count, spent_s,
             s->done == s->count ? "\r\x1b[K" : "");
@@ -235,7 +235,7 @@ static void take_case(void *user, int worker, int task)
     pthread_mutex_lock(&s->lock);
     s->ended[task] = true;
     s->done++;
-    if (isatty(STDERR_FILENO)) fputs("\r\x1b[K", stderr);
+    if (log_shows_progress()) fputs("\r\x1b[K", stderr);
     for (; s->printed < s->count && s->ended[s->printed]; s->printed++) print_line(s->result[s->printed]);
     fflush(stdout);
     show_progress(s);

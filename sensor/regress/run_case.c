@@ -1,5 +1,6 @@
 #include "sensor/regress/run_case.h"
 
+#include "sensor/node/config.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/child.h"
@@ -118,6 +119,26 @@ static bool find_log(char log[path_size], CaseResult *r)
     return true;
 }
 
+/* Paths in the lines of a case are relative to the case, and the file lies elsewhere: they are made absolute. What
+ * cannot be read stays as it is: the run says what is wrong with it. */
+static bool settle_paths(const char *config, const CaseResult *r)
+{
+    char    in_case[path_size];
+    Config *read = malloc(sizeof *read);
+    bool    ok = read != NULL;
+    snprintf(in_case, sizeof in_case, "%.4000s/case.yaml", r->c.folder);
+    log_hush(true);
+    if (ok) *read = config_default();
+    if (ok && config_read_as(read, config, in_case) == STATUS_OK) {
+        FILE *file = fopen(config, "w");
+        if (file) config_write_settings(file, read);
+        ok = file && fclose(file) == 0;
+    }
+    log_hush(false);
+    free(read);
+    return ok;
+}
+
 /* config.yaml of the work folder, from the lines of the case; or the file that it names. */
 static bool find_config(char config[path_size], CaseResult *r)
 {
@@ -132,6 +153,7 @@ static bool find_config(char config[path_size], CaseResult *r)
         FILE *file = fopen(config, "w");
         bool  ok   = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
+        ok = ok && settle_paths(config, r);
         if (!ok)
             return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
                             strerror(errno));

@@ -140,12 +140,63 @@ static void written_settings_read_back(void **state)
     CHECK(strstr(want, "inside.weight_kg=0.30000000000000004\n"));
 }
 
+typedef struct Places {
+    char one[64], several[64], either[64];
+} Places;
+
+static const Setting place_rows[] = {
+    {"one", SETTING_PATH, SETTING_AT(Places, one), 0, 0, NULL, "", ""},
+    {"several", SETTING_PATHS, SETTING_AT(Places, several), 0, 0, NULL, "", ""},
+    {"in.either", SETTING_NAME_OR_PATH, SETTING_AT(Places, either), 0, 0, NULL, "", ""},
+};
+static const SettingTable place_table = {.module = "test", .row = place_rows, .count = 3};
+
+/* The file is in /tmp. */
+static void paths_are_relative_to_their_file(void **state)
+{
+    (void)state;
+    char   path[text_file_size];
+    Places p = {{0}, {0}, {0}};
+    text_file(path, "one: a/b.csv\n\nseveral: x.tif, /y.tif ,../z, \nin:\n  either: plain\n");
+    assert_int_equal(settings_read(&p, NULL, &place_table, path), STATUS_OK);
+    assert_string_equal(p.one, "/tmp/a/b.csv");
+    assert_string_equal(p.several, "/tmp/x.tif,/y.tif ,/tmp/../z,");
+    assert_string_equal(p.either, "plain");
+    assert_int_equal(settings_line(&place_table, "one", path), 1);
+    assert_int_equal(settings_line(&place_table, "several", path), 3);
+    assert_int_equal(settings_line(&place_table, "in.either", path), 5);
+    assert_int_equal(settings_line(&place_table, "either", path), 0);
+    assert_int_equal(settings_read_as(&p, NULL, &place_table, path, "other/case.yaml"), STATUS_OK);
+    assert_string_equal(p.one, "other/a/b.csv");
+    remove(path);
+
+    assert_int_equal(settings_set(&p, NULL, &place_table, "one", "c.csv", "--set"), STATUS_OK);
+    assert_string_equal(p.one, "c.csv");
+    assert_int_equal(settings_set_from(&p, NULL, &place_table, "in.either", "./c", "x:1", "/far/away.yaml"), STATUS_OK);
+    assert_string_equal(p.either, "/far/./c");
+    assert_int_equal(settings_set_from(&p, NULL, &place_table, "one", "", "x:1", "/far/away.yaml"), STATUS_OK);
+    assert_string_equal(p.one, "");
+    assert_int_equal(settings_set_from(&p, NULL, &place_table, "one", "c", "x:1", "/dev/stdin"), STATUS_OK);
+    assert_string_equal(p.one, "c"); /* a pipe is in no folder */
+    log_set_sink(check_listen, NULL);
+    assert_int_equal(settings_set_from(&p, NULL, &place_table, "one", "1234567890123456789012345678901234567890", "x:1",
+                                       "/a/folder/with/a/long/name/x.yaml"), STATUS_BAD_VALUE);
+    log_set_sink(NULL, NULL);
+    CHECK(strstr(check_said, "longer than 63"));
+    assert_int_equal(settings_set(&p, NULL, &place_table, "several", "none/a,none/b", "--set"), STATUS_OK);
+    assert_int_equal(settings_set(&p, NULL, &place_table, "one", "/proc/self/../../dev/null", "--set"), STATUS_OK);
+    settings_absolute(&p, &place_table);
+    assert_string_equal(p.one, "/dev/null");
+    CHECK(strlen(p.several) > 60 || (p.several[0] == '/' && strstr(p.several, "/none/a,/")));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sections_lists_and_numbers),
         cmocka_unit_test(what_is_wrong_is_said_with_its_line),
         cmocka_unit_test(written_settings_read_back),
+        cmocka_unit_test(paths_are_relative_to_their_file),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -158,10 +158,41 @@ static void shipped_table(void **state)
     catalog_close(NULL);
 }
 
+static void own_rows_go_before_the_tables(void **state)
+{
+    (void)state;
+    Catalog *c;
+    Origin origin;
+    int matched;
+    char own[text_file_size];
+    CatalogRowInfo row;
+    text_file(own, "type,model,origin,length_m,note\n1.1.222,truck,centre,9,ours\n");
+    CHECK(etc_own_set("catalog.csv", own) && !etc_own_set("heat.csv", own));
+    CHECK(open_text(&c, "type,model,origin\n1.1.222.1.1,tank,base\n1.1.225,helicopter,base\n") == STATUS_OK);
+    CHECK(etc_own_set("catalog.csv", NULL) && !etc_own("catalog.csv"));
+    remove(own);
+    /* shallower than the table's own row, and taken all the same */
+    const int model = catalog_find(c, (DisEntityType){1, 1, 222, 1, 1, 0, 0}, &origin, &matched);
+    assert_string_equal(catalog_model(c, model)->name, "truck");
+    CHECK(origin == ORIGIN_CENTRE && matched == 3);
+    CHECK_NEAR(catalog_model(c, model)->length_m, 9, 0.01);
+    double size_m[3];
+    catalog_size(size_m, c, model);
+    CHECK_NEAR(size_m[0], 9, 0.01);
+    CHECK_NEAR(size_m[2], catalog_model(c, model)->height_m, 0.02);
+    assert_string_equal(found(c, (DisEntityType){1, 1, 225, 1, 1, 0, 0}), "helicopter");
+    CHECK(catalog_row_count(c) == 3);
+    catalog_row(&row, c, 0);
+    assert_string_equal(row.type, "1.1.222.*.*.*.*");
+    assert_string_equal(row.note, "ours");
+    CHECK(row.own && row.line == 2 && row.kind == 1 && row.domain == 1);
+    catalog_close(c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(deepest_named_row_wins),
+        cmocka_unit_test(own_rows_go_before_the_tables), cmocka_unit_test(deepest_named_row_wins),
         cmocka_unit_test(a_row_of_stars_matches_all),
         cmocka_unit_test(malformed_rows_are_named),
         cmocka_unit_test(many_rows_in_the_worst_order),

@@ -5,11 +5,49 @@
 
 run model --help
 check "model --help ends well" [ $code = 0 ]
-check "model --help shows its usage" grep -q 'usage: pitviper model info' "$tmp/stdout"
+check "model --help shows its usage" grep -q 'pitviper model info NAME|FILE' "$tmp/stdout"
 run model info tank --sag 0.02
 check "model info tank" [ $code = 0 ]
 check "the tank's turret and its DIS class" said 'turret on hull .*DIS class 4096 primary_turret_1 metric 11 azimuth'
 check "the tank is closed" said 'edges: 0 open'
+run model list
+check "model list: a shape, its size, what moves" grep -qE '^  tank +9\.53 x 3\.59 x 2\.60 +primary_turret_1 azimuth, primary_gun_1 elevation' "$tmp/stdout"
+check "model list: a row" grep -qE '^  1\.1\.225\.6\.1\.\*\.\* +land +jeep +4\.57 x 2\.16 x 1\.83 +catalog\.csv:[0-9]+ +HMMWV' "$tmp/stdout"
+check "model list: every row of the catalog" [ "$(grep -c 'catalog\.csv:[0-9]' "$tmp/stdout")" = "$(grep -cE '^[0-9*]' etc/catalog.csv)" ]
+run model --keys
+keys=$(sed -nE 's/^  ([a-z_.]+): .*/\1/p' "$tmp/stdout")
+check "model --keys: all of the reader's" [ "$(wc -w <<<"$keys")" = 25 ]
+for key in $keys; do # each with a value that none takes: the same words as the list's
+    accepted=$(grep -A 1 -E "^  $key: " "$tmp/stdout" | sed -n '2s/^ *//p')
+    case $key in
+        joints.*) printf 'joints:\n- {%s: {a: b}}\n' "${key#joints.}" ;;
+        drop|materials|node_materials|roles) continue ;; # lists of patterns: any words
+        *) printf '%s: {a: b}\n' "$key" ;;
+    esac >"$tmp/key.yaml"
+    "$pitviper" model info "$tmp/key.yaml" 2>"$tmp/stderr"
+    check "model --keys: $key" grep -qF -e "$accepted" -e 'one of slight, moderate, destroyed' "$tmp/stderr"
+done
+cat >"$tmp/names.gltf" <<'GLTF'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2,3]}],
+ "nodes":[{"mesh":0},{"mesh":0,"name":"wheel"},{"mesh":0,"name":"wheel","translation":[2,0,0]},{"mesh":0,"name":"Turret_01"}],
+ "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+ "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+ "bufferViews":[{"buffer":0,"byteLength":36}],
+ "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}]}
+GLTF
+printf 'joints:\n- {nodes: turret, class: primary_turret_1, metric: azimuth, pivot: centre}\n' >"$tmp/names.yaml"
+run model info "$tmp/names.gltf"
+check "names: the one that was meant" complained "names.yaml:2: joints: no node of the file matches 'turret'.*did you mean 'Turret_01'\?"
+check "names: those that there are, and how many have none" complained '1 have no name; there are: .*wheel \(2 times\), Turret_01'
+printf 'joints:\n- {nodes: wheel, pivot: centre, axis: pitch}\n' >"$tmp/names.yaml"
+run model info "$tmp/names.gltf"
+check "names: twice" complained "names.yaml:2: joints: nodes: 2 nodes of the file have the name 'wheel' and will move as one; .each: true."
+printf 'joints:\n- {nodes: wheel, each: true, pivot: centre, axis: pitch}\n' >"$tmp/names.yaml"
+run model info "$tmp/names.gltf"
+check "names: each its own: nothing to warn of but the one without" not complained 'will move as one'
+check "names: the one without" complained 'names.gltf: 1 of 4 meshes hang on nodes without a name'
+check "names: and counted" grep -q '1 nodes have none, 2 share theirs' "$tmp/stdout"
+
 for wrong in "" "frob" "info" "info tank truck" "info tank --sag 3" "info --frob"; do
     # shellcheck disable=SC2086
     run model $wrong
