@@ -93,7 +93,7 @@ static void summarise_stages(double out[session_stages][3], const SessionResult 
         for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
         qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
         out[stage][0] = sorted[r->listed / 2];
-        out[stage][1] = r->listed ? sorted[(int)(0.95 * (r->listed - 1))] : 0;
+        out[stage][1] = r->listed ? sorted[(int)ceil(0.95 * r->listed) - 1] : 0; /* nearest rank: never below the median */
         out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
     }
     free(sorted);
