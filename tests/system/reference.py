@@ -2,9 +2,9 @@
 its type, and every row is in some product; a row that is never absent is there each time. And the lines of Python that
 the reference shows run, on the products here.
 
-    reference.py products.md [--run OUT | --truth OUT] ... [--sweep OUT] [--record CASE] ... [--pdus TSV] [--capture PCAPNG]
+    reference.py products.md [--run OUT | --truth OUT] ... [--sweep OUT] [--record CASE] ... [--pdus TSV] [--capture PCAPNG [--live OUT]]
 """
-import contextlib, glob, importlib, io, json, os, re, socket, struct, subprocess, sys, time
+import contextlib, glob, importlib, io, json, math, os, re, socket, struct, subprocess, sys, time
 
 wrong = []
 def check(good, *said):
@@ -221,6 +221,64 @@ def runs_data_pdu(topic, pdus):
     child.kill()
     check(re.match(r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+", said), topic.name, "Python prints", repr(said), child.communicate()[1])
 
+# ---- frames, units and index bases, where two products say one thing -----------------------------------
+
+def near(a, b, within): return a == b or abs(a - b) <= within
+
+def meaning_of_truth(out):
+    """WGS 84 by its closed form; the rows of ecef_from_cam, the line of sight in ENU and the boresight error agree."""
+    for frame in map(json.loads, open(f"{out}/truth.jsonl")):
+        host, sensor = frame["host"], frame["sensors"][0]
+        lat, lon, height = math.radians(host["lat_deg"]), math.radians(host["lon_deg"]), host["height_m"]
+        e2 = (2 - 1 / 298.257223563) / 298.257223563
+        n = 6378137 / math.sqrt(1 - e2 * math.sin(lat) ** 2)
+        place = ((n + height) * math.cos(lat) * math.cos(lon), (n + height) * math.cos(lat) * math.sin(lon),
+                 (n * (1 - e2) + height) * math.sin(lat))
+        check(all(near(a, b, 1e-3) for a, b in zip(place, host["ecef_m"])), out, "host: lat, lon, height are not ecef_m")
+        r = sensor["ecef_from_cam"]
+        tangents = [math.tan(math.radians(sensor[f"{k}fov_deg"]) / 2) for k in "hv"]
+        check("distortion" in sensor or near(tangents[0] / tangents[1], sensor["width_px"] / sensor["height_px"], 1e-6), out, "fov")
+        for target in frame["targets"]:
+            az, el = math.radians(target["los_az_deg"]), math.radians(target["los_el_deg"])
+            east, north, up = math.cos(el) * math.sin(az), math.cos(el) * math.cos(az), math.sin(el)
+            ecef = (-math.sin(lon) * east - math.sin(lat) * math.cos(lon) * north + math.cos(lat) * math.cos(lon) * up,
+                    math.cos(lon) * east - math.sin(lat) * math.sin(lon) * north + math.cos(lat) * math.sin(lon) * up,
+                    math.cos(lat) * north + math.sin(lat) * up)
+            x, y, z = (sum(r[3 * k + axis] * ecef[k] for k in range(3)) for axis in range(3))
+            said = math.degrees(math.atan2(x, z)), math.degrees(math.atan2(-y, z))
+            check(all(near(a, b, 1e-6) for a, b in zip(said, target["boresight_error_deg"])), out, "line of sight", said, target)
+            check(near(target["depression_deg"], -target["los_el_deg"], 1e-9), out, "depression")
+
+def meaning_of_data_pdus(out, topic, pdus):
+    """Each target of a truth PDU is the target of truth.jsonl, in the units of both."""
+    same = {8: "box_px", 16: "pixels", 20: "visible_fraction", 24: "range_m", 28: "closing_mps", 32: "aspect_deg",
+            36: "los_az_deg", 40: "los_el_deg", 44: "boresight_error_deg", 48: "boresight_error_deg"}
+    truth, held = {t["frame"]: t for t in map(json.loads, open(f"{out}/truth.jsonl"))}, 0
+    for pdu in pdus:
+        fixed, variable = struct.unpack(">II", pdu[32:40])
+        datum, at = dict(struct.unpack(">II", pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed)), 40 + 8 * fixed
+        frame = truth.get(datum[600001])
+        for _ in range(variable if frame else 0):
+            number, bits = struct.unpack(">II", pdu[at:at + 8])
+            value, at = pdu[at + 8:at + 8 + bits // 8], at + 8 + (bits + 63) // 64 * 8
+            if number == 600101: check(struct.unpack(">d", value) == (frame["time_s"],), topic.name, "time_s")
+            if number == 600102: check(near(math.dist(struct.unpack(">3d", value), frame["host"]["ecef_m"]), 0, 1e-6), topic.name, "eye")
+            if number != 600202: continue
+            name = "%d:%d:%d" % struct.unpack(">3H", value[:6])
+            target = [t for t in frame["targets"] if t["entity"] == name]
+            check(target, topic.name, name, "is no target of truth.jsonl")
+            for offset, key in same.items() if target else ():
+                row = topic.rows[f"variable 600202+{offset}"]
+                if offset == 8: got, want = list(struct.unpack(">4H", value[8:16])), target[0].get(key, [0, 0, 0, 0])
+                else:
+                    got, want = struct.unpack(">f", value[offset:offset + 4])[0], target[0].get(key, math.nan)
+                    if isinstance(want, list): want = want[offset == 48]
+                    if row.unit == "rad": got = math.degrees(got)
+                good = got == want if offset == 8 else near(got, want, 1e-5 * max(1, abs(want))) or math.isnan(got) and math.isnan(want)
+                check(good, topic.name, name, key, got, "is not", want)
+                held += 1
+    check(held, topic.name, "no target of a PDU is one of", out)
+
 # ---- all of it ------------------------------------------------------------------------------------
 
 def take_run(topics, out, lines_of):
@@ -237,6 +295,7 @@ def take_run(topics, out, lines_of):
     known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
     for path in glob.glob(f"{out}/**", recursive=True):
         if os.path.isfile(path): check(re.fullmatch(known, os.path.relpath(path, out)), path, "is no product of the reference")
+    meaning_of_truth(out)
     for name in lines_of: runs(topics[name], out)
 
 def take_sweep(topics, out):
@@ -277,6 +336,7 @@ def main():
             take_table(topics["pdus"], open(path).read().splitlines(), "\t", begin)
             runs(topics["pdus"], ".", given=open(path).read())
         elif what == "--capture": pdus += [p for p in datagrams(path) if len(p) > 40 and p[2] == 20]
+        elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], pdus)
     if pdus:
         take_data_pdus(topics["data-pdu"], pdus)
         runs_data_pdu(topics["data-pdu"], pdus)

@@ -65,7 +65,7 @@ wait "${senders[@]}" 2>/dev/null
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
 python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$variant" --run "$tmp/truth" \
     --run "$tmp/sensor" --sweep "$tmp/sweep" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
-    --capture "$tmp/truth.pcapng" --capture "$tmp/sensor.pcapng" || fail "products and their reference"
+    --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" || fail "products and their reference"
 
 # its twins: a field without a row, a row without a field, a type, an absence, lines that do not run
 if [ "$failures" = 0 ]; then
