@@ -12,7 +12,8 @@ static const ReferenceField data_fields[] = {
     {"fixed 600008", "u32", "", "", "", "targets left out for want of room, the smallest"},
     {"variable 600101+0", "f64", "s", "exercise time", "", "instant of the frame"},
     {"variable 600102+0", "f64[3]", "m", "ecef", "", "the eye"},
-    {"variable 600103+0", "f64[3]", "rad", "psi, theta, phi of a body that looks along x, y right, z down; as in an Entity "
+    {"variable 600103+0", "f64[3]", "rad",
+     "psi, theta, phi of a body that looks along x, y right, z down; as in an Entity "
      "State", "", "the camera"},
     {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "who carries it; 0:0:0: an observer"},
     {"variable 600201+0", "u16[4]", "px", "image: left, top, right, bottom; from 0, the last two beyond it", "",
@@ -110,7 +111,8 @@ static const ReferenceField pdu_fields[] = {
     {"dis.capabilities", "integer", "", "", "without --full", "capabilities"},
     {"alternative_type", "text", "", "kind.domain.country.category.subcategory.specific.extra", "without --full",
      "alternative entity type"},
-    {"articulation", "text", "rad, rad/s or m by the parameter", "change:attached:parameter:value; ...", "without --full",
+    {"articulation", "text", "rad, rad/s or m by the parameter", "change:attached:parameter:value; ...",
+     "without --full",
      "articulated parts; attached: before attached ones, record: before others"},
 };
 

@@ -37,7 +37,8 @@ const Reference reference_manifest = {
         "        print(variant['number'], variant['error'])\n"
         "        continue\n"
         "    truth = [json.loads(l) for l in open(os.path.join(variant['folder'], 'truth.jsonl'))]\n"
-        "    print(variant['settings'], variant['frames'], 'frames', len(truth[0]['targets']), 'targets in the first')\n",
+        "    print(variant['settings'], variant['frames'], 'frames', len(truth[0]['targets']), 'targets in "
+        "the first')\n",
 };
 
 static const ReferenceField sheet_fields[] = {

@@ -14,18 +14,21 @@ const Reference reference_products = {
         "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal\n"
         "    frames/BAND/NNNNNN.png           help png       what a display shows; without --no-png\n"
         "    frames/truth/NNNNNN.png          help png       the truth for people\n"
-        "    raw/BAND/NNNNNN.png              help raw       counts of the detector; with sensor.preset or sensor.table\n"
+        "    raw/BAND/NNNNNN.png              help raw       counts of the detector; with sensor.preset or "
+        "sensor.table\n"
         "    profiles/radar/NNNNNN.csv        help profile   radar power over range\n"
         "    pairs.jsonl, pairs/              help pairs     each frame without its target, without noise; --pairs\n"
         "    coco.json                        help coco      boxes and masks; --coco\n"
-        "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line a variant; V/ is a folder of this kind\n"
+        "    manifest.jsonl, V/variant.json   help manifest  of --sweep: a line a variant; V/ is a folder of "
+        "this kind\n"
         "    manifest.html, V/thumbnail.png   help sheet     of --sweep: their pictures\n"
         "    V/settings.yaml, V/log.txt                      of --sweep: its settings for --config; what the run said\n"
         "    (on the network)                 help data-pdu  what the seeker sees, as DIS; --set publish.dis=sensor\n"
         "    (standard output)                help pdus      Entity State PDUs of a log; pitviper inspect --pdus tsv\n"
         "    CASE/record/                     help regress-record  of pitviper regress: how it should be\n"
         "\n"
-        "NNNNNN is the frame's number, six digits, from 0: frames lie on whole multiples of 1/rate of exercise time, and\n"
+        "NNNNNN is the frame's number, six digits, from 0: frames lie on whole multiples of 1/rate of "
+        "exercise time, and\n"
         "are counted from the first within the host's life, whatever --from says. With several hosts each has its own\n"
         "OUT/SITE-APPLICATION-ENTITY/, or OUT/observer/, of this shape. A file appears whole or not at all;\n"
         "truth.jsonl, pairs.jsonl and manifest.jsonl grow by a line at a time.\n"
@@ -36,7 +39,8 @@ const Reference reference_products = {
         "    ENU     east, north, up at the place that is named\n"
         "    body    of an entity: x forward, y right, z down\n"
         "    camera  x right, y down, z along the boresight\n"
-        "    image   column right, row down, in pixels; the first pixel's centre is (0.5, 0.5), so that it reaches from\n"
+        "    image   column right, row down, in pixels; the first pixel's centre is (0.5, 0.5), so that it "
+        "reaches from\n"
         "            (0, 0) to (1, 1). Boxes in whole pixels count from 0 and end before their last two numbers\n"
         "\n"
         "A value that was not computed is absent, never 0. Pixels of the truth planes name entities and parts from\n"
@@ -46,7 +50,8 @@ const Reference reference_products = {
 static const ReferenceField fields[] = {
     {"frame", "integer", "", "from 0", "", "number of the frame, as in the names of its files"},
     {"time_s", "number", "s", "exercise time", "", "instant of the frame"},
-    {"frame_sha256", "string", "", "", "when hashes are not asked for", "SHA-256 of all planes before they are encoded"},
+    {"frame_sha256", "string", "", "", "when hashes are not asked for",
+     "SHA-256 of all planes before they are encoded"},
     {"host", "object", "", "", "", "who carries the sensor"},
     {"host.entity", "string", "", "site:application:entity", "", "id, or `observer`: an eye that is no entity"},
     {"host.marking", "string", "", "", "when the host is an observer", "its marking, at most 11 characters"},
@@ -61,7 +66,8 @@ static const ReferenceField fields[] = {
     {"host.speed_mps", "number", "m/s", "over the rotating Earth", "", "speed of the host"},
     {"sun", "object", "", "", "", "where the sun stands"},
     {"sun.azimuth_deg", "number", "deg", "ENU at the eye, from north over east", "", "0 .. 360"},
-    {"sun.elevation_deg", "number", "deg", "ENU at the eye", "", "above the horizontal, with refraction; below: negative"},
+    {"sun.elevation_deg", "number", "deg", "ENU at the eye", "",
+     "above the horizontal, with refraction; below: negative"},
     {"sensors", "list of objects", "", "from 0", "", "one: the bands look through the same optics at the same instant"},
     {"sensors[].name", "string", "", "", "", "`seeker`"},
     {"sensors[].bands", "list of strings", "", "", "", "which of optical, mwir, lwir, radar were made"},
@@ -73,7 +79,8 @@ static const ReferenceField fields[] = {
      "without a lens (sensor.lens_*)", "Brown-Conrady coefficients of tangents of angles; boxes and masks follow"},
     {"sensors[].lateral_colour", "list of 2 numbers", "", "red, blue", "without (sensor.lateral_*)",
      "magnification over green's, less 1"},
-    {"sensors[].ecef_from_cam", "list of 9 numbers", "", "row after row; its columns are the camera's x, y, z in ecef", "",
+    {"sensors[].ecef_from_cam", "list of 9 numbers", "", "row after row; its columns are the camera's x, y, z in ecef",
+     "",
      "rotation: ecef = R camera"},
     {"sensors[].gimbal_at_limit", "boolean", "", "", "", "the aim is beyond sensor.gimbal_limit_deg"},
     {"sensors[].scene_rate_px_s", "list of 2 numbers", "px/s", "image: column, row", "",
@@ -88,7 +95,8 @@ static const ReferenceField fields[] = {
     {"targets[].closing_mps", "number", "m/s", "", "", "how fast range_m shrinks"},
     {"targets[].aspect_deg", "number", "deg", "its body; clockwise from above", "",
      "where the eye is, seen from it: 0 nose on, 90 from its right, 0 .. 360"},
-    {"targets[].depression_deg", "number", "deg", "ENU at the eye", "", "how far below the horizontal it is: -los_el_deg"},
+    {"targets[].depression_deg", "number", "deg", "ENU at the eye", "",
+     "how far below the horizontal it is: -los_el_deg"},
     {"targets[].los_az_deg", "number", "deg", "ENU at the eye, from north over east", "", "line of sight, 0 .. 360"},
     {"targets[].los_el_deg", "number", "deg", "ENU at the eye", "", "line of sight above the horizontal"},
     {"targets[].los_rate_dps", "list of 2 numbers", "deg/s", "camera right, camera up; inertial space", "",

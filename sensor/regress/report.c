@@ -40,6 +40,14 @@ static void tolerance_text(char out[96], int channel, const ChannelResult *found
     else snprintf(out, 96, "%.3g%s%s", found->limit, space, unit);
 }
 
+/* One of both is colder than an apparent temperature goes: the difference is larger than it says. */
+static bool at_floor(int channel, const ChannelResult *found)
+{
+    const PlaneVerdict *v = &found->verdict;
+    return (channel == CHANNEL_MWIR || channel == CHANNEL_LWIR) && v->max > 0 &&
+           (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
+}
+
 /* How many, how much, where: what the pictures below it cannot say. */
 static void put_facts(FILE *page, const ChannelResult *found, int channel)
 {
@@ -57,7 +65,9 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
     else html_text(page, "none may.");
     if (v->column < 0) return;
     if (ids) html_text(page, " The first");
-    else if (v->unmatched == 0) html_text(page, " Rms %.3g%s, largest difference %.3g%s", v->rms, unit, v->max, unit);
+    else if (v->unmatched == 0)
+        html_text(page, " Rms %.3g%s, largest difference %s%.3g%s", v->rms, unit,
+                  at_floor(channel, found) ? "more than " : "", v->max, unit);
     else
         html_text(page, " Rms %.3g%s; in %zu only one of both has a number, the first", v->rms, unit, v->unmatched);
     if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
@@ -200,7 +210,9 @@ static void put_numbers(FILE *page, const CaseResult *r)
             html_text(page, "%s", tolerance);
             if (c->picture && frame_plane_is_id(c->plane)) fputs("</td><td></td>", page);
             else if (v->unmatched > 0) fputs("</td><td class=\"n\">a number in one only</td>", page);
-            else fprintf(page, "</td><td class=\"n\">%.3g %s</td>", v->max, c->unit ? c->unit : "");
+            else
+                fprintf(page, "</td><td class=\"n\">%s%.3g %s</td>", at_floor(k, c) ? "more than " : "", v->max,
+                        c->unit ? c->unit : "");
             if (v->column < 0) fputs("<td></td>", page);
             else if (c->picture) fprintf(page, "<td>%d (%d, %d)</td>", c->frame, v->column, v->row);
             else fprintf(page, "<td>%d, bin %d</td>", c->frame, v->column);
