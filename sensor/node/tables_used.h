@@ -20,7 +20,8 @@ typedef struct TablesUsed {
 } TablesUsed;
 
 /* Every *.csv of etc/, the configured atmosphere's folder, the data sheet of sensor.table, and each model file of the
- * catalog with its sidecar. 4 MB and some 10 ms. A file that cannot be read is left out: the room that reads it says so. */
-void tables_used(TablesUsed *out, const Config *config, const char *catalog);
+ * catalog with its sidecar. 4 MB and some 10 ms. A file that cannot be read is left out: the room that reads it says so.
+ * STATUS_NO_MEMORY; what table_open says of the catalog. */
+Status tables_used(TablesUsed *out, const Config *config, const char *catalog);
 
 #endif
