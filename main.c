@@ -13,6 +13,7 @@
 #include "sensor/node/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
+#include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
 #include "terrain/bench.h"
 #include "terrain/probe.h"
@@ -133,6 +134,9 @@ static void usage(FILE *to)
           "usage: pitviper COMMAND ...; `pitviper COMMAND --help` says more\n\n", to);
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
     fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", common_help);
+    fputs("\nevery field of every product, with lines of Python: `pitviper help TOPIC`, of the topics\n", to);
+    reference_list(to);
+    fputs("\nall of them as Markdown: `pitviper help --markdown`\n", to);
 }
 
 /* ---- what the shell hands over ---------------------------------------------------------------- */
@@ -208,9 +212,27 @@ static int run_named(int argc, char **argv)
     return 2;
 }
 
-int main(int argc, char **argv)
+/* `pitviper help` COMMAND, TOPIC, or --markdown. */
+static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";
+    if (argc > 1) {
+        fprintf(stderr, "pitviper help: one word, a command or a topic, not also `%s`\n", argv[1]);
+        return 2;
+    }
+    for (int i = 0; i < command_count; i++)
+        if (strcmp(argv[0], commands[i].name) == 0) return run_named(2, (char *[]){argv[0], help, NULL});
+    if (strcmp(argv[0], "--markdown") == 0) {
+        reference_write_markdown(stdout);
+        return 0;
+    }
+    if (reference_write(stdout, argv[0])) return 0;
+    fprintf(stderr, "pitviper help: no command and no topic: %s; `pitviper --help` lists them\n", argv[0]);
+    return 2;
+}
+
+int main(int argc, char **argv)
+{
     fill_closed();
     thread_flush_denormals(); /* a probe says what a frame computes */
     if (!take_verbosity(&argc, argv)) return 2;
@@ -218,7 +240,7 @@ int main(int argc, char **argv)
         usage(stderr);
         return 2;
     }
-    if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(run_named(2, (char *[]){argv[2], help, NULL}));
+    if (argc > 2 && strcmp(argv[1], "help") == 0) return printed(help_command(argc - 2, argv + 2));
     if (strcmp(argv[1], "--help") == 0 || strcmp(argv[1], "-h") == 0 || strcmp(argv[1], "help") == 0) {
         usage(stdout);
         return printed(0);

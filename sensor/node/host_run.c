@@ -69,6 +69,7 @@ Status run_survey(Run *run, const DisLog *heard)
                      (unsigned long long)counters->dropped[i]);
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     status = catalog_open(&run->catalog, path, o->config.models.sag_m);
+    if (status == STATUS_OK) status = tables_used(&run->tables, &o->config, path);
     if (status == STATUS_OK) status = pool_create(&run->pool, o->threads);
     return status;
 }
@@ -95,7 +96,7 @@ static void summarise_stages(double out[session_stages][3], const SessionResult 
         for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
         qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
         out[stage][0] = sorted[r->listed / 2];
-        out[stage][1] = r->listed ? sorted[(int)(0.95 * (r->listed - 1))] : 0;
+        out[stage][1] = r->listed ? sorted[(int)ceil(0.95 * r->listed) - 1] : 0; /* nearest rank: never below the median */
         out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
     }
     free(sorted);
@@ -104,13 +105,19 @@ static void summarise_stages(double out[session_stages][3], const SessionResult 
 static Status write_run(const Run *run, const char *out, const char *host, const Choices *choices,
                         const SessionResult *result, const DisCounters *heard)
 {
-    char        path[path_size + 16];
+    char        path[path_size + 16], settings[config_text_size];
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
+    const char *table[tables_used_max], *table_sha256[tables_used_max];
     double      stage_ms[session_stages][3] = {{0}};
     const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
     if (!hash) return STATUS_NO_MEMORY;
 
     for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
+    config_text(settings, sizeof settings, &run->options.config);
+    for (int i = 0; i < run->tables.count; i++) {
+        table[i]        = run->tables.table[i].name;
+        table_sha256[i] = run->tables.table[i].sha256;
+    }
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
     for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
     if (result->host_count == 0) hosts[0] = host; /* still to come */
@@ -122,6 +129,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     const DisLogCounters *link = run->link;
     const RunRecord       record = {
               .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
+              .settings = settings, .table_count = run->tables.count, .table = table, .table_sha256 = table_sha256,
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
               .host_count = result->host_count > 0 ? result->host_count : 1,
               .choice_count = choices->count, .frames = result->frames, .listed = result->listed,

@@ -4,6 +4,7 @@
 
 #include "sensor/node/options.h"
 #include "sensor/node/session.h"
+#include "sensor/node/tables_used.h"
 
 /* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
  * that a part of a run equals that part of the whole. */
@@ -30,6 +31,7 @@ struct Run {
     Pool     *pool;
     Choices   choices;           /* those that all hosts share */
     Sensors   sensors;
+    TablesUsed tables;           /* in run.json */
     /* Makes the frames. */
     Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */

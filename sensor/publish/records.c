@@ -287,6 +287,28 @@ static json_t *counters_json(const RunRecord *r)
     return counters;
 }
 
+/* `section.key=value`, lines; all values as text. */
+static json_t *settings_json(const char *text)
+{
+    json_t *settings = json_object();
+    char    key[96];
+    for (size_t length; *text; text += length + (text[length] == '\n')) {
+        length = strcspn(text, "\n");
+        const size_t name = strcspn(text, "=");
+        if (name >= length || name >= sizeof key) continue;
+        snprintf(key, sizeof key, "%.*s", (int)name, text);
+        set_text(settings, key, text + name + 1, length - name - 1);
+    }
+    return settings;
+}
+
+static json_t *tables_json(const RunRecord *r)
+{
+    json_t *tables = json_object();
+    for (int i = 0; i < r->table_count; i++) json_object_set_new(tables, r->table[i], json_string(r->table_sha256[i]));
+    return tables;
+}
+
 Status record_write_run(const char *path, const RunRecord *r)
 {
     json_t *run = json_object(), *timings = json_object();
@@ -294,6 +316,8 @@ Status record_write_run(const char *path, const RunRecord *r)
 
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
     json_object_set_new(run, "config_sha256", json_string(r->config_sha256));
+    json_object_set_new(run, "settings", settings_json(r->settings));
+    json_object_set_new(run, "tables_sha256", tables_json(r));
     set_text(run, "log", r->log_name, strlen(r->log_name));
     if (*r->log_sha256) json_object_set_new(run, "log_sha256", json_string(r->log_sha256));
     json_object_set_new(run, "seed", json_integer(r->seed));

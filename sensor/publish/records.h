@@ -45,6 +45,9 @@ typedef struct LiveCounters {
 
 typedef struct RunRecord {
     const char *config_sha256, *log_name, *log_sha256, *isa;
+    const char *settings;             /* `section.key=value`, lines: what config_sha256 is of */
+    int         table_count;          /* files that were read from etc/, and models */
+    const char *const *table, *const *table_sha256;
     long long   seed;
     int         threads, host_count, choice_count, frames;
     int         listed;               /* how many of them the two lists hold */

@@ -19,6 +19,8 @@ static const Setting keys[] = {
     {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "",
      "numbers of the frames to look at, as replay gives them"},
     {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
+    {"log_may_be_absent", SETTING_BOOL, AT(log_may_be_absent), 0, 1, NULL, "",
+     "a log that is not here skips the case, instead of failing it"},
     {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s",
      "for each child; one that takes longer is ended"},
     {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, of itself"},
@@ -50,7 +52,6 @@ static const SettingTable table = {.module = "regress", .row = keys, .count = si
 Case case_default(void)
 {
     return (Case){
-        .causal = true,
         .timeout_s = 300,
         .tolerance = {.range_rel = 3e-5, /* 6 cm in 2 km: two steps of the record */
                       .normal = 0.004,   /* 0.2 degree: two steps of the record */
@@ -75,6 +76,8 @@ static Status check(const Case *c, const char *path)
     else if (!*c->log && !*c->scenario)
         wrong = "log: or scenario: is missing; name a recording, or a scenario such as demo";
     else if (*c->log && *c->scenario) wrong = "log: and scenario: are both given; leave one out";
+    else if (!*c->log && c->log_may_be_absent)
+        wrong = "log_may_be_absent: is of a log, and a scenario is given; leave it out";
     else if (*c->log && *c->scenario_set) wrong = "scenario_set: is of a scenario, and a log is given; leave it out";
     else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
     else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to look at, such as [3, 7, 12]";

@@ -18,7 +18,8 @@
  *         height_px: 64
  *     # config_file: node.yaml    # or such a file in this folder
  *     frames: [3, 7, 12]          # numbers, as replay gives them
- *     causal: true                # --causal; this is the default
+ *     causal: true                # --causal; false by default, as of replay
+ *     log_may_be_absent: true     # then the case is skipped; by default it has failed
  *     timeout_s: 300              # a child that takes longer is ended, and the case has failed
  *     tolerance:                  # over the defaults, which case_default has with their reasons
  *       lwir_k: 0.05
@@ -53,7 +54,7 @@ typedef struct Case {
     char       log[1024], scenario[1024], scenario_set[4096];
     char       config[16384], config_file[1024];
     NumberList frames;
-    bool       causal;
+    bool       causal, log_may_be_absent;
     double     timeout_s;
     Tolerance  tolerance;
 } Case;

@@ -25,7 +25,8 @@ void compare_numbers(PlaneVerdict *out, float *difference, const float *expected
             if (difference) difference[i] = (float)d;
             v.compared++;
             v.beyond += !(fabs(d) <= limit);
-            sum += d * d;
+            if (isfinite(d)) sum += d * d;
+            else v.unmatched++;
             if (fabs(d) > v.max) {
                 v.max      = fabs(d);
                 v.column   = x;
@@ -34,7 +35,7 @@ void compare_numbers(PlaneVerdict *out, float *difference, const float *expected
                 v.got      = (double)got[i];
             }
         }
-    v.rms   = v.compared ? sqrt(sum / (double)v.compared) : 0;
+    v.rms   = v.compared > v.unmatched ? sqrt(sum / (double)(v.compared - v.unmatched)) : 0;
     v.share = v.compared ? (double)v.beyond / (double)v.compared : 0;
     *out    = v;
 }
@@ -95,7 +96,9 @@ void plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t count, do
         const float v = radiance_w_m2_sr[i];
         if (v != last) {
             last   = v;
-            last_k = isfinite(v) && v > 0 ? (float)planck_band_inverse(low_m, high_m, (double)v) : NAN;
+            last_k = !(isfinite(v) && v >= 0) ? NAN
+                     : v > 0 ? (float)fmax(apparent_floor_k, planck_band_inverse(low_m, high_m, (double)v))
+                             : (float)apparent_floor_k;
         }
         out[i] = last_k;
     }

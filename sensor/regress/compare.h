@@ -10,7 +10,9 @@
 typedef struct PlaneVerdict {
     size_t compared, beyond;
     double share;              /* beyond / compared; 0 of none */
-    double max, rms;           /* of the difference; infinity when anything finite met what is not */
+    double max;                /* of the difference; infinity when anything finite met what is not */
+    double rms;                /* of the differences that are finite */
+    size_t unmatched;          /* those where one of both is no number, or not the other's infinity */
     int    column, row;        /* where max is, the first of them; -1: nothing differs */
     double expected, got;      /* there */
 } PlaneVerdict;
@@ -26,7 +28,11 @@ void compare_ids(PlaneVerdict *out, size_t *edges, const uint32_t *expected, con
 /* 1 where one of the four neighbours has another id, in either plane; adds to what is there. Returns how many are 1. */
 size_t mark_edges(uint8_t *edge, const uint32_t *expected, const uint32_t *got, int width, int height);
 
-/* Radiance to apparent temperature, K; NaN where there is none. low_m .. high_m: the band. */
+/* What is this cold, or has no radiance at all, counts as this cold: the radiance of a body of 100 K in 8-12 um is
+ * 1e-4 of one of 300 K (in 3-5 um 1.3e-9), below any detector's noise, and no radiance has no temperature. */
+static const double apparent_floor_k = 100;
+/* Radiance to apparent temperature, K, apparent_floor_k at least; NaN of what is no radiance (NaN, infinite, below 0).
+ * low_m .. high_m: the band. */
 void plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t count, double low_m, double high_m);
 /* Power to dB over `full`; what is span_db below it, or less, is -span_db. */
 void plane_to_db(float *out, const float *power, size_t count, double full, double span_db);

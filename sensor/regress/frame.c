@@ -238,6 +238,18 @@ static Status read_profile_exr(RecordFrame *f, const char *path, int bins)
     return status;
 }
 
+Status frame_record_size(FrameSize *out, const char *folder, int number)
+{
+    char      path[path_size];
+    ImageInfo info, profile = {.width = 0};
+    snprintf(path, sizeof path, "%s/%06d.exr", folder, number);
+    Status status = image_info(&info, path);
+    snprintf(path, sizeof path, "%s/%06d.profile.exr", folder, number);
+    if (status == STATUS_OK && access(path, F_OK) == 0) status = image_info(&profile, path);
+    if (status == STATUS_OK) *out = (FrameSize){info.width, info.height, profile.width};
+    return status;
+}
+
 Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like)
 {
     RecordFrame f = {.number = like->number, .width = like->width, .height = like->height};

@@ -43,6 +43,11 @@ bool        frame_plane_is_id(FramePlane plane);
 Status frame_from_run(RecordFrame *out, const char *folder, int number);
 /* The same of record/. like: only a frame of that size and number of bins is read; else STATUS_BAD_VALUE, logged. */
 Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like);
+/* Of record/: what its files say of their size, without reading planes. bins 0: no profile. */
+typedef struct FrameSize {
+    int width, height, bins;
+} FrameSize;
+Status frame_record_size(FrameSize *out, const char *folder, int number);
 Status frame_to_record(const char *folder, const RecordFrame *frame);
 void   frame_free(RecordFrame *frame);
 

@@ -32,6 +32,10 @@ static void put_case(FILE *to, const CaseResult *r)
         } else {
             fputs("\">", to);
             put(to, r->c.purpose);
+            if (r->compared && *r->verdict.remarks) {
+                fputs("\nother than when it was recorded:\n", to);
+                put(to, r->verdict.remarks);
+            }
             for (int k = 0; k < CHANNEL_COUNT && r->compared; k++)
                 if (r->verdict.channel[k].failed) {
                     fprintf(to, "\n%s: ", channel_name((Channel)k));
@@ -42,7 +46,7 @@ static void put_case(FILE *to, const CaseResult *r)
             fprintf(to, "</%s>\n", kind[r->state]);
         }
     }
-    if (r->compared && *r->verdict.remarks) {
+    if (r->compared && *r->verdict.remarks && !kind[r->state]) {
         fputs("    <system-out>", to);
         put(to, r->verdict.remarks);
         fputs("</system-out>\n", to);

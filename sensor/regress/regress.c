@@ -23,6 +23,8 @@ static const char help[] =
     "\n"
     "  --update             write the record anew, and say why in card.md\n"
     "  --why TEXT           that reason; with --update alone, and then it must be given\n"
+    "  --allow-missing      skip a case whose log is not here; otherwise it has failed, unless its case.yaml says\n"
+    "                       log_may_be_absent: true\n"
     "  --junit FILE         JUnit XML for a test server\n"
     "  --report FILE        one HTML page: expected, got and difference of each channel that failed\n"
     "  --work DIR           where everything is made, and kept (default: a temporary folder, kept when a case fails)\n"
@@ -45,11 +47,13 @@ static const char help[] =
     "  same; radiance may differ by 0.05 K apparent, 1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number\n"
     "  crosses from one step of the record to the next within that.\n"
     "\n"
-    "Each case runs in processes of its own: one that crashes or hangs has failed by itself. A log that is not here is\n"
-    "skipped; a record that is not yet there has failed. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
+    "What is other than when the record was made (tables, models, settings, log, libraries, choices) is said before any\n"
+    "channel: hashes in run.json tell. Each case runs in processes of its own: one that crashes or hangs has failed by\n"
+    "itself. A log or a record that is not there has failed, unless allowed. --update prints what the run chose: host,\n"
+    "aim, ground, time. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
 
 typedef struct Options {
-    bool        update;
+    bool        update, allow_missing;
     const char *why, *junit, *report, *work, *isa;
     int         jobs, threads;
 } Options;
@@ -84,11 +88,11 @@ static bool few(int *out, const char *text)
 /* 0: go on; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, HELP };
+    enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, ALLOW, HELP };
     static const struct option options[] = {
         {"update", 0, NULL, UPDATE}, {"why", 1, NULL, WHY}, {"junit", 1, NULL, JUNIT}, {"report", 1, NULL, REPORT},
         {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
-        {"keys", 0, NULL, KEYS}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"keys", 0, NULL, KEYS}, {"allow-missing", 0, NULL, ALLOW}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
     for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
         switch (option) {
@@ -110,6 +114,7 @@ static int parse(Options *o, int argc, char **argv)
                 return refuse("regress: --isa: '%s' is not avx2, sse4.2 or avx512", optarg);
             o->isa = optarg;
             break;
+        case ALLOW: o->allow_missing = true; break;
         case KEYS: case_write_keys(stdout); return 1;
         case HELP: fputs(help, stdout); return 1;
         default: fputs("see `pitviper regress --help`\n", stderr); return 1 + 2;
@@ -210,8 +215,20 @@ const char *case_state_name(CaseState state)
     return names[state];
 }
 
+/* Lines, each behind the case's name and a word. */
+static void print_lines(const CaseResult *r, const char *word, const char *text)
+{
+    for (size_t length; *text; text += length + (text[length] == '\n')) {
+        length = strcspn(text, "\n");
+        printf("%-24s %s%.*s\n", r->c.name, word, (int)length, text);
+    }
+}
+
+/* What is other than when it was recorded comes before what that did. */
 static void print_line(const CaseResult *r)
 {
+    if (r->state == CASE_FAILED) print_lines(r, "changed: ", r->verdict.remarks);
+    if (r->updated) print_lines(r, "chosen: ", r->chosen);
     printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
            r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
@@ -275,6 +292,7 @@ static bool run_all(Suite *s)
     if (jobs > s->count) jobs = s->count;
     const int left = processors / jobs > 1 ? processors / jobs : 1;
     s->how = (CaseHow){.threads = s->o.threads ? s->o.threads : left, .isa = s->o.isa, .update = s->o.update,
+                       .allow_missing = s->o.allow_missing,
                        .why = s->o.why};
     s->begun_s = wall_clock_s();
     if (pool_create(&pool, jobs) != STATUS_OK) {

@@ -40,12 +40,20 @@ static void tolerance_text(char out[96], int channel, const ChannelResult *found
     else snprintf(out, 96, "%.3g%s%s", found->limit, space, unit);
 }
 
+/* One of both is colder than an apparent temperature goes: the difference is larger than it says. */
+static bool at_floor(int channel, const ChannelResult *found)
+{
+    const PlaneVerdict *v = &found->verdict;
+    return (channel == CHANNEL_MWIR || channel == CHANNEL_LWIR) && v->max > 0 &&
+           (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
+}
+
 /* How many, how much, where: what the pictures below it cannot say. */
 static void put_facts(FILE *page, const ChannelResult *found, int channel)
 {
     const PlaneVerdict *v = &found->verdict;
     const bool          ids = found->picture && frame_plane_is_id(found->plane);
-    char                tolerance[96], unit[24] = "";
+    char                tolerance[96], unit[24] = "", was[64], is[64];
     tolerance_text(tolerance, channel, found);
     if (found->unit && *found->unit) snprintf(unit, sizeof unit, " %s", found->unit);
     html_text(page, "Frame %d, %s: %zu of %zu %s (%.3g %%) ", found->frame,
@@ -57,10 +65,16 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
     else html_text(page, "none may.");
     if (v->column < 0) return;
     if (ids) html_text(page, " The first");
-    else html_text(page, " Rms %.3g%s, largest difference %.3g%s", v->rms, unit, v->max, unit);
+    else if (v->unmatched == 0)
+        html_text(page, " Rms %.3g%s, largest difference %s%.3g%s", v->rms, unit,
+                  at_floor(channel, found) ? "more than " : "", v->max, unit);
+    else
+        html_text(page, " Rms %.3g%s; in %zu only one of both has a number, the first", v->rms, unit, v->unmatched);
     if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
     else html_text(page, " in bin %d of bounce %d", v->column, found->bounce + 1);
-    html_text(page, ": expected %.6g%s, got %.6g%s.", v->expected, unit, v->got, unit);
+    if (ids) snprintf(was, sizeof was, "%.0f", v->expected), snprintf(is, sizeof is, "%.0f", v->got);
+    else channel_value(was, (Channel)channel, v->expected, 6), channel_value(is, (Channel)channel, v->got, 6);
+    html_text(page, ": expected %s, got %s.", was, is);
 }
 
 static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, Colours colours, Scale scale,
@@ -195,7 +209,10 @@ static void put_numbers(FILE *page, const CaseResult *r)
                     floor(c->allowed * (double)v->compared));
             html_text(page, "%s", tolerance);
             if (c->picture && frame_plane_is_id(c->plane)) fputs("</td><td></td>", page);
-            else fprintf(page, "</td><td class=\"n\">%.3g %s</td>", v->max, c->unit ? c->unit : "");
+            else if (v->unmatched > 0) fputs("</td><td class=\"n\">a number in one only</td>", page);
+            else
+                fprintf(page, "</td><td class=\"n\">%s%.3g %s</td>", at_floor(k, c) ? "more than " : "", v->max,
+                        c->unit ? c->unit : "");
             if (v->column < 0) fputs("<td></td>", page);
             else if (c->picture) fprintf(page, "<td>%d (%d, %d)</td>", c->frame, v->column, v->row);
             else fprintf(page, "<td>%d, bin %d</td>", c->frame, v->column);
@@ -227,6 +244,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     fputs("</p>\n<p class=\"bad\">", page);
     html_text(page, "%s", r->line);
     fputs("</p>\n", page);
+    put_block(page, "What is other than when it was recorded", r->compared ? r->verdict.remarks : "");
     if (r->compared) put_numbers(page, r);
     /* the cause, and what it looks like; the rest follows from it */
     if (r->compared) fputs("<h3>What failed, in the order in which the data is made</h3>\n", page);
@@ -237,7 +255,6 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
         put_channel(page, r, k, k == r->verdict.first || (c->picture && !pictured));
         pictured |= c->picture;
     }
-    put_block(page, "What is other than when it was recorded", r->compared ? r->verdict.remarks : "");
     put_block(page, "Last lines of the run", r->said);
     put_block(page, "By hand", r->command);
 }

@@ -110,11 +110,16 @@ static bool make_log(char log[path_size], CaseResult *r)
     return run_child(r, &line, "exercise");
 }
 
-static bool find_log(char log[path_size], CaseResult *r)
+static bool find_log(char log[path_size], CaseResult *r, const CaseHow *how)
 {
-    char path[case_path_size], reason[256];
-    if (!case_path(path, reason, &r->c, r->c.log)) return end_case(r, CASE_SKIPPED, "log absent: %s", reason);
-    if (access(path, R_OK) != 0) return end_case(r, CASE_SKIPPED, "log absent: %.400s: %s", path, strerror(errno));
+    static const char next[] = "; give it, or allow this (log_may_be_absent: true in case.yaml, or --allow-missing)";
+    char              path[case_path_size], reason[256];
+    const bool        allowed = r->c.log_may_be_absent || how->allow_missing;
+    const CaseState   state   = allowed ? CASE_SKIPPED : CASE_BROKEN;
+    if (!case_path(path, reason, &r->c, r->c.log))
+        return end_case(r, state, "log absent: %s%s", reason, allowed ? "" : next);
+    if (access(path, R_OK) != 0)
+        return end_case(r, state, "log absent: %.400s: %s%s", path, strerror(errno), allowed ? "" : next);
     snprintf(log, path_size, "%s", path);
     return true;
 }
@@ -242,7 +247,7 @@ bool make_folder(const char *path) { return frame_files_folder(path) == STATUS_O
 static void run_it(CaseResult *r, const CaseHow *how)
 {
     char log[path_size], config[path_size];
-    if (*r->c.log && !find_log(log, r)) return;
+    if (*r->c.log && !find_log(log, r, how)) return;
     if (!how->update && !has_record(r)) return;
     if (!make_folder(r->work)) {
         end_case(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);

@@ -9,7 +9,7 @@ typedef enum CaseState {
     CASE_FAILED,   /* beyond its record */
     CASE_BROKEN,   /* could not be run, or read */
     CASE_NO_RECORD,
-    CASE_SKIPPED,  /* its log is not here */
+    CASE_SKIPPED,  /* its log is not here, and may be absent */
     CASE_STATES
 } CaseState;
 
@@ -18,6 +18,7 @@ typedef struct CaseResult {
     CaseState state;
     bool      compared, updated;
     char      line[700];         /* what the terminal says behind the name */
+    char      chosen[8192];      /* of an update: host, aim and other choices of the run, lines */
     double    seconds;
     Verdict   verdict;
     char      work[case_path_size]; /* what was made; out/ is replay's */
@@ -28,7 +29,7 @@ typedef struct CaseResult {
 typedef struct CaseHow {
     int         threads;         /* of a child */
     const char *isa;             /* of its tracer; NULL: as replay has it */
-    bool        update;
+    bool        update, allow_missing; /* allow_missing: of logs */
     const char *why;
 } CaseHow;
 

@@ -116,6 +116,9 @@ static void put_changes(FILE *to, const CaseResult *r)
         return;
     }
     int count = 0;
+    for (const char *at = r->verdict.remarks; *at; at += strcspn(at, "\n") + (at[strcspn(at, "\n")] == '\n'))
+        if (strncmp(at, "table ", 6) == 0 || strncmp(at, "setting ", 8) == 0)
+            fprintf(to, "- changed: %.*s\n", (int)strcspn(at, "\n"), at);
     for (int k = 0; k < CHANNEL_COUNT; k++)
         if (r->verdict.channel[k].failed && count++ >= 0)
             fprintf(to, "- what: %s: %s\n", channel_name((Channel)k), r->verdict.channel[k].line);
@@ -179,6 +182,30 @@ static double record_octets(const char *folder)
     return sum;
 }
 
+/* What replay prints of its run: host, aim, ground, time. */
+static void take_choices(CaseResult *r, const JsonValues *run)
+{
+    const JsonValue *host = json_values_find(run, "hosts[0]"), *aim = json_values_find(run, "settings.exercise.aim");
+    char             all[sizeof r->chosen] = "";
+    size_t           n = 0;
+    bool             said_host = false, said_aim = false;
+    for (int i = 0; i < 1000 && n < sizeof all; i++) { /* the list is in the order of its places as text: 10 before 2 */
+        char path[32];
+        snprintf(path, sizeof path, "choices[%d]", i);
+        const JsonValue *choice = json_values_find(run, path);
+        if (!choice || !choice->text) break;
+        said_host |= strncmp(choice->text, "host:", 5) == 0;
+        said_aim |= strncmp(choice->text, "aim:", 4) == 0;
+        n += (size_t)snprintf(all + n, sizeof all - n, "%s\n", choice->text);
+    }
+    n = 0;
+    if (!said_host && host && host->text)
+        n += (size_t)snprintf(r->chosen, sizeof r->chosen, "host: %.100s\n", host->text);
+    if (!said_aim && aim && aim->text && *aim->text)
+        n += (size_t)snprintf(r->chosen + n, sizeof r->chosen - n, "aim: %.100s (exercise.aim)\n", aim->text);
+    snprintf(r->chosen + n, sizeof r->chosen - n, "%s", all);
+}
+
 void update_case(CaseResult *r, const char *why)
 {
     char       out[path_size], record[path_size], fresh[path_size], date[32] = "";
@@ -194,6 +221,7 @@ void update_case(CaseResult *r, const char *why)
     memcpy(r->said, kept, sizeof kept);
 
     Status status = read_run(&run, out);
+    if (status == STATUS_OK) take_choices(r, &run);
     if (status == STATUS_OK) status = write_products(r, out, fresh, date);
     if (status == STATUS_OK && !(make_folder(record) && move_files(record, NULL) && move_files(fresh, record))) {
         log_error("regress: cannot write in %s: %s", record, strerror(errno));

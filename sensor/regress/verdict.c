@@ -12,6 +12,7 @@ static const struct ChannelRow {
     FramePlane  plane[4];
     int         planes;
 } rows[CHANNEL_COUNT] = {
+    [CHANNEL_SIZE] = {"size", "of the pictures, and of the range profile", "", {0}, 0},
     [CHANNEL_COUNTERS] = {"counters", "PDUs, what was dropped, entities and effects, over the whole log", "", {0}, 0},
     [CHANNEL_TIME] = {"time", "which frames there are, and when", "", {0}, 0},
     [CHANNEL_POSE] = {"pose", "where the eye is, and where it looks", "", {0}, 0},
@@ -39,6 +40,16 @@ static const struct ChannelRow {
 
 const char *channel_name(Channel channel) { return rows[channel].name; }
 const char *channel_about(Channel channel) { return rows[channel].about; }
+
+void channel_value(char out[64], Channel channel, double value, int digits)
+{
+    const char *unit    = rows[channel].unit, *space = *unit ? " " : "";
+    const bool  thermal = channel == CHANNEL_MWIR || channel == CHANNEL_LWIR;
+    if (isnan(value)) snprintf(out, 64, "no number");
+    else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "beyond all numbers");
+    else if (thermal && value <= apparent_floor_k) snprintf(out, 64, "below %.0f K", apparent_floor_k);
+    else snprintf(out, 64, "%.*g%s%s", digits, value, space, unit);
+}
 
 /* ---- units ----------------------------------------------------------------------------------- */
 
@@ -118,15 +129,19 @@ static bool is_geometry(Channel channel) { return channel == CHANNEL_RANGE || ch
 static void say_number(ChannelResult *r, Channel channel)
 {
     const PlaneVerdict *v = &r->verdict;
-    char                limit[64], worst[48], plane[24] = "";
+    char                limit[64], worst[160], plane[24] = "", was[64], is[64];
     const char         *unit = rows[channel].unit, *space = *unit ? " " : "";
+    const bool          floor = (channel == CHANNEL_MWIR || channel == CHANNEL_LWIR) &&
+                       (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
+    channel_value(was, channel, v->expected, 4);
+    channel_value(is, channel, v->got, 4);
     if (channel == CHANNEL_RANGE) snprintf(limit, sizeof limit, "%.3g of it", r->relative);
     else if (channel == CHANNEL_OPTICAL) snprintf(limit, sizeof limit, "%.3g %%", 100 * r->relative);
     else snprintf(limit, sizeof limit, "%.3g%s%s", r->limit, space, unit);
     if (channel == CHANNEL_OPTICAL && isfinite(v->max) && v->expected > 0)
         snprintf(worst, sizeof worst, "%.3g %%", 100 * v->max / v->expected);
-    else if (isfinite(v->max)) snprintf(worst, sizeof worst, "%.3g%s%s", v->max, space, unit);
-    else snprintf(worst, sizeof worst, "%.4g became %.4g", v->expected, v->got);
+    else if (isfinite(v->max) && !floor) snprintf(worst, sizeof worst, "%.3g%s%s", v->max, space, unit);
+    else snprintf(worst, sizeof worst, "%s became %s", was, is);
     if (rows[channel].planes > 1) snprintf(plane, sizeof plane, "%s: ", frame_plane_name(r->plane));
     snprintf(r->line, sizeof r->line, "%s%.3g %% of pixels beyond %s, worst %s at frame %d (%d, %d)", plane,
              100 * v->share, limit, worst, r->frame, v->column, v->row);
@@ -192,6 +207,7 @@ static void hold_profile(ChannelResult *result, const Held *h)
 {
     const RecordFrame *was = h->expected, *is = h->got;
     if (was->bins == 0 && is->bins == 0) return;
+    if (was->bins > 0 && is->bins > 0 && was->bins != is->bins) return; /* CHANNEL_SIZE says so */
     if (was->bins != is->bins) {
         one_sided(result, CHANNEL_PROFILE, FRAME_PLANES, is->number, was->bins > 0);
         return;
@@ -318,9 +334,57 @@ static const char *text_of(const JsonValues *values, const char *path)
     return value && value->text ? value->text : "";
 }
 
+static bool begins(const char *text, const char *head) { return strncmp(text, head, strlen(head)) == 0; }
+
+/* Each value below `head` that is not the same in both: tables by their hash, settings by their text. */
+static int remark_group(Verdict *v, const JsonValues *was, const JsonValues *is, const char *head, bool hashes)
+{
+    const char *const what = hashes ? "table" : "setting";
+    const size_t      skip = strlen(head);
+    int               count = 0;
+    for (int i = 0; i < is->count; i++) {
+        const JsonValue *now = &is->value[i], *then = json_values_find(was, now->path);
+        if (!begins(now->path, head) || !now->text) continue;
+        if (then && then->text && strcmp(then->text, now->text) == 0) continue;
+        count++;
+        if (!then) remark(v, "%s %s is new", what, now->path + skip);
+        else if (hashes)
+            remark(v, "%s %s is another: SHA-256 %.8s..., was %.8s...", what, now->path + skip, now->text,
+                   then->text ? then->text : "?");
+        else
+            remark(v, "%s %s is '%.200s', was '%.200s'", what, now->path + skip, now->text, then->text ? then->text : "?");
+    }
+    for (int i = 0; i < was->count; i++)
+        if (begins(was->value[i].path, head) && !json_values_find(is, was->value[i].path)) {
+            remark(v, "%s %s is gone", what, was->value[i].path + skip);
+            count++;
+        }
+    return count;
+}
+
+static bool has_group(const JsonValues *values, const char *head)
+{
+    for (int i = 0; i < values->count; i++)
+        if (begins(values->value[i].path, head)) return true;
+    return false;
+}
+
+/* What goes in: tables, settings, log. */
+static void look_at_inputs(Verdict *v, const JsonValues *was, const JsonValues *is)
+{
+    int settings = 0;
+    if (has_group(was, "tables_sha256.")) remark_group(v, was, is, "tables_sha256.", true);
+    if (has_group(was, "settings.")) settings = remark_group(v, was, is, "settings.", false);
+    if (settings == 0 && strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
+        remark(v, "settings are not those of the record (config_sha256), which does not say which");
+    v->other_log = strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0;
+    if (v->other_log) remark(v, "the log is not that of the record (log_sha256)");
+}
+
 /* Version, ISA, libraries; and what else explains a difference. */
 static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
+    look_at_inputs(v, was, is);
     static const char *const build[] = {"pitviper", "isa"};
     v->same_build = true;
     for (int i = 0; i < 2; i++)
@@ -335,10 +399,6 @@ static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is
         v->same_build = false;
         remark(v, "%s is %s, the record's was %s", path + 10, is->value[i].text, text_of(was, path));
     }
-    if (strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
-        remark(v, "the settings are not those of the record (config_sha256)");
-    v->other_log = strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0;
-    if (v->other_log) remark(v, "the log is not that of the record (log_sha256)");
     for (int i = 0; i < is->count; i++) {
         const char *path = is->value[i].path;
         if (strncmp(path, "choices[", 8) == 0 && is->value[i].text &&
@@ -394,11 +454,39 @@ static Status truth_of(JsonValues *out, const char *folder, int frame)
     return status;
 }
 
+/* False: the record's pictures or profiles are of another size, which has been said; or cannot be read. */
+static bool same_size(Status *status, Verdict *v, const char *record, const RecordFrame *got)
+{
+    ChannelResult *r = &v->channel[CHANNEL_SIZE];
+    FrameSize      size;
+    *status  = frame_record_size(&size, record, got->number);
+    r->there = true;
+    if (*status != STATUS_OK) return false;
+    const bool picture = size.width == got->width && size.height == got->height;
+    const bool profile = size.bins == got->bins || size.bins == 0 || got->bins == 0;
+    if (picture && profile) return true;
+    r->frame = got->number;
+    if (!r->failed && !picture)
+        snprintf(r->line, sizeof r->line,
+                 "expected %d x %d pixels, got %d x %d, from frame %d on (sensor.width_px, sensor.height_px); nothing "
+                 "else is compared in such a frame", size.width, size.height, got->width, got->height, got->number);
+    else if (!r->failed)
+        snprintf(r->line, sizeof r->line,
+                 "expected %d range bins, got %d, from frame %d on (radar.bins); nothing else is compared in such a frame",
+                 size.bins, got->bins, got->number);
+    r->failed = true;
+    return false;
+}
+
 static Status hold_frame(Verdict *v, const Case *c, const char *record, const char *run, int number)
 {
     RecordFrame expected = {0}, got = {0};
     JsonValues  was = {0}, is = {0};
     Status      status = frame_from_run(&got, run, number);
+    if (status == STATUS_OK && !same_size(&status, v, record, &got)) {
+        frame_free(&got);
+        return status;
+    }
     if (status == STATUS_OK) status = frame_from_record(&expected, record, &got);
     if (status == STATUS_OK) status = truth_of(&was, record, number);
     if (status == STATUS_OK) status = truth_of(&is, run, number);

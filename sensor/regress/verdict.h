@@ -10,6 +10,7 @@
 
 /* In the way of the data. */
 typedef enum Channel {
+    CHANNEL_SIZE,     /* of the pictures and of the range profile: other sizes are not compared any further */
     CHANNEL_COUNTERS, /* of PDUs, drops, entities, events: run.json */
     CHANNEL_TIME,     /* which frames there are, and when */
     CHANNEL_POSE,     /* host and sensor: truth.jsonl */
@@ -44,11 +45,13 @@ typedef struct Verdict {
     int           first;        /* that failed; -1: none */
     bool          same_build;   /* version, libraries, ISA as in the record */
     bool          other_log;    /* what was replayed is not what was recorded: its writer may be the cause */
-    char          remarks[2048];/* lines: other version, other hashes */
+    char          remarks[16384]; /* lines: what is other than when it was recorded: tables, settings, log, build, choices */
 } Verdict;
 
 const char *channel_name(Channel channel);
 const char *channel_about(Channel channel); /* what it is, in a few words */
+/* A value of a plane as a user reads it: with its unit; "below 100 K"; "no surface"; "no number". digits: 1 .. 9. */
+void        channel_value(char out[64], Channel channel, double value, int digits);
 
 /* A frame of both, as the report shows it: in the channel's unit. Freed by the caller with free. */
 typedef struct ChannelPlanes {

@@ -40,6 +40,7 @@ static void what_is_not_finite_is_equal_only_to_itself(void **state)
     CHECK(v.beyond == 0 && v.max == 0 && v.column == -1);
     compare_numbers(&v, NULL, expected, other, 4, 1, 1e30, 10, NULL);
     CHECK(v.beyond == 3 && isinf(v.max) && v.column == 1);
+    CHECK(v.unmatched == 3 && v.rms == 0); /* the one pixel that is alike */
 }
 
 /* 4 x 3, a square of 7 in the corner; its edge pixels are those that touch another id. */
@@ -69,12 +70,14 @@ static void units_are_those_of_physics(void **state)
 {
     (void)state;
     const double low_m = 8e-6, high_m = 12e-6;
-    const float  radiance[4] = {(float)planck_band(low_m, high_m, 300, NULL), 0, NAN,
-                                (float)planck_band(low_m, high_m, 250, NULL)};
-    float kelvin[4], db[4];
-    plane_to_kelvin(kelvin, radiance, 4, low_m, high_m);
+    const float  radiance[7] = {(float)planck_band(low_m, high_m, 300, NULL), 0, NAN,
+                                (float)planck_band(low_m, high_m, 250, NULL),
+                                (float)planck_band(low_m, high_m, 60, NULL), -1, INFINITY};
+    float kelvin[7], db[4];
+    plane_to_kelvin(kelvin, radiance, 7, low_m, high_m);
     CHECK_NEAR(kelvin[0], 300, 1e-4); /* radiance to 24 bits: 4e-6 K */
-    CHECK(isnan(kelvin[1]) && isnan(kelvin[2]));
+    CHECK(kelvin[1] == (float)apparent_floor_k && kelvin[4] == kelvin[1]); /* no radiance, and next to none, are alike */
+    CHECK(isnan(kelvin[2]) && isnan(kelvin[5]) && isnan(kelvin[6]));
     CHECK_NEAR(kelvin[3], 250, 1e-4);
     const float power[4] = {2, 0.2f, 0, 2e-9f};
     plane_to_db(db, power, 4, 2, 60);
@@ -203,6 +206,45 @@ static void each_channel_has_its_own_limit(void **state)
     CHECK(first_failure(FRAME_LWIR, 2, NAN, false) == CHANNEL_LWIR);
 }
 
+/* Two pixels of a plane get a value; the line that is said of it. */
+static const char *line_of(char out[512], FramePlane plane, Channel channel, float was, float is)
+{
+    RecordFrame     expected, got;
+    const Tolerance tolerance = case_default().tolerance;
+    ChannelResult   result[CHANNEL_COUNT] = {{0}};
+    make_frame(&expected);
+    make_frame(&got);
+    for (int i = 3; i < 5; i++) {
+        expected.number_plane[plane][i] = was;
+        got.number_plane[plane][i]      = is;
+    }
+    verdict_frame(result, &expected, &got, &tolerance, false);
+    snprintf(out, 512, "%s", result[channel].failed ? result[channel].line : "");
+    frame_free(&expected);
+    frame_free(&got);
+    return out;
+}
+
+static void what_has_no_number_is_said_in_words(void **state)
+{
+    (void)state;
+    char said[512], value[64];
+    CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 10, 0), "K became below 100 K at frame 7 (3, 0)"));
+    CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 10), "worst below 100 K became "));
+    CHECK(!*line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 1e-20f)); /* both colder than anything seen */
+    CHECK(strstr(line_of(said, FRAME_MWIR, CHANNEL_MWIR, 10, NAN), "K became no number"));
+    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, INFINITY, 500), "no surface became 500 m"));
+    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, 500, NAN), "500 m became no number"));
+    CHECK(strstr(line_of(said, FRAME_OPTICAL_G, CHANNEL_OPTICAL, 10, INFINITY), "10 W/(m2 sr) became beyond all numbers"));
+    for (int c = 0; c < CHANNEL_COUNT; c++) {
+        const double odd[] = {INFINITY, -INFINITY, NAN, 0, 1};
+        for (int i = 0; i < 5; i++) {
+            channel_value(value, (Channel)c, odd[i], 4);
+            CHECK(!strstr(value, "inf") && !strstr(value, "nan"));
+        }
+    }
+}
+
 /* The border has 80 pixels, or a few more with what was changed: 1 of them is within 2 %, 8 are not. */
 static void other_libraries_may_change_a_few_edges(void **state)
 {
@@ -301,6 +343,7 @@ int main(void)
         cmocka_unit_test(numbers_are_rounded_to_steps),
         cmocka_unit_test(a_coded_plane_comes_back),
         cmocka_unit_test(each_channel_has_its_own_limit),
+        cmocka_unit_test(what_has_no_number_is_said_in_words),
         cmocka_unit_test(other_libraries_may_change_a_few_edges),
         cmocka_unit_test(each_field_has_its_own_tolerance),
         cmocka_unit_test(fields_may_come_but_not_go),

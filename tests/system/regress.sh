@@ -16,6 +16,7 @@ config: |
     listen_s: 14
     utc: 2026-06-21T17:00:00Z
   seed: 1
+causal: true
 frames: [$frames]
 timeout_s: 300
 YAML
@@ -26,9 +27,9 @@ changed() {
     cp -r "$tmp/good" "$tmp/$1"
     sed -i "$2" "$tmp/$1/case.yaml"
 }
-# fails NAME WHAT: the case ends with 1, and this is its line
+# fails NAME WHAT options: the case ends with 1, and this is its line
 fails() {
-    run regress "$tmp/$1"
+    run regress "$tmp/$1" "${@:3}"
     check "$1: exit code" [ $code = 1 ]
     check "$1: $2" grep -qE "^$1 +FAILED: $2" "$tmp/stdout" || tail -n 3 "$tmp/stdout"
 }

@@ -9,6 +9,10 @@ for command in $("$pitviper" --help | sed -nE 's/^  ([a-z]+) +.*/\1/p'); do
         check "$command $option" grep -qF -e "${option//-/\\-}" "$tmp/pitviper.1"
     done
 done
+for topic in $("$pitviper" help | sed -n '/^products /p'); do
+    check "the topic $topic" grep -qx "\.SS ${topic//-/\\\\-}" "$tmp/pitviper.1"
+done
+check "a field of a product" grep -qF 'targets[].los_rate_dps' "$tmp/pitviper.1"
 check "a setting" grep -q 'hfov_deg: 6' "$tmp/pitviper.1"
 if command -v groff >/dev/null; then
     groff -man -ww -z "$tmp/pitviper.1" >"$tmp/said" 2>&1

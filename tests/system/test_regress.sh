@@ -18,6 +18,8 @@ check "--update: the record" [ -s "$tmp/good/record/000005.exr" ] && [ -s "$tmp/
 check "--update: a small one" [ "$(cat "$tmp"/good/record/* | wc -c)" -le 75000 ]
 check "--update: the card says why" grep -q '^- why: seen: two <tanks> and a truck$' "$tmp/good/card.md"
 check "--update: the date of the exercise" grep -qE '^## pitviper .*exercise of 2026-06-21 17:0[0-9]:[0-9]{2} UTC$' "$tmp/good/card.md"
+check "--update: the host, as replay says it" grep -qE '^good +chosen: host: 1:3001:41 ' "$tmp/stdout"
+check "--update: the aim, as replay says it" grep -qE '^good +chosen: aim: 1:3001:[0-9]+' "$tmp/stdout"
 check "--update: nothing is left over" [ ! -e "$tmp/good/record.part" ]
 run regress "$tmp/good" --junit "$tmp/junit.xml" --report "$tmp/report.html" --work "$tmp/work"
 check "passes: exit code" [ $code = 0 ]
@@ -34,13 +36,20 @@ check "the same again: what is not ours stays" [ -e "$tmp/good/record/notes.txt"
 
 # ---- the channel that was spoilt is named -------------------------------------------------------
 changed another_hour 's/T17:00/T18:30/';                fails another_hour 'sun: sun\.'
-changed another_seed 's/^  seed: 1/  seed: 2/';         fails another_seed '(entity|part|range): '
+changed another_seed 's/^  seed: 1/  seed: 2/';         fails another_seed '(entity|part|range): ' --report "$tmp/report.html" --work "$tmp/work"
+check "hills where sky was: in words" test -z "$(sed 's/base64,[^"]*//g' "$tmp/report.html" | cat - "$tmp/stdout" | grep -wiE '[+-]?(inf|nan)' | head -n 2)"
 changed another_rate 's/rate_hz: 5/rate_hz: 4/';        fails another_rate 'time: time_s is '
 changed another_exercise 's/^config/scenario_set: seed=5\nconfig/'; fails another_exercise '(counters|pose): '
 changed heavy_rain 's/^  seed: 1/  seed: 1\n  weather: {visibility_m: 5000}/'; fails heavy_rain '(temperature|optical): '
+check "a changed setting comes first" [ "$(head -n 1 "$tmp/stdout" | grep -cE "changed: setting weather.visibility_m is '5000', was '[0-9]+'")" = 1 ]
 changed other_lobe 's/^  seed: 1/  seed: 1\n  radar: {lobe_deg: 4}/'; fails other_lobe '(radar|radar profile): '
 changed noisy 's/^  seed: 1/  seed: 1\n  detector: {noise: 50}/'; fails noisy 'target signals: '
 changed bent "s/^    width_px/    hfov_deg: 6.2\n    width_px/"; fails bent '(pose|entity|part): '
+
+changed other_size 's/width_px: 64/width_px: 80/'
+fails other_size 'size: expected 64 x 48 pixels, got 80 x 48'
+changed other_bins 's/^  seed: 1/  seed: 1\n  radar: {bins: 100}/'
+fails other_bins 'size: expected [0-9]+ range bins, got 100'
 
 # other tables: each column by a factor, in every material
 spoil_table() { # spoil_table COLUMN FACTOR
@@ -53,7 +62,12 @@ spoil_table() { # spoil_table COLUMN FACTOR
 }
 while read -r column factor named; do
     spoil_table "$column" "$factor"
-    PITVIPER_ETC=$tmp/etc run regress "$tmp/good"
+    PITVIPER_ETC=$tmp/etc run regress "$tmp/good" --report "$tmp/report.html" --work "$tmp/work"
+    check "materials, $column: the changed table comes first" \
+        [ "$(head -n 1 "$tmp/stdout" | grep -cE '^good +changed: table materials.csv is another: SHA-256 [0-9a-f]{8}')" = 1 ]
+    check "materials, $column: no other table" [ "$(grep -c 'changed: table' "$tmp/stdout")" = 1 ]
+    check "materials, $column: it heads the report" test "$(grep -nm1 'table materials.csv' "$tmp/report.html" | cut -d: -f1)" \
+        -lt "$(grep -nm1 '<th>channel</th>' "$tmp/report.html" | cut -d: -f1)"
     check "materials, $column: names $named" grep -qE "^good +FAILED: $named: " "$tmp/stdout" || cat "$tmp/stdout"
 done <<'COLUMNS'
 solar_absorptance 0.9 temperature
@@ -63,7 +77,7 @@ radar_gamma 1.1 radar
 COLUMNS
 
 # ---- a case that is wrong, absent, hanging, crashing; beside a good one ----------------------------
-changed absent 's|^scenario: demo|log: ${PITVIPER_NOWHERE}/a.pcap|'
+changed absent 's|^scenario: demo|log: ${PITVIPER_NOWHERE}/a.pcap\nlog_may_be_absent: true|'
 changed absent_file 's|^scenario: demo|log: a.pcap|'
 changed bad_config 's/width_px: 64/width_px: 7/'
 changed bad_set 's/^config/scenario_set: nobodys=5\nconfig/'
@@ -75,12 +89,23 @@ run regress "$tmp"/{good,absent,absent_file,bad_config,bad_set,beyond,slow} --ju
 check "among others: exit code" [ $code = 1 ]
 check "among others: the good one" grep -qE '^good +ok' "$tmp/stdout"
 check "a variable that is not set" grep -qE '^absent +skipped: log absent: PITVIPER_NOWHERE is not set' "$tmp/stdout"
-check "a log that is not there" grep -qE '^absent_file +skipped: log absent: .*a.pcap' "$tmp/stdout"
+check "a log that is not there" grep -qE '^absent_file +FAILED: log absent: .*a.pcap.*log_may_be_absent: true.*--allow-missing' "$tmp/stdout"
 check "settings that are bad" grep -qE '^bad_config +FAILED: .*config.yaml:2: sensor.width_px' "$tmp/stdout"
 check "a scenario's setting" grep -qE '^bad_set +FAILED: .*nobodys' "$tmp/stdout"
 check "a frame that is not there" grep -qE '^beyond +FAILED: .*there is no frame 5000' "$tmp/stdout"
 check "one that hangs" grep -qE '^slow +FAILED: .*ended after 0.1 s \(timeout_s\)' "$tmp/stdout"
 check "in the order given" [ "$(awk '/ (ok|FAILED:|skipped:) / { printf "%s ", $1 }' "$tmp/stdout")" = "good absent absent_file bad_config bad_set beyond slow " ]
+
+run regress "$tmp/absent_file" --allow-missing
+check "--allow-missing: skipped" [ $code = 0 ] && grep -qE '^absent_file +skipped: log absent' "$tmp/stdout"
+
+# without `causal`: the user's own replay
+changed plain '/^causal/d'
+run regress --update "$tmp/plain" --why 'as replay has it' --work "$tmp/work"
+"$pitviper" exercise demo -o "$tmp/demo.pcapng" >/dev/null
+"$pitviper" replay "$tmp/demo.pcapng" -c "$tmp/work/plain/config.yaml" --only 5,24 --out "$tmp/own" --no-png >/dev/null 2>&1
+check "causal is false by default: the bits of a plain replay" test "$(hashes "$tmp/own")" = "$(tr -d ' \n' <"$tmp/plain/record/run.json" | grep -o '"frame_sha256":\[[^]]*\]')"
+check "and not those of --causal" test "$(hashes "$tmp/own")" != "$(tr -d ' \n' <"$tmp/good/record/run.json" | grep -o '"frame_sha256":\[[^]]*\]')"
 
 # a crash: the child gets a signal that it would give itself
 changed crash 's/64/720/; s/48/486/; s/seed: 1/seed: 1\n  models: {sag_m: 0.0001}/; s/rate_hz: 5/rate_hz: 5\n    samples: 8/'
@@ -105,7 +130,7 @@ import xml.etree.ElementTree as tree
 from html.parser import HTMLParser
 suite = tree.parse(sys.argv[1]).getroot()
 assert suite.tag == "testsuite" and suite.get("tests") == "7", suite.attrib
-assert (suite.get("errors"), suite.get("skipped"), suite.get("failures")) == ("4", "2", "0"), suite.attrib
+assert (suite.get("errors"), suite.get("skipped"), suite.get("failures")) == ("5", "1", "0"), suite.attrib
 cases = {c.get("name"): [k.tag for k in c if not k.tag.startswith("system")] for c in suite}
 assert cases["good"] == [] and cases["absent"] == ["skipped"] and cases["slow"] == ["error"], cases
 page = open(sys.argv[2]).read()

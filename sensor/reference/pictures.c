@@ -1,0 +1,171 @@
+/* sensor/reference/pictures.c: EXR, PNG, raw counts and range profiles. */
+#include "sensor/reference/reference.h"
+
+#include "sensor/reference/words.h"
+
+/* ---- EXR ------------------------------------------------------------------------------------- */
+
+static const ReferenceField exr_fields[] = {
+    {"channel optical/R", "float", "W/(m2 sr)", "0.6-0.7 um", "with sensor.optical pan or nir",
+     "radiance at the aperture"},
+    {"channel optical/G", "float", "W/(m2 sr)", "0.5-0.6 um", "with sensor.optical pan or nir",
+     "radiance at the aperture"},
+    {"channel optical/B", "float", "W/(m2 sr)", "0.4-0.5 um", "with sensor.optical pan or nir",
+     "radiance at the aperture"},
+    {"channel optical/Y", "float", "W/(m2 sr)", "pan 0.4-0.7 um, nir 0.7-1.1 um", "with sensor.optical rgb",
+     "radiance at the aperture"},
+    {"channel mwir/Y", "float", "W/(m2 sr)", "3-5 um", "", "radiance at the aperture"},
+    {"channel lwir/Y", "float", "W/(m2 sr)", "8-12 um", "", "radiance at the aperture"},
+    {"channel radar/Y", "float", "relative", "", "",
+     "power of the pseudo-radar: comparable within a run, no unit of physics"},
+    {"channel truth/range_m", "float", "m", "from the eye, along the ray", "",
+     "distance of the surface in the pixel's middle; +infinity: sky"},
+    {"channel truth/entity", "uint", "", "from 1, into entity_ids; 0: none", "", "which entity"},
+    {"channel truth/part", "uint", "", "from 1, into the parts of its model in part_names; 0: none", "",
+     "which part of it"},
+    {"channel truth/material", "uint", "", "from 0, into material_names, whose first is `none`", "", "which material"},
+    {"channel truth/temp_k", "float", "K", "", "", "temperature of the surface; NaN: sky"},
+    {"channel truth/nx", "float", "", "ENU at the terrain's origin, east", "", "unit normal of the surface"},
+    {"channel truth/ny", "float", "", "ENU at the terrain's origin, north", "", "the same"},
+    {"channel truth/nz", "float", "", "ENU at the terrain's origin, up", "", "the same"},
+    {"header band", "string", "", "", "", "BAND, or `truth`"},
+    {"header unit", "string", "", "", "in truth", "`W/(m2 sr)` or `relative`"},
+    {"header model", "string", "", "", "but in radar", "`pseudo-radar`"},
+    {"header wavelengths_um", "string", "um", "", "but in optical", "what each channel sees"},
+    {"header frame", "int", "", "from 0", "", "number of the frame"},
+    {"header time_s", "double", "s", "exercise time", "", "instant of the frame"},
+    {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "",
+     "the same as a date; OpenImageIO shows it as DateTime"},
+    {"header host", "string", "", "site:application:entity, or `observer`", "", "who carries the sensor"},
+    {"header seed", "int", "", "", "", "of all random numbers"},
+    {"header config_sha256", "string", "", "", "", "as in run.json"},
+    {"header entity_ids", "string", "", "site:application:entity, separated by commas; the first is entity 1",
+     "but in truth",
+     "the frame's entities"},
+    {"header material_names", "string", "", "separated by commas; the first, `none`, is material 0", "but in truth",
+     "names of etc/materials.csv"},
+    {"header part_names", "string", "", "model:part,part,...;model:... ; the first part is part 1", "but in truth",
+     "the parts of the models in this frame"},
+};
+
+static const ReferenceWord bands[] = {REFERENCE_WORD_BAND};
+
+const Reference reference_exr = {
+    .topic = "exr",
+    .file  = "frames/BAND/NNNNNN.exr",
+    .title = "radiance of every pixel, and in frames/truth/NNNNNN.exr what each shows",
+    .about = "OpenEXR, scan lines, ZIP. Rows from the top, columns from the left: [row][column] of a plane is the pixel\n"
+             "whose middle is (column + 0.5, row + 0.5). Truth is that of the sample nearest the middle; radiance is the\n"
+             "mean over the pixel. Python: `pip install OpenEXR numpy` (3.3 or later); OpenImageIO reads them as well.",
+    .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an attribute.",
+    .field = REFERENCE_FIELDS(exr_fields),
+    .word  = REFERENCE_FIELDS(bands),
+    .python =
+        "import glob, numpy, OpenEXR\n"
+        "path = sorted(glob.glob('frames/truth/*.exr'))[0]\n"
+        "file = OpenEXR.File(path, separate_channels=True)\n"
+        "truth, header = file.channels(), file.header()\n"
+        "range_m, entity = truth['range_m'].pixels, truth['entity'].pixels     # [row][column]\n"
+        "ids = header['entity_ids'].split(',')\n"
+        "for number in numpy.unique(entity[entity > 0]):\n"
+        "    seen = entity == number\n"
+        "    print(ids[number - 1], int(seen.sum()), 'pixels, nearest', range_m[seen].min(), 'm')\n"
+        "lwir = OpenEXR.File(path.replace('truth', 'lwir'), separate_channels=True).channels()['Y'].pixels\n"
+        "print('lwir', lwir.mean(), 'W/(m2 sr); sky:', int(numpy.isinf(range_m).sum()), 'pixels')\n",
+};
+
+/* ---- PNG ------------------------------------------------------------------------------------- */
+
+static const ReferenceField png_fields[] = {
+    {"optical", "RGB 8 bit", "", "sRGB", "with sensor.optical pan or nir, which are grey 8 bit",
+     "the camera's picture: white balance of the day, display gamma"},
+    {"mwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level"},
+    {"lwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level; hot is white"},
+    {"radar", "grey 8 bit", "", "", "", "dB: 255 is the brightest of the picture, 0 is 60 dB below it or less"},
+    {"truth", "RGB 8 bit", "", "", "", "for people: a colour an entity over range"},
+};
+
+const Reference reference_png = {
+    .topic = "png",
+    .file  = "frames/BAND/NNNNNN.png",
+    .title = "what a display behind the detector shows",
+    .about = "Noise, gain, level and quantisation of the detector.* settings. Same pixels as the EXR. detector.bits: 16\n"
+             "makes 16 bits of all but truth. Black and white of an automatic level stand in pairs.jsonl (level).\n"
+             "Python: `pip install pillow numpy`.",
+    .notation = "Field: folder below frames/. Type: channels and bits of each.",
+    .field = REFERENCE_FIELDS(png_fields),
+    .python =
+        "import glob, numpy\n"
+        "from PIL import Image\n"
+        "for path in sorted(glob.glob('frames/lwir/*.png')):\n"
+        "    shown = numpy.array(Image.open(path))        # [row][column], RGB: [row][column][3]\n"
+        "    row, column = numpy.unravel_index(shown.argmax(), shown.shape)\n"
+        "    print(path, shown.dtype, 'brightest at column', column, 'row', row)\n",
+};
+
+static const ReferenceField raw_fields[] = {
+    {"optical", "RGB 16 bit", "counts", "", "with sensor.optical pan or nir, which are grey 16 bit", "of each channel"},
+    {"mwir", "grey 16 bit", "counts", "", "", "of the analogue-to-digital converter"},
+    {"lwir", "grey 16 bit", "counts", "", "", "of the analogue-to-digital converter"},
+};
+
+const Reference reference_raw = {
+    .topic = "raw",
+    .file  = "raw/BAND/NNNNNN.png",
+    .title = "counts of a detector's converter, before gain and level",
+    .about = "Of bands that have a sensor (sensor.preset, sensor.table) with detector.raw. The counts as they are, from 0;\n"
+             "full scale is 2 to the sensor's number of bits less 1 (bits of etc/sensors.csv), not 65535. Beware of\n"
+             "readers that make 8 bits of RGB with 16 (Pillow does); the lines below need no library.",
+    .notation = "Field: folder below raw/. Type: channels and bits of each.",
+    .field = REFERENCE_FIELDS(raw_fields),
+    .python =
+        "import glob, struct, zlib\n"
+        "def counts(path):\n"
+        "    data, at, packed = open(path, 'rb').read(), 8, b''\n"
+        "    while at < len(data):\n"
+        "        size, kind = struct.unpack('>I4s', data[at:at + 8])\n"
+        "        if kind == b'IHDR': width, height, bits, colour = struct.unpack('>IIBB', data[at + 8:at + 18])\n"
+        "        if kind == b'IDAT': packed += data[at + 8:at + 8 + size]\n"
+        "        at += size + 12\n"
+        "    pixel = (3 if colour == 2 else 1) * bits // 8\n"
+        "    flat, stride, rows, above = zlib.decompress(packed), width * pixel, [], bytes(width * pixel)\n"
+        "    for y in range(height):\n"
+        "        how, line = flat[y * (stride + 1)], bytearray(flat[y * (stride + 1) + 1:(y + 1) * (stride + 1)])\n"
+        "        for i in range(stride):             # the five filters of PNG\n"
+        "            a, b, c = (line[i - pixel], above[i], above[i - pixel]) if i >= pixel else (0, above[i], 0)\n"
+        "            paeth = min((abs(b - c), 0, a), (abs(a - c), 1, b), (abs(a + b - 2 * c), 2, c))[2]\n"
+        "            line[i] = line[i] + (0, a, b, (a + b) // 2, paeth)[how] & 255\n"
+        "        rows.append(struct.unpack('>%dH' % (stride // 2), line))\n"
+        "        above = line\n"
+        "    return rows                             # [row][column], RGB: [row][3 * column + channel]\n"
+        "for path in sorted(glob.glob('raw/lwir/*.png')):\n"
+        "    rows = counts(path)\n"
+        "    print(path, 'rows', len(rows), 'lowest', min(map(min, rows)), 'highest', max(map(max, rows)))\n",
+};
+
+/* ---- range profile --------------------------------------------------------------------------- */
+
+static const ReferenceField profile_fields[] = {
+    {"range_m", "number", "m", "from the eye", "", "middle of the range bin; they are evenly spaced"},
+    {"bounce_1", "number", "relative", "", "", "power that met one surface"},
+    {"bounce_2", "number", "relative", "", "", "power that met two: dihedral corners"},
+    {"bounce_3", "number", "relative", "", "", "power that met three or more: trihedral corners"},
+};
+
+const Reference reference_profile = {
+    .topic = "profile",
+    .file  = "profiles/radar/NNNNNN.csv",
+    .title = "power of the pseudo-radar over range, by how often it was reflected",
+    .about = "CSV: lines that begin with # are comments, then a header, then radar.bins rows, the nearest first. Linear\n"
+             "power, of the same relative scale in a whole run.",
+    .notation = "Field: column.",
+    .field = REFERENCE_FIELDS(profile_fields),
+    .python =
+        "import csv, glob, math\n"
+        "for path in sorted(glob.glob('profiles/radar/*.csv')):\n"
+        "    rows = list(csv.DictReader(line for line in open(path) if not line.startswith('#')))\n"
+        "    power = [sum(float(row[f'bounce_{b}']) for b in (1, 2, 3)) for row in rows]\n"
+        "    peak = max(range(len(rows)), key=power.__getitem__)\n"
+        "    if power[peak] > 0:\n"
+        "        print(path, rows[peak]['range_m'], 'm', 10 * math.log10(power[peak]), 'dB over 1')\n",
+};

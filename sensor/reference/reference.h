@@ -1,0 +1,55 @@
+/* sensor/reference/reference.h: every field of every product: what it means, its type, unit, frame or index base, and
+ * when it is absent; and some lines of Python that read it.
+ *
+ * One table, out of which come `pitviper help TOPIC`, the PRODUCTS section of the manual page and products.md. A new
+ * field of a product is one row here: tests/system/test_reference.sh replays exercises with all products and fails for a
+ * field that has no row, a row that no product has, another type, and one that is absent though its row says never. */
+#ifndef SENSOR_REFERENCE_REFERENCE_H
+#define SENSOR_REFERENCE_REFERENCE_H
+
+#include "pitviper.h"
+
+/* path: of JSON, keys joined by dots, `[]` for each item of a list; else what `notation` of the topic says. A word in
+ * capitals stands for one of many (ReferenceWord).
+ * type: integer, number, string, boolean, object, or `list of N` of these; of binary files what `notation` says.
+ * frame: coordinate frame, order of a list, or from where an index counts.
+ * absent: when there is no such field though there is what holds it; empty: never. */
+typedef struct ReferenceField {
+    const char *path, *type, *unit, *frame, *absent, *about;
+} ReferenceField;
+
+/* What a word in capitals stands for: text, or each name with what it is. */
+typedef struct ReferenceWord {
+    const char *word, *about;
+    const char *(*name)(int i);  /* NULL at the end; NULL: about alone says it */
+    const char *(*what)(int i);  /* may be NULL */
+} ReferenceWord;
+
+typedef struct Reference {
+    const char           *topic; /* of `pitviper help TOPIC` */
+    const char           *file;  /* in the folder of the products */
+    const char           *title; /* in one line */
+    const char           *about; /* paragraphs, lines of at most 110 columns */
+    const char           *notation; /* of path and type, where it is not JSON; may be NULL */
+    const ReferenceField *field;
+    int                   field_count;
+    const ReferenceWord  *word;
+    int                   word_count;
+    const char           *python; /* run in the folder that --out names; may be NULL */
+} Reference;
+
+#define REFERENCE_FIELDS(list) (list), (int)(sizeof(list) / sizeof *(list))
+
+/* In the order of the data. */
+extern const Reference reference_products, reference_truth, reference_run, reference_exr, reference_png, reference_raw,
+    reference_profile, reference_pairs, reference_coco, reference_manifest, reference_sheet, reference_data_pdu,
+    reference_pdus, reference_regress;
+
+/* Names of the topics, separated by blanks. */
+void reference_list(FILE *to);
+/* `pitviper help TOPIC`, for a terminal; a product's file name is taken too. False: no such topic. */
+bool reference_write(FILE *to, const char *topic);
+/* All topics, as Markdown: products.md. */
+void reference_write_markdown(FILE *to);
+
+#endif

@@ -1,0 +1,114 @@
+/* sensor/reference/run.c: fields of run.json. */
+#include "sensor/reference/reference.h"
+
+#include "dis/pdu.h"
+#include "render/skip.h"
+#include "sensor/node/session.h"
+
+static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisDrop)i) : NULL; }
+static const char *skip(int i) { return i < SKIP_COUNT ? skip_name((Skip)i) : NULL; }
+static const char *what_skip(int i) { return skip_what((Skip)i); }
+static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
+
+static const ReferenceField fields[] = {
+    {"pitviper", "string", "", "", "", "version of the program"},
+    {"config_sha256", "string", "", "", "", "SHA-256 of every setting that the pictures depend on"},
+    {"settings", "object", "", "", "", "those settings, given or by default"},
+    {"settings.KEY", "string", "as in `pitviper check --default`", "", "", "its value as text; `nan`: not given"},
+    {"tables_sha256", "object", "", "", "", "the tables and model files that were there to be read"},
+    {"tables_sha256.FILE", "string", "", "", "", "SHA-256; of a folder of the atmosphere: of all its tables"},
+    {"log", "string", "", "", "", "name of the log, or of the network's address"},
+    {"log_sha256", "string", "", "", "in a live run", "SHA-256 of the log's octets"},
+    {"seed", "integer", "", "", "", "of all random numbers"},
+    {"threads", "integer", "", "", "", "how many computed; they change no bit of a picture"},
+    {"isa", "string", "", "", "", "instruction set of the ray tracer"},
+    {"libraries", "object", "", "", "", "what the pictures were computed with"},
+    {"libraries.LIBRARY", "string", "", "", "", "its version"},
+    {"hosts", "list of strings", "", "site:application:entity, or `observer`", "",
+     "who carried the sensor, one after the other"},
+    {"choices", "list of strings", "", "`what: choice`", "", "what the program chose, as it printed it"},
+    {"frames", "integer", "", "", "", "how many were made"},
+    {"frame_sha256", "list of strings", "", "as frame_number", "", "SHA-256 of all planes before they are encoded"},
+    {"frame_number", "list of integers", "", "from 0", "",
+     "which frames frame_sha256 is of; the first of a very long run"},
+    {"counters", "object", "", "", "", "over the whole run"},
+    {"counters.datagrams", "integer", "", "", "", "heard, of this exercise or not"},
+    {"counters.pdus", "object", "", "", "", "by PDU type"},
+    {"counters.pdus.TYPE", "integer", "", "", "when there were none", "well-formed PDUs of this type"},
+    {"counters.dropped", "object", "", "", "", "PDUs that were not used, by reason"},
+    {"counters.dropped.REASON", "integer", "", "", "", "PDUs"},
+    {"counters.stamps_doubted", "integer", "", "", "", "time stamps that did not fit their arrival"},
+    {"counters.packets_without_datagram", "integer", "", "", "",
+     "of the capture: other protocols, other ports, cut short, incomplete fragments"},
+    {"counters.own", "integer", "", "", "", "datagrams of this node itself, left out"},
+    {"counters.live", "object", "", "", "in a replay", "what only a live node counts"},
+    {"counters.live.datagrams", "integer", "", "", "", "taken from the network"},
+    {"counters.live.lost_kernel", "integer", "", "", "", "lost before this program had them"},
+    {"counters.live.lost_queue", "integer", "", "", "", "lost in its own queue"},
+    {"counters.live.sent", "integer", "", "", "", "Data PDUs"},
+    {"counters.live.send_failed", "integer", "", "", "", "Data PDUs that the network did not take"},
+    {"counters.live.record_failed", "integer", "", "", "", "datagrams that --record could not write"},
+    {"counters.live.frames_late", "integer", "", "", "", "frames left out because the time for them was over"},
+    {"counters.live.files_failed", "integer", "", "", "", "frames whose files could not be written"},
+    {"counters.live.files_left_out", "integer", "", "", "", "frames without files, because the disk was too slow"},
+    {"counters.frames_at_gimbal_limit", "integer", "", "", "", "frames whose aim was beyond the gimbal"},
+    {"counters.entities", "object", "", "", "", "of the entity table"},
+    {"counters.entities.created", "integer", "", "", "", "new ones"},
+    {"counters.entities.timed_out", "integer", "", "", "", "silent for too long"},
+    {"counters.entities.deactivated", "integer", "", "", "", "by their last Entity State"},
+    {"counters.entities.removed", "integer", "", "", "", "by a Remove Entity PDU"},
+    {"counters.effects", "object", "", "", "", "bursts, flashes, smoke"},
+    {"counters.effects.events_refused", "integer", "", "", "", "Fire and Detonation of no use"},
+    {"counters.effects.events_repeated", "integer", "", "", "", "heard twice"},
+    {"counters.effects.events_dropped", "integer", "", "", "", "for want of room"},
+    {"counters.effects.trails_dropped", "integer", "", "", "", "for want of room"},
+    {"counters.rays_primary", "integer", "", "", "", "rays from the eye, of these:"},
+    {"counters.rays_edges", "integer", "", "", "", "for pixels with an edge in them"},
+    {"counters.rays_small_targets", "integer", "", "", "", "for targets of few pixels"},
+    {"counters.pixels", "integer", "px", "", "", "made, of all frames"},
+    {"counters.pixels_refined", "integer", "px", "", "", "that got further rays"},
+    {"counters.small_targets", "integer", "", "", "", "targets of few pixels, of all frames"},
+    {"counters.rays_ground", "integer", "", "", "", "rays tested against the ground"},
+    {"counters.rays_parts", "integer", "", "", "", "rays tested against parts of entities"},
+    {"counters.rays_sun_ground", "integer", "", "", "", "shadow rays against the ground"},
+    {"counters.rays_sun_parts", "integer", "", "", "", "shadow rays against parts of entities"},
+    {"counters.skipped", "object", "", "", "", "what needed not be computed, to the same bits (--no-skip)"},
+    {"counters.skipped.ray_entity_pairs", "integer", "", "", "", "ray-entity pairs in all"},
+    {"counters.skipped.sun_ray_entity_pairs", "integer", "", "", "", "shadow-ray-entity pairs in all"},
+    {"counters.skipped.tiles_without_entities", "integer", "", "", "", "tiles of the picture"},
+    {"counters.skipped.SKIP", "integer", "", "", "", "by kind"},
+    {"timings_ms", "object", "", "", "", "wall time of the frames' stages; other in every run"},
+    {"timings_ms.STAGE", "object", "", "", "", "one stage; `frame` is the whole"},
+    {"timings_ms.STAGE.median", "number", "ms", "", "", "half of the frames took no longer"},
+    {"timings_ms.STAGE.p95", "number", "ms", "", "", "19 of 20 frames took no longer"},
+    {"timings_ms.STAGE.max", "number", "ms", "", "", "the longest"},
+};
+
+static const ReferenceWord words[] = {
+    {"KEY", "a setting's section and key with a dot between, such as sensor.width_px", NULL, NULL},
+    {"FILE", "catalog.csv, atmosphere/midlat_summer, a model's file as the catalog names it", NULL, NULL},
+    {"LIBRARY", "embree, openimageio, geographiclib, erfa, fftw, libc, compiler", NULL, NULL},
+    {"TYPE", "the PDU type's number: 1 Entity State, 2 Fire, 3 Detonation ...", NULL, NULL},
+    {"REASON", "one of", drop, NULL},
+    {"SKIP", "one of", skip, what_skip},
+    {"STAGE", "one of", stage, NULL},
+};
+
+const Reference reference_run = {
+    .topic = "run.json",
+    .file  = "run.json",
+    .title = "the run: settings, hashes, choices, counters, times",
+    .about = "Written at the end of a run, of one that is stopped too. Two runs with the same config_sha256, log_sha256,\n"
+             "tables_sha256, version and libraries have the same frame_sha256.",
+    .field = REFERENCE_FIELDS(fields),
+    .word  = REFERENCE_FIELDS(words),
+    .python =
+        "import json\n"
+        "run = json.load(open('run.json'))\n"
+        "print(run['pitviper'], run['frames'], 'frames from', ', '.join(run['hosts']))\n"
+        "for line in run['choices']:\n"
+        "    print('chosen:', line)\n"
+        "hashes = dict(zip(run['frame_number'], run['frame_sha256']))\n"
+        "lost = {why: n for why, n in run['counters']['dropped'].items() if n}\n"
+        "print(lost, run['timings_ms']['frame']['median'], 'ms a frame', len(hashes))\n",
+};

@@ -1,0 +1,11 @@
+/* sensor/reference/words.h: what words in capitals stand for in several topics. */
+#ifndef SENSOR_REFERENCE_WORDS_H
+#define SENSOR_REFERENCE_WORDS_H
+
+#include "sensor/reference/reference.h"
+
+const char *reference_band(int i); /* optical ...; NULL at the end */
+
+#define REFERENCE_WORD_BAND {"BAND", "one of", reference_band, NULL}
+
+#endif

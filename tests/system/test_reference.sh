@@ -1,0 +1,84 @@
+#!/usr/bin/env bash
+# The reference of the products (pitviper help TOPIC) against products of every kind, both ways, and the lines of Python
+# that it shows on them: tests/system/reference.py. labels: small
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
+
+run help
+check "help: lists the topics" grep -qE '^products truth run\.json exr ' "$tmp/stdout"
+for topic in products truth run.json data-pdu regress-record; do
+    run help "$topic"
+    check "help $topic" [ $code = 0 -a -s "$tmp/stdout" ]
+    check "help $topic: lines of a terminal" [ "$(awk '{ if (length > most) most = length } END { print most }' "$tmp/stdout")" -le 120 ]
+done
+run help truth.jsonl
+check "help: a file's name is a topic" grep -q 'targets\[\]\.los_rate_dps' "$tmp/stdout"
+run help nonsense
+check "help nonsense" [ $code = 2 ] && complained 'no topic: nonsense.*--help'
+run help truth run
+check "help of two words" [ $code = 2 ] && complained 'not also `run`'
+run help --markdown
+check "help --markdown" [ $code = 0 ]
+cp "$tmp/stdout" "$tmp/products.md"
+command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
+
+# two live nodes, each with an exercise of its own, which send what they see
+for kind in truth sensor; do
+    free_port
+    node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
+        --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
+    heard_by $kind 'listening on' 10
+    "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
+    senders+=($!)
+done
+# all products; then what replaces or leaves out some of them
+exercise demo "$tmp/demo.pcap"
+small=(--size 32x24 --rate 1 --threads 1)
+run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --from 1366 --to 1366 --pairs target --coco \
+    --set sensor.preset=staring_lwir,staring_mwir,tv --set sensor.lens_k1=-0.1 --set sensor.lateral_r=0.001
+check "all products" [ $code = 0 ] || cat "$tmp/stderr"
+run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354 --bands optical --host observer \
+    --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
+check "other products" [ $code = 0 ] || cat "$tmp/stderr"
+printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
+run replay "$tmp/demo.pcap" --out "$tmp/sweep" "${small[@]}" --from 1366 --to 1366 --bands lwir --sweep "$tmp/sweep.yaml"
+mkdir "$tmp/case"
+cat >"$tmp/case/case.yaml" <<Y
+purpose: a record
+log: $tmp/demo.pcap
+config: |
+  sensor: {width_px: 32, height_px: 24, rate_hz: 1, optical: pan}
+frames: [4]
+Y
+run regress --update "$tmp/case" --why reference --work "$tmp/work" --jobs 1 --threads 1
+check "a record" [ $code = 0 ] || cat "$tmp/stdout"
+cp -r "$tmp/work/case/out" "$tmp/case/out"
+"$pitviper" inspect "$tmp/demo.pcap" --pdus tsv --full | head -n 200 >"$tmp/full.tsv"
+"$pitviper" inspect "$tmp/demo.pcap" --pdus tsv | head -n 200 >"$tmp/short.tsv"
+for kind in truth sensor; do
+    ended $kind 40
+    check "live, $kind" [ $code = 0 ] || cat "$tmp/$kind.out"
+done
+kill "${senders[@]}" 2>/dev/null
+wait "${senders[@]}" 2>/dev/null
+
+variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
+python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$variant" --run "$tmp/truth" \
+    --run "$tmp/sensor" --sweep "$tmp/sweep" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
+    --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" || fail "products and their reference"
+
+# its twins: a field without a row, a row without a field, a type, an absence, lines that do not run
+if [ "$failures" = 0 ]; then
+    spoilt() { # spoilt WHAT SED SAID
+        sed "$2" "$tmp/products.md" >"$tmp/spoilt.md"
+        python3 tests/system/reference.py "$tmp/spoilt.md" --truth "$tmp/pan" >"$tmp/said" 2>&1
+        check "$1" grep -qE "^FAILED: $3" "$tmp/said"
+    }
+    spoilt "no row" '/targets\[\]\.closing_mps/d' 'truth .targets\[[0-9]+\]\.closing_mps is not in the reference'
+    spoilt "no such field" 's/targets\[\]\.age_s/targets[].age_h/' 'truth targets\[\]\.age_h is in the reference and in no product'
+    spoilt "another type" 's/`targets\[\]\.range_m` | number/`targets[].range_m` | integer/' 'truth .*range_m is no integer'
+    spoilt "never absent" 's/when the host is an observer//' 'truth .host.marking is absent'
+    spoilt "another channel" 's,channel truth/temp_k` | float,channel truth/temp_k` | uint,' 'exr .*temp_k is float'
+    spoilt "lines that do not run" "s/^        if 'box_px' not in target.*/        target['box']/" 'truth Python: '
+fi
+finish
