@@ -120,7 +120,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .host_count = result->host_count > 0 ? result->host_count : 1,
               .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
               .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = hash, .dis = heard,
-              .link_dropped = link ? link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
+              .link_dropped = link ? link->other_link + link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,

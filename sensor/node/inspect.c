@@ -20,7 +20,8 @@
 static const char usage_text[] =
     "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N]\n"
     "\n"
-    "LOG is a pcap or pcapng capture. Without --pdus: a summary of the exercise.\n"
+    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz). Without --pdus: a summary of\n"
+    "the exercise.\n"
     "\n"
     "  --pdus tsv    one line per Entity State PDU, with the columns and formats of\n"
     "                tshark -d udp.port==3000,dis -T fields\n"
@@ -323,7 +324,8 @@ static void print_log(const DisLog *log, const Findings *f, const char *path)
     const struct {
         uint64_t    count;
         const char *what;
-    } left[] = {{c->other_protocol, "not UDP over IP"},
+    } left[] = {{c->other_link, "of a link layer that is not read"},
+                {c->other_protocol, "not UDP over IP"},
                 {c->other_port, "UDP to another port"},
                 {c->cut_short, "cut short or with a wrong length"},
                 {c->bad_fragment, "fragments of a datagram that never came whole"}};
