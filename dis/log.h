@@ -21,6 +21,11 @@ typedef struct DisLogCounters {
     uint64_t packets, other_link, other_protocol, other_port, cut_short, bad_fragment;
 } DisLogCounters;
 
+static inline uint64_t dis_log_dropped(const DisLogCounters *c)
+{
+    return c->other_link + c->other_protocol + c->other_port + c->cut_short + c->bad_fragment;
+}
+
 typedef struct DisLog {
     int            count;
     DisDatagram   *datagram; /* in file order */

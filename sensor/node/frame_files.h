@@ -37,11 +37,14 @@ typedef struct FrameFiles {
 } FrameFiles;
 
 /* folder: makes OUT, or says why not; what is in it stays.
+ * earlier: whether OUT holds something of an earlier run that would be lost, and the path of such a thing.
  * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
  * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
  * raw; a clear message when the place cannot be written. No bands: OUT alone.
  * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
+enum { frame_path_size = 4096 };
 Status frame_files_folder(const char *out);
+bool   frame_files_earlier(char found[frame_path_size], const char *out);
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);

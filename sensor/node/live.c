@@ -8,6 +8,7 @@
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/quality.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
@@ -293,6 +294,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     }
     show_progress(l, session, 0, true);
     conclude(l);
+    run->stopped = stop_asked();
     return status;
 }
 
@@ -345,7 +347,10 @@ static Status measure_machine(Live *l)
 static Status run_node(Live *l)
 {
     bool   heard;
-    Status status = measure_machine(l);
+    const Options *o = &l->run.options;
+    Status status = overwrite_folder("run", o->out, o->overwrite);
+    if (status == STATUS_OK && *o->config.record.path) status = overwrite_file("run", o->config.record.path, o->overwrite);
+    if (status == STATUS_OK) status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     /* now, not when the first entity is heard, hours later */
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);

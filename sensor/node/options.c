@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, ONLY, COCO, SWEEP,
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, CAUSAL, NO_SKIP, ISA, NO_PNG, NO_FILES, OVERWRITE, ONLY, COCO, SWEEP,
       HELP, KEY };
 
 static const char *const names[] = {"replay", "run"};
@@ -21,6 +21,7 @@ static const struct Row {
     {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
     {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
     {"out", OUT, IN_BOTH, NULL, "DIR", "where the products go (default: out)"},
+    {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL, "let go what an earlier run left in DIR, or a recording of that name; otherwise\nit is kept and nothing is done"},
     {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "any of optical,mwir,lwir,radar (default: all)"},
     {"size", SIZE, IN_BOTH, NULL, "WxH", "picture size in pixels (default: 720x486)"},
     {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
@@ -213,6 +214,7 @@ static bool take(Options *o, const struct Row *row, const char *text)
     case ONLY: return parse_only(o, text);
     case COCO: o->config.publish.coco = true; return true;
     case SWEEP: o->sweep = text; return true;
+    case OVERWRITE: o->overwrite = true; return true;
     case NO_FILES: o->config.publish.files = false; return true;
     default: return true; /* CONFIG was read before */
     }

@@ -46,7 +46,8 @@ static const char help[] =
     "  crosses from one step of the record to the next within that.\n"
     "\n"
     "Each case runs in processes of its own: one that crashes or hangs has failed by itself. A log that is not here is\n"
-    "skipped; a record that is not yet there has failed. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
+    "skipped; a record that is not yet there has failed. Exit code: 0: nothing failed; 1: something did; 2: usage; 130, 143:\n"
+    "stopped by Ctrl-C, by SIGTERM.\n";
 
 typedef struct Options {
     bool        update;
@@ -318,7 +319,7 @@ int regress_command(int argc, char **argv)
         }
     if (!run_all(&s)) goto done;
     failed = summary(&s);
-    code   = failed ? 1 : 0;
+    code   = !failed ? 0 : stop_asked() ? stop_exit_code() : 1;
     if (s.o.junit && junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     if (s.o.report && report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     for (int i = 0; i < s.count && *own; i++)
