@@ -118,6 +118,12 @@ bool text_to_long(long long *out, const char *text);
 bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
+/* What a terminal can be given of a text from outside, such as a file's name: well-formed UTF-8 as it is, but control
+ * characters, those that turn the direction of writing, and octets that are no UTF-8 as \xNN. lines: newlines and tabs
+ * stay. Cut where there is no room. */
+void text_show(char *out, size_t out_size, const char *text, bool lines);
+/* printf to a terminal, file or pipe for what holds text from outside: through text_show, with the format's own lines. */
+void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */

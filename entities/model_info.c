@@ -166,7 +166,7 @@ int model_command(int argc, char **argv)
         return 2;
     }
     if (strcmp(argv[1], "info") != 0) {
-        fprintf(stderr, "pitviper model: no such action: %s; there is `pitviper model info NAME|FILE`\n", argv[1]);
+        text_print(stderr, "pitviper model: no such action: %s; there is `pitviper model info NAME|FILE`\n", argv[1]);
         return 2;
     }
     for (int i = 2; i < argc; i++) {
@@ -184,7 +184,7 @@ int model_command(int argc, char **argv)
                 i++;
                 continue;
             }
-            fprintf(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i],
+            text_print(stderr, "pitviper model: %s: '%s' is not a number in 0.001 .. 2000 m\n", argv[i],
                     i + 1 < argc ? argv[i + 1] : "");
             return 2;
         }
@@ -193,12 +193,12 @@ int model_command(int argc, char **argv)
                 i++;
                 continue;
             }
-            fprintf(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n",
+            text_print(stderr, "pitviper model: --sag: '%s' is not a number in 1e-05 .. 0.1 m\n",
                     i + 1 < argc ? argv[i + 1] : "");
             return 2;
         }
         if (argv[i][0] == '-' || name) {
-            fprintf(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time",
+            text_print(stderr, "pitviper model: %s: %s\n", argv[i][0] == '-' ? "no such option" : "one model at a time",
                     argv[i]);
             return 2;
         }

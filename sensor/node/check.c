@@ -60,7 +60,7 @@ static bool check_file(const char *path)
         log_error("check: %s: not good", path);
         return false;
     }
-    printf("%s: good\n", path);
+    text_print(stdout, "%s: good\n", path);
     config_write_given(stdout, &given);
     return true;
 }

@@ -3,6 +3,7 @@
 #include "sensor/detector/colour.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/quantise.h"
+#include "sensor/node/plane_choice.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/truth_preview.h"
 
@@ -38,8 +39,16 @@ static void frame_path(char path[path_size], const FrameFiles *frame, const char
     snprintf(path, path_size, "%s/%s/%s/%06d.%s", frame->out, folder, name, frame->frame, ending);
 }
 
-/* The planes of one band, with the names of their channels. */
-static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int band)
+static unsigned planes_of(const Config *config)
+{
+    unsigned planes;
+    return plane_choice_parse(&planes, config->publish.planes) ? planes : planes_all; /* it was checked */
+}
+
+bool frame_files_truth(const Config *config) { return planes_of(config) != planes_none; }
+
+/* The planes of one band, with the names of their channels; of truth those in `kept`. */
+static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int band, unsigned kept)
 {
     const Picture *p = frame->picture;
     static const char *const rgb[3] = {"R", "G", "B"}, *const normal[3] = {"nx", "ny", "nz"};
@@ -53,12 +62,12 @@ static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int ban
     case BAND_LWIR: plane[n++] = plane_f32("Y", w, h, p->lwir); break;
     case BAND_RADAR: plane[n++] = plane_f32("Y", w, h, p->radar); break;
     default:
-        plane[n++] = plane_f32("range_m", w, h, p->range_m);
-        plane[n++] = plane_u32("entity", w, h, p->entity);
-        plane[n++] = plane_u32("part", w, h, p->part);
-        plane[n++] = plane_u32("material", w, h, p->material);
-        plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
-        for (int k = 0; k < 3; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
+        if (kept >> PLANE_RANGE & 1) plane[n++] = plane_f32("range_m", w, h, p->range_m);
+        if (kept >> PLANE_ENTITY & 1) plane[n++] = plane_u32("entity", w, h, p->entity);
+        if (kept >> PLANE_PART & 1) plane[n++] = plane_u32("part", w, h, p->part);
+        if (kept >> PLANE_MATERIAL & 1) plane[n++] = plane_u32("material", w, h, p->material);
+        if (kept >> PLANE_TEMPERATURE & 1) plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
+        for (int k = 0; k < 3 && kept >> PLANE_NORMAL & 1; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
     }
     return n;
 }
@@ -122,7 +131,7 @@ static Status write_exr(const FrameFiles *frame, int band)
     ImageAttribute attribute[16];
     char          *ids = NULL, *names = NULL, *parts = NULL;
     int            n   = 0;
-    const int      planes = band_planes(plane, frame, band);
+    const int      planes = band_planes(plane, frame, band, planes_of(frame->config));
 
     attribute[n++] = image_string("band", band < BAND_COUNT ? band_name((Band)band) : "truth");
     if (band < BAND_COUNT) attribute[n++] = image_string("unit", band == BAND_RADAR ? "relative" : "W/(m2 sr)");
@@ -377,7 +386,7 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
     int   planes = 0;
     for (int b = 0; b <= BAND_COUNT; b++) {
         if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
-        const int added = band_planes(plane + planes, frame, b);
+        const int added = band_planes(plane + planes, frame, b, planes_all); /* whatever is kept */
         for (int i = planes; i < planes + added; i++) {
             snprintf(name[i], sizeof name[i], "%s/%s", b < BAND_COUNT ? band_name((Band)b) : "truth", plane[i].name);
             plane[i].name = name[i];
@@ -430,12 +439,13 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
 {
     FileJobs jobs = {.frame = frame, .hash = hash};
 
-    add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
+    const bool truth = frame_files_truth(frame->config);
+    if (truth) add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
     for (int b = 0; b < BAND_COUNT; b++)
         if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
     for (int b = 0; b <= BAND_COUNT; b++) {
         const bool raw = b < BAND_COUNT && frame->chain[b] && frame->config->detector.raw;
-        if ((frame->png || raw) && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+        if ((frame->png || raw) && (b == BAND_COUNT ? truth : frame->request->bands >> b & 1)) add_job(&jobs, write_png, b);
     }
     if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
     return run_jobs(&jobs, pool);

@@ -147,7 +147,7 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
     for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
         if (bands == 0) break;
         if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
-            b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
+            !(bands >> (b <= BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
         product_folder(path, out, b);
         status = frame_files_folder(path);
     }

@@ -115,7 +115,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     snprintf(path, sizeof path, "%s/run.json", out);
     const DisLogCounters *link = run->link;
     const RunRecord       record = {
-              .status = state, .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
+              .status = state, .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
+              .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
               .host_count = result->host_count > 0 ? result->host_count : 1,
               .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
@@ -191,7 +192,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
     choice_say_night(choices, run->bands, *unix_s, plan, &frame);
-    for (int i = 0; i < choices->count; i++) printf("%s\n", choices->line[i]);
+    for (int i = 0; i < choices->count; i++) text_print(stdout, "%s\n", choices->line[i]);
     fflush(stdout);
     return STATUS_OK;
 }
@@ -204,8 +205,8 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     const char   *name   = options_command(&run->options);
     const Status  status = write_run(run, out, host, choices, result, heard, state);
     if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
-    if (config->publish.files) printf("%d frames in %s/frames\n", result->frames, out);
-    else printf("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
+    if (config->publish.files) text_print(stdout, "%d frames in %s/frames\n", result->frames, out);
+    else text_print(stdout, "%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
     if (result->at_limit > 0)
         log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,

@@ -10,6 +10,7 @@
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/quality.h"
+#include "sensor/node/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
@@ -269,7 +270,8 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o      = &run->options;
     Status         status = STATUS_OK;
     double         last   = -1; /* number of the last frame */
-    const double   from_s = fmax(plan->start_s, o->config.exercise.from_s); /* NaN: none */
+    const double   from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
+    const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player      = player;
     l->rate_from_s = wall_clock_s();
@@ -278,7 +280,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
         const double n      = fmax(fmax(newest, last + 1), first);
         const double t_s    = frame_grid_s(grid, n);
-        if (t_s > o->config.exercise.to_s) break;
+        if (t_s > to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
         bool          there, shown;
         status = wait_until(&there, l, player, until_ns);

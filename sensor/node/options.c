@@ -28,7 +28,7 @@ static const struct Row {
      "frames a second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
     {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
     {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
-     "only this span of exercise time, in seconds as `pitviper inspect` shows\nthem; frames keep the numbers they have in the whole"},
+     "only this span: exercise time in seconds as `pitviper inspect` shows it, or\n+12: after the recording's beginning, -5: before its end; frames keep the\nnumbers they have in the whole"},
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
      "these frames alone, by their numbers; each is what it is in the whole,\n"
      "but for a display's automatic level (detector.agc_s)"},
@@ -53,6 +53,8 @@ static const struct Row {
     {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
     {"no-png", NO_PNG, IN_BOTH, NULL, NULL, "no display pictures, only EXR"},
     {"no-files", NO_FILES, IN_BOTH, NULL, NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"planes", KEY, IN_BOTH, "publish.planes", "LIST",
+     "truth per pixel in files: none, or any of range,entity,part,material,\ntemperature,normal (default: all); truth.jsonl is written in any case"},
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
      "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
     {"coco", COCO, IN_REPLAY, NULL, NULL, "DIR/coco.json: boxes and masks in COCO's format"},

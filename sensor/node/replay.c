@@ -4,6 +4,7 @@
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
+#include "sensor/node/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/node/sweep.h"
 
@@ -64,16 +65,22 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     const Options *o      = &run->options;
     const Config  *config = &o->config;
     double         from_s = plan->start_s, to_s = plan->end_s;
-    if (!isfinite(to_s) && isnan(config->exercise.to_s)) to_s = player_last_s(player);
-    if (config->exercise.from_s > from_s) from_s = config->exercise.from_s;
-    if (config->exercise.to_s < to_s) to_s = config->exercise.to_s;
+    const double   first_s = run->survey.first_s, last_s = config->causal ? player_last_s(player) : run->survey.last_s;
+    const double   wanted_from_s = span_time_s(config->exercise.from, first_s, last_s);
+    const double   wanted_to_s   = span_time_s(config->exercise.to, first_s, last_s);
+    if (span_outside(config->exercise.from, config->exercise.to, first_s, last_s)) return STATUS_BAD_VALUE;
+    if (!isfinite(to_s) && isnan(wanted_to_s)) to_s = last_s;
+    if (wanted_from_s > from_s) from_s = wanted_from_s;
+    if (wanted_to_s < to_s) to_s = wanted_to_s;
 
     double     first = ceil(from_s * grid->rate_hz - 1e-9) - grid->origin;
     double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
     const bool single = to_s >= from_s && !(last >= first); /* too short for the grid: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
-        log_error("replay: %s between %.3f and %.3f s at %g Hz; widen --from and --to or change --rate%s",
-                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz,
+        log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), %s can be "
+                  "shown from %.3f s on; widen --from and --to or change --rate%s",
+                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s, last_s,
+                  last_s - first_s, session_host(session), plan->start_s,
                   config->causal ? ", or listen less (exercise.listen_s)" : "");
         return STATUS_BAD_VALUE;
     }

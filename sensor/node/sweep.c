@@ -354,7 +354,7 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
-        printf("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+        text_print(stdout, "%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
                outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }
@@ -410,7 +410,7 @@ static Status run_all(SweepRun *s)
     if (s->stopped)
         log_warn("sweep: stopped with %d of %d variants made; the same command goes on from there", s->made + s->kept, s->count);
     if (status == STATUS_OK)
-        printf("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+        text_print(stdout, "%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
     return status;
 }

@@ -290,6 +290,7 @@ Status record_write_run(const char *path, const RunRecord *r)
 
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
     json_object_set_new(run, "status", json_string(r->status));
+    json_object_set_new(run, "planes", json_string(r->planes ? r->planes : "none"));
     json_object_set_new(run, "config_sha256", json_string(r->config_sha256));
     set_text(run, "log", r->log_name, strlen(r->log_name));
     if (*r->log_sha256) json_object_set_new(run, "log_sha256", json_string(r->log_sha256));

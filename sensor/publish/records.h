@@ -42,6 +42,7 @@ typedef struct LiveCounters {
 typedef struct RunRecord {
     const char *config_sha256, *log_name, *log_sha256, *isa;
     long long   seed;
+    const char *planes;               /* of truth in files: all, none or a list; NULL: no files */
     const char *status;               /* complete; stopped: by a signal before its last frame; failed */
     int         threads, host_count, choice_count, frames;
     int         listed;               /* how many of them the two lists hold */

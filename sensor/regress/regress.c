@@ -213,7 +213,7 @@ const char *case_state_name(CaseState state)
 
 static void print_line(const CaseResult *r)
 {
-    printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
+    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
            r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
     putchar('\n');
@@ -324,7 +324,7 @@ int regress_command(int argc, char **argv)
     if (s.o.report && report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     for (int i = 0; i < s.count && *own; i++)
         if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
-    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) printf("what failed is kept in %s\n", own);
+    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) text_print(stdout, "what failed is kept in %s\n", own);
 
 done:
     if (!failed && s.o.work && *own) remove_made(own);

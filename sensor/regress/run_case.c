@@ -149,7 +149,8 @@ static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const
     snprintf(out, sizeof out, "%.4080s/out", r->work);
     snprintf(threads, sizeof threads, "%d", how->threads);
     const char *const fixed[] = {"pitviper", "replay",    log,     "--out",    out,     "--only",
-                                 only,       "--threads", threads, "--no-png", "--overwrite", "--set", "publish.files=true"};
+                                 only,       "--threads", threads, "--no-png", "--overwrite", "--set", "publish.files=true",
+                                 "--set", "publish.planes=all"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) child_add(&line, fixed[i]);
     if (*config) {
         child_add(&line, "--config");
