@@ -5,11 +5,11 @@
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "entities/exercise.h"
+#include "sensor/node/next_option.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <netdb.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -135,7 +135,7 @@ static int parse(Options *o, int argc, char **argv)
         {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     const char *of_sending = NULL; /* an option that means nothing without --send */
     optind = 0;                    /* start anew */
-    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         bool ok = true;
         if (option == INTERFACE) of_sending = "interface";
         if (option == TTL) of_sending = "ttl";

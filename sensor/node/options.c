@@ -1,5 +1,7 @@
 #include "sensor/node/options.h"
 
+#include "sensor/node/next_option.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -253,7 +255,6 @@ static Status read_config(Config *config, const struct option *list, int argc, c
         const struct Row *row = row_of(option);
         if (row && row->what == CONFIG) status = config_read(config, optarg);
     }
-    opterr = 1;
     free(copy);
     return status;
 }
@@ -269,7 +270,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
     if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
     optind = 0;
-    for (int option; (option = getopt_long(argc, argv, "c:", list, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "c:", list)) != -1;) {
         const struct Row *row = row_of(option); /* NULL: getopt has said which */
         if (row && row->what == HELP) {
             print_help(command);

@@ -3,10 +3,10 @@
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/node/next_option.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
-#include <getopt.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -54,7 +54,7 @@ static int parse(Options *o, int argc, char **argv)
         {"port", 1, NULL, PORT}, {"for", 1, NULL, FOR},         {"count", 1, NULL, COUNT},
         {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0; /* start anew */
-    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         long long number;
         bool      ok = true;
         switch (option) {

@@ -164,6 +164,23 @@ static bool read_run(MadeRun *out, const char *folder, const char *name)
     return made_run_read(out, path);
 }
 
+/* All settings, as the file that the run reads. */
+static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const SweepRun *s,
+                               const Variant *v)
+{
+    Config *config = malloc(sizeof *config);
+    *text          = NULL;
+    FILE  *file    = config ? open_memstream(text, octets) : NULL;
+    Status status  = file ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n");
+        config_write_settings(file, config);
+    }
+    if (file && fclose(file) != 0) status = STATUS_NO_MEMORY;
+    free(config);
+    return status == STATUS_OK ? sha256_bytes(sha256, *text, *octets) : status;
+}
+
 /* A run of another log, other settings or another version in a variant's folder is no earlier try of this sweep. */
 static Status check_folders(const SweepRun *s)
 {
@@ -173,8 +190,16 @@ static Status check_folders(const SweepRun *s)
         const Variant *v = &s->variant[i];
         MadeRun        run;
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
-        const bool other = read_run(&run, folder, "run.json") && !is_run(&run, s, v);
+        bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
         made_run_free(&run);
+        if (!other && read_run(&run, folder, "variant.json")) { /* what no hash of pictures holds: the span, the planes */
+            char   settings_sha256[sha256_text_size], *text;
+            size_t octets;
+            status = settings_text_of(&text, &octets, settings_sha256, s, v);
+            other  = status == STATUS_OK && strcmp(run.settings_sha256, settings_sha256) != 0;
+            free(text);
+            made_run_free(&run);
+        }
         if (!other) continue;
         log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder with --out, "
                   "or --overwrite, which takes it away", folder);
@@ -215,23 +240,6 @@ static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
     else made_run_free(&run);
     return kept;
-}
-
-/* All settings, as the file that the run reads. */
-static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const SweepRun *s,
-                               const Variant *v)
-{
-    Config *config = malloc(sizeof *config);
-    *text          = NULL;
-    FILE  *file    = config ? open_memstream(text, octets) : NULL;
-    Status status  = file ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) {
-        fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n");
-        config_write_settings(file, config);
-    }
-    if (file && fclose(file) != 0) status = STATUS_NO_MEMORY;
-    free(config);
-    return status == STATUS_OK ? sha256_bytes(sha256, *text, *octets) : status;
 }
 
 static Status write_file(const char *path, const char *text, size_t octets)

@@ -1,12 +1,12 @@
 #include "sensor/regress/regress.h"
 
+#include "sensor/node/next_option.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/report.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <ftw.h>
-#include <getopt.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -91,7 +91,7 @@ static int parse(Options *o, int argc, char **argv)
         {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
         {"keys", 0, NULL, KEYS}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
-    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;) {
         switch (option) {
         case UPDATE: o->update = true; break;
         case WHY: o->why = optarg; break;
