@@ -77,7 +77,10 @@ static void print_help(CommandName command)
         "usage: pitviper replay LOG [options]\n"
         "\n"
         "Shows what the seeker of the missile in a recorded DIS exercise (pcap, pcapng) saw: pictures per band,\n"
-        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key.\n\n",
+        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key. LOG may be\n"
+        "compressed (gzip, zstd, bzip2, xz). Stopped by Ctrl-C (exit code 130) or SIGTERM (143) it finishes its frame, and\n"
+        "run.json says so. A video of a band, at --rate 5:\n"
+        "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
         "usage: pitviper run [-c FILE] [options]\n"
         "\n"
         "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
