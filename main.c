@@ -91,13 +91,13 @@ static int probe_command(int argc, char **argv)
     for (const Probe *probe; (probe = next_probe(state));) {
         if (strcmp(argv[1], probe->name) != 0) continue;
         if (!probe->arguments && argc > 2) {
-            fprintf(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows come from standard input\n",
+            text_print(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows come from standard input\n",
                     probe->name, argv[2]);
             return 2;
         }
         return probe_run(probe, argc - 1, argv + 1, stdin, stdout) == STATUS_OK ? 0 : 1;
     }
-    fprintf(stderr, "pitviper probe: no such probe: %s; `pitviper probe --help` lists them\n", argv[1]);
+    text_print(stderr, "pitviper probe: no such probe: %s; `pitviper probe --help` lists them\n", argv[1]);
     return 2;
 }
 
@@ -208,7 +208,7 @@ static int run_named(int argc, char **argv)
         if (help && code == 0) printf("\n%s", common_help);
         return code;
     }
-    fprintf(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
+    text_print(stderr, "pitviper: no such command: %s; `pitviper --help` lists them\n", argv[0]);
     return 2;
 }
 

@@ -6,6 +6,7 @@
 #define PITVIPER_H
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -129,6 +130,13 @@ bool text_to_long(long long *out, const char *text);
 bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
+/* What a terminal can be given of a text from outside, such as a file's name: well-formed UTF-8 as it is, but control
+ * characters, those that turn the direction of writing, and octets that are no UTF-8 as \xNN. lines: newlines and tabs
+ * stay. Cut where there is no room. */
+void text_show(char *out, size_t out_size, const char *text, bool lines);
+/* printf to a terminal, file or pipe for what holds text from outside: through text_show, with the format's own lines. */
+void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
 /* A whole file of at most `most` octets and a 0 behind them; the caller frees it. Failures are logged as the
  * module's. */

@@ -213,7 +213,7 @@ int bench_command(int argc, char **argv, BenchNext *next)
     bench.part  = part;
     bench.all   = strcmp(argv[1], "all") == 0;
     if (!bench.all && !known_suite(argv[1], next)) {
-        fprintf(stderr, "pitviper bench: no such bench: %s; `pitviper bench --help` lists them\n", bench.suite);
+        text_print(stderr, "pitviper bench: no such bench: %s; `pitviper bench --help` lists them\n", bench.suite);
         return 2;
     }
     if (!parse(&bench, &out, argc - 1, argv + 1, next)) return 2;

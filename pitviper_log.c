@@ -57,11 +57,10 @@ void log_hush(bool hushed) { hushed_here = hushed; }
 
 static void log_line(LogLevel level, const char *format, va_list arguments)
 {
-    char line[1024];
+    char raw[1024], line[4 * sizeof raw];
     if (hushed_here) return;
-    vsnprintf(line, sizeof line, format, arguments);
-    for (char *c = line; *c; c++) /* names in files and what libraries say may hold anything */
-        if ((unsigned char)*c < ' ' || *c == 0x7f) *c = ' ';
+    vsnprintf(raw, sizeof raw, format, arguments);
+    text_show(line, sizeof line, raw, false); /* names in files and what libraries say may hold anything */
     pthread_mutex_lock(&log_lock);
     if (level >= log_lowest) {
         if (log_sink)
@@ -93,7 +92,7 @@ void log_say(const char *format, ...)
     va_list arguments;
     if (log_is_quiet()) return;
     va_start(arguments, format);
-    vprintf(format, arguments);
+    text_vprint(stdout, format, arguments);
     va_end(arguments);
 }
 

@@ -2,6 +2,7 @@
 #include "pitviper.h"
 
 #include <errno.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -48,6 +49,71 @@ void text_escape(char *out, size_t out_size, const char *bytes, size_t count)
         }
     }
     if (out_size) out[n] = 0;
+}
+
+/* Octets of the well-formed UTF-8 character at `at` (RFC 3629), and the character; 0: none. */
+static size_t utf8_octets(uint32_t *code, const unsigned char *at)
+{
+    static const uint32_t least[5] = {0, 0, 0x80, 0x800, 0x10000};
+    const size_t octets = *at < 0x80 ? 1 : *at >> 5 == 6 ? 2 : *at >> 4 == 14 ? 3 : *at >> 3 == 30 ? 4 : 0;
+    if (octets == 0) return 0;
+    uint32_t c = octets == 1 ? *at : *at & (0x7Fu >> octets);
+    for (size_t i = 1; i < octets; i++) {
+        if (at[i] >> 6 != 2) return 0; /* the text's end too */
+        c = c << 6 | (at[i] & 0x3F);
+    }
+    if (c < least[octets] || c > 0x10FFFF || (c >= 0xD800 && c <= 0xDFFF)) return 0;
+    *code = c;
+    return octets;
+}
+
+/* C0, DEL and C1; line and paragraph separators; what turns or hides writing. */
+static bool steers_terminals(uint32_t c)
+{
+    return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x061C || (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) ||
+           (c >= 0x2060 && c <= 0x206F) || c == 0xFEFF || (c >= 0xE0000 && c <= 0xE007F);
+}
+
+void text_show(char *out, size_t out_size, const char *text, bool lines)
+{
+    size_t n = 0;
+    for (const unsigned char *at = (const unsigned char *)text; *at;) {
+        uint32_t     code   = 0;
+        const size_t octets = utf8_octets(&code, at);
+        const bool   kept   = octets > 0 && (!steers_terminals(code) || (lines && (*at == '\n' || *at == '\t')));
+        const size_t taken  = octets > 0 ? octets : 1;
+        if (n + (kept ? taken : 4 * taken) + 1 > out_size) break;
+        if (kept) {
+            memcpy(out + n, at, taken);
+            n += taken;
+        } else {
+            for (size_t i = 0; i < taken; i++) n += (size_t)snprintf(out + n, out_size - n, "\\x%02x", at[i]);
+        }
+        at += taken;
+    }
+    if (out_size) out[n] = 0;
+}
+
+void text_vprint(FILE *to, const char *format, va_list arguments)
+{
+    char        *text   = NULL;
+    const int    length = vasprintf(&text, format, arguments);
+    const size_t room = length >= 0 ? 4 * (size_t)length + 1 : 0;
+    char        *shown = length >= 0 ? malloc(room) : NULL;
+    if (shown) {
+        text_show(shown, room, text, true);
+        fputs(shown, to);
+    }
+    free(shown);
+    if (length >= 0) free(text);
+}
+
+void text_print(FILE *to, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    text_vprint(to, format, arguments);
+    va_end(arguments);
 }
 
 /* ---- files -------------------------------------------------------------------------------- */

@@ -4,9 +4,10 @@
  * Sources: the link-layer header types of libpcap (pcap-linktype(7)), RFC 791 and 815 (IPv4), RFC 8200 (IPv6),
  * RFC 768 (UDP), IEEE 802.1Q. */
 #include "dis/log.h"
+
+#include "dis/log_pcap.h"
 #include "dis/reader.h"
 
-#include <errno.h>
 #include <limits.h>
 #include <pcap/pcap.h>
 #include <stdio.h>
@@ -29,6 +30,17 @@ enum {
     ip_payload_limit = 65535,
     fragment_unit = 8,                /* octets; every fragment but the last is whole units */
     fragment_units = 8192,
+    link_null = 0, /* LINKTYPE_ */
+    link_ethernet = 1,
+    link_raw_bsd = 12, /* DLT_RAW of the BSDs, which some wrote */
+    link_raw_openbsd = 14,
+    link_raw = 101,
+    link_loop = 108,
+    link_sll = 113,
+    link_ipv4 = 228,
+    link_ipv6 = 229,
+    link_sll2 = 276,
+    foreign_links_told = 8,
 };
 
 /* A sender repeats an IP identification within this time only by mistake: RFC 791 suggests 15 s, Linux waits
@@ -65,6 +77,11 @@ typedef struct Scan {
     Assembly assembly[assemblies];
     uint64_t fragments; /* ever, for age */
     Status   status;    /* STATUS_NO_MEMORY stops the scan */
+    int      foreign_links; /* link layers that are not read, the first of them */
+    struct {
+        int      link;
+        uint64_t packets;
+    } foreign[foreign_links_told];
 } Scan;
 
 /* ---- UDP ----------------------------------------------------------------------------------------- */
@@ -365,18 +382,19 @@ static bool is_ip_family(uint32_t family)
 static size_t link_header_octets(int link)
 {
     switch (link) {
-    case DLT_EN10MB: return 14;
-    case DLT_LINUX_SLL: return 16;
-    case DLT_LINUX_SLL2: return 20;
-    case DLT_NULL:
-    case DLT_LOOP: return 4;
+    case link_ethernet: return 14;
+    case link_sll: return 16;
+    case link_sll2: return 20;
+    case link_null:
+    case link_loop: return 4;
     default: return 0;
     }
 }
 
-static bool is_raw_ip(int link)
+static bool reads_link(int link)
 {
-    return link == DLT_RAW || link == DLT_IPV4 || link == DLT_IPV6 || link == 14 /* DLT_RAW of OpenBSD */;
+    return link_header_octets(link) || link == link_raw || link == link_ipv4 || link == link_ipv6 || link == link_raw_bsd ||
+           link == link_raw_openbsd;
 }
 
 static void read_frame(Scan *scan, int link, Span frame)
@@ -388,11 +406,11 @@ static void read_frame(Scan *scan, int link, Span frame)
     }
     const Span rest = {frame.at + header, frame.octets - header};
     switch (link) {
-    case DLT_EN10MB: read_ethertype(scan, dis_load_u16(frame.at + 12), rest); break;
-    case DLT_LINUX_SLL: read_ethertype(scan, dis_load_u16(frame.at + 14), rest); break;
-    case DLT_LINUX_SLL2: read_ethertype(scan, dis_load_u16(frame.at), rest); break;
-    case DLT_NULL:
-    case DLT_LOOP:
+    case link_ethernet: read_ethertype(scan, dis_load_u16(frame.at + 12), rest); break;
+    case link_sll: read_ethertype(scan, dis_load_u16(frame.at + 14), rest); break;
+    case link_sll2: read_ethertype(scan, dis_load_u16(frame.at), rest); break;
+    case link_null:
+    case link_loop:
         if (is_ip_family(dis_load_u32(frame.at)))
             read_ip(scan, rest);
         else
@@ -404,71 +422,81 @@ static void read_frame(Scan *scan, int link, Span frame)
 
 /* ---- the file --------------------------------------------------------------------------------------- */
 
-static Status open_capture(pcap_t **out, const char *path)
+static void name_link(char out[32], int link)
 {
-    char  reason[PCAP_ERRBUF_SIZE] = "";
-    FILE *file = fopen(path, "rb");
-    if (!file) {
-        log_error("log: cannot open %s: %s", path, strerror(errno));
-        return STATUS_IO;
-    }
-    const int first = fgetc(file);
-    if (first == EOF) {
-        if (ferror(file))
-            log_error("log: cannot read %s: %s", path, strerror(errno));
-        else
-            log_error("log: %s is empty; a pcap or pcapng capture is wanted", path);
-        const Status status = ferror(file) ? STATUS_IO : STATUS_TRUNCATED;
-        fclose(file);
-        return status;
-    }
-    ungetc(first, file);
-    pcap_t *capture = pcap_fopen_offline_with_tstamp_precision(file, PCAP_TSTAMP_PRECISION_NANO, reason);
-    if (!capture) {
-        log_error("log: %s is not a capture (%s): pcap and pcapng files are read, as written by tcpdump -w, dumpcap or "
-                  "Wireshark; a text log (.dislog, .kdislog) is none: wrap its datagrams with text2pcap -u 3000,3000",
-                  path, reason);
-        fclose(file);
-        return STATUS_UNSUPPORTED;
-    }
-    *out = capture;
-    return STATUS_OK;
+    const char *name = pcap_datalink_val_to_name(link);
+    snprintf(out, 32, "%s (%d)", name ? name : "unknown", link);
 }
 
-/* A file may say any time: what no clock shows (before 1970, after 2255) stands at the nearer end. */
-static double capture_s(const struct pcap_pkthdr *header)
+/* One that is not read: remembered by its link layer, to be told of once. */
+static void skip_packet(Scan *scan, int link)
 {
-    static const int64_t most_s = 9000000000;
-    const int64_t s = header->ts.tv_sec < 0 ? 0 : header->ts.tv_sec > most_s ? most_s : header->ts.tv_sec;
-    return dis_unix_s(s * 1000000000 + header->ts.tv_usec); /* nanoseconds: asked for */
+    scan->log->counters.other_link++;
+    int i = 0;
+    while (i < scan->foreign_links && scan->foreign[i].link != link) i++;
+    if (i == foreign_links_told) return;
+    if (i == scan->foreign_links) scan->foreign[scan->foreign_links++].link = link;
+    scan->foreign[i].packets++;
 }
 
-static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
+static void tell_skipped(const Scan *scan, const char *path)
 {
-    const int link = pcap_datalink(capture);
-    if (!link_header_octets(link) && !is_raw_ip(link)) {
-        const char *name = pcap_datalink_val_to_name(link);
-        log_error("log: %s was captured on a link layer this program does not read: %s (%d); it reads Ethernet, Linux "
-                  "cooked v1 and v2, BSD loopback and raw IP",
-                  path, name ? name : "unknown", link);
-        return STATUS_UNSUPPORTED;
+    char name[32];
+    for (int i = 0; i < scan->foreign_links; i++) {
+        name_link(name, scan->foreign[i].link);
+        log_warn("log: %s: %llu packets of an interface with link layer %s are left out: this program does not read it",
+                 path, (unsigned long long)scan->foreign[i].packets, name);
     }
-    struct pcap_pkthdr *header;
-    const u_char       *bytes;
-    int                 result;
-    while ((result = pcap_next_ex(capture, &header, &bytes)) == 1) {
+}
+
+/* A file of which not one interface can be read is refused by name; a file without packets by what it tells of them. */
+static bool nothing_readable(int *link, const Scan *scan, const DisCapture *capture)
+{
+    const DisLogCounters *counters = &scan->log->counters;
+    if (counters->packets > counters->other_link) return false;
+    if (counters->packets > 0) {
+        *link = scan->foreign[0].link;
+        return true;
+    }
+    *link = dis_capture_link(capture, 0);
+    for (int i = 0; dis_capture_link(capture, i) >= 0; i++)
+        if (reads_link(dis_capture_link(capture, i))) return false;
+    return *link >= 0;
+}
+
+static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
+{
+    DisCapturePacket packet;
+    while (dis_capture_next(&packet, capture)) {
         scan->log->counters.packets++;
-        scan->capture_s = capture_s(header);
-        read_frame(scan, link, (Span){bytes, header->caplen});
+        scan->capture_s = packet.capture_s;
+        if (reads_link(packet.link)) read_frame(scan, packet.link, (Span){packet.bytes, packet.octets});
+        else skip_packet(scan, packet.link);
         if (scan->status != STATUS_OK) {
             log_error("log: %s: out of memory after %d datagrams", path, scan->log->count);
             return scan->status;
         }
     }
-    if (result == PCAP_ERROR) {
+    const char  *problem = dis_capture_problem(capture);
+    const Status status  = dis_capture_status(capture);
+    if (status != STATUS_OK) {
+        log_error("log: cannot use %s: after packet %llu: %s", path, (unsigned long long)scan->log->counters.packets, problem);
+        return status;
+    }
+    int link;
+    if (nothing_readable(&link, scan, capture)) {
+        char name[32];
+        name_link(name, link);
+        log_error("log: %s was captured on a link layer this program does not read: %s; it reads Ethernet, Linux "
+                  "cooked v1 and v2, BSD loopback and raw IP",
+                  path, name);
+        return STATUS_UNSUPPORTED;
+    }
+    tell_skipped(scan, path);
+    if (problem) {
         scan->log->truncated = true;
         log_warn("log: %s ends early after packet %llu: %s; what came before is used", path,
-                 (unsigned long long)scan->log->counters.packets, pcap_geterr(capture));
+                 (unsigned long long)scan->log->counters.packets, problem);
     }
     for (int i = 0; i < assemblies; i++)
         if (scan->assembly[i].used) give_up(scan, &scan->assembly[i]);
@@ -477,8 +505,8 @@ static Status scan_capture(Scan *scan, pcap_t *capture, const char *path)
 
 static Status open_port(DisLog *out, const char *path, uint16_t port)
 {
-    pcap_t *capture = NULL;
-    Status  status = open_capture(&capture, path);
+    DisCapture *capture = NULL;
+    Status      status = dis_capture_open(&capture, path);
     if (status != STATUS_OK) return status;
 
     DisLog log = {0};
@@ -494,7 +522,7 @@ static Status open_port(DisLog *out, const char *path, uint16_t port)
         for (int i = 0; i < assemblies; i++) free(scan->assembly[i].bytes);
     }
     free(scan);
-    pcap_close(capture);
+    dis_capture_close(capture);
     if (status != STATUS_OK) {
         dis_log_close(&log);
         return status;

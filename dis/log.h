@@ -1,4 +1,5 @@
-/* dis/log.h: a recorded exercise, whole, in memory: datagrams out of a pcap or pcapng file.
+/* dis/log.h: a recorded exercise, whole, in memory: datagrams out of a pcap or pcapng file,
+ * compressed or not (dis/log_stream.h), with one link layer or one for each interface (dis/log_pcap.h).
  *
  * Link layers: Ethernet (with any VLAN tags), Linux cooked v1 and v2, BSD loopback, raw IP. IPv4 with
  * fragments put together again (bounded), IPv6 with extension headers; UDP to `port`. */
@@ -17,8 +18,13 @@ typedef struct DisDatagram {
 
 /* Packets that gave no datagram, by reason. */
 typedef struct DisLogCounters {
-    uint64_t packets, other_protocol, other_port, cut_short, bad_fragment;
+    uint64_t packets, other_link, other_protocol, other_port, cut_short, bad_fragment;
 } DisLogCounters;
+
+static inline uint64_t dis_log_dropped(const DisLogCounters *c)
+{
+    return c->other_link + c->other_protocol + c->other_port + c->cut_short + c->bad_fragment;
+}
 
 typedef struct DisLog {
     int            count;

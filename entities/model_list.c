@@ -40,7 +40,7 @@ static void parts_of(char *out, size_t out_size, const Model *model)
 static Status list_shapes(FILE *to)
 {
     static const double coarse_sag_m = 0.1; /* nodes and sizes do not depend on it */
-    fprintf(to, "Built-in shapes: name, size in metres (length x width x height), articulated parts\n\n");
+    text_print(to, "Built-in shapes: name, size in metres (length x width x height), articulated parts\n\n");
     for (int i = 0; i < parametric_count(); i++) {
         Model model;
         char parts[400], size[40];
@@ -49,7 +49,7 @@ static Status list_shapes(FILE *to)
         parts_of(parts, sizeof parts, &model);
         snprintf(size, sizeof size, "%.2f x %.2f x %.2f", model.length_m, model.width_m,
                  fmax(model.box_high[2], 0) - model.box_low[2]);
-        fprintf(to, "  %-16s %-24s %s\n", parametric_name(i), size, parts);
+        text_print(to, "  %-16s %-24s %s\n", parametric_name(i), size, parts);
         model_destroy(&model);
     }
     return STATUS_OK;
@@ -61,7 +61,7 @@ Status model_list(FILE *to, const char *catalog_path)
     Status status = catalog_open(&catalog, catalog_path, 0.1);
     if (status != STATUS_OK) return status;
     status = list_shapes(to);
-    fprintf(to, "\nCatalog, in the order in which it is searched: entity type, kind, model, size, row, note%s\n\n",
+    text_print(to, "\nCatalog, in the order in which it is searched: entity type, kind, model, size, row, note%s\n\n",
             etc_own("catalog.csv") ? "; your own first" : "");
     for (int r = 0; r < catalog_row_count(catalog) && status == STATUS_OK; r++) {
         CatalogRowInfo row;
@@ -71,11 +71,11 @@ Status model_list(FILE *to, const char *catalog_path)
         catalog_size(m, catalog, row.model);
         if (catalog_shows(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);
         const char *slash = strrchr(row.path, '/');
-        fprintf(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source, size,
+        text_print(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source, size,
                 slash ? slash + 1 : row.path, row.line, row.note);
         if (model_is_path(row.source)) { /* of the others it stands above */
             parts_of(parts, sizeof parts, catalog_model(catalog, row.model));
-            fprintf(to, "; articulated: %s", parts);
+            text_print(to, "; articulated: %s", parts);
         }
         fputc('\n', to);
     }

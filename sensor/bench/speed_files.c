@@ -66,7 +66,7 @@ Status speed_files(Speed *s)
     Status status = frame.status;
     if (status == STATUS_OK && !temp_folder(out)) status = STATUS_IO;
     if (status != STATUS_OK) return status;
-    status = frame_files_prepare(out, three_bands, 0);
+    status = frame_files_prepare(out, three_bands | frame_truth, 0);
     Encode with = {.pool = s->many, .files = {.out = out, .config = &config, .world = &s->scene.world, .picture = &frame.picture,
                    .snapshot = &frame.snapshot, .request = &frame.request, .host = "observer", .config_sha256 = "",
                    .unix_s = s->scene.unix_s, .png = true, .chain = chain, .level = level}};

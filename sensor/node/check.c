@@ -7,9 +7,9 @@
 #include "terrain/geoid.h"
 #include "terrain/ground_image.h"
 #include "terrain/raster.h"
+#include "sensor/node/next_option.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <stdio.h>
 
 static const char help[] =
@@ -195,7 +195,7 @@ int check_command(int argc, char **argv)
     static const struct option options[] = {{"default", 0, NULL, DEFAULT}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     bool defaults = false, good = true;
     optind = 0;
-    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;) {
         if (option == HELP) {
             fputs(help, stdout);
             return 0;

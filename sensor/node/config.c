@@ -1,6 +1,8 @@
 #include "sensor/node/config.h"
 
 #include "dis/pdu.h"
+#include "sensor/node/plane_choice.h"
+#include "sensor/node/span.h"
 
 #include <errno.h>
 #include <strings.h>
@@ -108,8 +110,9 @@ static const Setting keys[] = {
      "site:application:entity that carries the sensor; observer: a stand-off one; munition: those that appear, guided "
      "ones first, one after the other"},
     {"exercise.aim", SETTING_TEXT, AT(exercise.aim), 0, 0, NULL, "", "site:application:entity it looks at"},
-    {"exercise.from_s", SETTING_DOUBLE, AT(exercise.from_s), NAN, NAN, NULL, "s", "first exercise time of interest"},
-    {"exercise.to_s", SETTING_DOUBLE, AT(exercise.to_s), NAN, NAN, NULL, "s", "last exercise time of interest"},
+    {"exercise.from_s", SETTING_TEXT, AT(exercise.from), 0, 0, NULL, "s",
+     "first exercise time of interest; +12: 12 s after the recording's beginning, -5: 5 s before its end"},
+    {"exercise.to_s", SETTING_TEXT, AT(exercise.to), 0, 0, NULL, "s", "last exercise time of interest, in the same ways"},
     {"exercise.listen_s", SETTING_DOUBLE, AT(exercise.listen_s), 0.05, 600, NULL, "s",
      "heard before host, ground and time of day are chosen, from the first entity on; run, replay --causal"},
     {"exercise.causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "use only what had been received by each frame"},
@@ -128,6 +131,8 @@ static const Setting keys[] = {
     {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "",
      "pictures into files; truth.jsonl and run.json are written in any case"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "display pictures beside the EXR ones"},
+    {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
+     "of truth per pixel into files: all, none, or any of range,entity,part,material,temperature,normal"},
     {"publish.pairs", SETTING_TEXT, AT(publish.pairs), 0, 0, "off|target|all", "",
      "in a replay: each frame also without what it looks at, or without any entity, and both without noise"},
     {"publish.coco", SETTING_BOOL, AT(publish.coco), 0, 1, NULL, "", "in a replay: coco.json, boxes and masks of what is seen"},
@@ -245,8 +250,6 @@ Config config_default(void)
     c.radar.lobe_deg                = 3;
     c.exercise.port                 = -1;
     c.exercise.exercise             = -1;
-    c.exercise.from_s               = NAN;
-    c.exercise.to_s                 = NAN;
     c.exercise.listen_s             = 2;
     c.network.ttl                   = 1;
     c.network.queue_mb              = 64; /* 300,000 Entity States: six seconds of 50,000 a second */
@@ -254,6 +257,7 @@ Config config_default(void)
     c.node.application              = 1;
     strcpy(c.publish.dis, "off");
     strcpy(c.publish.pairs, "off");
+    strcpy(c.publish.planes, "all");
     c.publish.files                 = true;
     c.publish.png                   = true;
     c.publish.coco_min_pixels       = 1;
@@ -397,6 +401,12 @@ Status config_check(const Config *config)
     }
     DisEntityId id;
     double      unix_s;
+    unsigned    planes;
+    if (!plane_choice_parse(&planes, config->publish.planes)) {
+        log_error("config: publish.planes: '%s' is not all, none, or a list of range, entity, part, material, temperature, "
+                  "normal, for example range,entity", config->publish.planes);
+        return STATUS_BAD_VALUE;
+    }
     if (!*config->sensor.mount) {
         log_error("config: sensor.mount: has no name; auto, or a part of the host such as `primary turret`");
         return STATUS_BAD_VALUE;
@@ -417,9 +427,15 @@ Status config_check(const Config *config)
                   config->exercise.utc);
         return STATUS_BAD_VALUE;
     }
-    if (config->exercise.from_s > config->exercise.to_s) {
-        log_error("config: exercise.from_s: %g is after exercise.to_s: %g", config->exercise.from_s,
-                  config->exercise.to_s);
+    const char *const moment[2] = {config->exercise.from, config->exercise.to};
+    for (int i = 0; i < 2; i++)
+        if (!span_good(moment[i])) {
+            log_error("config: exercise.%s: '%s' is not a number of seconds: 3471.5 is exercise time, +12 is from the "
+                      "recording's beginning, -5 from its end", i ? "to_s" : "from_s", moment[i]);
+            return STATUS_BAD_VALUE;
+        }
+    if (span_backward(config->exercise.from, config->exercise.to)) {
+        log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -433,8 +449,8 @@ void config_text(char *out, size_t out_size, const Config *config)
     hashed.publish         = plain.publish;
     hashed.record          = plain.record;
     hashed.exercise.port   = plain.exercise.port;
-    hashed.exercise.from_s = plain.exercise.from_s;
-    hashed.exercise.to_s   = plain.exercise.to_s;
+    memcpy(hashed.exercise.from, plain.exercise.from, sizeof hashed.exercise.from);
+    memcpy(hashed.exercise.to, plain.exercise.to, sizeof hashed.exercise.to);
     hashed.quality         = plain.quality; /* of the settings that it picks each is hashed */
     settings_absolute(&hashed, &table);
     settings_text(out, out_size, &table, &hashed);

@@ -56,7 +56,7 @@ typedef struct Config {
         char   utc[32];            /* of the first PDU; empty: chosen */
         char   host[24];           /* an id; munition: those that appear, causal only; observer; empty: chosen */
         char   aim[24];            /* empty: chosen */
-        double from_s, to_s;       /* exercise time; NaN: whole */
+        char   from[32], to[32];   /* a moment of sensor/node/span.h; empty: whole */
         double listen_s;           /* causal: before the choices */
     } exercise;
     struct {
@@ -69,6 +69,7 @@ typedef struct Config {
     struct {
         char   dis[8];             /* off, sensor or truth */
         bool   files, png;
+        char   planes[64];         /* of truth: all, none or a list */
         char   pairs[8];           /* off, target or all */
         bool   coco;
         int    coco_min_pixels;    /* smaller and more hidden targets are there to be ignored */

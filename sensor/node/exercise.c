@@ -5,10 +5,11 @@
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "entities/exercise.h"
+#include "sensor/node/next_option.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
 #include <errno.h>
-#include <getopt.h>
 #include <netdb.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,7 @@ enum { max_sets = 256, path_size = 4096 };
 typedef struct Options {
     const char  *scenario, *out, *send, *datagrams;
     double       speed;
+    bool         overwrite;
     DisUdpConfig udp;
     int          set_count;
     const char  *set[max_sets];
@@ -45,6 +47,7 @@ static const char help[] =
     "  -o, --out LOG        a recording: pcapng, or pcap where the name ends so; as fast as it goes\n"
     "  --send ADDRESS       HOST, HOST:PORT, or [IPv6]:PORT; a host, a broadcast or a multicast group; port 3000;\n"
     "                       in real time, until the scenario ends or Ctrl-C\n"
+    "  --overwrite          replace a LOG that is there already; otherwise it is kept and nothing is done\n"
     "  --datagrams DIR      each datagram as a file in this folder\n"
     "what\n"
     "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or seed=7;\n"
@@ -125,14 +128,14 @@ static bool parse_speed(double *out, const char *text)
 /* 0: go on; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS };
+    enum { OUT = 'o', HELP = 'h', SEND = 256, SET, DATAGRAMS, INTERFACE, TTL, SPEED, KEYS, OVERWRITE };
     static const struct option options[] = {
         {"out", 1, NULL, OUT},   {"send", 1, NULL, SEND},  {"set", 1, NULL, SET},    {"datagrams", 1, NULL, DATAGRAMS},
         {"ttl", 1, NULL, TTL},   {"speed", 1, NULL, SPEED}, {"keys", 0, NULL, KEYS}, {"interface", 1, NULL, INTERFACE},
-        {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     const char *of_sending = NULL; /* an option that means nothing without --send */
     optind = 0;                    /* start anew */
-    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         bool ok = true;
         if (option == INTERFACE) of_sending = "interface";
         if (option == TTL) of_sending = "ttl";
@@ -140,6 +143,7 @@ static int parse(Options *o, int argc, char **argv)
         switch (option) {
         case OUT: o->out = optarg; break;
         case SEND: o->send = optarg; break;
+        case OVERWRITE: o->overwrite = true; break;
         case DATAGRAMS: o->datagrams = optarg; break;
         case SET:
             ok = o->set_count < max_sets;
@@ -219,7 +223,7 @@ typedef struct Run {
     const char  *datagrams;
     int64_t      epoch_ns;
     int          files;
-    bool         failed;
+    bool         failed, stopped; /* stopped: before the end of the scenario */
 } Run;
 
 /* DIR/NNNN.pdu: what a fuzzer begins with. */
@@ -287,7 +291,8 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
     if (status != STATUS_OK) return status;
     const double begun_s = wall_clock_s();
     double       shown_s = begun_s, time_s = 0;
-    for (bool more = true; more && !stop_asked();) {
+    bool         more = true;
+    while (more && !stop_asked()) {
         if (run->udp && isfinite(speed)) wait_until(begun_s + exercise_time(exercise) / speed);
         if (stop_asked()) break;
         time_s = exercise_time(exercise);
@@ -298,6 +303,7 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
         }
     }
     log_status(NULL);
+    run->stopped = more && stop_asked();
     exercise_finish(exercise);
 
     const ExerciseCounts *counts = exercise_counts(exercise);
@@ -339,7 +345,8 @@ int exercise_command(int argc, char **argv)
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
 
-    Status status = read_scenario(&scenario, &o);
+    Status status = o.out ? overwrite_file("exercise", o.out, o.overwrite) : STATUS_OK;
+    if (status == STATUS_OK) status = read_scenario(&scenario, &o);
     if (status == STATUS_NO_MEMORY) log_error("exercise: out of memory");
     if (status != STATUS_OK) return 1;
     for (int i = 0; i < o.set_count; i++)
@@ -373,5 +380,9 @@ int exercise_command(int argc, char **argv)
     }
     cast_destroy(cast);
     scenario_destroy(&scenario);
+    if (status == STATUS_OK && run.stopped && o.out) {
+        log_warn("exercise: stopped before the end of the scenario: %s is whole as far as it goes", o.out);
+        if (!o.send) return stop_exit_code();
+    }
     return status == STATUS_OK ? 0 : 1;
 }

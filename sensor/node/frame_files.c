@@ -3,153 +3,19 @@
 #include "sensor/detector/colour.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/quantise.h"
+#include "sensor/node/plane_choice.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/truth_preview.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <sys/stat.h>
 #include <time.h>
-#include <unistd.h>
 
 enum { path_size = 4096, max_planes = 24, max_jobs = 16 };
 
-/* ---- folders -------------------------------------------------------------------------------- */
-
-Status frame_files_folder(const char *path)
-{
-    char part[path_size];
-    if (!*path) {
-        log_error("out: the folder for the products has no name; choose one with --out");
-        return STATUS_BAD_VALUE;
-    }
-    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return STATUS_BAD_VALUE;
-    for (char *at = part + 1;; at++) {
-        if (*at != '/' && *at) continue;
-        const char kept = *at;
-        *at             = 0;
-        if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-            log_error("out: cannot make the folder %s: %s; choose another place with --out", part, strerror(errno));
-            return STATUS_IO;
-        }
-        *at = kept;
-        if (!kept) break;
-    }
-    struct stat there;
-    if (stat(path, &there) == 0 && !S_ISDIR(there.st_mode)) errno = ENOTDIR;
-    else errno = 0;
-    if (errno || access(path, W_OK | X_OK) != 0) {
-        log_error("out: cannot write in %s: %s; choose another place with --out", path, strerror(errno));
-        return STATUS_IO;
-    }
-    return STATUS_OK;
-}
-
-/* NNNNNN.exr, .png, .csv: what frame_files_write makes and nothing else. */
-static bool is_frame_name(const char *name)
-{
-    for (int i = 0; i < 6; i++)
-        if (name[i] < '0' || name[i] > '9') return false;
-    return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".png") == 0 || strcmp(name + 6, ".csv") == 0;
-}
-
-static void clear_folder(const char *folder)
-{
-    DIR *directory = opendir(folder);
-    if (!directory) return;
-    char path[path_size + 300];
-    for (struct dirent *entry; (entry = readdir(directory));)
-        if (is_frame_name(entry->d_name)) {
-            snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-            unlink(path);
-        }
-    closedir(directory);
-}
-
-/* Folder of band b; BAND_COUNT: truth; BAND_COUNT + 1: range profiles; raw_folder + b: raw counts. */
-enum { raw_folder = BAND_COUNT + 2, folder_count = raw_folder + BAND_COUNT };
-
-static void product_folder(char path[path_size], const char *out, int b)
-{
-    if (b >= raw_folder) {
-        snprintf(path, path_size, "%s/raw/%s", out, band_name((Band)(b - raw_folder)));
-        return;
-    }
-    snprintf(path, path_size, "%s/%s%s", out, b <= BAND_COUNT ? "frames/" : "profiles/",
-             b < BAND_COUNT ? band_name((Band)b) : b == BAND_COUNT ? "truth" : "radar");
-}
-
-const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};
-
-static void clear_products(const char *out)
-{
-    static const char *const parents[] = {"frames", "profiles", "raw"};
-    char path[path_size];
-    for (int b = 0; b < folder_count; b++) {
-        product_folder(path, out, b);
-        clear_folder(path);
-        rmdir(path); /* when nothing else is in it */
-    }
-    for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", out, parents[i]);
-        rmdir(path);
-    }
-}
-
-void frame_files_clear(const char *out)
-{
-    /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {"pairs", "pairs.jsonl", "coco.json"};
-    char path[path_size];
-    bool earlier = false;
-    for (int i = 0; i < 2; i++) {
-        snprintf(path, sizeof path, "%s/%s", out, marks[i]);
-        earlier = unlink(path) == 0 || earlier;
-    }
-    if (!earlier) return;
-    clear_products(out);
-    for (int i = 0; i < pair_folders; i++) {
-        snprintf(path, sizeof path, "%s/%s", out, pair_folder[i]);
-        clear_products(path);
-        rmdir(path);
-    }
-    for (int i = 0; i < 3; i++) {
-        snprintf(path, sizeof path, "%s/%s", out, beside[i]);
-        remove(path); /* a folder: when nothing else is in it */
-    }
-}
-
-Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
-{
-    char   path[path_size];
-    Status status = frame_files_folder(out);
-    if (status == STATUS_OK) frame_files_clear(out);
-    for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
-        if (bands == 0) break;
-        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) :
-            b != BAND_COUNT && !(bands >> (b < BAND_COUNT ? b : BAND_RADAR) & 1)) continue;
-        product_folder(path, out, b);
-        status = frame_files_folder(path);
-    }
-    return status;
-}
-
 /* Bands whose pictures come from a detector. */
 static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-
-Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw)
-{
-    char   path[path_size];
-    Status status = frame_files_folder(out);
-    for (int b = 0; b < folder_count && status == STATUS_OK; b++) {
-        if (b >= raw_folder ? !(raw >> (b - raw_folder) & 1) : b >= BAND_COUNT || !(bands & detector_bands & 1u << b)) continue;
-        product_folder(path, out, b);
-        status = frame_files_folder(path);
-    }
-    return status;
-}
 
 /* ---- one frame ------------------------------------------------------------------------------ */
 
@@ -173,8 +39,16 @@ static void frame_path(char path[path_size], const FrameFiles *frame, const char
     snprintf(path, path_size, "%s/%s/%s/%06d.%s", frame->out, folder, name, frame->frame, ending);
 }
 
-/* The planes of one band, with the names of their channels. */
-static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int band)
+static unsigned planes_of(const Config *config)
+{
+    unsigned planes;
+    return plane_choice_parse(&planes, config->publish.planes) ? planes : planes_all; /* it was checked */
+}
+
+bool frame_files_truth(const Config *config) { return planes_of(config) != planes_none; }
+
+/* The planes of one band, with the names of their channels; of truth those in `kept`. */
+static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int band, unsigned kept)
 {
     const Picture *p = frame->picture;
     static const char *const rgb[3] = {"R", "G", "B"}, *const normal[3] = {"nx", "ny", "nz"};
@@ -188,12 +62,12 @@ static int band_planes(Plane plane[max_planes], const FrameFiles *frame, int ban
     case BAND_LWIR: plane[n++] = plane_f32("Y", w, h, p->lwir); break;
     case BAND_RADAR: plane[n++] = plane_f32("Y", w, h, p->radar); break;
     default:
-        plane[n++] = plane_f32("range_m", w, h, p->range_m);
-        plane[n++] = plane_u32("entity", w, h, p->entity);
-        plane[n++] = plane_u32("part", w, h, p->part);
-        plane[n++] = plane_u32("material", w, h, p->material);
-        plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
-        for (int k = 0; k < 3; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
+        if (kept >> PLANE_RANGE & 1) plane[n++] = plane_f32("range_m", w, h, p->range_m);
+        if (kept >> PLANE_ENTITY & 1) plane[n++] = plane_u32("entity", w, h, p->entity);
+        if (kept >> PLANE_PART & 1) plane[n++] = plane_u32("part", w, h, p->part);
+        if (kept >> PLANE_MATERIAL & 1) plane[n++] = plane_u32("material", w, h, p->material);
+        if (kept >> PLANE_TEMPERATURE & 1) plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
+        for (int k = 0; k < 3 && kept >> PLANE_NORMAL & 1; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
     }
     return n;
 }
@@ -258,7 +132,7 @@ static Status write_exr(const FrameFiles *frame, int band)
     ImageAttribute attribute[16];
     char          *ids = NULL, *names = NULL, *parts = NULL;
     int            n   = 0;
-    const int      planes = band_planes(plane, frame, band);
+    const int      planes = band_planes(plane, frame, band, planes_of(frame->config));
 
     attribute[n++] = image_string("band", band < BAND_COUNT ? band_name((Band)band) : "truth");
     if (band < BAND_COUNT) attribute[n++] = image_string("unit", band == BAND_RADAR ? "relative" : "W/(m2 sr)");
@@ -513,7 +387,7 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
     int   planes = 0;
     for (int b = 0; b <= BAND_COUNT; b++) {
         if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
-        const int added = band_planes(plane + planes, frame, b);
+        const int added = band_planes(plane + planes, frame, b, planes_all); /* whatever is kept */
         for (int i = planes; i < planes + added; i++) {
             snprintf(name[i], sizeof name[i], "%s/%s", b < BAND_COUNT ? band_name((Band)b) : "truth", plane[i].name);
             plane[i].name = name[i];
@@ -566,12 +440,13 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
 {
     FileJobs jobs = {.frame = frame, .hash = hash};
 
-    add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
+    const bool truth = frame_files_truth(frame->config);
+    if (truth) add_job(&jobs, write_exr, BAND_COUNT); /* the largest first */
     for (int b = 0; b < BAND_COUNT; b++)
         if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
     for (int b = 0; b <= BAND_COUNT; b++) {
         const bool raw = b < BAND_COUNT && frame->chain[b] && frame->config->detector.raw;
-        if ((frame->png || raw) && (b == BAND_COUNT || (frame->request->bands >> b & 1))) add_job(&jobs, write_png, b);
+        if ((frame->png || raw) && (b == BAND_COUNT ? truth : frame->request->bands >> b & 1)) add_job(&jobs, write_png, b);
     }
     if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
     return run_jobs(&jobs, pool);

@@ -37,11 +37,14 @@ typedef struct FrameFiles {
 } FrameFiles;
 
 /* folder: makes OUT, or says why not; what is in it stays.
+ * earlier: whether OUT holds something of an earlier run that would be lost, and the path of such a thing.
  * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
  * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
- * raw; a clear message when the place cannot be written. No bands: OUT alone.
+ * raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with frame_truth, truth too.
  * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
+enum { frame_path_size = 4096, frame_truth = 1 << BAND_COUNT };
 Status frame_files_folder(const char *out);
+bool   frame_files_earlier(char found[frame_path_size], const char *out);
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);
@@ -49,6 +52,8 @@ Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned ra
 enum { pair_folders = 3 };
 extern const char *const pair_folder[pair_folders];
 /* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
+/* Whether any plane of truth goes into files. */
+bool   frame_files_truth(const Config *config);
 void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Writes everything of the frame, a task a file. hash: over all planes, before encoding. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);

@@ -103,7 +103,7 @@ static void summarise_stages(double out[session_stages][3], const SessionResult 
 }
 
 static Status write_run(const Run *run, const char *out, const char *host, const Choices *choices,
-                        const SessionResult *result, const DisCounters *heard)
+                        const SessionResult *result, const DisCounters *heard, const char *state)
 {
     char        path[path_size + 16], settings[config_text_size];
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
@@ -128,13 +128,14 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     snprintf(path, sizeof path, "%s/run.json", out);
     const DisLogCounters *link = run->link;
     const RunRecord       record = {
+              .status = state, .planes = run->options.config.publish.files ? run->options.config.publish.planes : NULL,
               .config_sha256 = run->config_sha256, .log_name = run->log_name, .log_sha256 = run->log_sha256,
               .settings = settings, .table_count = run->tables.count, .table = table, .table_sha256 = table_sha256,
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
               .host_count = result->host_count > 0 ? result->host_count : 1,
               .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
               .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = hash, .dis = heard,
-              .link_dropped = link ? link->other_protocol + link->other_port + link->cut_short + link->bad_fragment : 0,
+              .link_dropped = link ? dis_log_dropped(link) : 0,
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
@@ -145,6 +146,18 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;
+}
+
+/* ---- its folder ------------------------------------------------------------------------------ */
+
+void run_folder(char out[run_folder_size], const Options *o, DisEntityId host)
+{
+    if (o->host_count > 1 && dis_entity_id_is_none(host))
+        snprintf(out, run_folder_size, "%s/%s", o->out, host_observer);
+    else if (o->host_count > 1)
+        snprintf(out, run_folder_size, "%s/%u-%u-%u", o->out, host.site, host.application, host.entity);
+    else
+        snprintf(out, run_folder_size, "%s", o->out);
 }
 
 /* ---- one host -------------------------------------------------------------------------------- */
@@ -200,11 +213,12 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
 
 /* The recorded truth of what was made, also when it stopped early. */
 static Status conclude(const Run *run, const char *out, const char *host, const Choices *choices,
-                       const SessionResult *result, const DisCounters *heard)
+                       const SessionResult *result, const DisCounters *heard, const char *state)
 {
     const Config *config = &run->options.config;
     const char   *name   = options_command(&run->options);
-    const Status  status = write_run(run, out, host, choices, result, heard);
+    const Status  status = write_run(run, out, host, choices, result, heard, state);
+    if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
     if (config->publish.files) log_say("%d frames in %s/frames\n", result->frames, out);
     else log_say("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
@@ -229,7 +243,7 @@ Status run_host(Run *run, const DisEntityId *host)
     Session       *session   = NULL;
     double         unix_s    = 0;
     GroundContact  contact   = GROUND_CONTACT_NONE;
-    char           out[path_size], host_text[dis_id_text_size];
+    char           out[run_folder_size], host_text[dis_id_text_size];
 
     if (host) {
         if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
@@ -245,12 +259,7 @@ Status run_host(Run *run, const DisEntityId *host)
         plan.end_s   = INFINITY;
     }
 
-    if (o->host_count > 1 && dis_entity_id_is_none(plan.host))
-        snprintf(out, sizeof out, "%s/%s", o->out, host_observer);
-    else if (o->host_count > 1)
-        snprintf(out, sizeof out, "%s/%u-%u-%u", o->out, plan.host.site, plan.host.application, plan.host.entity);
-    else
-        snprintf(out, sizeof out, "%s", o->out);
+    run_folder(out, o, plan.host);
     const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
                                   .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN, .sensors = &run->sensors,
@@ -267,9 +276,10 @@ Status run_host(Run *run, const DisEntityId *host)
         run->live->files_failed   = (uint64_t)result.files_failed;
         run->live->files_left_out = (uint64_t)result.files_left_out;
     }
-    if (result.frames > 0 || run->live) {
+    if (result.frames > 0 || run->live || run->stopped) {
+        const char  *state   = status != STATUS_OK ? "failed" : run->stopped ? "stopped" : "complete";
         const Status written = conclude(run, out, host_text, &choices, &result,
-                                        o->config.causal ? player_counters(player) : &run->survey.counters);
+                                        o->config.causal ? player_counters(player) : &run->survey.counters, state);
         if (status == STATUS_OK) status = written;
     }
 

@@ -18,6 +18,7 @@ struct Run {
     Options   options;
     DisLog    view;              /* what is played; borrowed */
     double    until_s;           /* causal: arrival time of the last that the choices know */
+    bool      stopped;           /* by a signal, before the last frame */
     uint64_t  own;               /* datagrams of this node, left out */
     const DisLogCounters *link;  /* NULL: live */
     LiveCounters         *live;  /* NULL: a replay */
@@ -45,5 +46,8 @@ Status run_survey(Run *run, const DisLog *heard);
 /* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
 Status run_host(Run *run, const DisEntityId *host);
 void   run_close(Run *run);
+/* Where the products of one host go. */
+enum { run_folder_size = 4096 };
+void   run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
 
 #endif

@@ -20,7 +20,8 @@
 static const char usage_text[] =
     "usage: pitviper inspect LOG [--pdus tsv [--full]] [--port N] [--exercise N]\n"
     "\n"
-    "LOG is a pcap or pcapng capture. Without --pdus: a summary of the exercise.\n"
+    "LOG is a pcap or pcapng capture, also compressed (gzip, zstd, bzip2, xz). Without --pdus: a summary of\n"
+    "the exercise.\n"
     "\n"
     "  --pdus tsv    one line per Entity State PDU, with the columns and formats of\n"
     "                tshark -d udp.port==3000,dis -T fields\n"
@@ -299,7 +300,7 @@ static void release(Findings *f)
 
 static void print_log(const DisLog *log, const Findings *f, const char *path)
 {
-    printf("%s\n", path);
+    text_print(stdout, "%s\n", path);
     if (log->count) {
         double first_s = INFINITY, last_s = -INFINITY;
         for (int i = 0; i < log->count; i++) {
@@ -323,7 +324,8 @@ static void print_log(const DisLog *log, const Findings *f, const char *path)
     const struct {
         uint64_t    count;
         const char *what;
-    } left[] = {{c->other_protocol, "not UDP over IP"},
+    } left[] = {{c->other_link, "of a link layer that is not read"},
+                {c->other_protocol, "not UDP over IP"},
                 {c->other_port, "UDP to another port"},
                 {c->cut_short, "cut short or with a wrong length"},
                 {c->bad_fragment, "fragments of a datagram that never came whole"}};
@@ -436,7 +438,7 @@ static Status print_shapes(const Findings *f)
         if (!catalog_shows(catalog, index))
             printf("  %-22s nothing is seen of it\n", text);
         else
-            printf("  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
+            text_print(stdout, "  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,
                    fmax(model->box_high[2], 0) - model->box_low[2],
                    index == 0 ? " (no row of the catalog: a stand-in)" : "");
     }
@@ -602,7 +604,7 @@ static bool read_number(long long *out, const char *name, const char *text, long
 {
     long long value;
     if (!text || !text_to_long(&value, text) || value < low || value > high) {
-        fprintf(stderr, "pitviper inspect: %s wants a number %lld .. %lld, not `%s`\n", name, low, high,
+        text_print(stderr, "pitviper inspect: %s wants a number %lld .. %lld, not `%s`\n", name, low, high,
                 text ? text : "");
         return false;
     }
@@ -619,7 +621,7 @@ static int read_options(Options *out, int argc, char **argv)
         const char *arg = argv[i], *value = i + 1 < argc ? argv[i + 1] : NULL;
         if (only_paths || arg[0] != '-' || !arg[1]) {
             if (o.path) {
-                fprintf(stderr, "pitviper inspect: one log at a time: `%s` and `%s`\n", o.path, arg);
+                text_print(stderr, "pitviper inspect: one log at a time: `%s` and `%s`\n", o.path, arg);
                 return 3;
             }
             o.path = arg;
@@ -632,7 +634,7 @@ static int read_options(Options *out, int argc, char **argv)
             o.full = true;
         } else if (strcmp(arg, "--pdus") == 0) {
             if (!value || strcmp(value, "tsv") != 0) {
-                fprintf(stderr, "pitviper inspect: --pdus knows `tsv`, not `%s`\n", value ? value : "");
+                text_print(stderr, "pitviper inspect: --pdus knows `tsv`, not `%s`\n", value ? value : "");
                 return 3;
             }
             o.tsv = true;
@@ -644,7 +646,7 @@ static int read_options(Options *out, int argc, char **argv)
             if (!read_number(&o.exercise, arg, value, 0, 255)) return 3;
             i++;
         } else {
-            fprintf(stderr, "pitviper inspect: unknown option `%s`; see pitviper inspect --help\n", arg);
+            text_print(stderr, "pitviper inspect: unknown option `%s`; see pitviper inspect --help\n", arg);
             return 3;
         }
     }
@@ -653,7 +655,7 @@ static int read_options(Options *out, int argc, char **argv)
         return 3;
     }
     if (o.full && !o.tsv) {
-        fprintf(stderr, "pitviper inspect: --full goes with --pdus tsv\n");
+        text_print(stderr, "pitviper inspect: --full goes with --pdus tsv\n");
         return 3;
     }
     *out = o;
@@ -687,7 +689,7 @@ int inspect_command(int argc, char **argv)
         return 1;
     }
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        fprintf(stderr, "pitviper inspect: cannot write the output; is the disk full or the pipe closed?\n");
+        text_print(stderr, "pitviper inspect: cannot write the output; is the disk full or the pipe closed?\n");
         return 1;
     }
     return 0;

@@ -9,7 +9,9 @@
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/quality.h"
+#include "sensor/node/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 
@@ -271,7 +273,8 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o      = &run->options;
     Status         status = STATUS_OK;
     double         last   = -1; /* number of the last frame */
-    const double   from_s = fmax(plan->start_s, o->config.exercise.from_s); /* NaN: none */
+    const double   from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
+    const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player = player;
     health_making(&l->health, wall_clock_s());
@@ -283,7 +286,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         const double newest = floor(now_s * grid->rate_hz) - grid->origin;
         const double n      = fmax(fmax(newest, last + 1), first);
         const double t_s    = frame_grid_s(grid, n);
-        if (t_s > o->config.exercise.to_s) break;
+        if (t_s > to_s) break;
         const int64_t until_ns = dis_unix_ns_until(player_arrival_s(player, t_s));
         bool          there, shown;
         status = wait_until(&there, l, session, player, until_ns);
@@ -302,6 +305,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
     l->health.sample.entities = session_entities(session);
     conclude(l);
+    run->stopped = stop_asked();
     return status;
 }
 
@@ -397,7 +401,10 @@ static Status verdict(Live *l)
 static Status run_node(Live *l)
 {
     bool   heard;
-    Status status = measure_machine(l);
+    const Options *o = &l->run.options;
+    Status status = overwrite_folder("run", o->out, o->overwrite);
+    if (status == STATUS_OK && *o->config.record.path) status = overwrite_file("run", o->config.record.path, o->overwrite);
+    if (status == STATUS_OK) status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     /* now, not when the first entity is heard, hours later */
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);

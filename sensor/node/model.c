@@ -29,7 +29,7 @@ static const char help[] =
 
 static int refuse(const char *option, const char *what)
 {
-    fprintf(stderr, "pitviper model: %s: %s; see `pitviper model --help`\n", option, what);
+    text_print(stderr, "pitviper model: %s: %s; see `pitviper model --help`\n", option, what);
     return 2;
 }
 
@@ -115,7 +115,7 @@ int model_command(int argc, char **argv)
         sidecar_write_keys(stdout);
         return 0;
     }
-    fprintf(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model show "
+    text_print(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model show "
             "NAME|FILE` and `model --keys`\n", argv[1]);
     return 2;
 }

@@ -2,12 +2,14 @@
  * those of a sweep reach its variants. */
 #include "sensor/node/options.h"
 
+#include "sensor/node/next_option.h"
+
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, ONLY, SWEEP, HELP, KEY };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SWEEP, HELP, KEY };
 
 static const char *const names[] = {"replay", "run"};
 
@@ -24,13 +26,14 @@ static const struct Row {
     {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
     {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
     {"out", OUT, IN_BOTH, NULL, "DIR", "where the products go (default: out)"},
+    {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL, "let go what an earlier run left in DIR, or a recording of that name; otherwise\nit is kept and nothing is done"},
     {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "any of optical,mwir,lwir,radar (default: all)"},
     {"size", SIZE, IN_BOTH, NULL, "WxH", "picture size in pixels (default: 720x486)"},
     {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
      "frames a second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
     {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
     {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
-     "only this span of exercise time, in seconds as `pitviper inspect` shows\nthem; frames keep the numbers they have in the whole"},
+     "only this span: exercise time in seconds as `pitviper inspect` shows it, or\n+12: after the recording's beginning, -5: before its end; frames keep the\nnumbers they have in the whole"},
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
      "these frames alone, by their numbers; each is what it is in the whole,\n"
      "but for a display's automatic level (detector.agc_s)"},
@@ -55,6 +58,8 @@ static const struct Row {
     {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
     {"no-png", KEY, IN_BOTH, "publish.png=false", NULL, "no display pictures, only EXR"},
     {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"planes", KEY, IN_BOTH, "publish.planes", "LIST",
+     "truth per pixel in files: none, or any of range,entity,part,material,\ntemperature,normal (default: all); truth.jsonl is written in any case"},
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
      "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
     {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},
@@ -75,7 +80,10 @@ static void print_help(CommandName command)
         "usage: pitviper replay LOG [options]\n"
         "\n"
         "Shows what the seeker of the missile in a recorded DIS exercise (pcap, pcapng) saw: pictures per band,\n"
-        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key.\n\n",
+        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key. LOG may be\n"
+        "compressed (gzip, zstd, bzip2, xz). Stopped by Ctrl-C (exit code 130) or SIGTERM (143) it finishes its frame, and\n"
+        "run.json says so. A video of a band, at --rate 5:\n"
+        "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
         "usage: pitviper run [-c FILE] [options]\n"
         "\n"
         "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
@@ -217,6 +225,7 @@ static bool take(Options *o, const struct Row *row, const char *text)
         return ok;
     case ONLY: return parse_only(o, text);
     case SWEEP: o->sweep = text; return true;
+    case OVERWRITE: o->overwrite = true; return true;
     default: return true; /* CONFIG was read before */
     }
 }
@@ -228,7 +237,10 @@ static bool in_settings(const struct Row *row)
     return row->what == KEY || row->what == SIZE || row->what == SET || row->what == CONFIG || row->what == HOST;
 }
 
-static bool of_sweep(const struct Row *row) { return row->what == OUT || row->what == SWEEP || row->what == HELP; }
+static bool of_sweep(const struct Row *row)
+{
+    return row->what == OUT || row->what == OVERWRITE || row->what == SWEEP || row->what == HELP;
+}
 
 /* To the bit, whatever they say: a variant that was made with another is kept. */
 static bool same_products(const struct Row *row)
@@ -253,7 +265,7 @@ static bool note_given(Options *o, const struct Row *row, const char *text)
 
 void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out)
 {
-    const char *const fixed[] = {"pitviper", names[o->command], "--config", settings, "--out", out};
+    const char *const fixed[] = {"pitviper", names[o->command], "--config", settings, "--out", out, "--overwrite"};
     int               n       = 0;
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) argv[n++] = fixed[i];
     for (int i = 0; i < o->given_count; i++) {
@@ -305,7 +317,6 @@ static Status read_config(Config *config, const struct option *list, int argc, c
         const struct Row *row = row_of(option);
         if (row && row->what == CONFIG) status = config_read(config, optarg);
     }
-    opterr = 1;
     free(copy);
     return status;
 }
@@ -321,7 +332,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
     if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
     optind = 0;
-    for (int option; (option = getopt_long(argc, argv, "c:", list, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "c:", list)) != -1;) {
         const struct Row *row = row_of(option); /* NULL: getopt has said which */
         if (row && row->what == HELP) {
             print_help(command);

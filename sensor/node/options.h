@@ -6,7 +6,7 @@
 
 enum {
     options_hosts_max = 64, options_only_max = 256, options_given_max = 64,
-    options_variant_argv = 9 + 2 * options_given_max,
+    options_variant_argv = 10 + 2 * options_given_max,
 };
 
 typedef enum CommandName { COMMAND_REPLAY, COMMAND_RUN } CommandName;
@@ -24,7 +24,7 @@ typedef struct Options {
     const char *sweep;          /* a file of sensor/node/sweep_file.h; NULL: one run */
     int         threads, host_count, frames; /* frames: stop after so many; 0: never */
     double      speed, for_s;   /* exercise seconds a second, INFINITY: as fast as it goes; stop after so long */
-    bool        no_skip;
+    bool        no_skip, overwrite;
     const char *host[options_hosts_max]; /* several of them, ids; one is in the configuration */
     int         only_count, only[options_only_max]; /* frames to be made, ascending, each once; 0: all */
     int         given_count;

@@ -39,12 +39,13 @@ Status pairs_open(Pairs **out, const SessionShared *shared, const char *folder, 
     p->noiseless.detector.noise = 0;
     *quiet = *shared->sensors;
     for (int b = 0; b < BAND_COUNT; b++) quiet->preset[b].noise_scale = 0;
+    const unsigned kept = shared->bands | (frame_files_truth(shared->config) ? frame_truth : 0);
     for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) {
         Member *member = &p->member[m];
         snprintf(member->folder, sizeof member->folder, "%s/%s", folder, pair_folder[m - 1]);
         status = sensors_chains(member->chain, m == BACKGROUND ? shared->sensors : quiet, shared->config);
         if (status == STATUS_OK)
-            status = m == BACKGROUND ? frame_files_prepare(member->folder, shared->bands, raw)
+            status = m == BACKGROUND ? frame_files_prepare(member->folder, kept, raw)
                                      : frame_files_prepare_displays(member->folder, shared->bands, raw);
     }
     if (status != STATUS_OK) goto failed;
@@ -88,7 +89,8 @@ static Status write_line(const Pairs *p, const FrameFiles *files, const char *wi
 {
     PairRecord r = {.frame = files->frame, .time_s = files->time_s, .seed = p->shared->config->seed, .removed = removed,
                     .removed_count = removed_count, .frame_sha256 = with_sha256, .background_sha256 = without_sha256,
-                    .bands = files->request->bands, .raw = p->raw, .png = files->png};
+                    .bands = files->request->bands, .raw = p->raw, .png = files->png,
+                    .truth = frame_files_truth(p->shared->config)};
     for (int m = WITH; m < pair_members; m++)
         r.member[m] = (PairMember){
             .target   = m < BACKGROUND,

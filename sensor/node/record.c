@@ -3,15 +3,17 @@
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
+#include "sensor/node/next_option.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
-#include <getopt.h>
 #include <stdio.h>
 
 typedef struct Options {
     const char  *out;
     double       for_s; /* INFINITY: until told to stop */
     long long    count; /* -1: any number */
+    bool         overwrite;
     DisUdpConfig udp;
 } Options;
 
@@ -19,10 +21,10 @@ static const char help[] =
     "usage: pitviper record -o LOG [options]\n"
     "\n"
     "Records the DIS exercise it hears, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap where the\n"
-    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read. One that is there already\n"
-    "is replaced.\n"
+    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
     "\n"
     "  -o, --out LOG      where to\n"
+    "  --overwrite        replace a LOG that is there already; otherwise it is kept and nothing is done\n"
     "  --address A        hear what is sent to this address: a multicast group (joined, IPv4 or IPv6) or one of this\n"
     "                     machine's; default: all that comes by IPv4, broadcast too\n"
     "  --interface NAME   hear this network interface alone, such as eth0; default: all\n"
@@ -45,13 +47,13 @@ static bool copy_text(char *out, size_t out_size, const char *name, const char *
 /* 0: go on; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
-    enum { OUT = 'o', HELP = 'h', ADDRESS = 256, INTERFACE, PORT, FOR, COUNT };
+    enum { OUT = 'o', HELP = 'h', ADDRESS = 256, INTERFACE, PORT, FOR, COUNT, OVERWRITE };
     static const struct option options[] = {
         {"out", 1, NULL, OUT},   {"address", 1, NULL, ADDRESS}, {"interface", 1, NULL, INTERFACE},
         {"port", 1, NULL, PORT}, {"for", 1, NULL, FOR},         {"count", 1, NULL, COUNT},
-        {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
+        {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0; /* start anew */
-    for (int option; (option = getopt_long(argc, argv, "o:h", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         long long number;
         bool      ok = true;
         switch (option) {
@@ -71,6 +73,7 @@ static int parse(Options *o, int argc, char **argv)
             ok = text_to_long(&o->count, optarg) && o->count >= 1;
             if (!ok) log_error("record: --count: '%s' is not a whole number from 1 on", optarg);
             break;
+        case OVERWRITE: o->overwrite = true; break;
         case HELP: fputs(help, stdout); return 1;
         default: fputs("see `pitviper record --help`\n", stderr); return 1 + 2;
         }
@@ -167,6 +170,7 @@ int record_command(int argc, char **argv)
 
     const int stop = parse(&o, argc, argv);
     if (stop) return stop - 1;
+    if (overwrite_file("record", o.out, o.overwrite) != STATUS_OK) return 1;
     stop_by_signals();
     /* The socket first: were it refused with the file open, an older recording would be gone for nothing. What arrives
      * until the file is there waits. */

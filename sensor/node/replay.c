@@ -3,9 +3,11 @@
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
+#include "sensor/node/overwrite.h"
+#include "sensor/node/span.h"
+#include "sensor/node/stop.h"
 #include "sensor/node/sweep.h"
 
-#include <errno.h>
 #include <libgen.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,13 +24,17 @@ static void show_progress(double n, double first, double last, double begun_s)
             spent_s * (1 - done) / done, n == last ? "\r\x1b[K" : "");
 }
 
-/* Waits until the log's own clock, times speed, has come to t_s. */
+/* Waits until the log's own clock, times speed, has come to t_s, or a signal. */
 static void pace(double begun_s, double first_s, double t_s, double speed)
 {
     if (!isfinite(speed)) return;
     const double    until_s = begun_s + (t_s - first_s) / speed;
-    struct timespec until   = {(time_t)until_s, (long)((until_s - floor(until_s)) * 1e9)};
-    while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL) == EINTR) {}
+    static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
+    for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
+        const double    next_s = fmin(until_s, now_s + look_s);
+        struct timespec next   = {(time_t)next_s, (long)((next_s - floor(next_s)) * 1e9)};
+        clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, NULL);
+    }
 }
 
 /* Whether frame n is wanted; at: of --only, the next one. */
@@ -59,16 +65,22 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     const Options *o      = &run->options;
     const Config  *config = &o->config;
     double         from_s = plan->start_s, to_s = plan->end_s;
-    if (!isfinite(to_s) && isnan(config->exercise.to_s)) to_s = player_last_s(player);
-    if (config->exercise.from_s > from_s) from_s = config->exercise.from_s;
-    if (config->exercise.to_s < to_s) to_s = config->exercise.to_s;
+    const double   first_s = run->survey.first_s, last_s = config->causal ? player_last_s(player) : run->survey.last_s;
+    const double   wanted_from_s = span_time_s(config->exercise.from, first_s, last_s);
+    const double   wanted_to_s   = span_time_s(config->exercise.to, first_s, last_s);
+    if (span_outside(config->exercise.from, config->exercise.to, first_s, last_s)) return STATUS_BAD_VALUE;
+    if (!isfinite(to_s) && isnan(wanted_to_s)) to_s = last_s;
+    if (wanted_from_s > from_s) from_s = wanted_from_s;
+    if (wanted_to_s < to_s) to_s = wanted_to_s;
 
     double     first = ceil(from_s * grid->rate_hz - 1e-9) - grid->origin;
     double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
     const bool single = to_s >= from_s && !(last >= first); /* too short for the grid: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
-        log_error("replay: %s between %.3f and %.3f s at %g Hz; widen --from and --to or change --rate%s",
-                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz,
+        log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), %s can be "
+                  "shown from %.3f s on; widen --from and --to or change --rate%s",
+                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s, last_s,
+                  last_s - first_s, session_host(session), plan->start_s,
                   config->causal ? ", or listen less (exercise.listen_s)" : "");
         return STATUS_BAD_VALUE;
     }
@@ -81,11 +93,13 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
         bool         shown;
         if (!wanted(o, &next, n)) continue;
         pace(begun_s, single ? from_s : frame_grid_s(grid, first), t_s, o->speed);
+        run->stopped = stop_asked();
+        if (run->stopped) break;
         status = session_frame(&shown, session, (int)n, t_s);
         if (status == STATUS_OK) show_progress(n, first, last, begun_s);
     }
     if (status != STATUS_OK) return status;
-    if (session_result(session)->frames == 0) {
+    if (session_result(session)->frames == 0 && !run->stopped) {
         if (plan->any_munition)
             log_error("replay: exercise.host: munition: none flew at a frame's time between %.3f and %.3f s; `pitviper "
                       "inspect %s` lists who was there, --host ID or --host observer shows what there is", from_s, to_s,
@@ -170,20 +184,26 @@ int replay_command(int argc, char **argv)
     Run         run = {.frames = replay_frames};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
-    char        name[4096];
+    char        name[run_folder_size], log_name[4096];
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
+    stop_by_signals();
     if (run.options.sweep) return sweep_replay(&run.options);
 
-    snprintf(name, sizeof name, "%s", run.options.log);
-    run.log_name = basename(name);
+    snprintf(log_name, sizeof log_name, "%s", run.options.log);
+    run.log_name = basename(log_name);
     thread_flush_denormals();
-    Status failed = STATUS_OK, status = run_prepare(&run);
+    Status failed = STATUS_OK, status = overwrite_folder("replay", run.options.out, run.options.overwrite);
+    if (status == STATUS_OK) status = run_prepare(&run);
     if (status == STATUS_OK) status = open_log(&run, &log);
     if (status == STATUS_OK) status = check_hosts(host, &run);
+    for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
+        run_folder(name, &run.options, host[i]);
+        status = overwrite_folder("replay", name, run.options.overwrite);
+    }
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
     if (status == STATUS_OK && run.options.host_count > 1) frame_files_clear(run.options.out);
-    for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
+    for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {
         const Status one = run_host(&run, &host[i]);
         if (one != STATUS_OK) failed = one; /* the others are still shown */
     }
@@ -193,5 +213,5 @@ int replay_command(int argc, char **argv)
 
     run_close(&run);
     dis_log_close(&log);
-    return status == STATUS_OK ? 0 : 1;
+    return status != STATUS_OK ? 1 : run.stopped ? stop_exit_code() : 0;
 }

@@ -272,7 +272,8 @@ static Status open_session(Session *s)
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, config);
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
-    if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? shared->bands : 0, raw);
+    const unsigned kept = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
+    if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status != STATUS_OK) return status;
     snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
     s->truth = fopen(path, "w");

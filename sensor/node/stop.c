@@ -1,15 +1,16 @@
+/* sensor/node/stop.c: the signals that ask to stop, remembered. */
 #include "sensor/node/stop.h"
 
 #include <signal.h>
 #include <stdatomic.h>
 #include <stddef.h>
 
-static atomic_bool asked; /* lock-free: a handler may set it, whichever thread it runs in */
+static atomic_int asked; /* the signal;  lock-free: a handler may set it, whichever thread it runs in */
 
 static void ask(int number)
 {
-    (void)number;
-    atomic_store(&asked, true);
+    int none = 0;
+    atomic_compare_exchange_strong(&asked, &none, number);
 }
 
 void stop_by_signals(void)
@@ -21,4 +22,10 @@ void stop_by_signals(void)
     if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, NULL);
 }
 
-bool stop_asked(void) { return atomic_load(&asked); }
+bool stop_asked(void) { return atomic_load(&asked) != 0; }
+
+int stop_exit_code(void)
+{
+    const int number = atomic_load(&asked);
+    return number ? 128 + number : 0;
+}

@@ -4,15 +4,18 @@
 #include "sensor/node/contact_sheet.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
+#include "sensor/node/stop.h"
 #include "sensor/node/sweep_file.h"
 #include "sensor/publish/coco_merge.h"
 #include "sensor/publish/variant_record.h"
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <spawn.h>
 #include <stdlib.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 enum { path_size = 4200, name_size = 16, words_size = 4096 };
@@ -34,6 +37,7 @@ typedef struct SweepRun {
     ContactSheet   sheet;
     CocoMerge     *coco;
     int            made, kept, failed;
+    bool           stopped;            /* by a signal, before the last */
 } SweepRun;
 
 /* How one variant ended. */
@@ -182,26 +186,6 @@ static Status prepare(SweepRun *s)
     return status;
 }
 
-static Status open_products(SweepRun *s)
-{
-    const Options *o = s->options;
-    char           path[path_size], title[256];
-    Status         status = sha256_file(s->log_sha256, o->log);
-    if (status == STATUS_OK) status = frame_files_folder(o->out);
-    if (status != STATUS_OK) return status;
-    const char *slash = strrchr(o->log, '/');
-    snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
-    status = sheet_begin(&s->sheet, o->out, title);
-    if (status != STATUS_OK) return status;
-    snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
-    s->manifest = fopen(path, "w");
-    if (s->manifest) return coco_merge_open(&s->coco, o->out);
-    log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
-    return STATUS_IO;
-}
-
-/* ---- one variant ------------------------------------------------------------------------------ */
-
 static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
 {
     return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
@@ -222,13 +206,57 @@ static bool has_coco(const char *folder)
     return access(path, R_OK) == 0;
 }
 
+/* A run of another log, other settings or another version in a variant's folder is no earlier try of this sweep. */
+static Status check_folders(const SweepRun *s)
+{
+    char   folder[path_size];
+    Status status = STATUS_OK;
+    for (int i = 0; i < s->count && status == STATUS_OK && !s->options->overwrite; i++) {
+        const Variant *v = &s->variant[i];
+        MadeRun        run;
+        snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
+        bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
+        made_run_free(&run);
+        if (!other && read_run(&run, folder, "variant.json")) { /* what no hash of pictures holds: the span, the planes */
+            other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
+            made_run_free(&run);
+        }
+        if (!other) continue;
+        log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder with --out, "
+                  "or --overwrite, which takes it away", folder);
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+static Status open_products(SweepRun *s)
+{
+    const Options *o = s->options;
+    char           path[path_size], title[256];
+    Status         status = sha256_file(s->log_sha256, o->log);
+    if (status == STATUS_OK) status = check_folders(s);
+    if (status == STATUS_OK) status = frame_files_folder(o->out);
+    if (status != STATUS_OK) return status;
+    const char *slash = strrchr(o->log, '/');
+    snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
+    status = sheet_begin(&s->sheet, o->out, title);
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
+    s->manifest = fopen(path, "w");
+    if (s->manifest) return coco_merge_open(&s->coco, o->out);
+    log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* ---- one variant ------------------------------------------------------------------------------ */
+
 /* A whole run of these settings; its run.json is then the outcome's. */
 static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
 {
     MadeRun    variant, run;
     const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
                        strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
-    const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v);
+    const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
     made_run_free(&variant);
     if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
     else made_run_free(&run);
@@ -242,6 +270,17 @@ static Status write_file(const char *path, const char *text, size_t octets)
     if (file && fclose(file) == 0 && whole) return STATUS_OK;
     log_error("sweep: cannot write %s: %s", path, strerror(errno));
     return STATUS_IO;
+}
+
+/* A stop that this process was asked for is the child's too: it ends with its frame. A terminal has told it already. */
+static void wait_for(int *state, pid_t child)
+{
+    bool told = false;
+    while (waitpid(child, state, WNOHANG) == 0) {
+        if (stop_asked() && !told) kill(child, SIGTERM);
+        told = stop_asked();
+        nanosleep(&(struct timespec){0, 5000000}, NULL);
+    }
 }
 
 /* This program again, in a process of its own. Its exit code; -1: it ended otherwise. */
@@ -260,7 +299,7 @@ static int run_child(const Options *o, const char *folder)
                        posix_spawn_file_actions_addopen(&files, 1, said, O_WRONLY | O_CREAT | O_TRUNC, 0666) == 0 &&
                        posix_spawn_file_actions_adddup2(&files, 1, 2) == 0;
     if (ready && posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)argv, environ) == 0)
-        while (waitpid(child, &state, 0) < 0 && errno == EINTR) {}
+        wait_for(&state, child);
     posix_spawn_file_actions_destroy(&files);
     return state != -1 && WIFEXITED(state) ? WEXITSTATUS(state) : -1;
 }
@@ -344,6 +383,10 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     const int    code    = run_child(s->options, folder);
     outcome->seconds     = wall_clock_s() - begun_s;
     outcome->has_run     = code == 0 && read_run(&outcome->run, folder, "run.json");
+    if (stop_asked() && code != 0) {
+        *outcome = (Outcome){.status = "stopped", .seconds = outcome->seconds};
+        return;
+    }
     if (outcome->has_run && is_run(&outcome->run, s, v)) outcome->status = "made";
     else if (code == 0) snprintf(outcome->why, sizeof outcome->why, "run.json is not of these settings and this log");
     else find_reason(outcome->why, sizeof outcome->why, folder, code);
@@ -385,6 +428,7 @@ static Status one_variant(SweepRun *s, int place)
     if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder) return STATUS_BAD_VALUE;
     Status status = make_or_keep(&outcome, s, v, folder);
     if (status != STATUS_OK) return status;
+    s->stopped = strcmp(outcome.status, "stopped") == 0;
     s->made += strcmp(outcome.status, "made") == 0;
     s->kept += strcmp(outcome.status, "kept") == 0;
     s->failed += strcmp(outcome.status, "failed") == 0;
@@ -414,7 +458,10 @@ static Status run_all(SweepRun *s)
     if (status == STATUS_OK && s->repeated > 0)
         log_say("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
                 s->repeated == 1 ? "is" : "are");
-    for (int i = 0; i < s->count && status == STATUS_OK; i++) status = one_variant(s, i);
+    for (int i = 0; i < s->count && status == STATUS_OK && !s->stopped; i++) {
+        s->stopped = stop_asked();
+        if (!s->stopped) status = one_variant(s, i);
+    }
     if (s->sheet.page) {
         const Status ended = sheet_end(&s->sheet);
         if (status == STATUS_OK) status = ended;
@@ -422,6 +469,8 @@ static Status run_all(SweepRun *s)
     if (s->manifest && fclose(s->manifest) != 0 && status == STATUS_OK) status = STATUS_IO;
     const Status merged = coco_merge_close(s->coco, status == STATUS_OK);
     if (status == STATUS_OK) status = merged;
+    if (s->stopped)
+        log_warn("sweep: stopped with %d of %d variants made; the same command goes on from there", s->made + s->kept, s->count);
     if (status == STATUS_OK)
         log_say("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
@@ -436,5 +485,7 @@ int sweep_replay(const Options *options)
     if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");
     free(s.variant);
     sweep_close(&s.sweep);
-    return tried == STATUS_BAD_VALUE ? 2 : status != STATUS_OK || s.failed > 0;
+    if (tried == STATUS_BAD_VALUE) return 2;
+    if (status == STATUS_OK && s.stopped) return stop_exit_code();
+    return status != STATUS_OK || s.failed > 0;
 }

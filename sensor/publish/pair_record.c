@@ -14,7 +14,7 @@ static void set_file(json_t *object, const char *key, const char *below, const c
 static json_t *member_json(const PairRecord *r, const PairMember *m)
 {
     json_t *member = json_pack("{s:b,s:b}", "target", m->target, "noise", m->noise), *bands = json_object();
-    set_file(member, "truth", m->radiance, "frames", "truth", r->frame, "exr");
+    if (r->truth) set_file(member, "truth", m->radiance, "frames", "truth", r->frame, "exr");
     for (int b = 0; b < BAND_COUNT; b++) {
         if (!(r->bands >> b & 1)) continue;
         const char *name = band_name((Band)b);

@@ -20,7 +20,7 @@ typedef struct PairRecord {
     const DisEntityId *removed;         /* taken away */
     const char *frame_sha256, *background_sha256;
     unsigned  bands, raw;               /* 1 << Band: rendered; with raw counts */
-    bool      png;
+    bool      png, truth;
     PairMember member[pair_members];
 } PairRecord;
 

@@ -315,6 +315,8 @@ Status record_write_run(const char *path, const RunRecord *r)
     char    part[4096];
 
     json_object_set_new(run, "pitviper", json_string(PITVIPER_VERSION));
+    json_object_set_new(run, "status", json_string(r->status));
+    json_object_set_new(run, "planes", json_string(r->planes ? r->planes : "none"));
     json_object_set_new(run, "config_sha256", json_string(r->config_sha256));
     json_object_set_new(run, "settings", settings_json(r->settings));
     json_object_set_new(run, "tables_sha256", tables_json(r));

@@ -49,6 +49,8 @@ typedef struct RunRecord {
     int         table_count;          /* files that were read from etc/, and models */
     const char *const *table, *const *table_sha256;
     long long   seed;
+    const char *planes;               /* of truth in files: all, none or a list; NULL: no files */
+    const char *status;               /* complete; stopped: by a signal before its last frame; failed */
     int         threads, host_count, choice_count, frames;
     int         listed;               /* how many of them the two lists hold */
     const int  *frame_number;

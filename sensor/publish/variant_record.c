@@ -27,6 +27,8 @@ bool made_run_read(MadeRun *out, const char *path)
     take_text(out->config_sha256, sizeof out->config_sha256, run, "config_sha256");
     take_text(out->log_sha256, sizeof out->log_sha256, run, "log_sha256");
     take_text(out->settings_sha256, sizeof out->settings_sha256, run, "settings_sha256");
+    const char *status = json_string_value(json_object_get(run, "status"));
+    out->complete     = status && strcmp(status, "complete") == 0;
     out->frames       = frames > 0 && frames <= INT32_MAX ? (int)frames : 0;
     out->middle_frame = middle >= 0 && middle <= INT32_MAX ? (int)middle : 0;
     out->hash         = count > 0 && count <= INT32_MAX ? calloc(count, sizeof *out->hash) : NULL;

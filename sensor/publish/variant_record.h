@@ -10,6 +10,7 @@
 /* What a run says of itself. Empty texts, no frames: the file did not say. */
 typedef struct MadeRun {
     char version[32], config_sha256[sha256_text_size], log_sha256[sha256_text_size], settings_sha256[sha256_text_size];
+    bool complete;                    /* made to its last frame */
     int  frames, middle_frame; /* middle_frame: the number of the one in the middle of the list */
     int  hash_count;
     char (*hash)[sha256_text_size]; /* [hash_count] of each frame's planes */

@@ -1,12 +1,12 @@
 #include "sensor/regress/regress.h"
 
+#include "sensor/node/next_option.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/report.h"
 
 #include <dirent.h>
 #include <errno.h>
 #include <ftw.h>
-#include <getopt.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <sys/stat.h>
@@ -50,7 +50,7 @@ static const char help[] =
     "What is other than when the record was made (tables, models, settings, log, libraries, choices) is said before any\n"
     "channel: hashes in run.json tell. Each case runs in processes of its own: one that crashes or hangs has failed by\n"
     "itself. A log or a record that is not there has failed, unless allowed. --update prints what the run chose: host,\n"
-    "aim, ground, time. Exit code: 0: nothing failed; 1: something did; 2: usage.\n";
+    "aim, ground, time. Exit code: 0: nothing failed; 1: something did; 2: usage; 130, 143: stopped by Ctrl-C, by SIGTERM.\n";
 
 typedef struct Options {
     bool        update, allow_missing;
@@ -94,7 +94,7 @@ static int parse(Options *o, int argc, char **argv)
         {"work", 1, NULL, WORK}, {"jobs", 1, NULL, JOBS}, {"threads", 1, NULL, THREADS}, {"isa", 1, NULL, ISA},
         {"keys", 0, NULL, KEYS}, {"allow-missing", 0, NULL, ALLOW}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     optind = 0;
-    for (int option; (option = getopt_long(argc, argv, "", options, NULL)) != -1;) {
+    for (int option; (option = next_option(argc, argv, "", options)) != -1;) {
         switch (option) {
         case UPDATE: o->update = true; break;
         case WHY: o->why = optarg; break;
@@ -220,7 +220,7 @@ static void print_lines(const CaseResult *r, const char *word, const char *text)
 {
     for (size_t length; *text; text += length + (text[length] == '\n')) {
         length = strcspn(text, "\n");
-        printf("%-24s %s%.*s\n", r->c.name, word, (int)length, text);
+        text_print(stdout, "%-24s %s%.*s\n", r->c.name, word, (int)length, text);
     }
 }
 
@@ -229,7 +229,7 @@ static void print_line(const CaseResult *r)
 {
     if (r->state == CASE_FAILED) print_lines(r, "changed: ", r->verdict.remarks);
     if (r->updated) print_lines(r, "chosen: ", r->chosen);
-    printf("%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
+    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
            r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
     putchar('\n');
@@ -336,12 +336,12 @@ int regress_command(int argc, char **argv)
         }
     if (!run_all(&s)) goto done;
     failed = summary(&s);
-    code   = failed ? 1 : 0;
+    code   = !failed ? 0 : stop_asked() ? stop_exit_code() : 1;
     if (s.o.junit && junit_write(s.o.junit, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     if (s.o.report && report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     for (int i = 0; i < s.count && *own; i++)
         if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
-    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) printf("what failed is kept in %s\n", own);
+    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) text_print(stdout, "what failed is kept in %s\n", own);
 
 done:
     if (!failed && s.o.work && *own) remove_made(own);

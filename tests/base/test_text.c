@@ -99,6 +99,44 @@ static void foreign_bytes_are_escaped(void **state)
     assert_string_equal(out, "ab");
 }
 
+/* Every octet alone, and characters that are well formed, against the table of RFC 3629 as Unicode prints it. */
+static void what_a_terminal_is_shown(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *in, *out;
+        bool        lines;
+    } text[] = {{"plain, \\ too", "plain, \\ too", false},
+                {"\xc3\xa9\xe6\xbc\xa2\xf0\x9f\x9a\x80", "\xc3\xa9\xe6\xbc\xa2\xf0\x9f\x9a\x80", false},
+                {"a\033[31mb\a", "a\\x1b[31mb\\x07", false},
+                {"a\tb\nc", "a\\x09b\\x0ac", false},
+                {"a\tb\nc\r", "a\tb\nc\\x0d", true},
+                {"\xc2\x9b" "31m", "\\xc2\\x9b31m", true},         /* CSI of C1 */
+                {"\x9b" "31m", "\\x9b31m", true},                     /* and bare */
+                {"\xe2\x80\xae" "gpj", "\\xe2\\x80\\xaegpj", true}, /* right-to-left override */
+                {"\xef\xbb\xbfx", "\\xef\\xbb\\xbfx", true},
+                {"\xc0\xaf", "\\xc0\\xaf", true},                    /* too long a form of '/' */
+                {"\xe0\x9b\x9b", "\\xe0\\x9b\\x9b", true},
+                {"\xed\xa0\x80", "\\xed\\xa0\\x80", true},          /* half of a pair */
+                {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80", true},
+                {"\xe2\x82", "\\xe2\\x82", true},                    /* it ends too soon */
+                {"\xe2\x82\033", "\\xe2\\x82\\x1b", true}};
+    char out[200];
+    for (size_t i = 0; i < sizeof text / sizeof *text; i++) {
+        text_show(out, sizeof out, text[i].in, text[i].lines);
+        assert_string_equal(out, text[i].out);
+    }
+    text_show(out, 6, "ab\xc3\xa9\xc3\xa9", false); /* neither a character nor an escape is cut in two */
+    assert_string_equal(out, "ab\xc3\xa9");
+    text_show(out, 6, "ab\033z", false);
+    assert_string_equal(out, "ab");
+    for (int c = 1; c < 256; c++) {
+        const char one[2] = {(char)c, 0};
+        text_show(out, sizeof out, one, false);
+        CHECK((c >= 0x20 && c < 0x7f) == (strlen(out) == 1) && (strlen(out) == 1 || strlen(out) == 4));
+    }
+}
+
 /* A library's or a file's own words stay on the message's line, and move no cursor. */
 static void a_message_is_one_line(void **state)
 {
@@ -106,7 +144,7 @@ static void a_message_is_one_line(void **state)
     log_set_sink(check_listen, NULL);
     log_warn("%s: damaged", "a.dt1\n at\033[2J\r\x7f");
     log_set_sink(NULL, NULL);
-    assert_string_equal(check_said, "a.dt1  at [2J  : damaged");
+    assert_string_equal(check_said, "a.dt1\\x0a at\\x1b[2J\\x0d\\x7f: damaged");
 }
 
 int main(void)
@@ -118,6 +156,7 @@ int main(void)
         cmocka_unit_test(a_wide_header_over_blank_lines_is_small),
         cmocka_unit_test(numbers_are_whole_strings),
         cmocka_unit_test(foreign_bytes_are_escaped),
+        cmocka_unit_test(what_a_terminal_is_shown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,7 +97,7 @@ static void ranges_of_several_keys_are_checked(void **state)
     (void)state;
     Config config = config_default();
     assert_int_equal(config_check(&config), STATUS_OK);
-    config.exercise.from_s = 5, config.exercise.to_s = 4;
+    strcpy(config.exercise.from, "5"), strcpy(config.exercise.to, "4");
     assert_int_equal(config_check(&config), STATUS_BAD_VALUE);
     config               = config_default();
     config.detector.bits = 12;

@@ -9,7 +9,8 @@ enum { line_max = 40 };
 
 /* What to give each option that takes an argument, in every form that it has, other than its default. */
 static const char *const samples[][2] = {
-    {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"}, {"to", "4"},
+    {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"},
+    {"from", "+12"}, {"to", "4"}, {"planes", "range,entity"},
     {"only", "3,7,12"}, {"only", "9"}, {"host", "1:2:3"}, {"host", "observer"}, {"samples", "2"}, {"config", "FILE"},
     {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"}, {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
     {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},
@@ -72,7 +73,7 @@ static void parse_variant(Options *variant, const Options *o)
 static void check_option(Options *o, const char *name, const char *argument)
 {
     Options    *plain = o, *given = o + 1, *variant = o + 2;
-    const bool  of_sweep = strcmp(name, "out") == 0 || strcmp(name, "sweep") == 0;
+    const bool  of_sweep = strcmp(name, "out") == 0 || strcmp(name, "sweep") == 0 || strcmp(name, "overwrite") == 0;
     char        flag[48];
     int         argc = 3;
     /* a sensor, so that what changes one can be given */
@@ -84,7 +85,8 @@ static void check_option(Options *o, const char *name, const char *argument)
     line[argc++] = "log.pcap";
     parse(given, argc, line);
     const char *changed = difference(plain, given);
-    if (of_sweep) CHECK(!changed && (!same_text(plain->out, given->out) || !same_text(plain->sweep, given->sweep)));
+    if (of_sweep) CHECK(!changed && (!same_text(plain->out, given->out) || !same_text(plain->sweep, given->sweep) ||
+                                     plain->overwrite != given->overwrite));
     else if (!changed) fail_msg("replay --%s: changes nothing that this test sees; let difference() see it", name);
     parse_variant(variant, given);
     const char *lost = difference(given, variant);

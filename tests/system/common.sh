@@ -31,14 +31,14 @@ run() {
     code=$?
     [ $code -lt 124 ] || { fail "pitviper $* ended with $code"; tail -n 20 "$tmp/stderr"; }
 }
-# replay LOG OUT options: a quick small one unless options say otherwise
-replay() { local log=$1 out=$2; shift 2; run replay "$log" --out "$out" --size 96x64 --rate 1 --threads 2 "$@"; }
+# replay LOG OUT options: a quick small one unless options say otherwise; in place of what was there
+replay() { local log=$1 out=$2; shift 2; run replay "$log" --out "$out" --size 96x64 --rate 1 --threads 2 --overwrite "$@"; }
 
 # exercise NAME LOG options: a recorded one; KEY=VALUE stands for --set KEY=VALUE
 exercise() {
     local name=$1 log=$2 option options=(); shift 2
     for option; do case $option in -*|/*) ;; *=*) options+=(--set) ;; esac; options+=("$option"); done
-    "$pitviper" exercise "$name" -o "$log" "${options[@]}" >/dev/null || fail "exercise $name ${options[*]}"
+    "$pitviper" exercise "$name" --overwrite -o "$log" "${options[@]}" >/dev/null || fail "exercise $name ${options[*]}"
 }
 
 frames() { find "$1/frames/${2:-truth}" -name '*.exr' 2>/dev/null | wc -l; }

@@ -95,7 +95,7 @@ END
 fi
 
 # an earlier run's counts go with it
-run replay "$tmp/demo.pcap" --out "$tmp/all" "${small[@]}" --threads 2
+run replay "$tmp/demo.pcap" --out "$tmp/all" --overwrite "${small[@]}" --threads 2
 check "cleared" [ ! -e "$tmp/all/raw" ]
 
 slip() { # slip WHAT PATTERN options

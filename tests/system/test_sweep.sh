@@ -76,6 +76,8 @@ printf 'axes: {seed: [3, 2, 1], weather.visibility_m: [5000, 23000], sensor.hfov
 sweep "$tmp/wider.yaml" "$tmp/g" --coco
 check "wider: coco.json has them all" merged "$tmp/g" 6
 check "an axis grows: what was made is kept" [ "$(statuses "$tmp/g")" = ' 4 "status":"kept" 2 "status":"made" ' ]
+run replay "$tmp/demo.pcap" --out "$tmp/g" --size 96x64 --rate 1 "${few[@]}" --sweep "$tmp/grid.yaml" --to 1367
+check "another span: what is there is kept" [ "$code $(statuses "$tmp/g")" = '1  4 "status":"kept" 2 "status":"made" ' ]
 sweep "$tmp/grid.yaml" "$tmp/g" --to 1367
 check "another span: nothing is kept" [ "$(statuses "$tmp/g")" = ' 4 "status":"made" ' ]
 check "without --coco: none, and none of before" [ -z "$(find "$tmp/g" -maxdepth 1 -name 'coco.json*')" ]

@@ -1,0 +1,69 @@
+/* tests/sensor/test_span.c: moments of a recording, and lists of planes, as people write them. */
+#include "tests/check.h"
+
+#include "sensor/node/plane_choice.h"
+#include "sensor/node/span.h"
+
+static void moments_are_of_three_kinds(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        double      t_s; /* in a recording from 1350 to 1380 s */
+    } moment[] = {{"1360.5", 1360.5}, {"+12", 1362}, {"+0", 1350}, {"-5", 1375}, {"-0", 1380}, {"-0.25", 1379.75}, {"0", 0}};
+    for (size_t i = 0; i < sizeof moment / sizeof *moment; i++) {
+        CHECK(span_good(moment[i].text));
+        CHECK_NEAR(span_time_s(moment[i].text, 1350, 1380), moment[i].t_s, 0);
+    }
+    CHECK(span_good("") && isnan(span_time_s("", 1350, 1380)));
+    static const char *const bad[] = {"noon", "+", "-", "++1", "1 s", "nan", "inf", "0x10"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!span_good(bad[i]) && isnan(span_time_s(bad[i], 1350, 1380)));
+    CHECK(span_backward("5", "4") && span_backward("+5", "+4") && span_backward("-4", "-5"));
+    CHECK(!span_backward("4", "5") && !span_backward("5", "+4") && !span_backward("-4", "5") && !span_backward("", "5"));
+}
+
+/* What lies outside names the span in absolute seconds and from both ends. */
+static void what_lies_outside_states_the_span(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *from, *to, *why;
+    } outside[] = {{"+31", "", "--from +31 is after its end"},      {"99999", "", "--from 99999 is after its end"},
+                   {"", "5", "--to 5 is before its beginning"},     {"", "-40", "--to -40 is before its beginning"},
+                   {"-1", "+1", "--from -1 is after --to +1"},      {"12", "20", "--to 20 is before its beginning"}},
+      inside[] = {{"", "", ""}, {"+30", "", ""}, {"", "+0", ""}, {"+12", "-5", ""}, {"0", "99999", ""}, {"-99", "+99", ""}};
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof outside / sizeof *outside; i++) {
+        check_said[0] = 0;
+        CHECK(span_outside(outside[i].from, outside[i].to, 1350, 1380));
+        CHECK(strstr(check_said, outside[i].why) && strstr(check_said, "1350.000 to 1380.000 s") &&
+              strstr(check_said, "+0 to +30.000") && strstr(check_said, "-30.000 to -0"));
+    }
+    check_said[0] = 0;
+    for (size_t i = 0; i < sizeof inside / sizeof *inside; i++) CHECK(!span_outside(inside[i].from, inside[i].to, 1350, 1380));
+    CHECK(!*check_said);
+    log_set_sink(NULL, NULL);
+}
+
+static void planes_are_listed_by_name(void **state)
+{
+    (void)state;
+    unsigned planes;
+    CHECK(plane_choice_parse(&planes, "all") && planes == 63);
+    CHECK(plane_choice_parse(&planes, "none") && planes == 0);
+    CHECK(plane_choice_parse(&planes, "range,entity,part,material,temperature,normal") && planes == 63);
+    CHECK(plane_choice_parse(&planes, "normal") && planes == 1u << PLANE_NORMAL);
+    CHECK(plane_choice_parse(&planes, "part,entity,part") && planes == (1u << PLANE_PART | 1u << PLANE_ENTITY));
+    static const char *const bad[] = {"", ",", "range,", ",range", "rang", "ranges", "range entity", "all,range", "none,range"};
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) CHECK(!plane_choice_parse(&planes, bad[i]));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(moments_are_of_three_kinds),
+        cmocka_unit_test(what_lies_outside_states_the_span),
+        cmocka_unit_test(planes_are_listed_by_name),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
