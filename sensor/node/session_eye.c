@@ -142,6 +142,12 @@ static void find_host(Session *s)
     }
 }
 
+void session_keep(Session *s)
+{
+    const HostPlan *plan = &s->plan;
+    entity_table_focus(s->table, dis_entity_id_is_none(plan->host) ? plan->aim : plan->host, plan->aim);
+}
+
 /* Axes of the local frame: what upright means. */
 static void enu_axes(double r_enu_from_mount[9], const Session *s, const Mounted *at)
 {
@@ -215,6 +221,7 @@ void session_advance(Session *s, double t_s)
         player_feed(s->player, s->table, tick_s);
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal) find_host(s);
+        session_keep(s);
         step_gimbal(s, tick_s);
     }
     player_feed(s->player, s->table, t_s);
