@@ -153,6 +153,13 @@ bool entity_table_alive(const EntityTable *table, EntityHandle handle)
            table->slot[handle.slot].generation == handle.generation;
 }
 
+bool entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle)
+{
+    if (!entity_table_alive(table, handle)) return false;
+    *out = table->slot[handle.slot].type;
+    return true;
+}
+
 const EntityCounters *entity_table_counters(const EntityTable *table) { return &table->counters; }
 
 const EffectCounters *entity_table_effect_counters(const EntityTable *table)

@@ -81,6 +81,7 @@ void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
 bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
+bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: not there */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 

@@ -262,7 +262,7 @@ Config config_default(void)
     c.entities.timeout_land_v7_s    = 132;
     c.entities.extrapolation_limit_s = 12;
     c.entities.capacity             = 100000;
-    c.entities.shown                = 20000;
+    c.entities.shown                = 2000;
     strcpy(c.quality.budget, "on");
     c.quality.radiance_rmse_percent = c.quality.temperature_rms_k = c.quality.frame_ms = NAN;
     c.quality.machine_factor        = 1;

@@ -128,6 +128,7 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     Eye                  eye;
 
     *done = (FrameDone){0};
+    if (!session_host_is_there(s)) return STATUS_OK; /* nor is anything extrapolated for it */
     Arena *arena = s->writer ? frame_writer_arena(s->writer) : s->frame_arena;
     arena_reset(arena);
     Status status = entity_table_snapshot(&snapshot, s->table, t_s, arena);

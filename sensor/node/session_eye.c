@@ -319,9 +319,15 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     return true;
 }
 
+static bool observes(const Session *s) { return dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition; }
+
+bool session_host_is_there(const Session *s)
+{
+    return observes(s) || entity_table_alive(s->table, entity_table_find(s->table, s->plan.host));
+}
+
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 {
     *eye = (Eye){.hidden = -1};
-    const bool observer = dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition;
-    return observer ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
+    return observes(s) ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
 }

@@ -59,6 +59,8 @@ void session_note_host(Session *s);
 void session_advance(Session *s, double t_s);
 /* Tells the table what a full one is to keep: host and aim, and what is near the host, else near the aim. */
 void session_keep(Session *s);
+/* False: there will be no picture. */
+bool session_host_is_there(const Session *s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
  * host is not there. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
