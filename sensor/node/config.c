@@ -238,7 +238,7 @@ Config config_default(void)
     c.exercise.to_s                 = NAN;
     c.exercise.listen_s             = 2;
     c.network.ttl                   = 1;
-    c.network.queue_mb              = 64; /* 300,000 Entity States: six seconds of 50,000 a second */
+    c.network.queue_mb              = 256; /* a million Entity States; touched as far as it is ever needed */
     c.node.site                     = 4711;
     c.node.application              = 1;
     strcpy(c.publish.dis, "off");
