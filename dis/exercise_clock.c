@@ -247,7 +247,10 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     clock->doubts.stamped++;
 
     Sender *sender = find_sender(&is_new, clock, key);
-    if (!sender) return ruler_s;
+    if (!sender) { /* more senders than are judged: counted with those that are doubted */
+        clock->doubts.by_arrival++;
+        return ruler_s;
+    }
     if (is_new) tie_first(sender, now, ruler_s, absolute && clock->first_is_absolute);
     sender->pdus++;
     const bool overtaken = is_overtaken(sender, timestamp);

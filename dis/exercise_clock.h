@@ -66,7 +66,8 @@ typedef struct ExerciseClockDoubt {
 enum { exercise_clock_doubts_listed = 16, exercise_clock_doubt_text_size = 160 };
 
 typedef struct ExerciseClockDoubts {
-    uint64_t           by_arrival; /* PDUs of all senders that count from their arrival, though stamped */
+    uint64_t           by_arrival; /* PDUs of all senders that count from their arrival, though stamped; also those of
+                                    * senders beyond the 4096 that are judged */
     uint64_t           stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
     int                count;      /* senders below, in the order of their first doubt; later ones are not listed */
     ExerciseClockDoubt sender[exercise_clock_doubts_listed];

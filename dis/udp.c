@@ -51,6 +51,8 @@ struct DisUdp {
     pthread_cond_t   turn;         /* the tick is closed, the thread may go on */
     int64_t          last_ns;      /* no arrival time is below this */
     bool             complained;
+    DisUdpTap        tap;          /* NULL: none */
+    void            *tap_user;
     struct mmsghdr   message[batch];
     struct iovec     vector[batch];
     DisSocketAddress from[batch];
@@ -110,6 +112,8 @@ static uint64_t units(uint64_t octets) { return (octets + unit - 1) / unit * uni
 
 static void put_arrival(DisUdp *u, const Record *head, const uint8_t *bytes)
 {
+    /* empty: from the beginning again, so that of a large ring no more is touched than was ever needed */
+    if (u->held == u->end) u->held = u->next = u->end = (u->end + u->ring_octets - 1) / u->ring_octets * u->ring_octets;
     const uint64_t octets = units(sizeof *head + head->octets), to_end = u->ring_octets - u->end % u->ring_octets;
     const uint64_t gap = octets > to_end ? to_end : 0;
     u->counters.datagrams++;
@@ -231,26 +235,34 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     if (came < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? 0 : -1;
 
     *newest_ns = 0;
-    pthread_mutex_lock(&u->queue);
+    Record   record[batch];
+    uint32_t drops = 0;
+    bool     dropped = false;
     for (int i = 0; i < came; i++) {
         struct msghdr *header = &u->message[i].msg_hdr;
         int64_t        kernel_ns = 0;
-        uint32_t       drops = 0;
-        bool           dropped = false;
         read_control(&kernel_ns, &drops, &dropped, header);
         if (!kernel_ns) kernel_ns = dis_udp_now_ns();
         if (kernel_ns > *newest_ns) *newest_ns = kernel_ns;
         if (kernel_ns > u->last_ns) u->last_ns = kernel_ns;
-        if (dropped) note_drops(u, drops);
-
-        Record record = {.capture_ns = u->last_ns, .octets = u->message[i].msg_len};
+        record[i] = (Record){.capture_ns = u->last_ns, .octets = u->message[i].msg_len};
         if (header->msg_namelen >= sizeof u->from[i].v4) {
             const bool v6 = u->from[i].any.sa_family == AF_INET6;
-            dis_socket_address_octets16(record.from, &u->from[i]);
-            record.from_port = ntohs(v6 ? u->from[i].v6.sin6_port : u->from[i].v4.sin_port);
+            dis_socket_address_octets16(record[i].from, &u->from[i]);
+            record[i].from_port = ntohs(v6 ? u->from[i].v6.sin6_port : u->from[i].v4.sin_port);
         }
-        put_arrival(u, &record, u->vector[i].iov_base);
+        if (u->tap) {
+            DisArrival arrival = {.capture_ns = record[i].capture_ns,
+                                  .octets = record[i].octets,
+                                  .bytes = u->vector[i].iov_base,
+                                  .from_port = record[i].from_port};
+            memcpy(arrival.from, record[i].from, sizeof arrival.from);
+            u->tap(u->tap_user, &arrival);
+        }
     }
+    pthread_mutex_lock(&u->queue);
+    if (dropped) note_drops(u, drops); /* the last is the newest */
+    for (int i = 0; i < came; i++) put_arrival(u, &record[i], u->vector[i].iov_base);
     if (u->somebody_waits && u->next != u->end) pthread_cond_signal(&u->arrived);
     pthread_mutex_unlock(&u->queue);
     return came;
@@ -350,6 +362,17 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
     /* until the socket is empty, or what comes out of it came after the call: a flood never ends by itself */
     while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {}
     if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
+    atomic_store(&u->closing, false);
+    pthread_cond_signal(&u->turn);
+    pthread_mutex_unlock(&u->receive);
+}
+
+void dis_udp_tap(DisUdp *u, DisUdpTap tap, void *user)
+{
+    atomic_store(&u->closing, true);
+    pthread_mutex_lock(&u->receive);
+    u->tap      = tap;
+    u->tap_user = user;
     atomic_store(&u->closing, false);
     pthread_cond_signal(&u->turn);
     pthread_mutex_unlock(&u->receive);

@@ -61,6 +61,11 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends o
 /* NULL is fine. Nobody may be inside another function by then. */
 void   dis_udp_close(DisUdp *udp);
 
+/* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue has
+ * room: by the receiving thread or whoever closes a tick, one at a time. tap: NULL: to nobody; after the call it is not
+ * inside. It must not call anything here. */
+typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
+void   dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
 /* What has arrived by now is in the queue, and after this has returned nothing more gets an arrival time at or before
  * until_ns: what the kernel stamped so early and arrives later is given until_ns + 1. Then dis_udp_take(.., until_ns)
  * until it says false. That is how a live node closes a frame's tick, and why its recording replays to the same bits:

@@ -15,7 +15,7 @@ static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
 
 EntityTableConfig entity_table_default_config(void)
 {
-    return (EntityTableConfig){.capacity = 16384, .timeout_s = 12, .timeout_land_v7_s = 132,
+    return (EntityTableConfig){.capacity = 16384, .shown = capacity_limit, .timeout_s = 12, .timeout_land_v7_s = 132,
                                .extrapolation_limit_s = 12, .rate_limit_rps = 20, .ambient_s = 3600};
 }
 
@@ -25,7 +25,7 @@ static bool config_is_usable(const EntityTableConfig *config)
                                 config->rate_limit_rps};
     for (int i = 0; i < 4; i++)
         if (!(positive[i] > 0 && positive[i] <= 1e6)) return false;
-    return config->capacity > 0 && config->capacity <= capacity_limit && config->ambient_s >= 0;
+    return config->capacity > 0 && config->capacity <= capacity_limit && config->shown > 0 && config->ambient_s >= 0;
 }
 
 Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
@@ -42,11 +42,13 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
 
     table->config = *config;
     table->catalog = catalog;
-    table->slot = calloc((size_t)config->capacity, sizeof *table->slot);
-    table->free_slot = calloc((size_t)config->capacity, sizeof *table->free_slot);
+    const int slots = config->capacity + 1;
+    table->slot = calloc((size_t)slots, sizeof *table->slot);
+    table->free_slot = calloc((size_t)slots, sizeof *table->free_slot);
     table->model_roles = calloc((size_t)catalog_model_count(catalog), sizeof *table->model_roles);
     if (!table->slot || !table->free_slot || !table->model_roles) goto fail;
-    status = entity_index_create(&table->index, config->capacity);
+    status = entity_index_create(&table->index, slots);
+    if (status == STATUS_OK) status = entity_ranks_create(&table->ranks, slots, config->capacity);
     if (status != STATUS_OK) goto fail;
     status = heat_table_open(&table->heat, heat_path);
     if (status != STATUS_OK) goto fail;
@@ -69,6 +71,7 @@ void entity_table_destroy(EntityTable *table)
 {
     if (!table) return;
     entity_index_destroy(&table->index);
+    entity_ranks_destroy(table->ranks);
     effect_history_destroy(table->effects);
     free(table->slot);
     free(table->free_slot);
@@ -78,40 +81,45 @@ void entity_table_destroy(EntityTable *table)
 
 /* ---- slots -------------------------------------------------------------------------------- */
 
-static EntitySlot *find_slot(const EntityTable *table, DisEntityId id)
+EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id)
 {
     const int s = entity_index_find(&table->index, entity_key(id));
     return s < 0 ? NULL : table->slot + s;
 }
 
-/* NULL when the table is full. */
-static EntitySlot *new_slot(EntityTable *table, DisEntityId id)
+/* There is room for one more than the table keeps: entity_room_make. */
+static EntitySlot *new_slot(EntityTable *table, DisEntityId id, double t_s)
 {
-    int s;
-    if (table->free_count > 0) s = table->free_slot[--table->free_count];
-    else if (table->slot_end < table->config.capacity) s = table->slot_end++;
-    else return NULL;
-
+    const int   s    = table->free_count > 0 ? table->free_slot[--table->free_count] : table->slot_end++;
     EntitySlot *slot = table->slot + s;
     const uint32_t generation = slot->generation + 1;
     memset(slot, 0, sizeof *slot);
     slot->generation = generation;
     slot->id = id;
+    slot->created_s = t_s;
     entity_index_insert(&table->index, entity_key(id), s);
     table->count++;
-    table->counters.created++;
     return slot;
 }
 
-static void remove_slot(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter)
+void entity_slot_free(EntityTable *table, EntitySlot *slot)
 {
-    table->grave[table->grave_next++ % entity_grave_count] =
-        (EntityGrave){entity_key(slot->id) + 1, t_s, counter == &table->counters.detonated};
-    entity_effects_end(table, slot, t_s);
+    const int s = (int)(slot - table->slot);
+    entity_ranks_remove(table->ranks, s);
     entity_index_remove(&table->index, entity_key(slot->id));
+    table->stopped_count -= slot->stopped;
     slot->generation++;
-    table->free_slot[table->free_count++] = (int)(slot - table->slot);
+    table->free_slot[table->free_count++] = s;
     table->count--;
+}
+
+void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter)
+{
+    if (counter != &table->counters.evicted) /* which may come back */
+        table->grave[table->grave_next++ % entity_grave_count] =
+            (EntityGrave){entity_key(slot->id) + 1, t_s, counter == &table->counters.detonated};
+    entity_effects_end(table, slot, t_s);
+    entity_slot_free(table, slot);
     ++*counter;
 }
 
@@ -143,6 +151,13 @@ bool entity_table_alive(const EntityTable *table, EntityHandle handle)
 {
     return handle.slot < (uint32_t)table->slot_end && handle.generation & 1 &&
            table->slot[handle.slot].generation == handle.generation;
+}
+
+bool entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle)
+{
+    if (!entity_table_alive(table, handle)) return false;
+    *out = table->slot[handle.slot].type;
+    return true;
 }
 
 const EntityCounters *entity_table_counters(const EntityTable *table) { return &table->counters; }
@@ -240,6 +255,7 @@ static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, ui
 {
     slot->appearance = appearance;
     slot->report_s = t_s;
+    table->stopped_count -= slot->stopped;
     slot->stopped = false;
     slot->paused_s = 0;
     slot->timeout_s = timeout_of(table, slot, version);
@@ -264,15 +280,15 @@ static bool same_type(DisEntityType a, DisEntityType b)
 Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
-    EntitySlot *slot = find_slot(table, pdu->id);
+    EntitySlot *slot = entity_slot_find(table, pdu->id);
 
     if (slot && is_late(table, slot, t_s)) return STATUS_OK;
     if (slot && entity_slot_silent(slot, t_s)) {
-        remove_slot(table, slot, t_s, &table->counters.timed_out);
+        entity_slot_remove(table, slot, t_s, &table->counters.timed_out);
         slot = NULL;
     }
     if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
-        if (slot) remove_slot(table, slot, t_s, &table->counters.deactivated);
+        if (slot) entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
     const bool is_first = !slot;
@@ -281,9 +297,12 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
             table->counters.late++;
             return STATUS_OK;
         }
-        slot = new_slot(table, pdu->id);
-        if (!slot) return STATUS_UNSUPPORTED;
-        slot->created_s = t_s;
+        slot = new_slot(table, pdu->id, t_s);
+        entity_room_rank(table, slot, pdu->p_ecef, t_s);
+        if (!entity_room_make(table, slot, t_s)) return STATUS_UNSUPPORTED;
+        table->counters.created++;
+    } else {
+        entity_room_rank(table, slot, pdu->p_ecef, t_s);
     }
     if (is_first || !same_type(slot->type, pdu->type)) {
         slot->type = pdu->type;
@@ -307,11 +326,11 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
 Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
-    EntitySlot *slot = find_slot(table, pdu->id);
+    EntitySlot *slot = entity_slot_find(table, pdu->id);
 
     if (slot && is_late(table, slot, t_s)) return STATUS_OK;
     if (slot && entity_slot_silent(slot, t_s)) {
-        remove_slot(table, slot, t_s, &table->counters.timed_out);
+        entity_slot_remove(table, slot, t_s, &table->counters.timed_out);
         slot = NULL;
     }
     if (!slot) {
@@ -319,9 +338,10 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
         return STATUS_OK;
     }
     if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
-        remove_slot(table, slot, t_s, &table->counters.deactivated);
+        entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
+    entity_room_rank(table, slot, pdu->p_ecef, t_s);
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
     take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
     return STATUS_OK;
@@ -332,7 +352,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
 void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 {
     effect_history_fire(table->effects, pdu, t_s);
-    EntitySlot *firing = find_slot(table, pdu->firing), *munition = find_slot(table, pdu->munition);
+    EntitySlot *firing = entity_slot_find(table, pdu->firing), *munition = entity_slot_find(table, pdu->munition);
     if (firing) heat_fire(&firing->heat, &table->heat, t_s);
     if (munition && munition->type.kind == dis_kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
 }
@@ -342,9 +362,9 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
 void entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
 {
     effect_history_detonation(table->effects, pdu, t_s);
-    EntitySlot *munition = find_slot(table, pdu->munition);
+    EntitySlot *munition = entity_slot_find(table, pdu->munition);
     if (!munition || munition->type.kind != dis_kind_munition || t_s < munition->created_s) return;
-    remove_slot(table, munition, t_s, &table->counters.detonated);
+    entity_slot_remove(table, munition, t_s, &table->counters.detonated);
 }
 
 static bool part_matches(uint16_t asked, uint16_t is) { return asked == is || asked == all_ids; }
@@ -366,19 +386,20 @@ void entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double 
 {
     const DisEntityId asked = pdu->receiving;
     if (asked.site != all_ids && asked.application != all_ids && asked.entity != all_ids) {
-        EntitySlot *slot = find_slot(table, asked);
-        if (slot) remove_slot(table, slot, t_s, &table->counters.removed);
+        EntitySlot *slot = entity_slot_find(table, asked);
+        if (slot) entity_slot_remove(table, slot, t_s, &table->counters.removed);
         return;
     }
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (entity_slot_lives(slot) && id_matches(asked, slot->id))
-            remove_slot(table, slot, t_s, &table->counters.removed);
+            entity_slot_remove(table, slot, t_s, &table->counters.removed);
     }
 }
 
 void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
 {
+    if (table->stopped_count == table->count) return; /* said over and over, it must not cost a walk each time */
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (!entity_slot_lives(slot) || slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
@@ -387,6 +408,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
         slot->spin_from_s = stop_s;
         slot->stop_s = stop_s;
         slot->stopped = true;
+        table->stopped_count++;
         entity_effects_report(table, slot, stop_s);
     }
 }
@@ -394,12 +416,14 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
 /* Goes on from where it stood: the pause does not count as motion. */
 void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s)
 {
+    if (table->stopped_count == 0) return;
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (!entity_slot_lives(slot) || !slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
         slot->paused_s += fmax(0, t_s - slot->stop_s);
         slot->spin_from_s = fmax(t_s, slot->stop_s);
         slot->stopped = false;
+        table->stopped_count--;
         entity_effects_report(table, slot, fmax(t_s, slot->stop_s));
     }
 }
@@ -409,7 +433,7 @@ void entity_table_expire(EntityTable *table, double t_s)
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (entity_slot_lives(slot) && entity_slot_silent(slot, t_s))
-            remove_slot(table, slot, t_s, &table->counters.timed_out);
+            entity_slot_remove(table, slot, t_s, &table->counters.timed_out);
     }
 }
 

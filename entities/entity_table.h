@@ -21,7 +21,8 @@ typedef struct EntityHandle {
 } EntityHandle;
 
 typedef struct EntityTableConfig {
-    int    capacity;              /* most entities at once; one more is refused and counted */
+    int    capacity;              /* most entities at once; one more, and entity_ranks.h says which goes */
+    int    shown;                 /* most entities in a snapshot: those whose reports lie nearest the focus */
     double timeout_s;             /* versions 5 and 6: 12 */
     double timeout_land_v7_s;     /* version 7, whatever has the long heartbeat: land, sea, life forms, standing; 132 */
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
@@ -40,6 +41,8 @@ typedef struct EntityCounters {
                               * its Detonation */
     uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
+    uint64_t evicted;        /* given up for others when the table was full */
+    uint64_t refused;        /* not taken in, being those that a full table would have given up */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -48,11 +51,18 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
                            const char *heat_path);
 void   entity_table_destroy(EntityTable *table);
 
+/* What a full table keeps: the host, `also` (its aim), and those whose last reports lie near the host's last report. 0:0:0:
+ * none. A host that is not there, or no more: the place of before. A snapshot of more than config.shown takes the nearest
+ * to that place. Extrapolated positions do not enter, so it does not matter at which instants snapshots are made. */
+void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
+/* Which sender has most entities here, and how many. O(senders). */
+int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
+
 /* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) stands still, and so does one that
  * Stop/Freeze names (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
  *
  * One decoded PDU, usable (dis_entity_is_usable) and at exercise time t_s. STATUS_NO_MEMORY or
- * STATUS_UNSUPPORTED (table full) leave the table as it was. */
+ * STATUS_UNSUPPORTED (refused: the table is full of others that come first) leave the table as it was. */
 Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s);
 Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s);
 void   entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s);
@@ -71,6 +81,7 @@ void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
 bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
+bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: not there */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 

@@ -7,6 +7,7 @@
 #include "entities/dead_reckoning.h"
 #include "entities/effects_history.h"
 #include "entities/entity_index.h"
+#include "entities/entity_ranks.h"
 #include "entities/entity_table.h"
 #include "entities/heat.h"
 
@@ -25,6 +26,7 @@ typedef struct EntitySlot {
     double        created_s, report_s;
     double        timeout_s;  /* silence longer than this ends it */
     double        hold_s;     /* longest extrapolation */
+    bool          known;      /* it goes on reporting: heard for known_after_s */
     bool          stopped;    /* by Stop/Freeze, at stop_s */
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
@@ -46,15 +48,26 @@ typedef struct EntityGrave {
     bool     detonated;
 } EntityGrave;
 
+/* Where what matters is: entity_table_focus. */
+typedef struct EntityFocus {
+    DisEntityId host, also;
+    bool        placed;        /* p_ecef: of the last report of a host that was in the table */
+    bool        of_host;       /* of this one */
+    double      p_ecef[3];
+    double      ranked_ecef[3], ranked_s; /* from where, and when, everybody's distance was last taken */
+} EntityFocus;
+
 struct EntityTable {
     EntityTableConfig config;
     const Catalog    *catalog;
     HeatTable         heat;
     uint32_t         *model_roles; /* [catalog_model_count] */
     EntityIndex       index;
-    EntitySlot       *slot;        /* [config.capacity]; used below slot_end */
+    EntityRanks      *ranks;       /* of all but the focus' own */
+    EntityFocus       focus;
+    EntitySlot       *slot;        /* [config.capacity + 1]: a newcomer's too; used below slot_end */
     int              *free_slot;   /* stack of those below slot_end that are free */
-    int               slot_end, free_count, count;
+    int               slot_end, free_count, count, stopped_count;
     EntityGrave       grave[entity_grave_count];
     unsigned          grave_next;
     EntityCounters    counters;
@@ -81,6 +94,17 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
 {
     return clamp(entity_slot_time(slot, t_s) - slot->report_s, -slot->hold_s, slot->hold_s);
 }
+
+EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
+/* Out of the table, and no word of it. */
+void entity_slot_free(EntityTable *table, EntitySlot *slot);
+/* The same with what follows from it; counter: why, one of the table's counters. */
+void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
+
+/* entity_room.c: of a report of it that was heard now. */
+void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
+/* A newcomer that is ranked comes in, if need be for another. False: it is the one to go, and is gone. */
+bool entity_room_make(EntityTable *table, EntitySlot *newcomer, double t_s);
 
 /* The running clock of rotors at t_s. */
 double entity_slot_spin(const EntitySlot *slot, double t_s);

@@ -82,6 +82,59 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
     return from;
 }
 
+/* ---- no more than are asked for -------------------------------------------------------------- */
+
+/* Squared distance from the place that matters, as a number that sorts as it does: of what was reported, not of what it
+ * is extrapolated to. */
+static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
+{
+    const EntityFocus *focus = &table->focus;
+    double             d[3], d2_m2;
+    uint64_t           bits;
+    if (!focus->placed || dis_entity_id_compare(slot->id, focus->host) == 0 ||
+        dis_entity_id_compare(slot->id, focus->also) == 0)
+        return 0;
+    v3_sub(d, slot->reported.p_ecef, focus->p_ecef);
+    d2_m2 = v3_dot(d, d);
+    memcpy(&bits, &d2_m2, sizeof bits);
+    return bits;
+}
+
+/* The value of which `wanted` are not above it, and fewer below; *at_it: how many of those that equal it are wanted. An
+ * octet a pass, from the highest. */
+static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wanted)
+{
+    uint64_t prefix = 0;
+    for (int shift = 56; shift >= 0; shift -= 8) {
+        const uint64_t mask = shift == 56 ? 0 : ~UINT64_C(0) << (shift + 8);
+        int            digit = 0, of[256] = {0};
+        for (int i = 0; i < count; i++)
+            if ((value[i] & mask) == prefix) of[value[i] >> shift & 255]++;
+        for (; of[digit] < wanted; digit++) wanted -= of[digit];
+        prefix |= (uint64_t)digit << shift;
+    }
+    *at_it = wanted;
+    return prefix;
+}
+
+/* Of count in the order of ids, the nearest config.shown in that order; among equally near ones those with the lower ids. */
+static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
+{
+    const int wanted = table->config.shown;
+    if (*count <= wanted) return STATUS_OK;
+    uint64_t *near = arena_alloc(arena, (size_t)*count, sizeof *near);
+    if (!near) return STATUS_NO_MEMORY;
+    for (int i = 0; i < *count; i++) near[i] = nearness(table, table->slot + order[i].slot);
+    int            at_it, kept = 0;
+    const uint64_t last = last_wanted(&at_it, near, *count, wanted);
+    for (int i = 0; i < *count; i++) {
+        if (near[i] > last || (near[i] == last && at_it-- <= 0)) continue;
+        order[kept++] = order[i];
+    }
+    *count = kept;
+    return STATUS_OK;
+}
+
 /* ---- motion ------------------------------------------------------------------------------- */
 
 enum { block_count = 128 }; /* entities in a chunk, and so at most in a block of one algorithm */
@@ -274,8 +327,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     const size_t capacity = (size_t)table->count + 1;
     Ordered *order = arena_alloc(arena, capacity, sizeof *order);
     Ordered *scratch = arena_alloc(arena, capacity, sizeof *scratch);
-    snapshot.entity = arena_alloc(arena, capacity, sizeof *snapshot.entity);
-    if (!order || !scratch || !snapshot.entity) return STATUS_NO_MEMORY;
+    if (!order || !scratch) return STATUS_NO_MEMORY;
 
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
@@ -284,6 +336,12 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
         order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
     }
     if (snapshot.count > 0) order = sort_by_id(order, scratch, snapshot.count);
+    const int    found   = snapshot.count;
+    const Status nearest = keep_nearest(order, &snapshot.count, table, arena);
+    if (nearest != STATUS_OK) return nearest;
+    snapshot.left_out = found - snapshot.count;
+    snapshot.entity   = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.entity);
+    if (!snapshot.entity) return STATUS_NO_MEMORY;
 
     for (int e = 0; e < snapshot.count; e++) {
         const int nodes = catalog_model(table->catalog, table->slot[order[e].slot].model)->node_count;

@@ -34,6 +34,7 @@ typedef struct Snapshot {
     int             puff_count;
     EffectPuff     *puff;   /* what burns, smokes and bursts */
     int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    int             left_out;       /* entities beyond the table's config.shown: the farthest */
     const EffectTable *effect_table; /* NULL where there are no puffs */
 } Snapshot;
 

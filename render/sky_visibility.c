@@ -488,7 +488,13 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         rays->far_m[i] = INFINITY;
     }
     rays->count = count, rays->columns = 0;
-    visibility_first_hit(met, scene->visibility, rays, NULL, -1, v->scene.hidden_entity, &unused);
+    /* those that the rows of these places may see: in a crowd a fraction of all */
+    const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
+                 end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
+    const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
+                                                  e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
+                                                  &unused);
+    visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
     places->count = 0;
     for (int i = 0; i < count; i++) {
         if (met->entity[i] != (uint32_t)index + 1) continue;

@@ -98,7 +98,7 @@ static Status run_both(Live *l)
     snprintf(rate, sizeof rate, "%d", rate_hz);
     const char *const node[] = {"pitviper", "run", "--address", "127.0.0.1", "--port", port, "--size", quick ? "96x64" : "320x216",
                                 "--bands", "lwir", "--rate", rate, "--no-files", "--for", length, "--out", l->folder, "--record",
-                                l->recording, "--threads", threads, "--set", "exercise.listen_s=0.5", "--set",
+                                l->recording, "--threads", threads, "--set", "exercise.listen_s=0.5", "--set", "entities.shown=10000", "--set",
                                 "publish.dis=sensor", NULL};
     const char *const exercise[] = {"pitviper", "exercise", quick ? "demo" : "crowd", "--send", to, NULL};
     if (pipe2(ears, O_CLOEXEC) != 0) return STATUS_IO;

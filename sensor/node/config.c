@@ -187,7 +187,10 @@ static const Setting keys[] = {
      "the same for land entities of version 7"},
     {"entities.extrapolation_limit_s", SETTING_DOUBLE, AT(entities.extrapolation_limit_s), 0.01, 1e4, NULL, "s",
      "longest dead reckoning"},
-    {"entities.capacity", SETTING_INT, AT(entities.capacity), 1, 1000000, NULL, "", "most entities at once"},
+    {"entities.capacity", SETTING_INT, AT(entities.capacity), 1, 1000000, NULL, "",
+     "most entities at once; beyond, the sender with the most gives up its farthest and stalest"},
+    {"entities.shown", SETTING_INT, AT(entities.shown), 1, 1000000, NULL, "",
+     "most entities in a frame: those whose reports lie nearest the host's"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no picture"},
     {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
@@ -252,7 +255,7 @@ Config config_default(void)
     c.exercise.exercise             = -1;
     c.exercise.listen_s             = 2;
     c.network.ttl                   = 1;
-    c.network.queue_mb              = 64; /* 300,000 Entity States: six seconds of 50,000 a second */
+    c.network.queue_mb              = 256; /* a million Entity States; touched as far as it is ever needed */
     c.node.site                     = 4711;
     c.node.application              = 1;
     strcpy(c.publish.dis, "off");
@@ -278,6 +281,7 @@ Config config_default(void)
     c.entities.timeout_land_v7_s    = 132;
     c.entities.extrapolation_limit_s = 12;
     c.entities.capacity             = 100000;
+    c.entities.shown                = 2000;
     strcpy(c.quality.budget, "on");
     c.quality.radiance_rmse_percent = c.quality.temperature_rms_k = c.quality.frame_ms = NAN;
     c.quality.machine_factor        = 1;

@@ -139,6 +139,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
+              .entities_evicted = result->entities.evicted, .entities_refused = result->entities.refused,
+              .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
               .at_limit = result->at_limit,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,

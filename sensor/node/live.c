@@ -2,12 +2,12 @@
 #include "sensor/node/live.h"
 
 #include "dis/exercise_clock.h"
-#include "dis/recorder.h"
 #include "dis/udp.h"
 #include "sensor/bench/quality.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
+#include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
 #include "sensor/node/quality.h"
@@ -27,7 +27,7 @@ static const int64_t look_ns = 100000000; /* a signal may come to another thread
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
-    DisRecorder *recorder;          /* NULL: none, or closed */
+    LiveRecording *recording;       /* NULL: none, or closed */
     bool         record_whole;      /* all that was heard is in it */
     char         where[dis_udp_where_size];
     LiveCounters counters;
@@ -59,8 +59,8 @@ static bool over(const Live *l)
 static void flush_recording(Live *l)
 {
     const double now_s = wall_clock_s();
-    if (!l->recorder || now_s - l->flushed_s < flush_s) return;
-    dis_recorder_flush(l->recorder);
+    if (!l->recording || now_s - l->flushed_s < flush_s) return;
+    live_recording_flush(l->recording);
     l->flushed_s = now_s;
 }
 
@@ -70,14 +70,11 @@ static int exercise_to_hear(const Live *l)
     return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
 }
 
-/* The next datagram of somebody else, not after until_ns. All that comes off the socket is recorded. */
+/* The next datagram of another sender, not after until_ns. */
 static bool take(DisDatagram *out, Live *l, int64_t until_ns)
 {
     DisArrival a;
     while (dis_udp_take(&a, l->udp, until_ns)) {
-        if (l->recorder &&
-            dis_recorder_add(l->recorder, a.capture_ns, a.from, a.from_port, a.bytes, a.octets) != STATUS_OK)
-            l->counters.record_failed++;
         *out = (DisDatagram){.capture_s = dis_unix_s(a.capture_ns), .octets = a.octets, .bytes = a.bytes};
         out->packet_s = out->capture_s;
         if (opening_own(out, &l->run.options.config)) {
@@ -257,10 +254,11 @@ static void conclude(Live *l)
     dis_udp_close_tick(l->udp, last_ns);
     while (take(&datagram, l, last_ns)) {}
     read_counters(l);
-    if (!l->recorder) return;
-    const char *path = l->run.options.config.record.path;
-    l->record_whole  = dis_recorder_close(l->recorder) == STATUS_OK && l->counters.record_failed == 0;
-    l->recorder      = NULL;
+    if (!l->recording) return;
+    const char *path          = l->run.options.config.record.path;
+    l->counters.record_failed = live_recording_failed(l->recording);
+    l->record_whole           = live_recording_close(l->recording) == STATUS_OK && l->counters.record_failed == 0;
+    l->recording              = NULL;
     if (l->record_whole) sha256_file(l->run.log_sha256, path);
     else log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
                    (unsigned long long)l->counters.record_failed);
@@ -316,7 +314,6 @@ static Status open_network(Live *l)
     Config      *config = &l->run.options.config;
     DisUdpConfig udp    = dis_udp_default_config();
     char         comment[dis_udp_where_size + 40];
-    uint8_t      to[16];
     if (config->exercise.port == dis_port_any) {
         log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
         return STATUS_BAD_VALUE;
@@ -332,11 +329,7 @@ static Status open_network(Live *l)
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
-    status = dis_recorder_open(&l->recorder, config->record.path, comment);
-    if (status != STATUS_OK) return status;
-    dis_udp_destination(to, l->udp);
-    dis_recorder_to(l->recorder, to, (uint16_t)udp.port);
-    return STATUS_OK;
+    return live_recording_open(&l->recording, config->record.path, comment, l->udp, udp.port);
 }
 
 /* How long this machine takes over a frame, once: the one clock that a choice of quality hangs on. Said so that a replay
@@ -444,7 +437,7 @@ int run_command(int argc, char **argv)
     stop_by_signals();
     thread_flush_denormals();
     const Status status = run_node(l);
-    dis_recorder_close(l->recorder);
+    live_recording_close(l->recording);
     dis_udp_close(l->udp);
     run_close(&l->run);
     forget_heard(l, l->heard_count);

@@ -260,8 +260,11 @@ static bool first_there(DisEntityId *id, const Munitions *m, const EntityTable *
 
 bool player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table)
 {
-    const bool there = !dis_entity_id_is_none(*munition) && is_there(table, *munition);
-    *guided          = there && munition_known(&player->guided, *munition);
+    DisEntityType type;
+    const bool    there = !dis_entity_id_is_none(*munition) &&
+                       entity_table_type(&type, table, entity_table_find(table, *munition));
+    /* what it is, not whether it is among the latest: a salvo must not take the sensor off its carrier */
+    *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
     if (*guided) return true;
     if (first_there(munition, &player->guided, table)) return *guided = true;
     return there || first_there(munition, &player->unguided, table);

@@ -95,6 +95,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
 
 typedef struct FrameDone {
     bool           shown;
+    int            left_out;
     char           hash[sha256_text_size];
     double         stage_ms[session_stages];
     RenderCounters counters;
@@ -127,11 +128,13 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     Eye                  eye;
 
     *done = (FrameDone){0};
+    if (!session_host_is_there(s)) return STATUS_OK; /* nor is anything extrapolated for it */
     Arena *arena = s->writer ? frame_writer_arena(s->writer) : s->frame_arena;
     arena_reset(arena);
     Status status = entity_table_snapshot(&snapshot, s->table, t_s, arena);
     if (status != STATUS_OK) return status;
     if (!session_eye(&eye, s, &snapshot, t_s)) return STATUS_OK;
+    done->left_out = snapshot.left_out;
 
     Air           air;
     Sun           sun;
@@ -230,6 +233,7 @@ static Status open_session(Session *s)
 
     table.pool                  = shared->pool;
     table.capacity              = shared->config->entities.capacity;
+    table.shown                 = shared->config->entities.shown;
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
@@ -244,6 +248,7 @@ static Status open_session(Session *s)
     s->mount       = mount_of(shared->config);
     s->mount_model = -1;
     s->limit_tick  = -1;
+    s->given_up_said_s = s->left_out_said_s = -INFINITY;
     s->tick    = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
     if (observes(&s->plan))
@@ -269,6 +274,7 @@ static Status open_session(Session *s)
     Status        status = entity_table_create(&s->table, &table, shared->catalog, path);
     const Config *config = shared->config;
     unsigned      raw = 0;
+    if (status == STATUS_OK) session_keep(s);
     if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, config);
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
@@ -333,12 +339,41 @@ static Status list_frame(SessionResult *r, int *capacity, int number, const Fram
     return STATUS_OK;
 }
 
+/* What did not fit: at once, and then once a minute where there is more. */
+static void say_crowd(Session *s, const FrameDone *done)
+{
+    static const double   remind_s = 60;
+    const EntityCounters *c        = entity_table_counters(s->table);
+    const Config         *config   = s->shared->config;
+    const uint64_t        given_up = c->evicted + c->refused;
+    const double          now_s    = wall_clock_s();
+    DisEntityId           sender;
+    if (given_up > s->given_up_said && !(now_s - s->given_up_said_s < remind_s)) {
+        const int most = entity_table_largest_sender(&sender, s->table);
+        log_warn("host %s: the table of %d entities is full: %llu gave way to others, %llu were not taken in; %u:%u has "
+                 "the most, %d; near the host, and what goes on reporting, stays (entities.capacity)",
+                 s->host_text, config->entities.capacity, (unsigned long long)c->evicted, (unsigned long long)c->refused,
+                 sender.site, sender.application, most);
+        s->given_up_said   = given_up;
+        s->given_up_said_s = now_s;
+    }
+    if (done->left_out == 0) return;
+    if (!(now_s - s->left_out_said_s < remind_s)) {
+        log_warn("host %s: %d entities are not in the pictures, the farthest from it; the nearest %d are (entities.shown)",
+                 s->host_text, done->left_out, config->entities.shown);
+        s->left_out_said_s = now_s;
+    }
+    s->result.frames_crowded++;
+    if (done->left_out > s->result.most_left_out) s->result.most_left_out = done->left_out;
+}
+
 Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
     FrameDone done;
     session_advance(s, t_s);
     Status status = make_frame(&done, s, number, t_s);
     *shown        = done.shown;
+    say_crowd(s, &done);
     if (status == STATUS_OK && done.shown) status = list_frame(&s->result, &s->capacity, number, &done);
     if (status == STATUS_NO_MEMORY)
         log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);

@@ -37,6 +37,7 @@ typedef struct SessionResult {
     int     listed;
     int     buried;                   /* frames whose eye was below the ground */
     int     at_limit;                 /* frames whose aim was beyond the gimbal */
+    int     frames_crowded, most_left_out; /* frames without all entities; the most that one of them lacks */
     int     host_count;               /* the first session_hosts_kept that carried the sensor, in order */
     char    host[session_hosts_kept][dis_id_text_size];
     int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; when closed */

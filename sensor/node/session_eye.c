@@ -145,6 +145,12 @@ static void find_host(Session *s)
     if (shot && dis_entity_id_is_none(plan->aim) && !dis_entity_id_is_none(shot->hit)) plan->aim = shot->hit;
 }
 
+void session_keep(Session *s)
+{
+    const HostPlan *plan = &s->plan;
+    entity_table_focus(s->table, dis_entity_id_is_none(plan->host) ? plan->aim : plan->host, plan->aim);
+}
+
 /* Axes of the local frame: what upright means. */
 static void enu_axes(double r_enu_from_mount[9], const Session *s, const Mounted *at)
 {
@@ -218,6 +224,7 @@ void session_advance(Session *s, double t_s)
         player_feed(s->player, s->table, tick_s);
         if (s->tick % expire_ticks == 0) entity_table_expire(s->table, tick_s);
         if (s->shared->config->causal || s->plan.any_munition) find_host(s);
+        session_keep(s);
         step_gimbal(s, tick_s);
     }
     player_feed(s->player, s->table, t_s);
@@ -315,9 +322,15 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     return true;
 }
 
+static bool observes(const Session *s) { return dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition; }
+
+bool session_host_is_there(const Session *s)
+{
+    return observes(s) || entity_table_alive(s->table, entity_table_find(s->table, s->plan.host));
+}
+
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 {
     *eye = (Eye){.hidden = -1};
-    const bool observer = dis_entity_id_is_none(s->plan.host) && !s->plan.any_munition;
-    return observer ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
+    return observes(s) ? observer_eye(eye, s, t_s) : host_eye(eye, s, snapshot, t_s);
 }

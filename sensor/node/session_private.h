@@ -31,6 +31,8 @@ struct Session {
     double              *joint;
     bool                 limit_said;    /* what was last said of the gimbal's limit, and at which tick */
     int64_t              limit_tick;
+    uint64_t             given_up_said; /* what was last said of a full table, and when; wall clock */
+    double               given_up_said_s, left_out_said_s;
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv */
     FrameLevel           level[BAND_COUNT];
     FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
@@ -55,6 +57,10 @@ typedef struct Eye {
 void session_note_host(Session *s);
 /* Feeds what counts by t_s, finds host and aim, and turns the gimbal, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
+/* Tells the table what a full one is to keep: host and aim, and what is near the host, else near the aim. */
+void session_keep(Session *s);
+/* False: there will be no picture. */
+bool session_host_is_there(const Session *s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
  * host is not there. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);

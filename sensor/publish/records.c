@@ -263,6 +263,10 @@ static json_t *counters_json(const RunRecord *r)
     set_count(entities, "timed_out", r->entities_timed_out);
     set_count(entities, "deactivated", r->entities_deactivated);
     set_count(entities, "removed", r->entities_removed);
+    set_count(entities, "evicted", r->entities_evicted);
+    set_count(entities, "refused", r->entities_refused);
+    set_count(entities, "most_left_out_of_a_frame", (uint64_t)r->most_left_out);
+    set_count(counters, "frames_without_all_entities", (uint64_t)r->frames_crowded);
     json_object_set_new(counters, "entities", entities);
     set_count(effects, "events_refused", r->effects.refused);
     set_count(effects, "events_repeated", r->effects.repeated);

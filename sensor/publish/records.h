@@ -63,6 +63,8 @@ typedef struct RunRecord {
     const LiveCounters *live;         /* NULL: a replay */
     int         at_limit;             /* frames whose aim was beyond the gimbal */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
+    uint64_t    entities_evicted, entities_refused; /* by a full table */
+    int         frames_crowded, most_left_out; /* frames without all entities; the most that one of them lacks */
     EffectCounters effects;
     RenderCounters render;
     int         stage_count;          /* timings */

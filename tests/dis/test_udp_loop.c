@@ -362,9 +362,24 @@ static void waiting_ends(void **state)
 
 /* ---- losses ------------------------------------------------------------------------------------------------ */
 
+typedef struct Tapped {
+    uint64_t count;
+    int64_t  last;
+    bool     disordered;
+} Tapped;
+
+static void tap(void *user, const DisArrival *a)
+{
+    Tapped *t = user;
+    t->disordered |= number_of(a) <= t->last;
+    t->last = number_of(a);
+    t->count++;
+}
+
 static void a_full_queue_keeps_the_oldest_and_counts_the_rest(void **state)
 {
     (void)state;
+    Tapped tapped = {.last = -1};
     enum { sent = 1000, octets = 1000, room = 131072 / 1056 }; /* 32 + 1000 in units of 32 */
     DisUdpConfig config = config_for("127.0.0.1", "", free_port());
     config.queue_octets = 131072;
@@ -372,6 +387,7 @@ static void a_full_queue_keeps_the_oldest_and_counts_the_rest(void **state)
     DisArrival a;
     const int  peer = peer_socket(false, config.port);
     CHECK(dis_udp_open(&udp, &config) == STATUS_OK);
+    dis_udp_tap(udp, tap, &tapped);
     for (uint32_t i = 0; i < sent; i++) CHECK(send_number(peer, i, octets));
     DisUdpCounters counters = settled(udp, sent);
     CHECK(counters.datagrams + counters.lost_kernel == sent && counters.octets == counters.datagrams * octets);
@@ -384,7 +400,10 @@ static void a_full_queue_keeps_the_oldest_and_counts_the_rest(void **state)
     }
     CHECK(taken == room && taken + counters.lost_queue == counters.datagrams);
     if (!counters.lost_kernel) CHECK(last == room - 1); /* the oldest */
+    dis_udp_tap(udp, NULL, NULL);
+    CHECK(tapped.count == counters.datagrams && !tapped.disordered); /* also those that found no room */
     CHECK(send_number(peer, sent, octets) && take(&a, udp) && number_of(&a) == sent); /* and it goes on */
+    CHECK(tapped.count == counters.datagrams);
     close(peer);
     dis_udp_close(udp);
 }

@@ -131,7 +131,10 @@ static void a_full_table_refuses_and_recovers(void **state)
         const DisEntityState pdu = report(e, tank_type);
         hear(&f, &pdu, 0);
     }
+    /* who goes: test_entity_room.c. Here the newcomer, being the farthest */
     DisEntityState fourth = report(4, tank_type);
+    entity_table_focus(f.table, entity_id(1), entity_id(0));
+    fourth.p_ecef[0] += 1e6;
     CHECK(entity_table_entity_state(f.table, &fourth, 1) == STATUS_UNSUPPORTED && entity_table_count(f.table) == 3);
     uint8_t octets[256];
     fourth.header.length = (uint16_t)dis_encode_entity_state(octets, sizeof octets, &fourth);

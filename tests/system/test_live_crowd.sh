@@ -5,7 +5,7 @@
 . "$(dirname "$0")/live.sh"
 
 free_port
-few=(--size 320x216 --bands lwir --rate 30 --no-files)
+few=(--size 320x216 --bands lwir --rate 30 --no-files --set entities.shown=10000)
 node crowd --address 127.0.0.1 --port $port "${few[@]}" --record "$tmp/crowd.pcapng" --for 120
 check "it listens" heard_by crowd 'listening on' 20
 sender crowd --send 127.0.0.1:$port
