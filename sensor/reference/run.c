@@ -12,6 +12,8 @@ static const char *stage(int i) { return i < session_stages ? session_stage_name
 
 static const ReferenceField fields[] = {
     {"pitviper", "string", "", "", "", "version of the program"},
+    {"status", "string", "", "", "", "complete; stopped: by a signal; failed"},
+    {"planes", "string", "", "", "", "planes of the truth files, or `none` (--planes, --no-files)"},
     {"config_sha256", "string", "", "", "", "SHA-256 of every setting that the pictures depend on"},
     {"settings", "object", "", "", "", "those settings, given or by default"},
     {"settings.KEY", "string", "as in `pitviper check --default`", "", "", "its value as text; `nan`: not given"},
@@ -57,6 +59,10 @@ static const ReferenceField fields[] = {
     {"counters.entities.timed_out", "integer", "", "", "", "silent for too long"},
     {"counters.entities.deactivated", "integer", "", "", "", "by their last Entity State"},
     {"counters.entities.removed", "integer", "", "", "", "by a Remove Entity PDU"},
+    {"counters.entities.evicted", "integer", "", "", "", "given up for others, when the table was full"},
+    {"counters.entities.refused", "integer", "", "", "", "not taken, since all others came first"},
+    {"counters.entities.most_left_out_of_a_frame", "integer", "", "", "", "beyond the nearest entities.shown"},
+    {"counters.frames_without_all_entities", "integer", "", "", "", "frames that left some out"},
     {"counters.effects", "object", "", "", "", "bursts, flashes, smoke"},
     {"counters.effects.events_refused", "integer", "", "", "", "Fire and Detonation of no use"},
     {"counters.effects.events_repeated", "integer", "", "", "", "heard twice"},

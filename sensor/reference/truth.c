@@ -90,6 +90,8 @@ static const ReferenceField fields[] = {
     {"targets[].entity", "string", "", "site:application:entity", "", "its id"},
     {"targets[].marking", "string", "", "", "", "its marking, at most 11 characters"},
     {"targets[].type", "string", "", "kind.domain.country.category.subcategory.specific.extra", "", "its entity type"},
+    {"targets[].class", "string", "", "", "", "tank, apc, truck ...: its category in coco.json, by its entity type"},
+    {"targets[].plane_value", "integer", "", "from 1; 0: none", "", "its value in plane `entity` of the truth EXR"},
     {"targets[].model", "string", "", "", "", "the model that stands for it, a row of etc/catalog.csv"},
     {"targets[].range_m", "number", "m", "", "", "from the eye to the middle of its model"},
     {"targets[].closing_mps", "number", "m/s", "", "", "how fast range_m shrinks"},

@@ -300,6 +300,7 @@ def take_run(topics, out, lines_of):
 
 def take_sweep(topics, out):
     take_json(topics["manifest"], f"{out}/manifest.jsonl")
+    if os.path.exists(f"{out}/coco.json"): take_json(topics["coco"], f"{out}/coco.json")
     for path in glob.glob(f"{out}/*/variant.json"): take_json(topics["manifest"], path)
     page, sheet = open(f"{out}/manifest.html").read(), topics["sheet"]
     variants = sum(1 for _ in open(f"{out}/manifest.jsonl"))

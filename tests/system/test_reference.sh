@@ -41,7 +41,7 @@ run replay "$tmp/demo.pcap" --out "$tmp/pan" "${small[@]}" --from 1354 --to 1354
     --set sensor.optical=pan --set quality.budget=off --coco --pairs target --no-png
 check "other products" [ $code = 0 ] || cat "$tmp/stderr"
 printf 'axes: {exercise.host: ["9:9:9", ""]}\n' >"$tmp/sweep.yaml"
-run replay "$tmp/demo.pcap" --out "$tmp/sweep" "${small[@]}" --from 1366 --to 1366 --bands lwir --sweep "$tmp/sweep.yaml"
+run replay "$tmp/demo.pcap" --out "$tmp/sweep" "${small[@]}" --from 1366 --to 1366 --bands lwir --coco --sweep "$tmp/sweep.yaml"
 mkdir "$tmp/case"
 cat >"$tmp/case/case.yaml" <<Y
 purpose: a record
