@@ -27,8 +27,8 @@
         if (!(condition)) fail_msg("%s:%d: %s", __FILE__, __LINE__, #condition);     \
     } while (0)
 
-/* Reference data outside the repository: $PITVIPER_DATA, default ../shared/data. False, and one line said,
- * when the file is absent: the test then calls skip(). */
+/* Reference data outside the repository: $PITVIPER_DATA, default ../shared/data; an absolute path, which means the same
+ * in any file. False, and one line said, when the file is absent: the test then calls skip(). */
 static inline bool reference_path(char out[512], const char *name)
 {
     const char *root = getenv("PITVIPER_DATA");
@@ -39,7 +39,10 @@ static inline bool reference_path(char out[512], const char *name)
         return false;
     }
     fclose(file);
-    return true;
+    char      *whole = realpath(out, NULL);
+    const bool fits  = whole && snprintf(out, 512, "%s", whole) < 512;
+    free(whole);
+    return fits;
 }
 
 enum { text_file_size = 64 };
