@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # etc/ADDING.md: its commands as they stand there, in an empty folder: a vehicle, a material, a sensor; the shape's code
-# compiles; the lists of files are complete. And whose rows win, and what a file of the wrong size is told. labels: small
+# compiles; the lists of files are complete. And whose rows win, and what a file of the wrong size is told.
 . "$(dirname "$0")/common.sh"
 here=$PWD
 real=$(realpath "$pitviper")

@@ -16,7 +16,7 @@
 shown() {
     local name=$1 case=$2 program=$3; shift 3
     regress_case "$case"
-    "$program" replay "$tmp/$case.pcap" --out "$tmp/$name" --size 96x64 --threads 2 --no-png "${case_options[@]}" "$@" \
+    "$program" replay "$tmp/$case.pcap" --out "$tmp/$name" --overwrite --size 96x64 --threads 2 --no-png "${case_options[@]}" "$@" \
         >"$tmp/stdout" 2>"$tmp/stderr" || { fail "$name: $program does not replay $case"; tail -n 5 "$tmp/stderr"; }
 }
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A gun fires, a missile strikes, a truck burns: seen by the helicopter that fired, the same to the bit from wherever
-# and however it is asked for, and told in the truth. labels: small
+# and however it is asked for, and told in the truth.
 . "$(dirname "$0")/common.sh"
 
 exercise guns "$tmp/guns.pcap"

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # The same exercise, said in other ways and at other places of the Earth: the seeker sees the same thing. An
 # invented exercise has an answer on paper: the missile 41 flies at truck 22 and ends 1.2 m above its base.
-# labels: small
 . "$(dirname "$0")/common.sh"
 
 quick=(--rate 2 --no-png)

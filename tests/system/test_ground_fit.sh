@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Ground and sea invented for exercises without land vehicles, or with one that is far off: everybody is seen whole from
-# above, ships on water; what does not fit is set onto the ground and said. labels: small
+# above, ships on water; what does not fit is set onto the ground and said.
 . "$(dirname "$0")/common.sh"
 
 # case NAME: a scenario from standard input, recorded

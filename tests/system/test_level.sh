@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A display's automatic level, by default: from frame to frame as its time constant says, and no flicker where sky and
-# ground change places; begins with the first frame made, and touches nothing but displays. labels: small
+# ground change places; begins with the first frame made, and touches nothing but displays.
 . "$(dirname "$0")/common.sh"
 
 exercise aircraft "$tmp/air.pcap"

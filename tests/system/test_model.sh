@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # `pitviper model info` and `pitviper probe rays`: built-in models, files, sidecars, and what is wrong with them; and a
-# replay whose catalog names a file. labels: small
+# replay whose catalog names a file.
 . "$(dirname "$0")/common.sh"
 
 run model --help

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # replay --pairs: each frame with and without its target, with and without noise. What can differ between with and without
 # is bounded so: at night (no sun, no shadow), without contact shadows, with one ray a pixel (none that also asks its
-# neighbour's edge), radiance outside the box of all the target's vertices must be the same to the bit. labels: small
+# neighbour's edge), radiance outside the box of all the target's vertices must be the same to the bit.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"

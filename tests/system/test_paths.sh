@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Names of files in a file are relative to that file, wherever one stands: settings, scenarios, sweeps, cases, catalogs,
-# sidecars; on the command line to the current folder. And what --quiet leaves out and --verbose adds. labels: small
+# sidecars; on the command line to the current folder. And what --quiet leaves out and --verbose adds.
 . "$(dirname "$0")/common.sh"
 pitviper=$(realpath "$pitviper")
 source=$PWD

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # An exercise over real elevation, cover and photograph: it says what it took, vehicles stand on the ground, and the
-# bits do not depend on threads. labels: small
+# bits do not depend on threads.
 . "$(dirname "$0")/common.sh"
 data=${PITVIPER_DATA:-../shared/data}/terrain/autzen
 [ -r "$data/autzen_dtm_1m.tif" ] || { echo "skipped: no reference data at $data (set PITVIPER_DATA)"; exit 77; }

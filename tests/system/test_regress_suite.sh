@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The cases of tests/regress against their records: from here and from a copy elsewhere, by one thread and by many, with
-# another tracer's instructions. labels: small
+# another tracer's instructions.
 . "$(dirname "$0")/common.sh"
 export TMPDIR=$tmp # what failed on purpose is not kept
 data=${PITVIPER_DATA:-../shared/data}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Sensors of etc/sensors.csv through replay: what they add, what they leave alone, and how slips are named. labels: small
+# Sensors of etc/sensors.csv through replay: what they add, what they leave alone, and how slips are named.
 . "$(dirname "$0")/common.sh"
 
 exercise demo "$tmp/demo.pcap"
