@@ -115,7 +115,7 @@ if begin "$tmp/none.pcapng" --for 0.2; then
     ending
     check "--for ends it well ($code)" [ $code = 0 ]
 fi
-if begin "$tmp/none.pcapng"; then
+if begin "$tmp/none.pcapng" --overwrite; then
     kill -TERM $recorder
     ending
     check "SIGTERM ends it well ($code)" [ $code = 0 ]
@@ -126,7 +126,7 @@ fi
 # a port that is taken, and a full disk: one line, and an older recording stays
 if begin "$tmp/log2.pcapng"; then
     cp "$tmp/log.pcapng" "$tmp/older.pcapng"
-    run record -o "$tmp/older.pcapng" --address 127.0.0.1 --port $port
+    run record -o "$tmp/older.pcapng" --overwrite --address 127.0.0.1 --port $port
     check "a taken port: exit code" [ $code = 1 ]
     check "a taken port is named" complained "127.0.0.1 port $port.*another port"
     check "a taken port costs no older recording" cmp "$tmp/log.pcapng" "$tmp/older.pcapng"

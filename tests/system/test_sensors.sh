@@ -114,7 +114,7 @@ slip "empty list" "names no sensor" --set sensor.preset=,
 slip "out of range" "detector.bad_share: '0.9' is not a number in 0 .. 0.2" --set sensor.preset=tv --set detector.bad_share=0.9
 slip "a lens that folds" "folds within a picture" --set sensor.hfov_deg=20 --set sensor.lens_k1=-60
 slip "a lens out of range" "sensor.lateral_r: '0.5' is not a number in -0.02 .. 0.02" --set sensor.lateral_r=0.5
-slip "no such sheet" "cannot open $tmp/none.sheet" --set sensor.table="$tmp/none.sheet"
+slip "no such sheet" "cannot read $tmp/none.sheet" --set sensor.table="$tmp/none.sheet"
 sed 's/^f_number .*/f_number 0/' etc/sensors/example_flir2.sheet >"$tmp/bad.sheet"
 slip "a sheet's slip" "bad.sheet:[0-9]*: f_number: '0' is not a number in 0.5 .. 100" --set sensor.table="$tmp/bad.sheet"
 slip "a sheet beside a preset of its band" "example_flir2 and staring_lwir are both for lwir" --set sensor.table=etc/sensors/example_flir2.sheet --set sensor.preset=staring_lwir
