@@ -104,6 +104,7 @@ const Reference reference_coco = {
         "coco = json.load(open('coco.json'))\n"
         "name = {c['id']: c['name'] for c in coco['categories']}\n"
         "image = {i['id']: i for i in coco['images']}\n"
+        "print(len(image), 'images,', len(coco['annotations']), 'annotations')\n"
         "for a in coco['annotations']:\n"
         "    left, top, width, height = a['bbox']\n"
         "    print(image[a['image_id']]['file_name'], name[a['category_id']], (left, top, width, height), a['area'])\n"

@@ -20,7 +20,7 @@ flir=(--set sensor.preset=scanning_flir --set detector.agc_s=2)
 regress_case antimeridian
 shown one antimeridian --threads 1 "${sensors[@]}"
 check "some frames" [ "$(frames "$tmp/one")" -ge 6 ]
-for threads in 2 3 4 5 6 7 8; do
+for threads in 2 5 8; do
     shown many antimeridian --threads $threads "${sensors[@]}"
     check "antimeridian: $threads threads, same bits" same_hashes "$tmp/one" "$tmp/many"
     check "antimeridian: $threads threads, same counts" raw_same "$tmp/one" "$tmp/many"
@@ -44,6 +44,8 @@ for case in impact pole bundles helicopter; do
     shown late $case --from 1353 --no-files
     check "$case: --from: the frames from there on" part_of "$tmp/late" "$tmp/one" 3
     check "$case: --from leaves some out" [ "$(numbered "$tmp/late" | wc -l)" -lt "$(numbered "$tmp/one" | wc -l)" ]
+done
+for case in impact bundles; do
     shown causal $case --causal --no-files --threads 3
     shown again $case --causal --no-files --threads 1
     check "$case: causal, same bits" same_hashes "$tmp/causal" "$tmp/again"
