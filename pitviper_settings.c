@@ -163,7 +163,7 @@ static bool place_paths(char *out, size_t out_size, SettingType type, const char
         const size_t before = blanks < length && at[blanks] != '/' && !name ? folder : 0;
         fits = n + before + length + 1 < out_size;
         if (!fits) break;
-        memcpy(made + n, file, before);
+        if (before) memcpy(made + n, file, before);
         memcpy(made + n + before, at + (blanks < length ? blanks : length), blanks < length ? length - blanks : 0);
         n += before + (blanks < length ? length - blanks : 0);
         if (at[length]) made[n++] = ',';
