@@ -52,7 +52,7 @@ void log_status(const char *text);
 bool log_is_quiet(void);
 bool log_is_verbose(void);
 bool log_shows_progress(void);
-/* To standard output, what nobody asked for: choices, a summary at the end. Nothing when quiet. */
+/* To standard output, what was not asked for: choices, a summary at the end. Nothing when quiet. */
 void log_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -1,7 +1,7 @@
 /* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
  *
- * Three locks, in this order. receive: who may take from the socket and give out arrival times (the thread, or for a
- * moment whoever closes a tick). sending: the socket itself, which a network that went and came back replaces. queue:
+ * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or for a
+ * moment the one that closes a tick). sending: the socket itself, which a network that went and came back replaces. queue:
  * the ring and the counters, held for as long as some copies take. */
 #include "dis/udp.h"
 #include "dis/udp_link.h"
@@ -268,7 +268,7 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     return came;
 }
 
-/* A network that went away is said once; whoever came back is heard again. */
+/* A network that went away is said once; one that came back is heard again. */
 static void complain(DisUdp *u)
 {
     const int error = errno;
@@ -278,7 +278,7 @@ static void complain(DisUdp *u)
 
 /* ---- a network that goes and comes: under the receive lock, in a sender under sending ------------------------ */
 
-/* In the place of the old one, whose number stays: nobody else has to know. False: not now. */
+/* In the place of the old one, whose number stays: no other code has to know. False: not now. */
 static bool remake_socket(DisUdp *u)
 {
     int              made;
@@ -342,7 +342,7 @@ static void *receive_loop(void *user)
         }
         if (ready <= 0 || !what[0].revents) continue;
         pthread_mutex_lock(&u->receive);
-        /* a flood must not keep whoever closes a tick from its turn */
+        /* a flood must not delay the one that closes a tick */
         while (atomic_load(&u->closing)) pthread_cond_wait(&u->turn, &u->receive);
         const bool failed = receive_batch(u, &newest_ns) < 0;
         if (failed) complain(u);
@@ -390,7 +390,7 @@ static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
     return sent >= 0;
 }
 
-/* Who listens has a thread that looks after the link; a sender looks when it fails, and whether it is back. */
+/* A listener has a thread that looks after the link; a sender looks when it fails, and whether it is back. */
 static bool sender_may_go_on(DisUdp *u)
 {
     const int64_t now_ns = dis_udp_now_ns();

@@ -62,7 +62,7 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends o
 void   dis_udp_close(DisUdp *udp);
 
 /* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue has
- * room: by the receiving thread or whoever closes a tick, one at a time. tap: NULL: to nobody; after the call it is not
+ * room: by the receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is not
  * inside. It must not call anything here. */
 typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
 void   dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);

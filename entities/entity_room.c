@@ -1,4 +1,4 @@
-/* entities/entity_room.c: who is kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
+/* entities/entity_room.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
 #include "entities/entity_table_private.h"
 
 static bool same_id(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }

@@ -54,7 +54,7 @@ typedef struct EntityFocus {
     bool        placed;        /* p_ecef: of the last report of a host that was in the table */
     bool        of_host;       /* of this one */
     double      p_ecef[3];
-    double      ranked_ecef[3], ranked_s; /* from where, and when, everybody's distance was last taken */
+    double      ranked_ecef[3], ranked_s; /* from where, and when, all distances were last taken */
 } EntityFocus;
 
 struct EntityTable {

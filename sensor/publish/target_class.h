@@ -1,4 +1,4 @@
-/* sensor/publish/target_class.h: what kind of thing an entity is, for those who train and score recognisers: a small
+/* sensor/publish/target_class.h: what kind of thing an entity is, for training and scoring recognisers: a small
  * fixed table of names and numbers.
  *
  * The class is a function of the entity type alone, by the categories of SISO-REF-010: neither the log nor

@@ -7,7 +7,7 @@ static const ReferenceField pair_fields[] = {
     {"frame", "integer", "", "from 0", "", "number of the frame"},
     {"time_s", "number", "s", "exercise time", "", "instant of the frame"},
     {"seed", "integer", "", "", "", "of the noise, the same in all members"},
-    {"removed", "list of strings", "", "site:application:entity", "", "who is not in the background"},
+    {"removed", "list of strings", "", "site:application:entity", "", "entities that are not in the background"},
     {"frame_sha256", "string", "", "", "", "of the planes with the target, as in truth.jsonl"},
     {"background_sha256", "string", "", "", "", "of the planes without it"},
     {"members", "list of objects", "", "with noise, with; with, without; without, with; without, without", "",

@@ -27,7 +27,7 @@ static const ReferenceField fields[] = {
     {"libraries", "object", "", "", "", "what the pictures were computed with"},
     {"libraries.LIBRARY", "string", "", "", "", "its version"},
     {"hosts", "list of strings", "", "site:application:entity, or `observer`", "",
-     "who carried the sensor, one after the other"},
+     "which entities carried the sensor, one after the other"},
     {"choices", "list of strings", "", "`what: choice`", "", "what the program chose, as it printed it"},
     {"frames", "integer", "", "", "", "how many were made"},
     {"frame_sha256", "list of strings", "", "as frame_number", "", "SHA-256 of all planes before they are encoded"},

@@ -52,7 +52,7 @@ static const ReferenceField fields[] = {
     {"time_s", "number", "s", "exercise time", "", "instant of the frame"},
     {"frame_sha256", "string", "", "", "when hashes are not asked for",
      "SHA-256 of all planes before they are encoded"},
-    {"host", "object", "", "", "", "who carries the sensor"},
+    {"host", "object", "", "", "", "the entity that carries the sensor"},
     {"host.entity", "string", "", "site:application:entity", "", "id, or `observer`: an eye that is no entity"},
     {"host.marking", "string", "", "", "when the host is an observer", "its marking, at most 11 characters"},
     {"host.ecef_m", "list of 3 numbers", "m", "ecef", "", "place of the eye"},
@@ -151,7 +151,7 @@ static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
 const Reference reference_truth = {
     .topic = "truth",
     .file  = "truth.jsonl",
-    .title = "who is in the picture, where, and how bright: a line of JSON a frame",
+    .title = "targets in the picture, where, and how bright: a line of JSON a frame",
     .about = "JSON Lines: each line is one object. A frame is in it as soon as it is made.",
     .field = REFERENCE_FIELDS(fields),
     .word  = REFERENCE_FIELDS(words),

@@ -327,7 +327,7 @@ static void broken_blocks_end_the_file(void **state)
         make_packet(link_raw, 0);
         put_enhanced(0, 5, false);
         const size_t second = file.count;
-        put_enhanced(fault == 0 ? 1 : 0, 6, false); /* 0: an interface that nobody described */
+        put_enhanced(fault == 0 ? 1 : 0, 6, false); /* 0: an interface that was not described */
         if (fault == 1) file.at[file.count - 4] ^= 4;   /* its second length */
         if (fault == 2) file.at[second + 4] ^= 2;       /* a length that is no multiple of four */
         if (fault == 3) file.at[second + 4] = 8, file.at[second + 5] = 0; /* shorter than a block can be */

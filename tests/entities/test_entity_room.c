@@ -1,4 +1,4 @@
-/* tests/entities/test_entity_room.c: who is kept when the table is full: against a list that is searched from end to end,
+/* tests/entities/test_entity_room.c: which entities are kept when the table is full: against a list that is searched from end to end,
  * and in floods of invented entities. */
 #include "tests/entities/entity_fixture.h"
 #include "entities/entity_ranks.h"
@@ -233,7 +233,7 @@ static void the_farthest_goes_first(void **state)
     fixture_close(&f);
 }
 
-/* What snapshots are taken in between, and who waits how long to be removed, changes nothing. */
+/* What snapshots are taken in between, and how long each waits to be removed, changes nothing. */
 static void it_does_not_depend_on_snapshots(void **state)
 {
     (void)state;
