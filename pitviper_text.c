@@ -94,18 +94,25 @@ void text_show(char *out, size_t out_size, const char *text, bool lines)
     if (out_size) out[n] = 0;
 }
 
+/* Without allocating, but for texts of more than 16 KiB: what is told must not be lost when memory is out. */
 void text_vprint(FILE *to, const char *format, va_list arguments)
 {
-    char        *text   = NULL;
-    const int    length = vasprintf(&text, format, arguments);
-    const size_t room = length >= 0 ? 4 * (size_t)length + 1 : 0;
-    char        *shown = length >= 0 ? malloc(room) : NULL;
-    if (shown) {
-        text_show(shown, room, text, true);
-        fputs(shown, to);
-    }
-    free(shown);
-    if (length >= 0) free(text);
+    enum { usual = 16384 };
+    char      text[usual], shown[4 * usual];
+    char     *long_text = NULL, *long_shown = NULL;
+    va_list   again;
+    va_copy(again, arguments);
+    const int length = vsnprintf(text, sizeof text, format, arguments);
+    if (length < 0) *text = 0;
+    if (length >= usual && vasprintf(&long_text, format, again) < 0) long_text = NULL;
+    va_end(again);
+    if (long_text) long_shown = malloc(4 * (size_t)length + 1);
+    if (long_shown) text_show(long_shown, 4 * (size_t)length + 1, long_text, true);
+    else text_show(shown, sizeof shown, text, true);
+    fputs(long_shown ? long_shown : shown, to);
+    if (length >= usual && !long_shown) log_error("text: out of memory: a line is cut after %d octets", usual - 1);
+    free(long_shown);
+    free(long_text);
 }
 
 void text_print(FILE *to, const char *format, ...)

@@ -147,6 +147,28 @@ static void a_message_is_one_line(void **state)
     assert_string_equal(check_said, "a.dt1\\x0a at\\x1b[2J\\x0d\\x7f: damaged");
 }
 
+/* Texts of any length are printed whole. */
+static void long_texts_are_printed_whole(void **state)
+{
+    (void)state;
+    static const size_t lengths[] = {0, 1, 16382, 16383, 16384, 16385, 100000};
+    for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) {
+        const size_t n = lengths[i];
+        char        *in = malloc(n + 1), *out = malloc(4 * n + 1);
+        FILE        *file = tmpfile();
+        CHECK(in && out && file);
+        memset(in, '\a', n);
+        in[n] = 0;
+        text_print(file, "%s", in);
+        rewind(file);
+        CHECK(fread(out, 1, 4 * n + 1, file) == 4 * n);
+        for (size_t k = 0; k < n; k++) assert_memory_equal(out + 4 * k, "\\x07", 4);
+        fclose(file);
+        free(in);
+        free(out);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -157,6 +179,7 @@ int main(void)
         cmocka_unit_test(numbers_are_whole_strings),
         cmocka_unit_test(foreign_bytes_are_escaped),
         cmocka_unit_test(what_a_terminal_is_shown),
+        cmocka_unit_test(long_texts_are_printed_whole),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
