@@ -217,7 +217,7 @@ static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";
     if (argc > 1) {
-        fprintf(stderr, "pitviper help: one word, a command or a topic, not also `%s`\n", argv[1]);
+        text_print(stderr, "pitviper help: one word, a command or a topic, not also `%s`\n", argv[1]);
         return 2;
     }
     for (int i = 0; i < command_count; i++)
@@ -227,7 +227,7 @@ static int help_command(int argc, char **argv)
         return 0;
     }
     if (reference_write(stdout, argv[0])) return 0;
-    fprintf(stderr, "pitviper help: no command and no topic: %s; `pitviper --help` lists them\n", argv[0]);
+    text_print(stderr, "pitviper help: no command and no topic: %s; `pitviper --help` lists them\n", argv[0]);
     return 2;
 }
 

@@ -48,10 +48,9 @@ void log_hush(bool hushed);
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
 void log_status(const char *text);
 /* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and what was asked for
- * stay. log_shows_progress: whether a line that is written over itself makes sense: not quiet, and on a terminal. */
+ * stay. */
 bool log_is_quiet(void);
 bool log_is_verbose(void);
-bool log_shows_progress(void);
 /* To standard output, what was not asked for: choices, a summary at the end. Nothing when quiet. */
 void log_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));

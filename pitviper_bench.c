@@ -21,7 +21,10 @@ const char *bench_option(const Bench *bench, const char *name)
 
 void bench_progress(Bench *bench, const char *what)
 {
-    if (bench->terminal) fprintf(stderr, "\r\x1b[K%s ...", what);
+    char text[160];
+    (void)bench;
+    snprintf(text, sizeof text, "%s ...", what);
+    log_status(text);
 }
 
 /* ---- time ------------------------------------------------------------------------------------- */
@@ -231,7 +234,7 @@ void bench_add(Bench *bench, const BenchRow *row)
     if (!isnan(row->ratio))
         snprintf(ratio, sizeof ratio, row->ratio < 0.1 ? "%.2g x %.80s" : "%.2f x %.80s", row->ratio,
                  or_empty(row->to));
-    if (bench->terminal) fputs("\r\x1b[K", stderr);
+    log_status(NULL);
     printf("%-*s %10s %10s  %-18s %-22s %s%s%s%s%s%s\n", what_width, what, median_text, best, rate, ratio, error,
            *limit ? ", limit " : "", limit, row->against ? ": " : "", or_empty(row->against),
            holds ? "" : "  ** beyond its limit **");

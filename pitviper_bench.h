@@ -42,7 +42,7 @@ void bench_machine_line(char out[512], const BenchMachine *machine);
 
 struct Bench {
     const char *suite;
-    bool        quick, terminal, all;
+    bool        quick, all;
     int         threads, options, rows, broken; /* broken: rows whose error is beyond its limit */
     BenchOption option[bench_options_max];
     const char *plots;         /* folder; NULL: none asked for */

@@ -167,7 +167,7 @@ static void run_all(Bench *bench, const char *only, BenchNext *next)
     for (const BenchSuite *suite; (suite = next(state)) && bench->parts < bench_parts_max;)
         if (bench->all ? !done_before(bench, suite->name) : bench->parts == 0 && strcmp(suite->name, only) == 0)
             run_part(bench, suite->name, next);
-    if (bench->terminal) fputs("\r\x1b[K", stderr);
+    log_status(NULL);
 }
 
 static bool known_suite(const char *name, BenchNext *next)
@@ -198,7 +198,7 @@ static int conclude(const Bench *bench, double took_s)
 
 int bench_command(int argc, char **argv, BenchNext *next)
 {
-    Bench        bench = {.threads = thread_processors(), .terminal = isatty(STDERR_FILENO)};
+    Bench        bench = {.threads = thread_processors()};
     BenchPart    part[bench_parts_max];
     BenchMachine machine;
     Outputs      out = {NULL, NULL};

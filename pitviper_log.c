@@ -51,7 +51,6 @@ static LogLevel lowest_shown(void)
 
 bool log_is_quiet(void) { return lowest_shown() > LOG_INFO; }
 bool log_is_verbose(void) { return lowest_shown() <= LOG_DETAIL; }
-bool log_shows_progress(void) { return !log_is_quiet() && isatty(STDERR_FILENO); }
 
 void log_hush(bool hushed) { hushed_here = hushed; }
 

@@ -18,10 +18,11 @@
 
 static void show_progress(double n, double first, double last, double begun_s)
 {
-    if (!log_shows_progress()) return;
     const double done = (n - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
-    fprintf(stderr, "\r  frame %.0f of %.0f  %3.0f %%  %.0f s left   %s", n - first + 1, last - first + 1, 100 * done,
-            spent_s * (1 - done) / done, n == last ? "\r\x1b[K" : "");
+    char         text[96];
+    snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1, 100 * done,
+             spent_s * (1 - done) / done);
+    log_status(text);
 }
 
 /* Waits until the log's own clock, times speed, has come to t_s, or a signal. */
@@ -98,6 +99,7 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
         status = session_frame(&shown, session, (int)n, t_s);
         if (status == STATUS_OK) show_progress(n, first, last, begun_s);
     }
+    log_status(NULL);
     if (status != STATUS_OK) return status;
     if (session_result(session)->frames == 0 && !run->stopped) {
         if (plan->any_munition)

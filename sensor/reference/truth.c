@@ -8,7 +8,7 @@ const Reference reference_products = {
     .file  = "OUT/",
     .title = "what a run leaves in the folder that --out names",
     .about =
-        "    truth.jsonl                      help truth     who is in the picture, where, how bright; a line a frame\n"
+        "    truth.jsonl                      help truth     targets: where, how bright; a line a frame\n"
         "    run.json                         help run.json  the run: settings, hashes, choices, counters, times\n"
         "    frames/BAND/NNNNNN.exr           help exr       radiance of every pixel\n"
         "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal\n"

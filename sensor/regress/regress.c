@@ -237,10 +237,9 @@ static void print_line(const CaseResult *r)
 
 static void show_progress(const Suite *s)
 {
-    if (!log_shows_progress()) return;
-    const double spent_s = wall_clock_s() - s->begun_s;
-    fprintf(stderr, "\r\x1b[K  %d of %d cases, %.0f s%s", s->done, s->count, spent_s,
-            s->done == s->count ? "\r\x1b[K" : "");
+    char text[64];
+    snprintf(text, sizeof text, "%d of %d cases, %.0f s", s->done, s->count, wall_clock_s() - s->begun_s);
+    log_status(s->done == s->count ? NULL : text);
 }
 
 /* In the order in which they were given, each as soon as those before it are done. */
@@ -252,7 +251,7 @@ static void take_case(void *user, int worker, int task)
     pthread_mutex_lock(&s->lock);
     s->ended[task] = true;
     s->done++;
-    if (log_shows_progress()) fputs("\r\x1b[K", stderr);
+    log_status(NULL);
     for (; s->printed < s->count && s->ended[s->printed]; s->printed++) print_line(s->result[s->printed]);
     fflush(stdout);
     show_progress(s);

@@ -1,4 +1,4 @@
-/* coco.json of several folders in one: new ids, and files that nobody of this program wrote end in a line. */
+/* coco.json of several folders in one: new ids, and files that this program did not write end in a line. */
 #include "tests/check.h"
 
 #include "sensor/publish/coco_merge.h"

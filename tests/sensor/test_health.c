@@ -50,7 +50,7 @@ static void what_is_heard(void **state)
     CHECK(judge(HEALTH_HEAR, s) == HEALTH_FINE);
     s.away = true;
     CHECK(judge(HEALTH_HEAR, s) == HEALTH_AWAY);
-    /* whoever stands still may report once a minute: as long as the table holds it, it is heard */
+    /* an entity at rest may report once a minute: as long as the table holds it, it is heard */
     s.away     = false;
     s.now_s    = 150;
     s.making   = true;

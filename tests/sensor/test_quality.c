@@ -1,5 +1,6 @@
 /* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said,
- * and whether what is promised holds in scenes and on a ground that the table of etc/ knows nothing of. labels: slow */
+ * and whether what is promised holds in scenes and on a ground that the table of etc/ was not measured on.
+ * labels: slow */
 #include "sensor/node/quality.h"
 #include "tests/sensor/error_scenes.h"
 
