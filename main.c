@@ -1,21 +1,17 @@
-/* main.c: the commands, as one table; and the probes and benchmarks, as the rooms list them. */
-#include "dis/bench.h"
-#include "entities/bench.h"
+/* main.c: the commands, as one table; and the probes, as the rooms list them. */
 #include "entities/probe.h"
-#include "render/bench.h"
 #include "render/probe.h"
-#include "sensor/node/check.h"
-#include "sensor/bench.h"
-#include "sensor/node/exercise.h"
-#include "sensor/node/inspect.h"
+#include "sensor/commands/check.h"
+#include "sensor/bench/suites.h"
+#include "sensor/commands/exercise.h"
+#include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
-#include "sensor/node/model.h"
-#include "sensor/node/record.h"
+#include "sensor/commands/model.h"
+#include "sensor/commands/record.h"
 #include "sensor/node/replay.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"
-#include "terrain/bench.h"
 #include "terrain/probe.h"
 
 #include <errno.h>
@@ -42,14 +38,6 @@ static const RoomList probe_lists[] = {
     ROOM_LIST(sensor_probes, sensor_probe_count),
 };
 
-static const RoomList bench_lists[] = {
-    ROOM_LIST(dis_benches, dis_bench_count),
-    ROOM_LIST(terrain_benches, terrain_bench_count),
-    ROOM_LIST(entities_benches, entities_bench_count),
-    ROOM_LIST(render_benches, render_bench_count),
-    ROOM_LIST(sensor_benches, sensor_bench_count),
-};
-
 /* state: list, place in it; from zeroes. NULL: no more. */
 static const void *next_of(const RoomList *list, size_t lists, size_t state[2])
 {
@@ -63,11 +51,6 @@ static const void *next_of(const RoomList *list, size_t lists, size_t state[2])
 static const Probe *next_probe(size_t state[2])
 {
     return next_of(probe_lists, sizeof probe_lists / sizeof *probe_lists, state);
-}
-
-static const BenchSuite *next_bench(size_t state[2])
-{
-    return next_of(bench_lists, sizeof bench_lists / sizeof *bench_lists, state);
 }
 
 static void probe_usage(FILE *to)
@@ -101,7 +84,7 @@ static int probe_command(int argc, char **argv)
     return 2;
 }
 
-static int run_bench(int argc, char **argv) { return bench_command(argc, argv, next_bench); }
+static int run_bench(int argc, char **argv) { return bench_command(argc, argv, bench_next_suite); }
 
 /* ---- the commands ----------------------------------------------------------------------------- */
 

@@ -1,6 +1,6 @@
 #include "entities/probe.h"
 
-#include "entities/dead_reckoning.h"
+#include "entities/table/dead_reckoning.h"
 
 static void three(double out[3], const ProbeValue *in)
 {

@@ -1,9 +1,9 @@
 #include "render/probe.h"
 
-#include "entities/model_import.h"
-#include "render/atmosphere.h"
-#include "render/parts.h"
-#include "render/planck.h"
+#include "entities/import/model_import.h"
+#include "render/air/atmosphere.h"
+#include "render/parts/parts.h"
+#include "render/light/planck.h"
 
 #include <stdlib.h>
 

@@ -1,8 +1,8 @@
 #include "terrain/probe.h"
 
-#include "terrain/geoid.h"
-#include "terrain/local_frame.h"
-#include "terrain/sun.h"
+#include "terrain/earth/geoid.h"
+#include "terrain/earth/local_frame.h"
+#include "terrain/earth/sun.h"
 
 #include <stdlib.h>
 

@@ -8,7 +8,7 @@
 
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 
 #include <errno.h>
 #include <fcntl.h>

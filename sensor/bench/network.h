@@ -2,7 +2,7 @@
 #ifndef SENSOR_BENCH_NETWORK_H
 #define SENSOR_BENCH_NETWORK_H
 
-#include "pitviper.h"
+#include "sensor/bench/bench.h"
 
 Status bench_live(Bench *bench);
 

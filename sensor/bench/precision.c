@@ -1,9 +1,9 @@
 /* sensor/bench/precision.c: the pictures that errors are measured in. */
 #include "sensor/bench/precision.h"
 
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 #include "sensor/node/seeker.h"
-#include "terrain/bench_ground.h"
+#include "sensor/bench/quick_landscape.h"
 
 const char *const precision_shot_name[SHOT_COUNT] =
     {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};

@@ -4,7 +4,7 @@
 #define SENSOR_BENCH_PRECISION_H
 
 #include "sensor/bench/scene.h"
-#include "terrain/bench_turn.h"
+#include "sensor/bench/turn.h"
 
 /* What errors are measured in: several pictures, so that none is that of a lucky one. */
 typedef enum PrecisionShot { SHOT_GROUND, SHOT_NEAR, SHOT_SMALL, SHOT_HORIZON, SHOT_COUNT } PrecisionShot;

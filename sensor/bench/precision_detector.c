@@ -1,7 +1,7 @@
 /* sensor/bench/precision_detector.c: from radiance to what is stored: blur, photons, counts, displays. */
 #include "sensor/bench/precision.h"
 
-#include "render/planck.h"
+#include "render/light/planck.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/quantise.h"

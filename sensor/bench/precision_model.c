@@ -1,8 +1,8 @@
 /* sensor/bench/precision_model.c: facets for curved surfaces, and mirrors of the pseudo-radar. */
 #include "sensor/bench/precision.h"
 
-#include "entities/parametric.h"
-#include "render/parts.h"
+#include "entities/parametric/parametric.h"
+#include "render/parts/parts.h"
 
 #include <stdlib.h>
 
@@ -241,7 +241,7 @@ static Status knob_bounces(Precision *p)
         render_mirrors(&set[k]);
         point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
     }
-    bench_turn(p->bench, &(BenchKnob){"mirrors of a radar path", "render/radar_image.h",
+    bench_turn(p->bench, &(BenchKnob){"mirrors of a radar path", "render/radar/radar_image.h",
                                       "a radar picture of 96 x 64, 2 x 2 rays",
                                       "%", "power of pictures, rms; 12 mirrors", 0.1}, work, point, settings);
     return p->status;

@@ -1,7 +1,7 @@
 /* sensor/bench/precision_small.c: where a target of less than a pixel seems to be behind a detector's optics. */
 #include "sensor/bench/precision.h"
 
-#include "render/planck.h"
+#include "render/light/planck.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/subpixel.h"
 

@@ -5,8 +5,8 @@
 #include "sensor/bench/quality.h"
 
 #include "sensor/bench/scene.h"
-#include "sensor/node/quality.h"
-#include "terrain/bench_ground.h"
+#include "sensor/settings/quality.h"
+#include "sensor/bench/quick_landscape.h"
 
 #include <time.h>
 

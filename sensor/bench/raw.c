@@ -1,7 +1,8 @@
 #include "sensor/bench/raw.h"
 
-#include "render/ground.h"
-#include "render/parts.h"
+#include "sensor/bench/bench.h"
+#include "render/ground/ground.h"
+#include "render/parts/parts.h"
 
 #include <stdlib.h>
 

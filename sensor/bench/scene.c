@@ -1,6 +1,6 @@
 #include "sensor/bench/scene.h"
 
-#include "entities/dead_reckoning.h"
+#include "entities/table/dead_reckoning.h"
 #include "sensor/node/seeker.h"
 
 /* ---- who is there ----------------------------------------------------------------------------- */

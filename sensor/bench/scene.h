@@ -2,9 +2,9 @@
 #ifndef SENSOR_BENCH_SCENE_H
 #define SENSOR_BENCH_SCENE_H
 
-#include "entities/entity_table.h"
-#include "render/render.h"
-#include "sensor/node/truth.h"
+#include "entities/table/entity_table.h"
+#include "render/frame/render.h"
+#include "sensor/truth/truth.h"
 #include "sensor/publish/plane_hash.h"
 
 typedef struct BenchScene {

@@ -4,8 +4,8 @@
 #include "sensor/bench/skip.h"
 
 #include "sensor/bench/scene.h"
-#include "sensor/node/config.h"
-#include "terrain/bench_ground.h"
+#include "sensor/settings/config.h"
+#include "sensor/bench/quick_landscape.h"
 
 #include <stdlib.h>
 

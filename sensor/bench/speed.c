@@ -7,8 +7,8 @@
 
 #include "sensor/bench/raw.h"
 #include "sensor/bench/speed_private.h"
-#include "sensor/node/config.h"
-#include "terrain/bench_ground.h"
+#include "sensor/settings/config.h"
+#include "sensor/bench/quick_landscape.h"
 
 #include <errno.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef SENSOR_BENCH_SPEED_H
 #define SENSOR_BENCH_SPEED_H
 
-#include "pitviper.h"
+#include "sensor/bench/bench.h"
 
 Status bench_speed(Bench *bench);
 

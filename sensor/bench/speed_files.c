@@ -3,7 +3,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/publish/image_file.h"
-#include "terrain/bench_ground.h"
+#include "sensor/bench/quick_landscape.h"
 
 #include <stdlib.h>
 #include <unistd.h>

@@ -2,8 +2,8 @@
  * of pictures without contrast; and whether every thread treats the smallest numbers alike. */
 #include "sensor/bench/stability.h"
 
-#include "render/bench_stability.h"
-#include "render/planck.h"
+#include "sensor/bench/render/stability.h"
+#include "render/light/planck.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/quantise.h"
 

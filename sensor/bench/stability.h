@@ -2,7 +2,7 @@
 #ifndef SENSOR_BENCH_STABILITY_H
 #define SENSOR_BENCH_STABILITY_H
 
-#include "pitviper.h"
+#include "sensor/bench/bench.h"
 
 Status sensor_bench_stability(Bench *bench);
 

@@ -1,6 +1,6 @@
 #include "sensor/detector/chain.h"
 
-#include "render/planck.h"
+#include "render/light/planck.h"
 #include "sensor/detector/bad_pixels.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/coupling.h"

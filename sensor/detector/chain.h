@@ -8,7 +8,7 @@
 #ifndef SENSOR_DETECTOR_CHAIN_H
 #define SENSOR_DETECTOR_CHAIN_H
 
-#include "render/render.h"
+#include "render/frame/render.h"
 #include "sensor/detector/preset.h"
 
 typedef struct Chain Chain;

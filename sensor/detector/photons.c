@@ -1,6 +1,6 @@
 #include "sensor/detector/photons.h"
 
-#include "render/planck.h"
+#include "render/light/planck.h"
 
 #include <stdlib.h>
 

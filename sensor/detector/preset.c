@@ -1,6 +1,6 @@
 #include "sensor/detector/preset.h"
 
-#include "render/atmosphere.h"
+#include "render/air/atmosphere.h"
 
 typedef struct Column {
     const char *name;

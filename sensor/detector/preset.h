@@ -2,7 +2,7 @@
 #ifndef SENSOR_DETECTOR_PRESET_H
 #define SENSOR_DETECTOR_PRESET_H
 
-#include "render/view.h"
+#include "render/scene/view.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/scan.h"
@@ -12,7 +12,7 @@ typedef struct SensorPreset {
     Band           band;               /* optical, mwir or lwir */
     OpticalChannels optical;           /* what it sees of the optical band */
     double         width_px, height_px, hfov_deg;
-    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/lens.h); R and B over G, less 1 */
+    double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/lens.h); R and B over G, less 1 */
     PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
     double         tdi;                /* stages whose electrons are added; 0 or 1: none are */
     double         obscuration, footprint, jitter_px;

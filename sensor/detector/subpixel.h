@@ -20,7 +20,7 @@
 #ifndef SENSOR_DETECTOR_SUBPIXEL_H
 #define SENSOR_DETECTOR_SUBPIXEL_H
 
-#include "render/render.h"
+#include "render/frame/render.h"
 #include "sensor/detector/mtf.h"
 #include "sensor/detector/photons.h"
 

@@ -2,8 +2,8 @@
 #include "sensor/node/player.h"
 
 #include "dis/enumerations.h"
-#include "render/view.h"
-#include "terrain/sun.h"
+#include "render/scene/view.h"
+#include "terrain/earth/sun.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/player.h"
 

@@ -4,10 +4,10 @@
 #ifndef SENSOR_NODE_CHOICES_H
 #define SENSOR_NODE_CHOICES_H
 
-#include "entities/catalog.h"
-#include "entities/survey.h"
-#include "sensor/node/config.h"
-#include "terrain/landscape.h"
+#include "entities/models/catalog.h"
+#include "entities/survey/survey.h"
+#include "sensor/settings/config.h"
+#include "terrain/landscape/landscape.h"
 
 enum { choices_capacity = 32, choice_text_size = 200 };
 

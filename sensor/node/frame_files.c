@@ -3,7 +3,7 @@
 #include "sensor/detector/colour.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/node/plane_choice.h"
+#include "sensor/settings/plane_choice.h"
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/truth_preview.h"
 

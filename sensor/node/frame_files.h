@@ -4,11 +4,11 @@
 #ifndef SENSOR_NODE_FRAME_FILES_H
 #define SENSOR_NODE_FRAME_FILES_H
 
-#include "render/render.h"
+#include "render/frame/render.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/level.h"
-#include "sensor/node/config.h"
-#include "sensor/node/truth.h"
+#include "sensor/settings/config.h"
+#include "sensor/truth/truth.h"
 #include "sensor/publish/plane_hash.h"
 
 /* An automatic level that follows; begins with the first frame made. */

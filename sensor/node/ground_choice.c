@@ -2,9 +2,9 @@
  * exercise says of it; and who is set onto it. */
 #include "sensor/node/choices.h"
 
-#include "entities/contact.h"
+#include "entities/models/contact.h"
 #include "sensor/node/ground_evidence.h"
-#include "terrain/landscape_import.h"
+#include "terrain/landscape/landscape_import.h"
 
 #include <stdlib.h>
 

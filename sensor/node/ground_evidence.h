@@ -10,9 +10,9 @@
 #ifndef SENSOR_NODE_GROUND_EVIDENCE_H
 #define SENSOR_NODE_GROUND_EVIDENCE_H
 
-#include "entities/catalog.h"
-#include "entities/survey.h"
-#include "terrain/landscape.h"
+#include "entities/models/catalog.h"
+#include "entities/survey/survey.h"
+#include "terrain/landscape/landscape.h"
 
 typedef enum Stance {
     STANCE_OTHER,      /* in the air, or nothing is known */

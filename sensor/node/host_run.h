@@ -2,9 +2,9 @@
 #ifndef SENSOR_NODE_HOST_RUN_H
 #define SENSOR_NODE_HOST_RUN_H
 
-#include "sensor/node/options.h"
+#include "sensor/settings/options.h"
 #include "sensor/node/session.h"
-#include "sensor/node/tables_used.h"
+#include "sensor/settings/tables_used.h"
 
 /* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
  * that a part of a run equals that part of the whole. */

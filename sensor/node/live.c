@@ -9,9 +9,9 @@
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
-#include "sensor/node/overwrite.h"
-#include "sensor/node/quality.h"
-#include "sensor/node/span.h"
+#include "sensor/commands/overwrite.h"
+#include "sensor/settings/quality.h"
+#include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
 

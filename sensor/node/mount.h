@@ -13,8 +13,8 @@
 #ifndef SENSOR_NODE_MOUNT_H
 #define SENSOR_NODE_MOUNT_H
 
-#include "entities/snapshot.h"
-#include "sensor/node/config.h"
+#include "entities/table/snapshot.h"
+#include "sensor/settings/config.h"
 
 typedef struct Mount {
     bool   on_part;             /* not auto */

@@ -7,7 +7,7 @@
 #define SENSOR_NODE_OPENING_H
 
 #include "dis/log.h"
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 
 enum { opening_before = 1024 };
 

@@ -7,7 +7,7 @@
 #define SENSOR_NODE_PLAYER_H
 
 #include "dis/log.h"
-#include "entities/entity_table.h"
+#include "entities/table/entity_table.h"
 
 typedef struct Player Player;
 

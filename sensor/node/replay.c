@@ -3,10 +3,10 @@
 #include "sensor/node/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
-#include "sensor/node/overwrite.h"
-#include "sensor/node/span.h"
+#include "sensor/commands/overwrite.h"
+#include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
-#include "sensor/node/sweep.h"
+#include "sensor/commands/sweep.h"
 
 #include <libgen.h>
 #include <stdio.h>

@@ -2,11 +2,11 @@
 #ifndef SENSOR_NODE_SESSION_H
 #define SENSOR_NODE_SESSION_H
 
-#include "entities/entity_table.h"
-#include "render/render.h"
+#include "entities/table/entity_table.h"
+#include "render/frame/render.h"
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
-#include "sensor/node/sensors.h"
+#include "sensor/settings/sensors.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
 

@@ -6,11 +6,11 @@
 #ifndef SENSOR_PUBLISH_RECORDS_H
 #define SENSOR_PUBLISH_RECORDS_H
 
-#include "entities/dead_reckoning.h"
-#include "entities/effects_history.h"
-#include "sensor/node/frame_error.h"
-#include "sensor/node/truth.h"
-#include "terrain/sun.h"
+#include "entities/table/dead_reckoning.h"
+#include "entities/effects/effects_history.h"
+#include "sensor/truth/frame_error.h"
+#include "sensor/truth/truth.h"
+#include "terrain/earth/sun.h"
 
 #include <stdio.h>
 

@@ -2,7 +2,7 @@
 #ifndef SENSOR_PUBLISH_TRUTH_PREVIEW_H
 #define SENSOR_PUBLISH_TRUTH_PREVIEW_H
 
-#include "entities/snapshot.h"
+#include "entities/table/snapshot.h"
 
 /* rgb: [count][3]. Ground: grey by range, light near and dark far, logarithmic between the nearest and the
  * farthest finite range. Sky (range not finite): dark blue. Entities (plane: snapshot index + 1): a colour

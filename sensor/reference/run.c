@@ -2,7 +2,7 @@
 #include "sensor/reference/reference.h"
 
 #include "dis/pdu.h"
-#include "render/skip.h"
+#include "render/scene/skip.h"
 #include "sensor/node/session.h"
 
 static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisDrop)i) : NULL; }

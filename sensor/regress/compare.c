@@ -1,6 +1,6 @@
 #include "sensor/regress/compare.h"
 
-#include "render/planck.h"
+#include "render/light/planck.h"
 
 static double difference_of(float expected, float got)
 {

@@ -1,5 +1,6 @@
 #include "sensor/regress/picture.h"
 
+#include "sensor/publish/html.h"
 #include "sensor/publish/image_file.h"
 
 #include <stdlib.h>

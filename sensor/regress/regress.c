@@ -1,6 +1,6 @@
 #include "sensor/regress/regress.h"
 
-#include "sensor/node/next_option.h"
+#include "sensor/commands/next_option.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/report.h"
 

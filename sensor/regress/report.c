@@ -1,5 +1,6 @@
 #include "sensor/regress/report.h"
 
+#include "sensor/publish/html.h"
 #include "sensor/regress/picture.h"
 
 #include <stdlib.h>

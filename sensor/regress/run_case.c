@@ -1,6 +1,6 @@
 #include "sensor/regress/run_case.h"
 
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/child.h"

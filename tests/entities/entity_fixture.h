@@ -3,8 +3,8 @@
 #define TESTS_ENTITIES_ENTITY_FIXTURE_H
 
 #include "tests/check.h"
-#include "entities/dead_reckoning.h"
-#include "entities/entity_table.h"
+#include "entities/table/dead_reckoning.h"
+#include "entities/table/entity_table.h"
 
 typedef struct Fixture {
     Catalog     *catalog;

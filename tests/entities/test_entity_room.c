@@ -1,7 +1,7 @@
 /* tests/entities/test_entity_room.c: which entities are kept when the table is full: against a list that is searched from end to end,
  * and in floods of invented entities. */
 #include "tests/entities/entity_fixture.h"
-#include "entities/entity_ranks.h"
+#include "entities/table/entity_ranks.h"
 
 /* ---- ranks against a plain list ------------------------------------------------------------- */
 

@@ -5,7 +5,7 @@
  * The receiver is the entity table, fed from the datagrams; the truth is the cast. */
 #include "tests/entities/entity_fixture.h"
 
-#include "entities/exercise.h"
+#include "entities/scenario/exercise.h"
 
 typedef struct Heard {
     Fixture   *fixture;      /* NULL: only counted */

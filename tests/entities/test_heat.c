@@ -1,6 +1,6 @@
 /* tests/entities/test_heat.c: first-order levels against the exponential on paper, and what counts as evidence. */
 #include "tests/entities/entity_fixture.h"
-#include "entities/heat.h"
+#include "entities/effects/heat.h"
 
 #include <unistd.h>
 

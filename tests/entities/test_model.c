@@ -1,7 +1,7 @@
 /* Poses, measures and the validator, on a cube with an arm whose answers are known on paper. */
 #include "tests/check.h"
 
-#include "entities/model.h"
+#include "entities/models/model.h"
 
 /* A unit cube centred on the node's origin, as 12 triangles over 24 vertices (flat normals). */
 static void put_cube(Model *m, int vertex, int triangle, int part)

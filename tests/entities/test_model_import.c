@@ -6,8 +6,8 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "entities/catalog.h"
-#include "entities/model_import.h"
+#include "entities/models/catalog.h"
+#include "entities/import/model_import.h"
 
 static char folder[64];
 

@@ -2,8 +2,8 @@
  * their joints do when an exercise moves them. */
 #include "tests/entities/model_fixture.h"
 
-#include "entities/articulation.h"
-#include "entities/parametric_parts.h"
+#include "entities/models/articulation.h"
+#include "entities/parametric/parts.h"
 
 /* ---- size ------------------------------------------------------------------------------------- */
 

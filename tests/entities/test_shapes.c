@@ -3,9 +3,9 @@
  * heavy in any size; and that what has no shape is not there. */
 #include "tests/entities/model_fixture.h"
 
-#include "entities/articulation.h"
-#include "entities/catalog.h"
-#include "entities/heat.h"
+#include "entities/models/articulation.h"
+#include "entities/models/catalog.h"
+#include "entities/effects/heat.h"
 
 /* ---- the common types -------------------------------------------------------------------------- */
 

@@ -3,7 +3,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
 
-#include "entities/survey.h"
+#include "entities/survey/survey.h"
 #include "sensor/node/player.h"
 
 #include <stdlib.h>

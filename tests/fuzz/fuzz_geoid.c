@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_geoid.c: any octets as a .gtx grid. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "terrain/geoid.h"
+#include "terrain/earth/geoid.h"
 
 #include <stdlib.h>
 

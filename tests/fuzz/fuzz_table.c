@@ -3,10 +3,10 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/catalog.h"
-#include "entities/effects.h"
-#include "entities/heat.h"
-#include "render/materials.h"
+#include "entities/models/catalog.h"
+#include "entities/effects/effects.h"
+#include "entities/effects/heat.h"
+#include "render/light/materials.h"
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>

@@ -4,7 +4,7 @@
 
 #include "tests/check.h"
 
-#include "entities/model.h"
+#include "entities/models/model.h"
 
 static uint64_t hand_draw;
 

@@ -4,7 +4,7 @@
 
 #include "tests/render/hand_models.h"
 
-#include "render/render.h"
+#include "render/frame/render.h"
 
 enum { hand_plate_model, hand_sphere_model, hand_mast_model, hand_models, hand_most_entities = 64 };
 

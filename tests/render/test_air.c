@@ -1,6 +1,6 @@
 /* The air of a frame against the tables it was made of, and against what must hold anywhere. */
 #include "tests/check.h"
-#include "render/air.h"
+#include "render/air/air.h"
 
 #include <stdlib.h>
 

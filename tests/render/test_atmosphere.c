@@ -1,8 +1,8 @@
 /* The tables of the air against the program that filled them: at its own points, at points that the tables do not
  * hold, and at the ends. */
 #include "tests/render/atmosphere_errors.h"
-#include "render/atmosphere.h"
-#include "render/planck.h"
+#include "render/air/atmosphere.h"
+#include "render/light/planck.h"
 #include "render/probe.h"
 
 static Atmosphere *us1976, *midlat_summer;

@@ -1,6 +1,6 @@
 /* The tables of the air spoilt: a small set of them, written here, is refused with file and line, and nothing crashes. */
 #include "tests/check.h"
-#include "render/atmosphere.h"
+#include "render/air/atmosphere.h"
 
 #include <sys/stat.h>
 

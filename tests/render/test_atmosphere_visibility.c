@@ -1,7 +1,7 @@
 /* The air of visibilities that have no table, against the program that filled the tables: paths, the sun and the sky's
  * light; that the tables come back at their own; that one visibility alone is the same air. */
 #include "tests/render/atmosphere_errors.h"
-#include "render/atmosphere.h"
+#include "render/air/atmosphere.h"
 
 static Atmosphere *model[2];
 static const char *const model_name[2] = {"us1976", "midlat_summer"};

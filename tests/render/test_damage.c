@@ -1,7 +1,7 @@
 /* What a sidecar says of damage is what is seen: parts gone, materials changed, in the state the sender reports. */
 #include "tests/check.h"
 
-#include "render/render.h"
+#include "render/frame/render.h"
 
 #include <sys/stat.h>
 #include <unistd.h>

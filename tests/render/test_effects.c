@@ -1,8 +1,8 @@
 /* Puffs in the picture: what a flash shines with, what a cloud hides, and that nothing changes where there is none. */
 #include "tests/check.h"
 
-#include "render/effects.h"
-#include "render/render.h"
+#include "render/smoke/effects.h"
+#include "render/frame/render.h"
 
 static Catalog    *catalog;
 static World       world;

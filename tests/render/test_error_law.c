@@ -1,5 +1,5 @@
 /* The law by which means over n x n samples tell their own error. The budgets of frames: tests/sensor. */
-#include "render/error_budget.h"
+#include "render/frame/error_budget.h"
 #include "tests/check.h"
 
 /* Half planes at all angles and places over the turned grid, whose covered area is

@@ -2,10 +2,10 @@
  * nothing can be brighter or darker than what surrounds it. */
 #include "tests/render/hand_models.h"
 
-#include "render/gather.h"
-#include "render/optical.h"
-#include "render/parts.h"
-#include "render/thermal.h"
+#include "render/light/gather.h"
+#include "render/light/optical.h"
+#include "render/parts/parts.h"
+#include "render/light/thermal.h"
 
 enum { model_plane, model_sphere, model_count };
 

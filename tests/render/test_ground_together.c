@@ -2,8 +2,8 @@
  * the eye. Of this the second knows neither strips nor groups (tests/render/test_ground.c judges it). labels: slow */
 #include "tests/check.h"
 
-#include "render/ground.h"
-#include "render/view.h"
+#include "render/ground/ground.h"
+#include "render/scene/view.h"
 
 enum { tile = 1024 };
 

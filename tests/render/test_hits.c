@@ -15,8 +15,8 @@
 #include <unistd.h>
 #include <zlib.h>
 
-#include "entities/model_import.h"
-#include "render/parts.h"
+#include "entities/import/model_import.h"
+#include "render/parts/parts.h"
 
 enum { most_rays = 8192 };
 

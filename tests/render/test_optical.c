@@ -1,6 +1,6 @@
 /* Reflected light, where paper knows the answer. */
 #include "tests/check.h"
-#include "render/optical.h"
+#include "render/light/optical.h"
 
 static PlanckTable *mwir, *lwir;
 static Atmosphere *atmosphere;

@@ -4,8 +4,8 @@
 
 #include <unistd.h>
 
-#include "entities/model_import.h"
-#include "render/parts.h"
+#include "entities/import/model_import.h"
+#include "render/parts/parts.h"
 
 typedef struct Scene {
     Tracer     *tracer;

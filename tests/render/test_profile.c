@@ -1,7 +1,7 @@
 /* The range profile: all of the picture's power, where the ranges are, and no overflow at the largest. */
 #include "tests/check.h"
 
-#include "render/render.h"
+#include "render/frame/render.h"
 
 static Catalog *catalog;
 static World    world;

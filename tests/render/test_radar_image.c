@@ -4,8 +4,8 @@
  * its effective area, over range squared, times the lobe's peak. Effective areas: plate a b cos(tilt); dihedral of
  * square faces 2 a b min(sin, cos); square trihedral on its axis sqrt(3) a^2. */
 #include "tests/check.h"
-#include "render/parts.h"
-#include "render/radar_image.h"
+#include "render/parts/parts.h"
+#include "render/radar/radar_image.h"
 
 static const double edge_m = 2, range_m = 1500, lobe_rad = 0.05;
 

@@ -1,9 +1,9 @@
-/* The quick form of surfaces' light against the plain one of render/optical.c and thermal.c, on random hits of every
+/* The quick form of surfaces' light against the plain one of render/light/optical.c and thermal.c, on random hits of every
  * class, slope, sun and view; and that a hit's bits do not hang on its company. */
 #include "tests/render/hand_world.h"
 
-#include "render/surface_light.h"
-#include "render/optical.h"
+#include "render/light/surface_light.h"
+#include "render/light/optical.h"
 
 enum { hits_count = 1016, suns = 4 };
 

@@ -1,6 +1,6 @@
 /* Heat seen: the isothermal cavity, Kirchhoff, and temperatures that a thermometer could have read. */
 #include "tests/check.h"
-#include "render/thermal.h"
+#include "render/light/thermal.h"
 
 static PlanckTable *mwir, *lwir;
 static Atmosphere *atmosphere;

@@ -4,7 +4,7 @@
 
 #include <unistd.h>
 
-#include "render/parts.h"
+#include "render/parts/parts.h"
 
 enum { model_box, model_plate, model_sphere, model_count, most_entities = 32 };
 

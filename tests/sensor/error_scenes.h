@@ -3,9 +3,9 @@
 #ifndef TESTS_SENSOR_ERROR_SCENES_H
 #define TESTS_SENSOR_ERROR_SCENES_H
 
-#include "entities/dead_reckoning.h"
+#include "entities/table/dead_reckoning.h"
 #include "sensor/bench/scene.h"
-#include "sensor/node/frame_error.h"
+#include "sensor/truth/frame_error.h"
 #include "tests/check.h"
 
 typedef struct ErrorScene {

@@ -2,7 +2,7 @@
 #ifndef TESTS_SENSOR_OPEN_CATALOG_H
 #define TESTS_SENSOR_OPEN_CATALOG_H
 
-#include "entities/catalog.h"
+#include "entities/models/catalog.h"
 
 static Catalog *catalog;
 

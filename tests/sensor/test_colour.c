@@ -3,7 +3,7 @@
 #include "tests/render/hand_world.h"
 #include "tests/sensor/colour_spectra.h"
 
-#include "render/optical.h"
+#include "render/light/optical.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/quantise.h"

@@ -1,7 +1,7 @@
 /* The configuration: what is wrong is refused with file, line, key, value and range; nothing half-applied. */
 #include "tests/check.h"
 
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 
 static Status read_text(Config *config, const char *text)
 {

@@ -1,7 +1,7 @@
 /* Every key of the configuration at the ends of floating point: refused with its name, or taken as a finite number. */
 #include "tests/check.h"
 
-#include "sensor/node/config.h"
+#include "sensor/settings/config.h"
 
 static void every_number_is_finite_or_refused(void **state)
 {

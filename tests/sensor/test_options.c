@@ -3,7 +3,7 @@
  * nothing there fails, until this test can see what it changes, and with that whether a variant has it. */
 #include "tests/check.h"
 
-#include "sensor/node/options.h"
+#include "sensor/settings/options.h"
 
 enum { line_max = 40 };
 

@@ -1,7 +1,7 @@
 /* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said,
  * and whether what is promised holds in scenes and on a ground that the table of etc/ was not measured on.
  * labels: slow */
-#include "sensor/node/quality.h"
+#include "sensor/settings/quality.h"
 #include "tests/sensor/error_scenes.h"
 
 static const char good[] = "# by hand\n"

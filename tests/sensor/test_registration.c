@@ -12,8 +12,8 @@
  * pinhole would have it, by formulas and a Newton's method of this file's own. labels: slow */
 #include "tests/check.h"
 
-#include "entities/entity_table.h"
-#include "render/render.h"
+#include "entities/table/entity_table.h"
+#include "render/frame/render.h"
 
 
 typedef long double Real;

@@ -1,7 +1,7 @@
 /* The scene's motion against where a point at rest is projected a moment before and after. */
 #include "tests/check.h"
 
-#include "render/view.h"
+#include "render/scene/view.h"
 #include "sensor/node/scene_rate.h"
 
 /* Rotation by an angle about a unit axis, Rodrigues. */

@@ -1,9 +1,9 @@
 /* The gimbal: limits, rate, lag; the camera: upright, right is right. */
 #include "tests/check.h"
 
-#include "entities/dead_reckoning.h"
+#include "entities/table/dead_reckoning.h"
 #include "sensor/node/seeker.h"
-#include "terrain/local_frame.h"
+#include "terrain/earth/local_frame.h"
 #include "tests/sensor/attitude.h"
 
 static Seeker head(double limit_deg, double rate_dps, double lag_s)

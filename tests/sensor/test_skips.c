@@ -3,7 +3,7 @@
 #include "tests/check.h"
 
 #include "sensor/bench/scene.h"
-#include "terrain/bench_ground.h"
+#include "sensor/bench/quick_landscape.h"
 
 enum { scenes = 10, most_entities = 24 };
 

@@ -1,8 +1,8 @@
 /* tests/sensor/test_span.c: moments of a recording, and lists of planes, as people write them. */
 #include "tests/check.h"
 
-#include "sensor/node/plane_choice.h"
-#include "sensor/node/span.h"
+#include "sensor/settings/plane_choice.h"
+#include "sensor/settings/span.h"
 
 static void moments_are_of_three_kinds(void **state)
 {

@@ -2,7 +2,7 @@
  * value and no combination favoured. */
 #include "tests/check.h"
 
-#include "sensor/node/sweep_file.h"
+#include "sensor/commands/sweep_file.h"
 
 enum { text_size = 4096 };
 

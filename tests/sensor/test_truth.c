@@ -1,7 +1,7 @@
 /* Truth per target, against geometry worked out another way and radiance made to order. */
 #include "tests/check.h"
 
-#include "sensor/node/truth.h"
+#include "sensor/truth/truth.h"
 
 
 enum { width = 60, height = 40 };

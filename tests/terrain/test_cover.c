@@ -2,7 +2,7 @@
  * at a time in double, written here; against the paper statistics of value noise; and in whatever company. */
 #include "tests/check.h"
 
-#include "terrain/landscape.h"
+#include "terrain/landscape/landscape.h"
 
 /* ---- the plain reading ------------------------------------------------------------------------ */
 

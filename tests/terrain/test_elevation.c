@@ -1,7 +1,7 @@
 /* The nested grids: triangles, normals, outlines and pyramids by hand and by brute force. */
 #include "tests/check.h"
 
-#include "terrain/elevation.h"
+#include "terrain/elevation/elevation.h"
 #include "terrain/surface.h"
 
 static void one_cell_is_two_triangles(void **state)

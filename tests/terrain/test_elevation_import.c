@@ -5,8 +5,8 @@
  * within what the import says resampling cost. EGM96 has its own test. labels: slow */
 #include "tests/check.h"
 
-#include "terrain/elevation_import.h"
-#include "terrain/geoid.h"
+#include "terrain/landscape/elevation_import.h"
+#include "terrain/earth/geoid.h"
 
 #include <sys/stat.h>
 
@@ -220,7 +220,7 @@ static void voids_are_filled_without_a_spike(void **state)
     elevation_destroy(&ground);
 }
 
-/* Both promises of terrain/elevation.h, on posts as stored: the outline of a level lies on the level around to the bit. */
+/* Both promises of terrain/elevation/elevation.h, on posts as stored: the outline of a level lies on the level around to the bit. */
 static void levels_meet_to_the_bit_and_reach_the_horizon(void **state)
 {
     (void)state;

@@ -1,7 +1,7 @@
 /* WGS 84 against an evaluation in long double that shares nothing with GeographicLib but the two constants. */
 #include "tests/check.h"
 
-#include "terrain/local_frame.h"
+#include "terrain/earth/local_frame.h"
 
 static const long double a_m = 6378137.0L, flattening = 1 / 298.257223563L;
 

@@ -1,7 +1,7 @@
 /* tests/terrain/test_geoid.c: EGM96 against NGA's own six values, at the seam, at the poles, and a grid that is spoilt. */
 #include "tests/check.h"
 
-#include "terrain/geoid.h"
+#include "terrain/earth/geoid.h"
 
 static void nga_values_are_met(void **state)
 {

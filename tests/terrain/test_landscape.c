@@ -1,7 +1,7 @@
 /* The invented landscape: it keeps its promises to fixes, to lines, and at its own seams. */
 #include "tests/check.h"
 
-#include "terrain/landscape.h"
+#include "terrain/landscape/landscape.h"
 
 static LocalFrame frame_at(double lat_deg, double lon_deg, double h_m)
 {

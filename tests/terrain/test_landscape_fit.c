@@ -2,7 +2,7 @@
  * a list of heights that no line of the landscape's computes. */
 #include "tests/check.h"
 
-#include "terrain/landscape.h"
+#include "terrain/landscape/landscape.h"
 
 static LocalFrame frame_at(double lat_deg, double lon_deg)
 {

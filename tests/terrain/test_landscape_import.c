@@ -5,8 +5,8 @@
  * gdaltransform places at 44.0551450382678 N, 123.06866432757 W; north there is 3 minutes from grid north. */
 #include "tests/check.h"
 
-#include "terrain/geoid.h"
-#include "terrain/landscape_import.h"
+#include "terrain/earth/geoid.h"
+#include "terrain/landscape/landscape_import.h"
 
 enum { cells = 64 };
 static const double centre_lat_deg = 44.0551450382678, centre_lon_deg = -123.06866432757;

@@ -1,7 +1,7 @@
 /* The sun against NREL's published vector, and against a low-precision almanac that shares no code with ERFA. */
 #include "tests/check.h"
 
-#include "terrain/sun.h"
+#include "terrain/earth/sun.h"
 
 /* Reda and Andreas, "Solar Position Algorithm for Solar Radiation Applications", NREL/TP-560-34302, appendix A.5:
  * 2003-10-17 12:30:30, seven hours west of UTC. */

@@ -1,0 +1,82 @@
+/* entities/effects/effects.h: flames, smoke, dust and bursts as puffs: what each is made of and how it lives.
+ *
+ * A puff is let go at one place and time and from there on is a closed form of its age: nothing is integrated from
+ * frame to frame, so any instant can be asked for in any order. etc/effects.csv has the figures, and says how far
+ * they can be trusted. Who lets puffs go, and when: effects_history.h. How they look: render/effects.h. */
+#ifndef ENTITIES_EFFECTS_EFFECTS_H
+#define ENTITIES_EFFECTS_EFFECTS_H
+
+#include "pitviper.h"
+#include "terrain/earth/local_frame.h"
+#include "terrain/weather.h"
+
+typedef enum EffectKind {
+    EFFECT_MUZZLE_FLASH, EFFECT_MUZZLE_SMOKE, EFFECT_LAUNCH_FLASH, EFFECT_LAUNCH_SMOKE,
+    EFFECT_BURST_FLASH, EFFECT_FIREBALL, EFFECT_BURST_SMOKE, EFFECT_BURST_DUST, EFFECT_SPARKS,
+    EFFECT_FLAME, EFFECT_SMOKE, EFFECT_ENGINE_SMOKE, EFFECT_DUST, EFFECT_CONTRAIL,
+    EFFECT_MOTOR_PLUME, EFFECT_MOTOR_SMOKE, EFFECT_AFTERBURNER,
+    EFFECT_KIND_COUNT
+} EffectKind;
+
+/* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7 (the mean of the three), 0.7-1.1, 3.4-4.8, 8-12 um. */
+enum { effect_band_b, effect_band_g, effect_band_r, effect_band_pan, effect_band_nir, effect_band_mwir,
+       effect_band_lwir, effect_band_count };
+
+/* One row of etc/effects.csv. */
+typedef struct EffectLaw {
+    double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
+    double asymmetry;
+    double mass_kg;                     /* of a puff; per second for what an entity gives off */
+    double radius_start_m, radius_end_m, grow_s, spread_mps;
+    double rise_mps, rise_s;
+    double temp_rise_k, cool_s;
+    double life_s;
+    double time_power;
+    double billow;
+} EffectLaw;
+
+typedef struct EffectTable {
+    EffectLaw law[EFFECT_KIND_COUNT];
+} EffectTable;
+
+/* Every kind must have its row. Failures are logged with file, line and range. */
+Status effect_table_open(EffectTable *out, const char *path);
+
+/* One puff at one instant, as a Snapshot holds it: still without wind, which is the weather's. */
+typedef struct EffectPuff {
+    EffectKind kind;
+    uint64_t   owner;        /* whose smoke it is: snapshot_owns_puff; 0: nobody's */
+    uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
+    uint32_t   seed;         /* of its pattern */
+    double     age_s;        /* >= 0; what an entity carries with it stays at 0 */
+    double     p_ecef[3];    /* where it was let go */
+    double     up_ecef[3];   /* unit */
+    double     throw_mps[3]; /* ECEF, what it is let go with; dies out with throw_s */
+    double     throw_s;
+    double     scale;        /* W^(1/3); lengths */
+    double     mass_kg;      /* all of it, before thinning */
+    double     axis_ecef[3]; /* unit; the spheroid's own axis */
+    double     along_m;      /* least half length along the axis; 0: a sphere */
+    bool       grounded;     /* let go above_m above the ground, wherever the snapshot's ground is there */
+    double     above_m;
+} EffectPuff;
+
+/* A spheroid whose density falls off as (1 - q^2)^2 from its centre to its surface (q = 1). */
+typedef struct EffectVolume {
+    double p_enu[3], axis_enu[3];
+    double along_m, across_m;           /* half axes; along the axis, and across it */
+    double temp_k;
+    double extinction_per_m[effect_band_count]; /* at the centre */
+} EffectVolume;
+
+/* How long a puff of this kind and scale is seen. */
+double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
+/* False when there is nothing left of it. The wind carries a free puff at its full speed from the first moment:
+ * drift = wind age, exactly. */
+bool   effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
+                     const LocalFrame *frame);
+
+/* Share of a peak density that fills the spheroid on the average: 8 / 35. */
+extern const double effect_mean_density;
+
+#endif

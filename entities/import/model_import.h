@@ -1,0 +1,70 @@
+/* entities/import/model_import.h: models of other people, from files.
+ *
+ * OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and whatever else assimp reads, plain or as `.gz`; OpenFlight (`.flt`) through
+ * osgconv of Debian's openscenegraph. Nodes and materials become parts, named after their nodes; joints are what the
+ * file (OpenFlight's degrees of freedom) or the sidecar says, see entities/sidecar.h. Everything else is drawn together
+ * into the moving node above it. Facets keep their own plane; shading normals are the file's, else by crease angle.
+ * The reader runs in a process of its own with limits on time and memory: a hostile file costs an error line. */
+#ifndef ENTITIES_IMPORT_MODEL_IMPORT_H
+#define ENTITIES_IMPORT_MODEL_IMPORT_H
+
+#include "entities/models/model.h"
+
+/* What a file has and a Model has not. */
+typedef enum ImportLost {
+    LOST_TEXTURES,
+    LOST_LIGHTS,
+    LOST_CAMERAS,
+    LOST_ANIMATIONS,
+    LOST_BONES,
+    LOST_POINTS_AND_LINES,   /* meshes of them */
+    LOST_LEVELS_OF_DETAIL,   /* all but the finest */
+    LOST_SWITCHED_OFF,       /* children of switches */
+    LOST_EXTERNAL_REFERENCES,
+    LOST_FREEDOM_OFFSETS,    /* degrees of freedom drawn off their zero, or scaling */
+    LOST_OTHER,              /* objects of a kind unknown here, with all below them */
+    IMPORT_LOST_COUNT
+} ImportLost;
+
+const char *import_lost_name(ImportLost lost);
+
+/* Where a part's material comes from. */
+typedef enum ImportMaterialSource {
+    MATERIAL_BY_SIDECAR,
+    MATERIAL_BY_NAME,        /* words in the file's name for it */
+    MATERIAL_BY_COLOUR,      /* nearest paint */
+    MATERIAL_BY_DEFAULT,     /* paint_olive */
+    MATERIAL_SOURCE_COUNT
+} ImportMaterialSource;
+
+/* What happened on the way. */
+typedef struct ModelImport {
+    char   file[1024];                 /* the model's own */
+    char   sidecar[1024];              /* empty: none */
+    double scale_m;                    /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
+    double r_body_from_file[9], p_origin_file[3];
+    bool   axes_assumed;               /* from the format, nobody said */
+    int    source_nodes, source_meshes, source_materials;
+    int    unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
+    int    dropped_meshes;             /* by the sidecar */
+    int    empty_meshes;               /* nothing left of them */
+    int    degenerate_triangles;       /* dropped */
+    int    smoothed_parts;             /* the file had no normals */
+    int    joints_from_file;
+    int    material_parts[MATERIAL_SOURCE_COUNT];
+    int    lost[IMPORT_LOST_COUNT];
+    ModelEdges edges;
+} ModelImport;
+
+/* path: a model's file, or a sidecar (`.yaml`) that names it. Beside a model `tank.glb` or `tank.obj.gz` its sidecar
+ * `tank.yaml` is read when there is one. report may be NULL. On failure one line is logged, and outputs are untouched:
+ * STATUS_IO (not there), STATUS_BAD_VALUE (broken file or sidecar, over a limit), STATUS_UNSUPPORTED (no reader).
+ * Limits: 256 MiB unpacked, 8 M vertices and triangles, 65536 nodes, 256 levels, 16384 parts, 256 joints. */
+Status model_import(Model *out, ModelImport *report, const char *path);
+
+/* Whether a name means a file: it has a slash or a dot. */
+bool   model_is_path(const char *name);
+/* Parametric by its name, or imported by its path (*imported says which). sag_m: of parametric_build. Logs. */
+Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m);
+
+#endif

@@ -1,0 +1,141 @@
+/* entities/import/model_import_private.h: what a file holds, flat, before anybody knows which way is up.
+ *
+ * A reader fills it from a format; model_import.c makes a Model of it. The readers check indices and counts, so that
+ * everything here is in range; coordinates may still be anything (NaN too). */
+#ifndef ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
+#define ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
+
+#include "entities/import/model_import.h"
+#include "entities/models/sidecar.h"
+
+enum {
+    import_max_octets = 1 << 28, /* of a file, unpacked */
+    import_max_nodes = 65536,
+    import_max_meshes = 16384, /* and so of parts */
+    import_max_vertices = 1 << 23,
+    import_max_triangles = 1 << 23,
+    import_max_materials = 16384,
+    import_max_depth = 256,
+    import_max_seconds = 120,       /* of one core, in the reader */
+    import_max_memory = 2000000000, /* what the reader may take on top of what there is */
+};
+
+/* A degree of freedom that the file itself has (OpenFlight). Axes are unit. */
+typedef struct ImportDof {
+    int node;
+    bool slides, limited;
+    double p_pivot_parent[3],
+        axis_parent[3]; /* in the axes of the node's parent; the node itself stands at rest there */
+    double low, high;   /* rad or units of the file */
+} ImportDof;
+
+typedef struct ImportNode {
+    char name[model_name_size];
+    int parent;   /* an earlier node; -1: the root, node 0 */
+    double m[12]; /* 3 x 4, row by row: p_parent = m (p_node, 1) */
+} ImportNode;
+
+typedef struct ImportMaterial {
+    char name[model_name_size];
+    int has_colour;
+    float rgb[3]; /* 0 .. 1, linear */
+} ImportMaterial;
+
+typedef struct ImportMesh {
+    int node, material;
+    int first_vertex, vertex_count, first_triangle, triangle_count;
+    int has_normals;
+} ImportMesh;
+
+typedef struct ImportScene {
+    int node_count, material_count, mesh_count, vertex_count, triangle_count, dof_count;
+    ImportNode *node;
+    ImportMaterial *material; /* at least one */
+    ImportMesh *mesh;
+    double (*vertex)[3];     /* of the mesh's node */
+    float (*normal)[3];      /* zero where the mesh has none */
+    uint32_t (*triangle)[3]; /* from the mesh's first vertex */
+    ImportDof *dof;
+    double forward[3], up[3]; /* what the format says */
+    int lost[IMPORT_LOST_COUNT];
+} ImportScene;
+
+/* On failure one logged line. path: to a regular file. extension: lower case, without `.gz`. */
+Status import_assimp(ImportScene *out, const char *path, const char *extension);
+Status import_openflight(ImportScene *out, const char *path);
+/* An OpenSceneGraph text, as osgconv writes it. path: for messages. text is taken apart. */
+Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets);
+void import_scene_close(ImportScene *scene); /* accepts zeroes */
+/* Everything of it; `.gz` or plain. *out is NUL-terminated. Nothing logged when `quiet`. */
+Status import_read_whole(char **out, size_t *octets, const char *path, bool quiet);
+
+/* ---- model_import_joints.c ------------------------------------------------------------------ */
+
+typedef struct ImportJoint {
+    char name[model_name_size];
+    int parent; /* joint; -1: the hull */
+    int source; /* the first node that moves with it */
+    double p_pivot_file[3], axis_body[3];
+    JointKind kind;
+    uint32_t dis_class, dis_metric;
+    double low, high, rest; /* rad or m; low > high: none */
+    double spin_rps, roll_radius_m;
+    bool from_file; /* a degree of freedom, not the sidecar's */
+} ImportJoint;
+
+typedef struct ImportPlace {
+    double m[12]; /* p_file = m (p_node, 1) */
+    char *path;   /* names from the root, with slashes */
+    int joint;    /* that it moves with; -1: none */
+    bool dropped;
+} ImportPlace;
+
+typedef struct ImportJoints {
+    int count;
+    ImportJoint *joint; /* parents first */
+    ImportPlace *place; /* [node_count] */
+} ImportJoints;
+
+/* r_body_from_file: rotation. scale_m: metres a unit. */
+Status import_joints(ImportJoints *out, const ImportScene *scene, const Sidecar *sidecar,
+                     const double r_body_from_file[9], double scale_m);
+void import_joints_close(ImportJoints *joints, int node_count);
+/* `*` for any text, `?` for one character. */
+bool import_matches(const char *pattern, const char *text);
+/* The last rule that agrees with a node, by name or path; NULL: none. damage: rules of that state alone. */
+const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *scene, const ImportPlace *place, int node,
+                               int damage);
+
+/* ---- model_import_names.c -------------------------------------------------------------------- */
+
+/* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
+void import_say_no_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
+/* Warns of names that a sidecar goes by and that several nodes share, and of nodes without one. */
+void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
+/* How many nodes have no name, and how many share theirs. */
+void import_count_names(int *unnamed, int *shared, const ImportScene *scene);
+
+/* ---- model_import_surface.c ------------------------------------------------------------------ */
+
+/* Which material and heat role a part gets when the sidecar does not say. */
+typedef struct ImportPaints {
+    int count;
+    char (*name)[32];
+    float (*rgb)[3]; /* reflectance */
+} ImportPaints;
+
+Status import_paints_open(ImportPaints *out);
+void import_paints_close(ImportPaints *paints);
+bool import_paints_have(const ImportPaints *paints, const char *name);
+/* By words in the material's name, else by colour, else paint_olive; *source says which. */
+const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
+                               const ImportMaterial *material);
+/* By words in the path, the last word wins; HEAT_PASSIVE without any. */
+HeatRole import_role_guess(const char *path);
+
+/* One part's triangles in node axes -> vertices with normals by crease angle. `corner` is triangle * 3 + k.
+ * Writes at most 3 * triangle_count vertices, whose count is returned; -1: no memory. */
+int import_smooth(double (*vertex)[3], float (*normal)[3], uint32_t (*triangle)[3], const double (*corner)[3],
+                  int triangle_count, double crease_rad);
+
+#endif

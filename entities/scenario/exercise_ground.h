@@ -1,0 +1,33 @@
+/* entities/scenario/exercise_ground.h: the ground that an invented exercise moves over: smooth, in the tangent plane of its
+ * place.
+ *
+ * Invented: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files: the terrain room's elevation,
+ * through a cubic B-spline of `smooth_m`, so that what drives over its triangles has a velocity and a rate. */
+#ifndef ENTITIES_SCENARIO_EXERCISE_GROUND_H
+#define ENTITIES_SCENARIO_EXERCISE_GROUND_H
+
+#include "entities/scenario/scenario.h"
+#include "terrain/elevation/elevation.h"
+#include "terrain/earth/local_frame.h"
+
+typedef struct ExerciseGround {
+    LocalFrame frame;
+    double     half_curvature[2]; /* of the ellipsoid, eastward and northward, 1/(2 m) */
+    double     swell_m, phase_rad[2];
+    bool       real;
+    double     smooth_m;
+    Elevation  elevation;
+} ExerciseGround;
+
+/* Reads the files of ground.elevation. Failures are logged. */
+Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario);
+void   exercise_ground_destroy(ExerciseGround *ground);
+
+/* z of the ENU plane, and its slope by x and y (may be NULL). Invented: the swells are added along z, not along the
+ * local vertical: 4 mm aside at 16 km. */
+double exercise_ground_at(double slope[2], const ExerciseGround *ground, double x_m, double y_m);
+/* The same of the ellipsoid at the height of the place: the sea. Within 1 cm at 30 km
+ * (tests/entities/test_exercise_cast.c). */
+double exercise_level_at(double slope[2], const ExerciseGround *ground, double x_m, double y_m);
+
+#endif

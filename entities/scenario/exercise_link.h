@@ -1,0 +1,41 @@
+/* entities/scenario/exercise_link.h: from PDUs to datagrams: stamps, bundles, and what networks do to them.
+ *
+ * Loss, repetition and overtaking are decided by the datagram's number alone: the same scenario, the same octets. */
+#ifndef ENTITIES_SCENARIO_EXERCISE_LINK_H
+#define ENTITIES_SCENARIO_EXERCISE_LINK_H
+
+#include "entities/scenario/scenario.h"
+
+/* One datagram at exercise time t_s; times do not decrease. False: stop, nobody takes more. */
+typedef bool ExerciseSink(void *user, double t_s, const uint8_t *bytes, size_t octets);
+
+typedef struct ExerciseCounts {
+    uint64_t pdus, datagrams, octets; /* as handed out; PDUs: as made */
+    uint64_t lost, duplicated, overtaken, malformed;
+} ExerciseCounts;
+
+enum { link_capacity = 65536 };
+
+typedef struct ExerciseLink {
+    const Scenario *scenario;
+    double          epoch_unix_s; /* of exercise time 0: absolute stamps */
+    ExerciseSink   *sink;
+    void           *user;
+    bool            stopped;
+    uint64_t        number;       /* of datagrams made */
+    ExerciseCounts  counts;
+    size_t          pending, held;  /* octets of a bundle; of a datagram that the next one overtakes */
+    double          pending_s;
+    uint8_t         bundle[link_capacity], behind[link_capacity];
+} ExerciseLink;
+
+DisHeader link_header(const ExerciseLink *link, uint8_t type, uint8_t family, double t_s);
+/* Alone, or with others of the same time. */
+void link_pdu(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t octets);
+void link_flush(ExerciseLink *link);
+/* These octets by themselves, whatever they are. */
+void link_datagram(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t octets);
+/* What is still held back. */
+void link_finish(ExerciseLink *link, double t_s);
+
+#endif

@@ -1,0 +1,395 @@
+/* entities/survey/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
+#include "entities/survey/survey.h"
+#include "dis/enumerations.h"
+#include "dis/simulation_management.h"
+#include "entities/table/dead_reckoning.h"
+#include "entities/table/entity_index.h"
+#include "entities/survey/survey_shots.h"
+
+#include <stdlib.h>
+
+enum {
+    most_points = 20000000, /* 144 octets each: under 3 GB. The log itself is then in memory too */
+    most_tracks = 1 << 20,
+    most_warfare = 4000000,
+    most_absolute = 65536, /* absolute stamps that are compared; the first ones */
+};
+
+static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
+static const double year_1990_s = 631152000, year_2100_s = 4102444800;
+static const double absolute_agree_s = 10; /* clocks of one exercise, and what a network delays */
+static const double invented_epoch_s = 1e9; /* captures made out of logs without dates start here */
+
+typedef struct TrackBuild {
+    int     capacity;
+    uint8_t algorithm; /* of the last Entity State: it says in which axes an update's velocity is */
+} TrackBuild;
+
+typedef struct Building {
+    Survey        *survey;
+    ExerciseClock *clock;
+    EntityIndex    index;
+    int            track_capacity;
+    TrackBuild    *build; /* beside survey->track */
+    WarfareEvent  *warfare;
+    int            warfare_count, warfare_capacity;
+    uint64_t       points;
+    bool           date_is_credible;
+    double        *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order heard */
+    int            absolute_capacity;
+} Building;
+
+/* ---- tracks ------------------------------------------------------------------------------- */
+
+static Status grow(void **array, int *capacity, size_t size, int at_least)
+{
+    if (at_least <= *capacity) return STATUS_OK;
+    const int larger = *capacity < 8 ? 16 : *capacity * 2;
+    void *moved = realloc(*array, (size_t)larger * size);
+    if (!moved) return STATUS_NO_MEMORY;
+    *array = moved;
+    *capacity = larger;
+    return STATUS_OK;
+}
+
+/* Index of the track of an id, -1 when there is none and none may be made. */
+static Status find_or_add_track(int *out, Building *b, DisEntityId id, bool add)
+{
+    Survey *survey = b->survey;
+    *out = entity_index_find(&b->index, entity_key(id));
+    if (*out >= 0 || !add || survey->track_count == most_tracks) return STATUS_OK;
+
+    int build_capacity = b->track_capacity;
+    Status status = grow((void **)&b->build, &build_capacity, sizeof *b->build, survey->track_count + 1);
+    if (status == STATUS_OK)
+        status = grow((void **)&survey->track, &b->track_capacity, sizeof *survey->track, survey->track_count + 1);
+    if (status == STATUS_OK && 2 * ((uint32_t)survey->track_count + 1) > b->index.mask)
+        status = entity_index_grow(&b->index);
+    if (status != STATUS_OK) return status;
+    *out = survey->track_count++;
+    survey->track[*out] = (Track){.id = id};
+    b->build[*out] = (TrackBuild){0};
+    entity_index_insert(&b->index, entity_key(id), *out);
+    return STATUS_OK;
+}
+
+static Status add_point(Building *b, int t, const double p_ecef[3], const float v_mps[3], const float euler_rad[3],
+                        uint32_t appearance, double t_s)
+{
+    Track *track = b->survey->track + t;
+    if (track->count > 0 && t_s < track->point[track->count - 1].t_s) {
+        b->survey->late++;
+        return STATUS_OK;
+    }
+    if (b->points == most_points) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    const Status status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
+    if (status != STATUS_OK) return status;
+
+    TrackPoint *point = track->point + track->count++;
+    const double v[3] = {v_mps[0], v_mps[1], v_mps[2]};
+    b->points++;
+    *point = (TrackPoint){.t_s = t_s, .frozen = appearance >> dis_appearance_frozen_bit & 1,
+                          .deactivated = appearance >> dis_appearance_deactivated_bit & 1,
+                          .engine = appearance >> dis_appearance_power_plant_bit & 1};
+    memcpy(point->p_ecef, p_ecef, sizeof point->p_ecef);
+    r_ecef_from_body_euler(point->r_ecef_from_body, euler_rad[0], euler_rad[1], euler_rad[2]);
+    if (!(v3_length(v) <= largest_speed_mps)) return STATUS_OK;
+    if (dead_reckoning_in_body_axes(b->build[t].algorithm)) m3_mul_v3(point->v_ecef_mps, point->r_ecef_from_body, v);
+    else memcpy(point->v_ecef_mps, v, sizeof v);
+    return STATUS_OK;
+}
+
+static Status hear_entity_state(Building *b, const DisEntityState *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    DisDrop why;
+    int t;
+
+    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    const Status status = find_or_add_track(&t, b, pdu->id, true);
+    if (status != STATUS_OK) return status;
+    if (t < 0) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    Track *track = b->survey->track + t;
+    b->build[t].algorithm = pdu->dead_reckoning;
+    track->type = pdu->type;
+    track->force = pdu->force;
+    memcpy(track->marking, pdu->marking, sizeof pdu->marking);
+    return add_point(b, t, pdu->p_ecef, pdu->velocity_mps, euler_rad, pdu->appearance, t_s);
+}
+
+static Status hear_entity_state_update(Building *b, const DisEntityStateUpdate *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    DisDrop why;
+    int t;
+
+    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    const Status status = find_or_add_track(&t, b, pdu->id, false);
+    if (status != STATUS_OK || t < 0) return status;
+    return add_point(b, t, pdu->p_ecef, pdu->velocity_mps, euler_rad, pdu->appearance, t_s);
+}
+
+/* ---- events and clocks -------------------------------------------------------------------- */
+
+static Status add_warfare(Building *b, const WarfareEvent *event)
+{
+    if (b->warfare_count == most_warfare) {
+        b->survey->refused++;
+        return STATUS_OK;
+    }
+    const Status status = grow((void **)&b->warfare, &b->warfare_capacity, sizeof *b->warfare, b->warfare_count + 1);
+    if (status == STATUS_OK) b->warfare[b->warfare_count++] = *event;
+    return status;
+}
+
+/* A burst must be somewhere: the ground is fitted through it. */
+static Status hear_detonation(Building *b, const DisDetonation *pdu, double t_s)
+{
+    const DisEntityId anybody = {1, 1, 1};
+    const float euler_rad[3] = {0, 0, 0};
+    DisDrop why;
+
+    if (!dis_entity_is_usable(&why, anybody, pdu->p_ecef, euler_rad, euler_rad)) {
+        b->survey->counters.dropped[why]++;
+        return STATUS_OK;
+    }
+    WarfareEvent event = {.t_s = t_s, .firing = pdu->firing, .target = pdu->target, .munition = pdu->munition,
+                          .event = pdu->event, .result = pdu->result, .is_detonation = true};
+    memcpy(event.p_ecef, pdu->p_ecef, sizeof event.p_ecef);
+    return add_warfare(b, &event);
+}
+
+/* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, says nothing. */
+static void hear_start(Building *b, const DisStartResume *pdu, double t_s)
+{
+    const double unix_s = pdu->simulation.hour * 3600.0 + dis_timestamp_seconds(pdu->simulation.past_hour);
+    if (pdu->simulation.hour == 0 || !(unix_s < year_2100_s) || !isnan(b->survey->clock_start_unix_s)) return;
+    b->survey->clock_start_unix_s = unix_s - t_s;
+}
+
+/* An absolute stamp gives the second of the hour; the capture date gives the hour. */
+static Status hear_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
+{
+    if (!dis_timestamp_is_absolute(timestamp) || !b->date_is_credible) return STATUS_OK;
+    if (!(capture_s >= year_1990_s && capture_s < year_2100_s)) return STATUS_OK;
+    if (b->survey->absolute_stamps == most_absolute) return STATUS_OK;
+    const Status status = grow((void **)&b->absolute_unix_s, &b->absolute_capacity, sizeof *b->absolute_unix_s,
+                               b->survey->absolute_stamps + 1);
+    if (status != STATUS_OK) return status;
+    const double past_s = dis_timestamp_seconds(timestamp);
+    b->absolute_unix_s[b->survey->absolute_stamps++] = past_s + 3600 * round((capture_s - past_s) / 3600) - t_s;
+    return STATUS_OK;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double p = *(const double *)a, q = *(const double *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* What most absolute stamps agree on, as the first of those said it: a single absurd one does not choose the date. */
+static Status settle_date(Building *b)
+{
+    Survey      *survey = b->survey;
+    const int    count  = survey->absolute_stamps;
+    if (count == 0) return STATUS_OK;
+    double *sorted = malloc((size_t)count * sizeof *sorted);
+    if (!sorted) return STATUS_NO_MEMORY;
+    memcpy(sorted, b->absolute_unix_s, (size_t)count * sizeof *sorted);
+    qsort(sorted, (size_t)count, sizeof *sorted, compare_doubles);
+    int most = 0, from = 0;
+    for (int low = 0, high = 0; high < count; high++) {
+        while (sorted[high] - sorted[low] > absolute_agree_s) low++;
+        if (high - low + 1 > most) most = high - low + 1, from = low;
+    }
+    survey->absolute_left_out = count - most;
+    for (int i = 0; most >= 2 && 2 * most > count && isnan(survey->absolute_unix_s); i++)
+        if (b->absolute_unix_s[i] >= sorted[from] && b->absolute_unix_s[i] <= sorted[from + most - 1])
+            survey->absolute_unix_s = b->absolute_unix_s[i];
+    free(sorted);
+    return STATUS_OK;
+}
+
+/* ---- the pass ----------------------------------------------------------------------------- */
+
+static Status hear(Building *b, const DisHeader *header, const uint8_t *octets, double t_s)
+{
+    Status decoded = STATUS_OK, kept = STATUS_OK;
+    union {
+        DisEntityState       state;
+        DisEntityStateUpdate update;
+        DisFire              fire;
+        DisDetonation        detonation;
+        DisStartResume       start;
+    } pdu;
+
+    switch (header->type) {
+    case dis_pdu_entity_state:
+        decoded = dis_decode_entity_state(&pdu.state, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_entity_state(b, &pdu.state, t_s);
+        break;
+    case dis_pdu_entity_state_update:
+        decoded = dis_decode_entity_state_update(&pdu.update, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_entity_state_update(b, &pdu.update, t_s);
+        break;
+    case dis_pdu_fire:
+        decoded = dis_decode_fire(&pdu.fire, octets, header->length);
+        if (decoded != STATUS_OK) break;
+        kept = add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu.fire.firing, .target = pdu.fire.target,
+                                              .munition = pdu.fire.munition, .event = pdu.fire.event});
+        break;
+    case dis_pdu_detonation:
+        decoded = dis_decode_detonation(&pdu.detonation, octets, header->length);
+        if (decoded == STATUS_OK) kept = hear_detonation(b, &pdu.detonation, t_s);
+        break;
+    case dis_pdu_start_resume:
+        decoded = dis_decode_start_resume(&pdu.start, octets, header->length);
+        if (decoded == STATUS_OK) hear_start(b, &pdu.start, t_s);
+        break;
+    default: break;
+    }
+    if (decoded == STATUS_BAD_VALUE) b->survey->counters.dropped[DIS_DROP_BAD_COUNT]++;
+    else if (decoded != STATUS_OK) b->survey->counters.dropped[DIS_DROP_TRUNCATED]++;
+    return kept;
+}
+
+static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
+{
+    Survey *survey = b->survey;
+    const uint8_t *at = datagram->bytes, *pdu;
+    DisHeader header;
+
+    survey->counters.datagrams++;
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &survey->counters)) {
+        if (exercise >= 0 && header.exercise != exercise) {
+            survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
+            continue;
+        }
+        const uint64_t doubted = exercise_clock_doubts(b->clock)->by_arrival;
+        const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
+        if (isnan(t_s)) continue; /* of no type that we know, and from nobody */
+        if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
+        if (!(survey->first_s <= t_s)) survey->first_s = t_s;
+        if (!(survey->last_s >= t_s)) survey->last_s = t_s;
+        Status status = STATUS_OK;
+        if (exercise_clock_doubts(b->clock)->by_arrival == doubted)
+            status = hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
+        if (status == STATUS_OK) status = hear(b, &header, pdu, t_s);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+static int track_order(const void *a, const void *b)
+{
+    return dis_entity_id_compare(((const Track *)a)->id, ((const Track *)b)->id);
+}
+
+/* A track whose every report was refused for memory has no point; it is not a track. */
+static void drop_empty_tracks(Survey *survey)
+{
+    int kept = 0;
+    for (int t = 0; t < survey->track_count; t++)
+        if (survey->track[t].count > 0) survey->track[kept++] = survey->track[t];
+    survey->track_count = kept;
+}
+
+/* A munition whose burst was heard after its last report came to the burst: its track's last point. */
+static Status end_flights(Building *b)
+{
+    static const double longest_silence_s = 60;
+    for (int i = 0; i < b->survey->shot_count; i++) {
+        const Shot *shot = &b->survey->shot[i];
+        int         t    = -1;
+        Status      status = find_or_add_track(&t, b, shot->munition, false);
+        if (status != STATUS_OK) return status;
+        if (t < 0 || b->survey->track[t].count == 0 || !isfinite(shot->detonation_s)) continue;
+        Track           *track = b->survey->track + t;
+        const TrackPoint last  = track->point[track->count - 1];
+        const double     dt_s  = shot->detonation_s - last.t_s;
+        double           way_ecef[3];
+        v3_sub(way_ecef, shot->p_burst_ecef, last.p_ecef);
+        if (track->type.kind != dis_kind_munition || !(dt_s > 1e-3 && dt_s < longest_silence_s) || last.deactivated ||
+            !(v3_length(way_ecef) / dt_s <= largest_speed_mps))
+            continue;
+        status = grow((void **)&track->point, &b->build[t].capacity, sizeof *track->point, track->count + 1);
+        if (status != STATUS_OK) return status;
+        TrackPoint *end = track->point + track->count++;
+        *end            = last;
+        end->t_s        = shot->detonation_s;
+        memcpy(end->p_ecef, shot->p_burst_ecef, sizeof end->p_ecef);
+        v3_scale(end->v_ecef_mps, 1 / dt_s, way_ecef);
+    }
+    return STATUS_OK;
+}
+
+Status survey_log(Survey *out, const DisLog *log, int exercise)
+{
+    Survey survey = {.first_s = NAN, .last_s = NAN, .clock_start_unix_s = NAN, .absolute_unix_s = NAN};
+    Building b = {.survey = &survey};
+    b.date_is_credible = log->count > 0 && !(fabs(log->datagram[0].capture_s - invented_epoch_s) <= 1);
+
+    Status status = exercise_clock_create(&b.clock);
+    if (status == STATUS_OK) status = entity_index_create(&b.index, 512);
+    survey.datagram_s = calloc((size_t)log->count + 1, sizeof *survey.datagram_s);
+    if (!survey.datagram_s) status = STATUS_NO_MEMORY;
+
+    for (int d = 0; d < log->count && status == STATUS_OK; d++) {
+        survey.datagram_s[d] = NAN;
+        status = hear_datagram(&b, d, log->datagram + d, exercise);
+    }
+    if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
+    if (status == STATUS_OK) status = end_flights(&b);
+    if (status == STATUS_OK) status = settle_date(&b);
+    if (status == STATUS_OK) {
+        survey.doubts                  = *exercise_clock_doubts(b.clock);
+        survey.counters.stamps_doubted = survey.doubts.by_arrival;
+        drop_empty_tracks(&survey);
+        if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);
+        *out = survey;
+    } else {
+        log_error("survey: cannot keep the log's tracks: reason=%s tracks=%d points=%llu", status_name(status),
+                  survey.track_count, (unsigned long long)b.points);
+        survey_destroy(&survey);
+    }
+    exercise_clock_destroy(b.clock);
+    entity_index_destroy(&b.index);
+    free(b.build);
+    free(b.warfare);
+    free(b.absolute_unix_s);
+    return status;
+}
+
+void survey_destroy(Survey *survey)
+{
+    for (int t = 0; t < survey->track_count; t++) free(survey->track[t].point);
+    free(survey->track);
+    free(survey->shot);
+    free(survey->datagram_s);
+    memset(survey, 0, sizeof *survey);
+}
+
+const Track *survey_track(const Survey *survey, DisEntityId id)
+{
+    int low = 0, high = survey->track_count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const int order = dis_entity_id_compare(survey->track[middle].id, id);
+        if (order == 0) return survey->track + middle;
+        if (order < 0) low = middle + 1;
+        else high = middle;
+    }
+    return NULL;
+}

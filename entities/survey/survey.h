@@ -1,0 +1,66 @@
+/* entities/survey/survey.h: one pass over a whole log before the first frame: who flew, who was shot at, where the
+ * ground is. What replay's defaults (host, aim, ground, time of day) are chosen from. */
+#ifndef ENTITIES_SURVEY_SURVEY_H
+#define ENTITIES_SURVEY_SURVEY_H
+
+#include "dis/entity_state.h"
+#include "dis/exercise_clock.h"
+#include "dis/log.h"
+#include "dis/warfare.h"
+
+/* One report of where an entity was. */
+typedef struct TrackPoint {
+    double t_s;
+    double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes whatever the algorithm */
+    double r_ecef_from_body[9];
+    bool   frozen, deactivated, engine; /* engine: its power-plant bit */
+} TrackPoint;
+
+typedef struct Track {
+    DisEntityId   id;
+    DisEntityType type;
+    char          marking[12];
+    uint8_t       force;
+    int           count;
+    TrackPoint   *point;          /* in order of time; of a munition heard to burst later, the burst is the last */
+} Track;
+
+typedef struct Shot {
+    DisEntityId firing, target, munition; /* as in Fire; target 0:0:0 when unknown */
+    double      fire_s;                   /* NaN: no Fire heard */
+    double      detonation_s;             /* NaN: no Detonation heard */
+    double      p_burst_ecef[3];
+    DisEntityId hit;                      /* target of the Detonation, 0:0:0: none */
+    uint8_t     result;
+} Shot;
+
+typedef struct Survey {
+    int       track_count, shot_count;
+    Track    *track;                      /* sorted by id */
+    Shot     *shot;                       /* in order of fire (else detonation) time */
+    double    first_s, last_s;            /* exercise time of the first and last PDU; NaN: none */
+    double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none heard */
+    double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
+                                           * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
+                                           * 10 s, when they are two at least and more than half; NaN: none */
+    int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
+    ExerciseClockDoubts doubts;           /* senders whose stamps are no clock */
+    DisCounters counters;                 /* everything heard and dropped, whole log */
+    double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
+    uint64_t  refused;                    /* track points dropped because they exceed the memory bound */
+    uint64_t  late;                       /* reports older than the one before them, left out */
+} Survey;
+
+/* Reads every PDU of the log once. exercise: only this exercise id; -1: all. */
+Status survey_log(Survey *out, const DisLog *log, int exercise);
+void   survey_destroy(Survey *survey);
+const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never heard */
+
+/* Where a track was at t_s, between its reports (cubic in position, shortest turn in attitude); held at the
+ * ends. For a replay's own host only: a live node cannot know the next report. */
+typedef struct TrackPose {
+    double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
+} TrackPose;
+void track_at(TrackPose *out, const Track *track, double t_s);
+
+#endif

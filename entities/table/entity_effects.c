@@ -1,0 +1,194 @@
+/* entities/table/entity_effects.c: what an entity's appearance and motion let it give off. Appearance bits are those of
+ * dis/enumerations.h; a guided munition's motor burns for as long as heat.c says, whatever its bits. */
+#include "entities/table/entity_table_private.h"
+
+static const double moving_mps = 0.3; /* as heat.c: no dust behind what stands */
+
+/* Lengths of flames and smoke go with the size of what burns: 1 for 40 m3 of vehicle. */
+static double size_of(const Model *model)
+{
+    return clamp(cbrt(model->length_m * model->width_m * model->height_m / 40), 0.25, 4);
+}
+
+static bool motor_burns(const EntitySlot *slot, double t_s)
+{
+    return slot->type.kind == dis_kind_munition &&
+           (slot->appearance >> dis_appearance_power_plant_bit & 1 ||
+            (slot->roles >> HEAT_MOTOR & 1 && slot->heat.drive[HEAT_DRIVER_BURN].until_s > t_s));
+}
+
+/* From the reported position to the centre of the model's base, body axes. */
+static double base_below_m(const EntitySlot *slot, const Model *model)
+{
+    return slot->origin == ORIGIN_CENTRE ? 0.5 * model->height_m : 0;
+}
+
+static void open_source(EntityTable *table, EntitySlot *slot, int place, EffectSource *source, EffectKind kind,
+                        double rate)
+{
+    source->kind = kind;
+    source->rate = rate;
+    slot->effect[place] = effect_history_open(table->effects, source);
+}
+
+void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s)
+{
+    for (int i = 0; i < entity_effect_places; i++) {
+        effect_history_close(table->effects, slot->effect[i], t_s);
+        slot->effect[i] = 0;
+    }
+}
+
+void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
+{
+    static const double trail_rate[4] = {0, 0.35, 1, 2.5}; /* small, medium, large: estimate */
+    const uint32_t bits = slot->appearance;
+    const bool     platform = slot->type.kind == dis_kind_platform, munition = slot->type.kind == dis_kind_munition;
+    const bool     air = slot->type.domain == dis_domain_air;
+    const int      smoke = bits >> dis_appearance_smoke_shift & 3, trail = bits >> dis_appearance_trail_shift & 3;
+    const bool     flames = bits >> dis_appearance_flaming_bit & 1;
+
+    entity_effects_end(table, slot, t_s);
+    if (!(platform || munition) || !(flames || smoke || trail || motor_burns(slot, t_s))) return;
+
+    const Model *model = catalog_model(table->catalog, slot->model);
+    const bool   stands = entity_slot_frozen(slot) || slot->stopped;
+    const double below_m = base_below_m(slot, model), top_m = below_m - model->height_m;
+    EffectSource source = {.key = entity_key(slot->id) + 1, .from_s = t_s,
+                           .to_s = slot->stopped ? INFINITY : slot->report_s + slot->timeout_s,
+                           .motion = slot->reported, .motion_s = slot->report_s + slot->paused_s,
+                           .hold_s = slot->hold_s, .scale = size_of(model), .below_m = below_m,
+                           .grounded = contact_applies(slot->type)};
+    if (stands) {
+        Motion motion;
+        dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
+        source.motion = (Kinematics){.algorithm = 1};
+        memcpy(source.motion.p_ecef, motion.p_ecef, sizeof motion.p_ecef);
+        memcpy(source.motion.r_ecef_from_body, motion.r_ecef_from_body, sizeof motion.r_ecef_from_body);
+    } else {
+        source.speed_mps = v3_length(slot->reported.v_mps);
+    }
+    if (flames) {
+        EffectSource fire = source;
+        fire.at_body[2] = below_m - 0.75 * model->height_m;
+        fire.spread_body[0] = 0.3 * model->length_m;
+        fire.spread_body[1] = 0.25 * model->width_m;
+        fire.spread_body[2] = 0.15 * model->height_m;
+        open_source(table, slot, 0, &fire, EFFECT_FLAME, 1);
+    }
+    if (platform && smoke & 1) {
+        EffectSource plume = source;
+        plume.at_body[2] = top_m;
+        plume.spread_body[0] = 0.2 * model->length_m;
+        plume.spread_body[1] = 0.2 * model->width_m;
+        open_source(table, slot, 1, &plume, EFFECT_SMOKE, 1);
+    }
+    if (platform && smoke & 2) {
+        EffectSource engine = source;
+        engine.at_body[0] = 0.9 * model->box_low[0];
+        engine.at_body[2] = below_m - 0.7 * model->height_m;
+        open_source(table, slot, 2, &engine, EFFECT_ENGINE_SMOKE, 1);
+    }
+    if (platform && trail && (air || source.speed_mps > moving_mps)) {
+        EffectSource behind = source;
+        behind.at_body[0] = model->box_low[0];
+        behind.at_body[2] = air ? below_m - 0.5 * model->height_m : below_m - 0.3;
+        behind.spread_body[1] = air ? 0 : 0.4 * model->width_m;
+        open_source(table, slot, 3, &behind, air ? EFFECT_CONTRAIL : EFFECT_DUST, trail_rate[trail]);
+    }
+    if (munition && (trail || motor_burns(slot, t_s))) {
+        EffectSource motor = source;
+        motor.scale = 1;
+        motor.at_body[0] = model->box_low[0];
+        motor.at_body[2] = below_m - 0.5 * model->height_m;
+        if (!trail && !(bits >> dis_appearance_power_plant_bit & 1))
+            motor.to_s = fmin(motor.to_s, slot->heat.drive[HEAT_DRIVER_BURN].until_s);
+        open_source(table, slot, 3, &motor, EFFECT_MOTOR_SMOKE, trail ? trail_rate[trail] : 1);
+    }
+}
+
+/* One body of gas behind the tail, that breathes: its length is drawn at every fiftieth of a second, and straight in
+ * between. */
+static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
+                         const EffectTable *table, double length_m, double across_scale, double t_s)
+{
+    static const double breath_hz = 50;
+    const double at = t_s * breath_hz, floor_at = floor(at);
+    double       length = 0, tail_body[3] = {0}, tail_ecef[3];
+    const uint64_t key = entity_key(e->id);
+
+    for (int k = 0; k < 2; k++) {
+        const double   share = k ? at - floor_at : 1 - (at - floor_at);
+        const uint64_t breath = (uint64_t)(int64_t)floor_at + (uint64_t)k;
+        length += share * length_m * (0.8 + 0.4 * random_uniform(key, 78, kind, breath));
+    }
+    *out = (EffectPuff){.kind = kind, .owner = key + 1, .group = (uint32_t)(key * 31 + kind), .seed = (uint32_t)(int64_t)floor_at,
+                        .throw_s = 1, .scale = across_scale, .along_m = 0.5 * length,
+                        .mass_kg = table->law[kind].mass_kg * across_scale * across_scale * length};
+    tail_body[0] = model->box_low[0] - 0.5 * length;
+    tail_body[2] = -0.5 * model->height_m;
+    m3_mul_v3(tail_ecef, e->r_ecef_from_body, tail_body);
+    v3_add(out->p_ecef, e->p_ecef, tail_ecef);
+    for (int i = 0; i < 3; i++) out->axis_ecef[i] = e->r_ecef_from_body[3 * i];
+    v3_scale(out->up_ecef, 1 / v3_length(e->p_ecef), e->p_ecef);
+    return true;
+}
+
+bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const EntitySlot *slot,
+                            const SnapshotEntity *entity, double t_s)
+{
+    const Model       *model = catalog_model(table->catalog, entity->model);
+    const EffectTable *effects = effect_history_table(table->effects);
+
+    if (!(fabs(t_s) < effect_latest_s)) return false;
+    if (motor_burns(slot, t_s)) /* a light missile of 1.2 m: 1.5 m of flame */
+        return plume_behind(out, entity, model, EFFECT_MOTOR_PLUME, effects, fmax(1.25 * model->length_m, 0.5),
+                            clamp(model->width_m / 0.3, 0.5, 4), t_s);
+    if (slot->type.kind == dis_kind_platform && slot->type.domain == dis_domain_air &&
+        entity->appearance >> dis_appearance_afterburner_bit & 1)
+        return plume_behind(out, entity, model, EFFECT_AFTERBURNER, effects, 4, 1, t_s);
+    return false;
+}
+
+/* Who is set onto the ground smokes there, and a burst on the ground is on this one. */
+static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
+{
+    static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
+    double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
+    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* as far as its entity went */
+    if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
+}
+
+Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
+                               int carried_count, Arena *arena)
+{
+    const size_t all = effect_history_puffs(NULL, 0, table->effects, snapshot->t_s) + (size_t)carried_count;
+    const size_t count = all < effect_puff_capacity ? all : effect_puff_capacity;
+    snapshot->effect_table = effect_history_table(table->effects);
+    if (all == 0) return STATUS_OK;
+    EffectPuff *puff = arena_alloc(arena, count, sizeof *puff);
+    if (!puff) return STATUS_NO_MEMORY;
+    const size_t first = (size_t)carried_count < count ? (size_t)carried_count : count;
+    if (first > 0) memcpy(puff, carried, first * sizeof *puff);
+    if (count > first) effect_history_puffs(puff + first, count - first, table->effects, snapshot->t_s);
+    for (size_t i = 0; i < count; i++) set_onto_ground(&puff[i], &table->config.ground);
+    snapshot->puff = puff;
+    snapshot->puff_count = (int)count;
+    snapshot->puffs_left_out = (int64_t)(all - count);
+    return STATUS_OK;
+}
+
+/* The gun has sunk to its stop and the turret stands where the blow left it, unless the sender says where they are. */
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot)
+{
+    if (slot->type.kind != dis_kind_platform || slot->articulation.count > 0 ||
+        (slot->appearance >> dis_appearance_damage_shift & 3) != dis_damage_destroyed)
+        return;
+    for (int n = 0; n < model->node_count; n++) {
+        const ModelNode *node = &model->node[n];
+        if (node->dis_class < 4096 || node->dis_class >= 7000) continue; /* turrets and guns */
+        if (node->dis_metric == 13) joint_value[n] = node->low < node->high ? node->low : -0.1;
+        if (node->dis_metric == 11)
+            joint_value[n] = 0.6 * (2 * random_uniform(entity_key(slot->id), 79, 0, (uint64_t)n) - 1);
+    }
+}

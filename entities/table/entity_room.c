@@ -1,0 +1,84 @@
+/* entities/table/entity_room.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
+#include "entities/table/entity_table_private.h"
+
+static bool same_id(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }
+
+static int distance_class(const EntityTable *table, const double p_ecef[3])
+{
+    return table->focus.placed ? entity_rank_class(p_ecef, table->focus.p_ecef) : entity_rank_unknown;
+}
+
+static int slot_class(const void *user, int slot)
+{
+    const EntityTable *table = user;
+    return distance_class(table, table->slot[slot].reported.p_ecef);
+}
+
+static void rank_all_again(EntityTable *table, double t_s)
+{
+    entity_ranks_again(table->ranks, slot_class, table);
+    memcpy(table->focus.ranked_ecef, table->focus.p_ecef, sizeof table->focus.ranked_ecef);
+    table->focus.ranked_s = t_s;
+}
+
+/* The host's last report is the place to be near to. The others' distances are taken at their own reports; all of them
+ * when there is a place for the first time, and when it has gone far enough for them to matter, once a second at most. */
+static void place_focus(EntityTable *table, const double p_ecef[3], double t_s)
+{
+    static const double far_m = 500, often_s = 1;
+    EntityFocus *focus = &table->focus;
+    const bool   first = !focus->placed || !focus->of_host;
+    double       went[3];
+    memcpy(focus->p_ecef, p_ecef, sizeof focus->p_ecef);
+    focus->placed = focus->of_host = true;
+    v3_sub(went, focus->p_ecef, focus->ranked_ecef);
+    if (first || (v3_length(went) > far_m && fabs(t_s - focus->ranked_s) >= often_s)) rank_all_again(table, t_s);
+}
+
+void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s)
+{
+    static const double known_after_s = 1;
+    const int           s = (int)(slot - table->slot);
+    if (t_s - slot->created_s >= known_after_s) slot->known = true;
+    if (same_id(slot->id, table->focus.host)) place_focus(table, p_ecef, t_s);
+    if (same_id(slot->id, table->focus.host) || same_id(slot->id, table->focus.also))
+        entity_ranks_remove(table->ranks, s);
+    else
+        entity_ranks_put(table->ranks, s, slot->id, slot->known, distance_class(table, p_ecef));
+}
+
+bool entity_room_make(EntityTable *table, EntitySlot *newcomer, double t_s)
+{
+    if (table->count <= table->config.capacity) return true;
+    const int   worst = entity_ranks_worst(table->ranks);
+    EntitySlot *slot  = worst < 0 ? newcomer : table->slot + worst;
+    if (slot != newcomer) {
+        entity_slot_remove(table, slot, t_s, &table->counters.evicted);
+        return true;
+    }
+    entity_slot_free(table, newcomer);
+    table->counters.refused++;
+    return false;
+}
+
+void entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also)
+{
+    const DisEntityId before[2] = {table->focus.host, table->focus.also}, now[2] = {host, also};
+    if (same_id(before[0], host) && same_id(before[1], also)) return;
+    if (!same_id(before[0], host)) table->focus.of_host = false;
+    table->focus.host = host;
+    table->focus.also = also;
+    for (int i = 0; i < 2; i++) {
+        EntitySlot *slot = entity_slot_find(table, before[i]);
+        if (slot) entity_room_rank(table, slot, slot->reported.p_ecef, slot->report_s);
+    }
+    for (int i = 0; i < 2; i++) {
+        EntitySlot *slot = entity_slot_find(table, now[i]);
+        if (slot) entity_room_rank(table, slot, slot->reported.p_ecef, slot->report_s);
+    }
+}
+
+int entity_table_largest_sender(DisEntityId *sender, const EntityTable *table)
+{
+    return entity_ranks_largest(sender, table->ranks);
+}

@@ -1,0 +1,97 @@
+/* entities/table/entity_table.h: who is out there: one slot an entity, handles with a generation, the last report
+ * of each, and what its history implies (heat, distance travelled, smoke left behind).
+ *
+ * Fed PDUs in the order of exercise time; asked for a Snapshot at any t at or after the last of them. */
+#ifndef ENTITIES_TABLE_ENTITY_TABLE_H
+#define ENTITIES_TABLE_ENTITY_TABLE_H
+
+#include "dis/entity_state.h"
+#include "dis/simulation_management.h"
+#include "dis/warfare.h"
+#include "entities/models/catalog.h"
+#include "entities/models/contact.h"
+#include "entities/effects/effects_history.h"
+#include "entities/table/snapshot.h"
+
+typedef struct EntityTable EntityTable;
+
+/* Stale handles are caught: entity_table_alive says false. {0} is never valid. */
+typedef struct EntityHandle {
+    uint32_t slot, generation;
+} EntityHandle;
+
+typedef struct EntityTableConfig {
+    int    capacity;              /* most entities at once; one more, and entity_ranks.h says which goes */
+    int    shown;                 /* most entities in a snapshot: those whose reports lie nearest the focus */
+    double timeout_s;             /* versions 5 and 6: 12 */
+    double timeout_land_v7_s;     /* version 7, whatever has the long heartbeat: land, sea, life forms, standing; 132 */
+    double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
+                                   * those with the long timeout, whose heartbeat is longer too */
+    double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
+    double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
+    Pool  *pool;                  /* who helps with snapshots; NULL: the caller alone. The same bits either way */
+    ContactGround ground;         /* what stands on it is set onto it in every pose handed out; none: it is not */
+} EntityTableConfig;
+
+/* Why entities came and went, and what was not believed, how many. */
+typedef struct EntityCounters {
+    uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
+    uint64_t detonated;      /* munitions ended by their Detonation */
+    uint64_t late;           /* reports older than the one we have or than the entity's end, or of a munition after
+                              * its Detonation */
+    uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
+                              * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
+    uint64_t evicted;        /* given up for others when the table was full */
+    uint64_t refused;        /* not taken in, being those that a full table would have given up */
+} EntityCounters;
+
+EntityTableConfig entity_table_default_config(void);
+/* The catalog must outlive the table. heat_path: etc/heat.csv. Reads etc/effects.csv too. */
+Status entity_table_create(EntityTable **out, const EntityTableConfig *config, const Catalog *catalog,
+                           const char *heat_path);
+void   entity_table_destroy(EntityTable *table);
+
+/* What a full table keeps: the host, `also` (its aim), and those whose last reports lie near the host's last report. 0:0:0:
+ * none. A host that is not there, or no more: the place of before. A snapshot of more than config.shown takes the nearest
+ * to that place. Extrapolated positions do not enter, so it does not matter at which instants snapshots are made. */
+void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
+/* Which sender has most entities here, and how many. O(senders). */
+int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
+
+/* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) stands still, and so does one that
+ * Stop/Freeze names (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
+ *
+ * One decoded PDU, usable (dis_entity_is_usable) and at exercise time t_s. STATUS_NO_MEMORY or
+ * STATUS_UNSUPPORTED (refused: the table is full of others that come first) leave the table as it was. */
+Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s);
+Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s);
+void   entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s);
+void   entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s);
+void   entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double t_s);
+void   entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s);
+void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s);
+/* Removes who has been silent too long at t_s. */
+void   entity_table_expire(EntityTable *table, double t_s);
+
+/* Decodes one PDU by its type, checks it, and calls the right one of the above; types that the table does
+ * not need are ignored. Every drop is counted. This is what replay and the node call. */
+void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s,
+                        DisCounters *counters);
+
+int          entity_table_count(const EntityTable *table);
+EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
+bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
+bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: not there */
+const EntityCounters *entity_table_counters(const EntityTable *table);
+const EffectCounters *entity_table_effect_counters(const EntityTable *table);
+
+/* One entity's pose and motion at t_s, the same as in a snapshot; no parts, no heat. False when it is not there. */
+bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s);
+/* The same with its nodes. node, joint_value: as many as its model has nodes; the second is
+ * scratch. */
+bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
+                             EntityHandle handle, double t_s);
+/* Everybody at t_s, sorted by id, in the arena. */
+Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena);
+
+#endif

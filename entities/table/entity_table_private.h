@@ -1,0 +1,124 @@
+/* entities/table/entity_table_private.h: what entity_table.c keeps of an entity, and snapshot.c reads. */
+#ifndef ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
+#define ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
+
+#include "dis/enumerations.h"
+#include "entities/models/articulation.h"
+#include "entities/table/dead_reckoning.h"
+#include "entities/effects/effects_history.h"
+#include "entities/table/entity_index.h"
+#include "entities/table/entity_ranks.h"
+#include "entities/table/entity_table.h"
+#include "entities/effects/heat.h"
+
+enum { entity_effect_places = 4 }; /* flame, smoke, engine smoke, trail */
+
+typedef struct EntitySlot {
+    uint32_t      generation; /* odd while somebody lives here */
+    DisEntityId   id;
+    DisEntityType type;
+    uint8_t       force;
+    char          marking[12];
+    uint32_t      appearance;
+    int           model;
+    Origin        origin;
+    uint32_t      roles;      /* of the model's parts: heat_roles */
+    double        created_s, report_s;
+    double        timeout_s;  /* silence longer than this ends it */
+    double        hold_s;     /* longest extrapolation */
+    bool          known;      /* it goes on reporting: heard for known_after_s */
+    bool          stopped;    /* by Stop/Freeze, at stop_s */
+    double        stop_s;
+    double        paused_s;   /* spent stopped since the report */
+    double        spin_s, spin_from_s; /* running clock at spin_from_s */
+    double        distance_m; /* gone forward, at the report */
+    double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
+                               * right, and after how long; missed_s 0: there was none */
+    Kinematics    reported;   /* as believed: entity_table.c */
+    HeatState     heat;
+    Articulation  articulation;
+    uint64_t      effect[entity_effect_places]; /* what it gives off now: handles of effects_history.h */
+} EntitySlot;
+
+/* Who went lately: a late report must not bring them back. */
+enum { entity_grave_count = 256 };
+typedef struct EntityGrave {
+    uint64_t key_plus_1; /* 0: nobody */
+    double   end_s;
+    bool     detonated;
+} EntityGrave;
+
+/* Where what matters is: entity_table_focus. */
+typedef struct EntityFocus {
+    DisEntityId host, also;
+    bool        placed;        /* p_ecef: of the last report of a host that was in the table */
+    bool        of_host;       /* of this one */
+    double      p_ecef[3];
+    double      ranked_ecef[3], ranked_s; /* from where, and when, all distances were last taken */
+} EntityFocus;
+
+struct EntityTable {
+    EntityTableConfig config;
+    const Catalog    *catalog;
+    HeatTable         heat;
+    uint32_t         *model_roles; /* [catalog_model_count] */
+    EntityIndex       index;
+    EntityRanks      *ranks;       /* of all but the focus' own */
+    EntityFocus       focus;
+    EntitySlot       *slot;        /* [config.capacity + 1]: a newcomer's too; used below slot_end */
+    int              *free_slot;   /* stack of those below slot_end that are free */
+    int               slot_end, free_count, count, stopped_count;
+    EntityGrave       grave[entity_grave_count];
+    unsigned          grave_next;
+    EntityCounters    counters;
+    EffectHistory    *effects;
+};
+
+static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
+static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> dis_appearance_frozen_bit & 1; }
+/* Stopped entities are not expected to speak. */
+static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
+{
+    return !slot->stopped && t_s - slot->report_s > slot->timeout_s;
+}
+
+/* Its own time: exercise time less the pauses since its report, still while it is frozen or stopped. */
+static inline double entity_slot_time(const EntitySlot *slot, double t_s)
+{
+    if (entity_slot_frozen(slot)) return slot->report_s;
+    return (slot->stopped ? fmin(t_s, slot->stop_s) : t_s) - slot->paused_s;
+}
+
+/* How far to extrapolate the report for t_s. */
+static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
+{
+    return clamp(entity_slot_time(slot, t_s) - slot->report_s, -slot->hold_s, slot->hold_s);
+}
+
+EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
+/* Out of the table, and no word of it. */
+void entity_slot_free(EntityTable *table, EntitySlot *slot);
+/* The same with what follows from it; counter: why, one of the table's counters. */
+void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
+
+/* entity_room.c: of a report of it that was heard now. */
+void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
+/* A newcomer that is ranked comes in, if need be for another. False: it is the one to go, and is gone. */
+bool entity_room_make(EntityTable *table, EntitySlot *newcomer, double t_s);
+
+/* The running clock of rotors at t_s. */
+double entity_slot_spin(const EntitySlot *slot, double t_s);
+/* Forward way from the report to a pose reached by dead reckoning. */
+double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9]);
+
+/* entity_effects.c: after every change of a slot's motion or appearance; and when it ends. */
+void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s);
+void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s);
+/* What it carries along at t_s: the flame behind a motor. False: nothing. */
+bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const EntitySlot *slot,
+                            const SnapshotEntity *entity, double t_s);
+Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
+                               int carried_count, Arena *arena);
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot);
+
+#endif

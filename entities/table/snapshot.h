@@ -1,0 +1,65 @@
+/* entities/table/snapshot.h: everybody at one instant, immutable and dense. What the renderer sees of the world's
+ * inhabitants; it never sees a PDU or the table. */
+#ifndef ENTITIES_TABLE_SNAPSHOT_H
+#define ENTITIES_TABLE_SNAPSHOT_H
+
+#include "dis/pdu.h"
+#include "entities/effects/effects.h"
+#include "entities/models/model.h"
+
+typedef struct SnapshotEntity {
+    DisEntityId   id;
+    DisEntityType type;
+    uint8_t       force;
+    char          marking[12];     /* terminated, raw bytes */
+    uint32_t      appearance;
+    int           model;           /* of the catalog */
+    double        p_ecef[3];       /* of the model's origin (base centre), whatever the sender's origin is */
+    double        v_ecef_mps[3];
+    double        w_body_rps[3];   /* of the attitude shown: 0 where the algorithm holds it, and when frozen */
+    double        r_ecef_from_body[9];
+    double        age_s;           /* since the report it was extrapolated from */
+    double        position_error_m;/* estimate: snapshot_position_error_m */
+    double        drift_m, drift_rad; /* expected distance and angle from the truth: snapshot_drift */
+    int           first_node;      /* into Snapshot.node */
+    float         heat[HEAT_ROLE_COUNT]; /* temperature above a passive part, K; 0 for roles its model lacks, unless
+                                    * it is a warm wreck */
+} SnapshotEntity;
+
+typedef struct Snapshot {
+    double          t_s;
+    int             count, node_count;
+    SnapshotEntity *entity; /* sorted by id */
+    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1 */
+    int             puff_count;
+    EffectPuff     *puff;   /* what burns, smokes and bursts */
+    int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
+    int             left_out;       /* entities beyond the table's config.shown: the farthest */
+    const EffectTable *effect_table; /* NULL where there are no puffs */
+} Snapshot;
+
+/* Whether a puff came out of this entity: its own trail, flames or plume. */
+bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
+/* What its sender says of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
+int  snapshot_damage(const SnapshotEntity *entity);
+/* A platform that its sender calls destroyed. */
+bool snapshot_is_wreck(const SnapshotEntity *entity);
+
+/* How far from the truth an extrapolated position may be: nothing at its report, growing evenly to the standard's
+ * threshold of 1 m at the sender's heartbeat, and from there as an unreported acceleration of 1 m/s2 would carry
+ * it. Beyond hold_s the entity is held while it moves on at speed_mps. An estimate for error budgets, not a bound:
+ * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
+double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps);
+
+/* How far an extrapolation is expected to have gone wrong, from how far the one before had when its next report came:
+ * missed_m and missed_rad after missed_s; 0: unknown, then `otherwise` for the place and nothing but the standard's 3
+ * degrees a heartbeat for the attitude. A place goes wrong as an unreported acceleration carries it, an attitude as an
+ * unreported rate, up to what was missed: a sender that is silent for longer has not gone on as it did, or it would have
+ * spoken. tests/sensor/test_frame_error.c. */
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
+                    double otherwise_m, double heartbeat_s);
+
+/* Index of an id, or -1. */
+int snapshot_find(const Snapshot *snapshot, DisEntityId id);
+
+#endif

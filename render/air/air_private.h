@@ -1,0 +1,93 @@
+/* render/air/air_private.h: between air.c, air_table.c and air_veils.c. */
+#ifndef RENDER_AIR_AIR_PRIVATE_H
+#define RENDER_AIR_AIR_PRIVATE_H
+
+#include "render/air/air.h"
+#include "render/air/atmosphere_day.h"
+
+/* Paths from one eye. What they take away, and the air's own light, by the far end's height and the range, both in
+ * octaves (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that a number's own bits say
+ * where it lies: log2(1 / tau), which is
+ * straight in range in a grey and even air; and the path's radiance over 1 - tau, its mean source.
+ * Scattered light, over 1 - tau of the sun, also depends on where a path points: by its slope, rise over range, s |s|
+ * with s in equal steps over what is looked at; by the root of its share of the whole way, to the ground or out of the
+ * tables' air, so that ground is at its end; and by sqrt(1 - cos azimuth from the sun), which needs no arc cosine and
+ * is dense about the sun. What a sample wants of a node lies side by side. */
+enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
+enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };
+enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_temps = 5, air_lights = 4 };
+enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_range_row };
+enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
+
+static const double air_top_m = 30e3, air_near_m = 100, air_far_m = 409600, air_low_m = 64;
+static const double earth_radius_m = 6371e3;
+/* The whole way ends at the ground or the tables' top, and after 100 km, where little more light is to come. From less
+ * than 200 m up it goes on along the ground, as if from there: the air below is much the same. */
+static const double air_shortest_way_m = 10, air_longest_way_m = 100e3, air_least_fall_m = 200;
+
+/* Four bands that sunlight is scattered in. */
+typedef struct AirLight {
+    int     bands;
+    AirBand band[air_lights];
+    float   depth[air_nodes][air_lights];                            /* log2(1 / tau) of sunlight reflected */
+    float   log2_source[air_turns + 1][air_slope_nodes][air_lights]; /* W/(m2 sr); it falls off as e does */
+} AirLight;
+
+/* The two thermal bands, mwir before lwir: depth of emission at the air's temperature, at emitter_temp_k[t] and the
+ * next, and the air's own radiance over 1 - tau of the first, W/(m2 sr). */
+typedef enum AirWarm { air_warm_own, air_warm_low, air_warm_high, air_warm_source, air_warm_values } AirWarm;
+typedef struct AirHeat {
+    float value[air_temps - 1][air_nodes][2 * air_warm_values];
+} AirHeat;
+
+/* Temperatures of emitters for which transmittance is kept; between them its depth is linear in the temperature's
+ * logarithm, as in the tables, outside the nearest counts. */
+static const double emitter_temp_k[air_temps] = {260,300,400,600,1000};
+
+struct AirTable {
+    int   rows, row_shift;        /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
+    bool  scattered;
+    float slope_low, slope_steps; /* s at the first step, steps per unit of s */
+    float turn_low, turn_steps;   /* the same of sqrt(1 - cos azimuth); beyond the first and last the nearest */
+    int   turns;                  /* steps between them, .. air_turns */
+    int   lights;                 /* of light[] */
+    AirLight *light[2];
+    AirHeat  *heat;               /* NULL: no thermal band */
+};
+
+/* The float whose bits are so many steps of 2^shift above low's. */
+static inline float air_step_up(double low, int steps, int shift)
+{
+    const float from = (float)low;
+    uint32_t    bits;
+    memcpy(&bits, &from, sizeof bits);
+    bits += (uint32_t)steps << shift;
+    float to;
+    memcpy(&to, &bits, sizeof to);
+    return to;
+}
+
+/* What air->table is of: these bands, between two azimuths from the sun and two slopes, up to a height.
+ * thermal_scale: for air of another temperature than the model's; scattered_scale: twilight and the sun's distance. */
+typedef struct TableInput {
+    const AirDay *day;        /* its temperatures: emitter_temp_k and, behind them, the air's */
+    double thermal_scale[2], scattered_scale;
+    double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
+    unsigned bands;
+} TableInput;
+
+/* First every ask, in any order and by any thread, then every draw. */
+typedef struct TableJob TableJob;
+Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena);
+int    air_table_asks(const TableJob *job);
+void   air_table_ask(TableJob *job, int ask);
+int    air_table_draws(const TableJob *job);
+void   air_table_draw(TableJob *job, int draw);
+
+/* Straight-on cubic through four points a step apart, at t of the middle step. */
+static inline double cubic_between(double a, double b, double c, double d, double t)
+{
+    return b + t * (c - b) + t * (t - 1) / 6 * ((2 - t) * (a - 2 * b + c) + (1 + t) * (b - 2 * c + d));
+}
+
+#endif

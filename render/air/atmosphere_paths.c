@@ -1,0 +1,275 @@
+/* render/air/atmosphere_paths.c: tables of paths, which are ragged: a path is no shorter than its ends are apart in height,
+ * and some end on the ground. */
+#include "render/air/atmosphere_private.h"
+
+#include <stdlib.h>
+
+enum { range_max_m = 2000000 };
+
+/* ---- reading ---------------------------------------------------------------------------------- */
+
+typedef struct PathKey {
+    double at[5]; /* observer, target or direction, range, sun zenith, relative azimuth */
+    int    row;
+} PathKey;
+
+static int compare_keys(const void *a, const void *b)
+{
+    const PathKey *x = a, *y = b;
+    for (int i = 0; i < 5; i++)
+        if (x->at[i] != y->at[i]) return x->at[i] < y->at[i] ? -1 : 1;
+    return (x->row > y->row) - (x->row < y->row);
+}
+
+/* Of paths_*.csv the first three, of scattered.csv all, with a direction instead of a target. */
+static const GridColumn path_key[5] = {{"observer_m", 0, height_max_m}, {"target_m", 0, height_max_m},
+                                       {"range_m", 1, range_max_m}, {"sun_zenith_deg", 0, 90},
+                                       {"rel_azimuth_deg", 0, 180}};
+static const GridColumn direction_key = {"zenith_deg", 0, 180};
+static const GridColumn *key_column(int keys, int k) { return keys == 5 && k == 1 ? &direction_key : &path_key[k]; }
+
+/* Rows in order; their keys read and the lengths possible. */
+static Status read_keys(PathKey *key, const Table *table, int keys)
+{
+    int column[5];
+    for (int k = 0; k < keys; k++) {
+        column[k] = table_column(table, key_column(keys, k)->name);
+        if (column[k] >= 0) continue;
+        log_error("atmosphere: %s:%d: column missing: %s", table->path, table->line[0], key_column(keys, k)->name);
+        return STATUS_BAD_VALUE;
+    }
+    for (int row = 0; row < table->rows; row++) {
+        key[row] = (PathKey){.row = row};
+        for (int k = 0; k < keys; k++)
+            if (table_number(&key[row].at[k], table, row, column[k], key_column(keys, k)->low,
+                             key_column(keys, k)->high) != STATUS_OK)
+                return STATUS_BAD_VALUE;
+        const double *at = key[row].at;
+        if (keys == 5 || at[2] >= fabs(at[0] - at[1]) * (1 - 1e-6)) continue;
+        log_error("atmosphere: %s:%d: range_m %g is less than the %g m between the ends' heights", table->path,
+                  table->line[row + 1], at[2], fabs(at[0] - at[1]));
+        return STATUS_BAD_VALUE;
+    }
+    bool sorted = true;
+    for (int row = 1; row < table->rows && sorted; row++) sorted = compare_keys(&key[row - 1], &key[row]) < 0;
+    if (!sorted) qsort(key, (size_t)table->rows, sizeof *key, compare_keys);
+    return STATUS_OK;
+}
+
+static int key_axis(double *axis, int capacity, const PathKey *key, int rows, int which)
+{
+    double *scratch = calloc((size_t)rows + 1, sizeof *scratch);
+    if (!scratch) return -2;
+    for (int i = 0; i < rows; i++) scratch[i] = key[i].at[which];
+    const int nodes = axis_from(axis, capacity, scratch, rows);
+    free(scratch);
+    return nodes;
+}
+
+static Status find_path_axes(PathTable *out, const Table *table, const PathKey *key, int keys)
+{
+    out->suns = out->azimuths = 1;
+    for (int i = 0; i < 2; i++) out->nodes[i] = key_axis(out->axis[i], path_max_nodes, key, table->rows, i);
+    if (keys == 5) {
+        out->suns = key_axis(out->sun_x, path_max_suns, key, table->rows, 3);
+        out->azimuths = key_axis(out->azimuth_deg, path_max_suns, key, table->rows, 4);
+    }
+    const int least = (int)fmin(fmin(out->nodes[0], out->nodes[1]), fmin(out->suns, out->azimuths));
+    if (least == -2) return STATUS_NO_MEMORY;
+    if (least > 0) return STATUS_OK;
+    log_error("atmosphere: %s: more than %d heights or directions, or %d sun zeniths or azimuths", table->path,
+              (int)path_max_nodes, (int)path_max_suns);
+    return STATUS_BAD_VALUE;
+}
+
+/* The rows from one on that share its first three keys: every sun and azimuth once, in order. How many; 0: not so. */
+static int block_length(const PathTable *paths, const Table *table, const PathKey *key, int row, int keys)
+{
+    const int inner = paths->suns * paths->azimuths;
+    for (int i = 0; i < inner; i++) {
+        const PathKey *k = &key[row + i];
+        const bool same = row + i < table->rows && memcmp(k->at, key[row].at, 3 * sizeof *k->at) == 0;
+        if (same && (keys < 5 || (k->at[3] == paths->sun_x[i / paths->azimuths] &&
+                                  k->at[4] == paths->azimuth_deg[i % paths->azimuths])))
+            continue;
+        log_error("atmosphere: %s:%d: a sun zenith and azimuth of this path is missing or there twice", table->path,
+                  table->line[key[row].row + 1]);
+        return 0;
+    }
+    return inner;
+}
+
+/* Axes of the sorted keys, and that every pair of nodes has ranges, every range every sun and azimuth. */
+static Status arrange(PathTable *out, const Table *table, const PathKey *key, int keys)
+{
+    const int rows = table->rows;
+    const Status status = find_path_axes(out, table, key, keys);
+    if (status != STATUS_OK) return status;
+    const int pairs = out->nodes[0] * out->nodes[1];
+    out->first = calloc((size_t)pairs + 1, sizeof *out->first);
+    out->ln_range = calloc((size_t)rows + 1, sizeof *out->ln_range);
+    if (!out->first || !out->ln_range) return STATUS_NO_MEMORY;
+    int row = 0;
+    out->ln_range_low = INFINITY;
+    for (int pair = 0; pair < pairs; pair++) {
+        const double a = out->axis[0][pair / out->nodes[1]], b = out->axis[1][pair % out->nodes[1]];
+        out->first[pair] = out->rows;
+        while (row < rows && key[row].at[0] == a && key[row].at[1] == b) {
+            const double x = log(key[row].at[2]);
+            if (out->rows > out->first[pair] && x == out->ln_range[out->rows - 1]) {
+                log_error("atmosphere: %s:%d: this path is there twice", table->path, table->line[key[row].row + 1]);
+                return STATUS_BAD_VALUE;
+            }
+            const int length = block_length(out, table, key, row, keys);
+            if (length == 0) return STATUS_BAD_VALUE;
+            row += length;
+            out->ln_range[out->rows++] = x;
+            out->ln_range_low = fmin(out->ln_range_low, x);
+        }
+        if (out->rows > out->first[pair]) continue;
+        log_error("atmosphere: %s:%d: no path: %s=%g %s=%g (every pair of these is needed)", table->path,
+                  table->line[rows], key_column(keys, 0)->name, a, key_column(keys, 1)->name, b);
+        return STATUS_BAD_VALUE;
+    }
+    out->first[pairs] = out->rows;
+    return STATUS_OK;
+}
+
+void paths_close(PathTable *table)
+{
+    free(table->first);
+    free(table->ln_range);
+    free(table->value);
+    *table = (PathTable){0};
+}
+
+Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
+                  PathColumns *choose)
+{
+    Table table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+
+    PathTable paths = {0};
+    GridColumn column[path_max_weights + 1];
+    int at[path_max_weights + 1], count = values;
+    PathKey *key = calloc((size_t)table.rows + 1, sizeof *key);
+    status = STATUS_NO_MEMORY;
+    if (!key) goto done;
+    status = STATUS_BAD_VALUE;
+    if (table.rows == 0) {
+        log_error("atmosphere: %s:%d: no rows", path, table.line[0]);
+        goto done;
+    }
+    if (choose) {
+        status = choose(&paths, &table, column, &count);
+        if (status != STATUS_OK) goto done;
+    } else {
+        memcpy(column, value, (size_t)values * sizeof *value);
+    }
+    status = STATUS_BAD_VALUE;
+    for (int i = 0; i < count; i++) {
+        at[i] = table_column(&table, column[i].name);
+        if (at[i] >= 0) continue;
+        log_error("atmosphere: %s:%d: column missing: %s", path, table.line[0], column[i].name);
+        goto done;
+    }
+    status = read_keys(key, &table, keys);
+    if (status == STATUS_OK) status = arrange(&paths, &table, key, keys);
+    if (status != STATUS_OK) goto done;
+    const int inner = paths.suns * paths.azimuths;
+    paths.values = inner * count;
+    paths.value = calloc((size_t)table.rows * (size_t)count, sizeof *paths.value);
+    status = STATUS_NO_MEMORY;
+    if (!paths.value) goto done;
+    status = STATUS_BAD_VALUE;
+    for (int i = 0; i < table.rows; i++)
+        for (int v = 0; v < count; v++)
+            if (table_number(&paths.value[(size_t)i * (size_t)count + (size_t)v], &table, key[i].row, at[v],
+                             column[v].low, column[v].high) != STATUS_OK)
+                goto done;
+    status = STATUS_OK;
+done:
+    free(key);
+    table_close(&table);
+    if (status == STATUS_OK) *out = paths;
+    else paths_close(&paths);
+    return status;
+}
+
+/* ---- alike ------------------------------------------------------------------------------------ */
+
+bool paths_same_shape(const PathTable *a, const PathTable *b)
+{
+    if (a->rows != b->rows || a->nodes[0] != b->nodes[0] || a->nodes[1] != b->nodes[1]) return false;
+    for (int i = 0; i < 2; i++)
+        if (memcmp(a->axis[i], b->axis[i], (size_t)a->nodes[i] * sizeof a->axis[i][0]) != 0) return false;
+    const size_t pairs = (size_t)a->nodes[0] * (size_t)a->nodes[1];
+    return a->ln_range_low == b->ln_range_low && memcmp(a->first, b->first, (pairs + 1) * sizeof *a->first) == 0 &&
+           memcmp(a->ln_range, b->ln_range, (size_t)a->rows * sizeof *a->ln_range) == 0;
+}
+
+bool paths_alike(const PathTable *a, const PathTable *b)
+{
+    return paths_same_shape(a, b) && a->values == b->values && a->weights == b->weights && a->suns == b->suns &&
+           a->azimuths == b->azimuths && memcmp(a->weight_temp_k, b->weight_temp_k, sizeof a->weight_temp_k) == 0 &&
+           memcmp(a->sun_x, b->sun_x, sizeof a->sun_x) == 0 &&
+           memcmp(a->azimuth_deg, b->azimuth_deg, sizeof a->azimuth_deg) == 0;
+}
+
+/* ---- looking up ------------------------------------------------------------------------------- */
+
+/* Lagrange's cubic through the four rows around x (fewer at the ends), straight on below the first row. Below the
+ * shortest range of all and beyond a pair's longest one: the end's value. */
+static int range_stencil(int *row, double *share, const PathTable *table, int pair, double x)
+{
+    const int first = table->first[pair], count = table->first[pair + 1] - first;
+    const double *node = table->ln_range + first;
+    x = clamp(x, table->ln_range_low, node[count - 1]);
+    int low, points;
+    if (count == 1) {
+        low = 0;
+        points = 1;
+    } else if (x < node[0]) {
+        low = 0;
+        points = 2;
+    } else {
+        double t;
+        const int cell = interval_of(&t, node, count, x);
+        low = cell > 0 ? cell - 1 : 0;
+        const int high = cell + 2 < count ? cell + 2 : count - 1;
+        points = high - low + 1;
+    }
+    for (int i = 0; i < points; i++) {
+        row[i] = first + low + i;
+        share[i] = 1;
+        for (int j = 0; j < points; j++)
+            if (j != i) share[i] *= (x - node[low + j]) / (node[low + i] - node[low + j]);
+    }
+    return points;
+}
+
+void stencil_at(Stencil *out, const PathTable *table, double observer_m, double second, double range_m)
+{
+    double s, t;
+    const int i = interval_of(&s, table->axis[0], table->nodes[0], observer_m);
+    const int j = interval_of(&t, table->axis[1], table->nodes[1], second);
+    const double x = log(fmax(range_m, 1e-3));
+    out->count = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        const double share = (corner & 1 ? s : 1 - s) * (corner & 2 ? t : 1 - t);
+        if (share == 0) continue;
+        const int pair = (i + (corner & 1)) * table->nodes[1] + j + (corner >> 1);
+        const int points = range_stencil(out->row + out->count, out->share + out->count, table, pair, x);
+        for (int p = 0; p < points; p++) out->share[out->count + p] *= share;
+        out->count += points;
+    }
+}
+
+double stencil_value(const Stencil *stencil, const PathTable *table, int value)
+{
+    double sum = 0;
+    for (int p = 0; p < stencil->count; p++)
+        sum += stencil->share[p] * table->value[(size_t)stencil->row[p] * (size_t)table->values + (size_t)value];
+    return sum;
+}

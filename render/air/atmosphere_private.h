@@ -1,0 +1,198 @@
+/* render/air/atmosphere_private.h: the tables as they lie in memory. */
+#ifndef RENDER_AIR_ATMOSPHERE_PRIVATE_H
+#define RENDER_AIR_ATMOSPHERE_PRIVATE_H
+
+#include "render/air/atmosphere.h"
+#include "render/light/planck.h"
+
+/* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
+enum { air_tabled_count = 6 };
+extern const AirBand air_tabled[air_tabled_count]; /* b g r nir mwir lwir */
+int air_tabled_index(AirBand band);
+static inline bool air_band_is_thermal(AirBand band) { return band == AIR_MWIR || band == AIR_LWIR; }
+
+/* ---- a table over a full grid of up to four axes ------------------------------------------- */
+
+enum { grid_max_axes = 4, grid_max_values = 24, grid_max_nodes = 256, height_max_m = 100000 };
+
+typedef struct GridColumn {
+    const char *name;
+    double      low, high; /* what a cell may hold */
+} GridColumn;
+
+typedef struct Grid {
+    int     axes, values;
+    int     nodes[grid_max_axes];
+    double *axis[grid_max_axes]; /* ascending */
+    double *value;               /* [node of axis 0][..][values] */
+} Grid;
+
+/* Every combination of the axes' values exactly once, in any order. */
+Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, const GridColumn *value, int values);
+void   grid_close(Grid *grid);
+/* Multilinear, clamped to the axes; out [values]. */
+void   grid_at(double *out, const Grid *grid, const double *at);
+/* Only count of them, from first on in steps. */
+void   grid_some(double *out, const Grid *grid, const double *at, int first, int step, int count);
+
+/* Index of the interval that holds x, 0 .. count - 2, and the share of its upper end, 0 .. 1. */
+int interval_of(double *share, const double *ascending, int count, double x);
+/* Distinct values in rising order; -1: more than capacity. axis_find: which is x. */
+int axis_from(double *axis, int capacity, const double *values, int count);
+int axis_find(const double *axis, int count, double x);
+
+/* ---- paths: an observer's height, a target's height or a direction, and for each pair a list of ranges ---- */
+
+enum { path_max_nodes = 40, path_max_weights = 12, path_max_suns = 24, stencil_max = 16 };
+
+typedef struct PathTable {
+    int     nodes[2], rows, values;  /* values: a row */
+    double  axis[2][path_max_nodes]; /* observer_m; target_m, or minus the cosine of the zenith angle */
+    int    *first;                   /* [pairs + 1]: rows of pair observer * nodes[1] + target */
+    double *ln_range, *value;        /* [rows], [rows * values] */
+    double  ln_range_low;            /* shortest of all */
+    int     shape;                   /* of an atmosphere's tables, those with equal nodes and ranges have the same */
+    /* what the values are. Of clear air ln of the ratio of each weight's depth (0: the sun; then rising temperatures)
+     * to the column's; of a visibility the ratio of the depth that haze adds to its column's, and, of thermal bands,
+     * ln of the ratio of what the path would radiate if it were opaque to mean_black; of scattered.csv, which goes by
+     * direction, the ratio to scatter_estimate by sun zenith, relative azimuth, band */
+    int     weights;
+    double  weight_temp_k[path_max_weights];
+    int     suns, azimuths;
+    double  sun_x[path_max_suns], azimuth_deg[path_max_suns]; /* sun: slant_x of its zenith angle */
+} PathTable;
+
+/* Chooses the value columns of a header; on failure logs why. */
+typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *column, int *count);
+/* Rows keyed by the first keys (3 or 5) of observer_m, target_m (5: zenith_deg), range_m, sun_zenith_deg,
+ * rel_azimuth_deg; as value columns those given or, with choose, those it finds. Values as they are in the file, by
+ * rising keys; axis 1 and sun_x in metres or degrees. */
+Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
+                  PathColumns *choose);
+void   paths_close(PathTable *table);
+/* The same heights and ranges; and the same columns as well. */
+bool   paths_same_shape(const PathTable *a, const PathTable *b);
+bool   paths_alike(const PathTable *a, const PathTable *b);
+
+/* Weight by which the path's own emission is counted: of the temperature nearest the air's. */
+int path_emission_weight(const PathTable *table);
+
+/* Rows and their shares: linear along both axes, cubic in ln range. */
+typedef struct Stencil {
+    int    count;
+    int    row[stencil_max];
+    double share[stencil_max];
+} Stencil;
+
+void   stencil_at(Stencil *out, const PathTable *table, double observer_m, double second, double range_m);
+double stencil_value(const Stencil *stencil, const PathTable *table, int value);
+
+/* ---- a visibility, a model ----------------------------------------------------------------- */
+
+enum { column_max = 256, slices_max = 12, phase_heights_max = 8 };
+enum { steps_between = 6, slices_made_max = steps_between * (slices_max + 1) + 1 };
+
+/* What a metre of air does, by height, of clear air or of haze; sums from the ground up so that a mean is a
+ * difference. */
+typedef struct AirColumn {
+    int    nodes;
+    double height_m[column_max];
+    double per_m[AIR_BAND_COUNT][column_max], sum[AIR_BAND_COUNT][column_max]; /* extinction */
+    double scatter_per_m[AIR_BAND_COUNT][column_max];
+    double black_per_m[2][column_max], black_sum[2][column_max]; /* extinction times black air; of mwir, lwir */
+} AirColumn;
+
+typedef struct Slice {
+    double    visibility_m, longwave_down_w_m2;
+    bool      has_paths, has_scattered;  /* files of its own for path; for scattered and sky_scattered */
+    AirColumn haze;
+    PathTable path[AIR_BAND_COUNT];
+    PathTable scattered;                 /* ratio to scatter_estimate */
+    Grid      sky_thermal;               /* observer_m, slant_x of the zenith angle; ln ratio to black air, mwir lwir */
+    Grid      sky_scattered;             /* observer, view, sun, azimuth: ratio to the estimate */
+    Grid      sun;                       /* observer, sun: ln depth [6], then ln (diffuse / top) [6] */
+} Slice;
+
+struct Atmosphere {
+    int          slices;
+    Slice       *slice;                  /* rising visibility: every table's and some between and beyond, or just one */
+    double       low_m, high_m;          /* visibilities that count */
+    double       sun_top_w_m2[AIR_BAND_COUNT];
+    AirColumn    clear;
+    PathTable    clear_path[AIR_BAND_COUNT];
+    Grid         temperature;
+    PlanckTable *planck[2];              /* mwir, lwir */
+    Grid         phase;                  /* height_m, scattering angle in rad: ln of haze's phase function, mean 1 */
+};
+
+/* Relative length of a path to space: 1 at the zenith, 40 at the horizon. After Rozenberg (Twilight, 1966). */
+static inline double air_mass(double zenith_rad)
+{
+    const double c = fmax(cos(fmin(zenith_rad, pi_rad / 2)), 0);
+    return 1 / (c + 0.025 * exp(-11 * c));
+}
+/* Its logarithm: the coordinate in which the sky and the sun are nearly straight. */
+static inline double slant_x(double zenith_rad) { return log(air_mass(zenith_rad)); }
+
+/* Everything of one visibility that a path needs: two slices and their shares. */
+typedef struct Blend {
+    const Slice *low, *high;  /* of visibility; may be the same */
+    double       share;       /* of high, 0 .. 1, straight in 1 / visibility */
+    double       haze_low, haze_high; /* shares for haze; of a single table at another visibility its scale, 0 */
+} Blend;
+
+/* The air of any visibility, from the tables' own slices, of which one at least has paths, one scattered light. */
+Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m);
+void   slice_close(Slice *slice);
+/* Visibilities so close together that straight lines will do, in rising order: the tables', the ends, some between. */
+int    visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
+
+void   blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m);
+double column_mean(const AirColumn *column, AirBand band, double a_m, double b_m);
+double column_scatter(const AirColumn *column, AirBand band, double height_m);
+void   column_sum_up(const AirColumn *column, const double *value, double *sum);
+/* Of two visibilities' haze. */
+double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m);
+double blend_haze_scatter(const Blend *blend, AirBand band, double height_m);
+/* Black radiance of the air between two heights, each metre counted by how much it emits. */
+double mean_black(const Atmosphere *atmosphere, AirBand band, double a_m, double b_m);
+double black_air(const Atmosphere *atmosphere, AirBand band, double height_m);
+
+/* Cosine of a path's zenith angle. */
+static inline double path_up(const AirPath *path)
+{
+    return clamp((path->target_m - path->observer_m) / path->range_m, -1, 1);
+}
+/* How far, on the average, a straight path is below the one that rises evenly through flat layers: the Earth is
+ * round, and light bends after it by a seventh. */
+static inline double mean_sag_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
+
+/* A table's value: of its weights at a temperature (NAN: sunlight), straight in 1 / temperature; of scattered light. */
+double path_weight_value(const PathTable *table, const Stencil *at, double temp_k);
+double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled);
+/* Depths of a path, of sunlight (temp_k NAN) or of what has a temperature. */
+void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
+                    int temps);
+double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k);
+/* Direct and diffuse sunlight. */
+void   blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
+                 double sun_zenith_rad);
+
+/* Scattered sunlight by a single scattering off the profile plus an even glow: no more than the shape between the
+ * tables' points, which hold its ratio to the truth. What is left when the sun's azimuth is taken out: radiance of
+ * clear air and of haze per unit of their phase functions, and of the glow, W/(m2 sr). */
+typedef struct ScatterParts {
+    double clear, glow;
+    double haze[phase_heights_max]; /* by height of the phase function */
+} ScatterParts;
+
+/* depth: of sunlight, over the whole path. */
+void   scatter_parts(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                     const AirPath *path, double depth);
+void   scatter_parts_sky(ScatterParts *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band,
+                         double observer_m, double zenith_rad, double sun_zenith_rad);
+/* up: cosine of the view's zenith angle. */
+double scatter_estimate(const ScatterParts *parts, const Atmosphere *atmosphere, AirBand band, double up,
+                        double sun_zenith_rad, double rel_azimuth_rad);
+
+#endif

@@ -1,0 +1,584 @@
+/* render/air/atmosphere_read.c: the files of etc/atmosphere (README.md there) into memory, every cell checked, and turned
+ * into what is smooth between the points: ratios to an estimate, logarithms. */
+#include "render/air/atmosphere_private.h"
+
+#include <dirent.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { depth_max = 1000 };
+
+/* ---- paths ---------------------------------------------------------------------------------- */
+
+/* Columns of paths_*.csv: depth_sun, any depth_<kelvin>k in rising order, thermal_w_m2_sr where there are such. */
+static Status choose_weights(PathTable *out, const Table *table, GridColumn *column, int *count)
+{
+    int n = 0;
+    column[n++] = (GridColumn){"depth_sun", 1e-12, depth_max};
+    for (int c = 0; c < table->columns; c++) {
+        const char *name = table->cell[c];
+        char text[32];
+        const size_t length = strlen(name);
+        if (strncmp(name, "depth_", 6) != 0 || strcmp(name, "depth_sun") == 0) continue;
+        double temp_k;
+        const bool fits = length > 7 && length < sizeof text && name[length - 1] == 'k';
+        if (fits) snprintf(text, length - 6, "%s", name + 6);
+        if (!fits || !text_to_double(&temp_k, text) || !(temp_k >= 50 && temp_k <= 1e4) || n == path_max_weights ||
+            (n > 1 && !(temp_k > out->weight_temp_k[n - 1]))) {
+            log_error("atmosphere: %s:%d: column %s: want depth_sun and depth_<kelvin>k, 50 to 10000 K rising, at most "
+                      "%d", table->path, table->line[0], name, path_max_weights - 1);
+            return STATUS_BAD_VALUE;
+        }
+        out->weight_temp_k[n] = temp_k;
+        column[n++] = (GridColumn){name, 1e-12, depth_max};
+    }
+    out->weights = n;
+    *count = n;
+    return STATUS_OK;
+}
+
+/* With haze: what the path radiates, too. */
+static Status choose_weights_and_radiance(PathTable *out, const Table *table, GridColumn *column, int *count)
+{
+    const Status status = choose_weights(out, table, column, count);
+    if (status == STATUS_OK && *count > 1) column[(*count)++] = (GridColumn){"thermal_w_m2_sr", 1e-30, 1e4};
+    return status;
+}
+
+static AirPath path_of_row(const PathTable *paths, int pair, int row)
+{
+    return (AirPath){.observer_m = paths->axis[0][pair / paths->nodes[1]],
+                     .target_m = paths->axis[1][pair % paths->nodes[1]], .range_m = exp(paths->ln_range[row])};
+}
+
+static void normalize_clear(PathTable *paths, const AirColumn *clear, AirBand band)
+{
+    for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
+        for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
+            const AirPath path = path_of_row(paths, pair, row);
+            const double plain = path.range_m * column_mean(clear, band, path.observer_m, path.target_m);
+            double *value = paths->value + (size_t)row * (size_t)paths->values;
+            for (int w = 0; w < paths->weights; w++) value[w] = log(value[w] / plain);
+        }
+}
+
+/* clear_depths bends a long path around the Earth; the rows are of flat layers. */
+static void flat_clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path,
+                              const double *temp_k, int temps)
+{
+    const AirColumn *clear = &atmosphere->clear;
+    const double sag_m = mean_sag_m(path->range_m);
+    const double flat = column_mean(clear, band, path->observer_m, path->target_m);
+    const double bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
+    clear_depths(out, atmosphere, band, path, temp_k, temps);
+    for (int t = 0; t < temps; t++) out[t] = out[t] * flat / bent;
+}
+
+static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const AirColumn *haze, AirBand band)
+{
+    double temp_k[path_max_weights] = {NAN}, clear[path_max_weights];
+    for (int w = 1; w < paths->weights; w++) temp_k[w] = paths->weight_temp_k[w];
+    for (int pair = 0; pair < paths->nodes[0] * paths->nodes[1]; pair++)
+        for (int row = paths->first[pair]; row < paths->first[pair + 1]; row++) {
+            const AirPath path = path_of_row(paths, pair, row);
+            const double plain = path.range_m * column_mean(haze, band, path.observer_m, path.target_m);
+            double *value = paths->value + (size_t)row * (size_t)paths->values;
+            if (paths->weights > 1) {
+                const double opaque = value[paths->weights] / -expm1(-value[path_emission_weight(paths)]);
+                value[paths->weights] = log(opaque / mean_black(atmosphere, band, path.observer_m, path.target_m));
+            }
+            flat_clear_depths(clear, atmosphere, band, &path, temp_k, paths->weights);
+            for (int w = 0; w < paths->weights; w++) value[w] = clamp((value[w] - clear[w]) / fmax(plain, 1e-12), -1, 3);
+        }
+}
+
+/* ---- columns of air ---------------------------------------------------------------------------- */
+
+void column_sum_up(const AirColumn *column, const double *value, double *sum)
+{
+    for (int n = 1; n < column->nodes; n++)
+        sum[n] = sum[n - 1] + (column->height_m[n] - column->height_m[n - 1]) / 2 * (value[n] + value[n - 1]);
+}
+
+/* Columns extinction_<band> and scatter_<band>, 1/km; low: what extinction must at least be. */
+static Status read_column(AirColumn *out, const char *path, double low)
+{
+    static const GridColumn axis = {"height_m", 0, height_max_m};
+    char name[2 * air_tabled_count][32];
+    GridColumn column[2 * air_tabled_count];
+    for (int i = 0; i < 2 * air_tabled_count; i++) {
+        snprintf(name[i], sizeof name[i], "%s_%s", i % 2 ? "scatter" : "extinction", air_band_name(air_tabled[i / 2]));
+        column[i] = (GridColumn){name[i], i % 2 ? 0 : low, 1e3};
+    }
+    Grid grid;
+    Status status = grid_open(&grid, path, &axis, 1, column, 2 * air_tabled_count);
+    if (status != STATUS_OK) return status;
+    out->nodes = grid.nodes[0];
+    if (out->nodes >= 2 && out->nodes <= column_max && grid.axis[0][0] == 0) {
+        memcpy(out->height_m, grid.axis[0], (size_t)out->nodes * sizeof *out->height_m);
+        for (int i = 0; i < 2 * air_tabled_count; i++) {
+            double *to = i % 2 ? out->scatter_per_m[air_tabled[i / 2]] : out->per_m[air_tabled[i / 2]];
+            for (int n = 0; n < out->nodes; n++) to[n] = grid.value[n * 2 * air_tabled_count + i] * 1e-3;
+        }
+        for (int i = 0; i < air_tabled_count; i++)
+            column_sum_up(out, out->per_m[air_tabled[i]], out->sum[air_tabled[i]]);
+    } else {
+        log_error("atmosphere: %s: 2 to %d heights from 0 upwards are needed, there are %d from %g m", path,
+                  (int)column_max, out->nodes, grid.axis[0][0]);
+        status = STATUS_BAD_VALUE;
+    }
+    grid_close(&grid);
+    return status;
+}
+
+static void add_black(AirColumn *clear, const Atmosphere *atmosphere)
+{
+    for (int i = 0; i < 2; i++) {
+        const AirBand band = i ? AIR_LWIR : AIR_MWIR;
+        for (int n = 0; n < clear->nodes; n++)
+            clear->black_per_m[i][n] = clear->per_m[band][n] * black_air(atmosphere, band, clear->height_m[n]);
+        column_sum_up(clear, clear->black_per_m[i], clear->black_sum[i]);
+    }
+}
+
+/* ---- sky and sun ------------------------------------------------------------------------------- */
+
+static void zenith_axis(Grid *grid, int axis)
+{
+    for (int i = 0; i < grid->nodes[axis]; i++) grid->axis[axis][i] = slant_x(grid->axis[axis][i] * rad_per_deg);
+}
+
+static Status read_sky_thermal(Grid *out, const Atmosphere *atmosphere, const char *path)
+{
+    static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}};
+    static const GridColumn value[2] = {{"mwir", 1e-30, 1e4}, {"lwir", 1e-30, 1e4}};
+    const Status status = grid_open(out, path, axis, 2, value, 2);
+    if (status != STATUS_OK) return status;
+    zenith_axis(out, 1);
+    for (int i = 0; i < out->nodes[0] * out->nodes[1] * 2; i++) {
+        const double height_m = out->axis[0][i / (2 * out->nodes[1])];
+        out->value[i] = log(out->value[i] / black_air(atmosphere, i % 2 ? AIR_LWIR : AIR_MWIR, height_m));
+    }
+    return STATUS_OK;
+}
+
+static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AIR_BAND_COUNT])
+{
+    static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"sun_zenith_deg", 0, 90}};
+    char name[2 * air_tabled_count][32];
+    GridColumn column[2 * air_tabled_count];
+    for (int i = 0; i < air_tabled_count; i++) {
+        const double top = sun_top_w_m2[air_tabled[i]];
+        snprintf(name[i], sizeof name[i], "direct_%s", air_band_name(air_tabled[i]));
+        snprintf(name[i + air_tabled_count], sizeof name[i], "diffuse_%s", air_band_name(air_tabled[i]));
+        column[i] = (GridColumn){name[i], 0, top};
+        column[i + air_tabled_count] = (GridColumn){name[i + air_tabled_count], 0, top};
+    }
+    const Status status = grid_open(out, path, axis, 2, column, 2 * air_tabled_count);
+    if (status != STATUS_OK) return status;
+    zenith_axis(out, 1);
+    for (int n = 0; n < out->nodes[0] * out->nodes[1]; n++)
+        for (int i = 0; i < air_tabled_count; i++) {
+            const double top = sun_top_w_m2[air_tabled[i]];
+            double *direct = &out->value[n * 2 * air_tabled_count + i], *diffuse = direct + air_tabled_count;
+            /* depth 0 and 700 keep the logarithms finite; neither shows in a product */
+            *direct = log(clamp(-log(fmax(*direct, 1e-300) / top), 1e-12, 690));
+            *diffuse = log(fmax(*diffuse / top, 1e-30));
+        }
+    return STATUS_OK;
+}
+
+static const GridColumn scattered_column[air_tabled_count] = {
+    {"b", 0, 1e4}, {"g", 0, 1e4}, {"r", 0, 1e4}, {"nir", 0, 1e4}, {"mwir", 0, 1e4}, {"lwir", 0, 1e4}};
+
+/* Ratio of the truth to the estimate. Where the estimate is nothing so is the truth. */
+static double ratio_to(double truth, double estimate) { return estimate > 1e-30 ? clamp(truth / estimate, 0, 100) : 1; }
+
+static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
+{
+    PathTable table;
+    const Status status = paths_open(&table, path, 5, scattered_column, air_tabled_count, NULL);
+    if (status != STATUS_OK) return status;
+    for (int j = 0; j < table.nodes[1]; j++) table.axis[1][j] = -cos(table.axis[1][j] * rad_per_deg);
+    double *value = table.value;
+    for (int pair = 0; pair < table.nodes[0] * table.nodes[1]; pair++)
+        for (int row = table.first[pair]; row < table.first[pair + 1]; row++)
+            for (int s = 0; s < table.suns; s++, value += table.azimuths * air_tabled_count) {
+                const double up = -table.axis[1][pair % table.nodes[1]], range_m = exp(table.ln_range[row]);
+                const double observer_m = table.axis[0][pair / table.nodes[1]];
+                const AirPath at = {observer_m, fmax(observer_m + up * range_m, 0), range_m,
+                                    table.sun_x[s] * rad_per_deg, 0};
+                for (int b = 0; b < air_tabled_count; b++) {
+                    ScatterParts parts;
+                    scatter_parts(&parts, atmosphere, blend, air_tabled[b], &at,
+                                  path_depth(atmosphere, blend, air_tabled[b], &at, NAN));
+                    for (int a = 0; a < table.azimuths; a++)
+                        value[a * air_tabled_count + b] =
+                            ratio_to(value[a * air_tabled_count + b],
+                                     scatter_estimate(&parts, atmosphere, air_tabled[b], up, at.sun_zenith_rad,
+                                                      table.azimuth_deg[a] * rad_per_deg));
+                }
+            }
+    for (int i = 0; i < table.suns; i++) table.sun_x[i] = slant_x(table.sun_x[i] * rad_per_deg);
+    slice->scattered = table;
+    return STATUS_OK;
+}
+
+static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
+{
+    static const GridColumn axis[4] = {
+        {"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}, {"sun_zenith_deg", 0, 90}, {"rel_azimuth_deg", 0, 180}};
+    Grid grid;
+    const Status status = grid_open(&grid, path, axis, 4, scattered_column, air_tabled_count);
+    if (status != STATUS_OK) return status;
+    const int azimuths = grid.nodes[3];
+    double *value = grid.value;
+    for (int o = 0; o < grid.nodes[0]; o++)
+        for (int z = 0; z < grid.nodes[1]; z++)
+            for (int s = 0; s < grid.nodes[2]; s++, value += azimuths * air_tabled_count) {
+                const double zenith_rad = grid.axis[1][z] * rad_per_deg, sun_rad = grid.axis[2][s] * rad_per_deg;
+                for (int b = 0; b < air_tabled_count; b++) {
+                    ScatterParts parts;
+                    scatter_parts_sky(&parts, atmosphere, blend, air_tabled[b], grid.axis[0][o], zenith_rad, sun_rad);
+                    for (int a = 0; a < azimuths; a++)
+                        value[a * air_tabled_count + b] =
+                            ratio_to(value[a * air_tabled_count + b],
+                                     scatter_estimate(&parts, atmosphere, air_tabled[b], cos(zenith_rad), sun_rad,
+                                                      grid.axis[3][a] * rad_per_deg));
+                }
+            }
+    zenith_axis(&grid, 1);
+    zenith_axis(&grid, 2);
+    slice->sky_scattered = grid;
+    return STATUS_OK;
+}
+
+/* ---- what a visibility has ---------------------------------------------------------------------- */
+
+void slice_close(Slice *slice)
+{
+    for (int i = 0; i < AIR_BAND_COUNT; i++) paths_close(&slice->path[i]);
+    paths_close(&slice->scattered);
+    grid_close(&slice->sky_thermal);
+    grid_close(&slice->sky_scattered);
+    grid_close(&slice->sun);
+}
+
+static Status path_in(char path[1024], const char *folder, const char *name)
+{
+    const int length = snprintf(path, 1024, "%s/%s", folder, name);
+    if (length >= 0 && length < 1024) return STATUS_OK;
+    log_error("atmosphere: path too long: folder=%s", folder);
+    return STATUS_BAD_VALUE;
+}
+
+/* paths_<band>.csv of a folder, rows as they are. */
+static Status open_paths(PathTable *out, const char *folder, AirBand band, bool hazy)
+{
+    char path[1024], name[64];
+    snprintf(name, sizeof name, "paths_%s.csv", air_band_name(band));
+    Status status = path_in(path, folder, name);
+    if (status != STATUS_OK) return status;
+    status = paths_open(out, path, 3, NULL, 0, hazy ? choose_weights_and_radiance : choose_weights);
+    if (status != STATUS_OK || !air_band_is_thermal(band) || out->weights > 1) return status;
+    log_error("atmosphere: %s:1: a thermal band needs depth_<kelvin>k columns%s", path,
+              hazy ? " and thermal_w_m2_sr" : "");
+    return STATUS_BAD_VALUE;
+}
+
+/* The haze itself, the sun and the sky's own light; paths and scattered light where the slice says that it has them. */
+static Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder)
+{
+    char path[1024];
+    const Blend blend = {slice, slice, 0, 1, 0};
+    Status status = path_in(path, folder, "haze.csv");
+    if (status == STATUS_OK) status = read_column(&slice->haze, path, 0);
+    if (status == STATUS_OK) status = path_in(path, folder, "sky_thermal.csv");
+    if (status == STATUS_OK) status = read_sky_thermal(&slice->sky_thermal, atmosphere, path);
+    if (status == STATUS_OK) status = path_in(path, folder, "sun.csv");
+    if (status == STATUS_OK) status = read_sun(&slice->sun, path, atmosphere->sun_top_w_m2);
+    for (int i = 0; i < air_tabled_count && slice->has_paths && status == STATUS_OK; i++) {
+        const AirBand band = air_tabled[i];
+        status = open_paths(&slice->path[band], folder, band, true);
+        if (status == STATUS_OK) normalize_hazy(&slice->path[band], atmosphere, &slice->haze, band);
+    }
+    if (status != STATUS_OK || !slice->has_scattered) return status;
+    status = path_in(path, folder, "sky_scattered.csv");
+    if (status == STATUS_OK) status = read_sky_scattered(slice, atmosphere, &blend, path);
+    if (status == STATUS_OK) status = path_in(path, folder, "scattered.csv");
+    if (status == STATUS_OK) status = read_scattered(slice, atmosphere, &blend, path);
+    return status;
+}
+
+/* ---- the model ------------------------------------------------------------------------------- */
+
+static Status read_sun_top(double sun_top_w_m2[AIR_BAND_COUNT])
+{
+    char path[1024];
+    if (!etc_path(path, sizeof path, "atmosphere/bands.csv")) return STATUS_BAD_VALUE;
+    Table table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    status = STATUS_BAD_VALUE;
+    const int name = table_column(&table, "band"), top = table_column(&table, "sun_top_w_m2");
+    if (name < 0 || top < 0) {
+        log_error("atmosphere: %s:%d: column missing: %s", path, table.line[0], name < 0 ? "band" : "sun_top_w_m2");
+        goto done;
+    }
+    for (int row = 0; row < table.rows; row++) {
+        AirBand band = AIR_B;
+        while (band < AIR_BAND_COUNT && strcmp(air_band_name(band), table_text(&table, row, name)) != 0) band++;
+        if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0) {
+            log_error("atmosphere: %s:%d: band %s is unknown or there twice", path, table.line[row + 1],
+                      table_text(&table, row, name));
+            goto done;
+        }
+        if (table_number(&sun_top_w_m2[band], &table, row, top, 1e-3, 1361) != STATUS_OK) goto done;
+    }
+    for (int i = 0; i < air_tabled_count; i++) {
+        if (sun_top_w_m2[air_tabled[i]] > 0) continue;
+        log_error("atmosphere: %s: band missing: %s", path, air_band_name(air_tabled[i]));
+        goto done;
+    }
+    sun_top_w_m2[AIR_PAN] = sun_top_w_m2[AIR_B] + sun_top_w_m2[AIR_G] + sun_top_w_m2[AIR_R];
+    status = STATUS_OK;
+done:
+    table_close(&table);
+    return status;
+}
+
+/* What all visibilities share. */
+static Status open_clear(Atmosphere *atmosphere, const char *folder)
+{
+    static const GridColumn height = {"height_m", 0, height_max_m}, temp = {"temp_k", 100, 400};
+    static const GridColumn angle[2] = {{"height_m", 0, height_max_m}, {"angle_deg", 0, 180}};
+    static const GridColumn phase[air_tabled_count] = {{"b", 1e-6, 1e6},   {"g", 1e-6, 1e6},    {"r", 1e-6, 1e6},
+                                                       {"nir", 1e-6, 1e6}, {"mwir", 1e-6, 1e6}, {"lwir", 1e-6, 1e6}};
+    char path[1024], clear[1024];
+    Status status = path_in(path, folder, "temperature.csv");
+    if (status == STATUS_OK) status = grid_open(&atmosphere->temperature, path, &height, 1, &temp, 1);
+    if (status == STATUS_OK) status = path_in(path, folder, "phase.csv");
+    if (status == STATUS_OK) status = grid_open(&atmosphere->phase, path, angle, 2, phase, air_tabled_count);
+    if (status != STATUS_OK) return status;
+    Grid *p = &atmosphere->phase;
+    if (p->nodes[0] > phase_heights_max) {
+        log_error("atmosphere: %s: more than %d heights", path, (int)phase_heights_max);
+        return STATUS_BAD_VALUE;
+    }
+    for (int i = 0; i < p->nodes[1]; i++) p->axis[1][i] *= rad_per_deg;
+    for (int i = 0; i < p->nodes[0] * p->nodes[1] * air_tabled_count; i++) p->value[i] = log(p->value[i]);
+
+    status = path_in(clear, folder, "clear");
+    if (status == STATUS_OK) status = path_in(path, clear, "air.csv");
+    if (status == STATUS_OK) status = read_column(&atmosphere->clear, path, 1e-12);
+    if (status == STATUS_OK) add_black(&atmosphere->clear, atmosphere);
+    for (int i = 0; i < air_tabled_count && status == STATUS_OK; i++) {
+        const AirBand band = air_tabled[i];
+        status = open_paths(&atmosphere->clear_path[band], clear, band, false);
+        if (status == STATUS_OK) normalize_clear(&atmosphere->clear_path[band], &atmosphere->clear, band);
+    }
+    return status;
+}
+
+static bool folder_has(const char *folder, const char *name)
+{
+    char path[1024];
+    return path_in(path, folder, name) == STATUS_OK && access(path, F_OK) == 0;
+}
+
+/* Which of the tables a visibility needs: the two about it of those that have something; beyond the last of these the
+ * last two. Where it is that of a table, this alone. */
+static void choose_tables(bool need[slices_max], const bool has[slices_max], const double *table_m, int count,
+                          double visibility_m)
+{
+    int of[slices_max] = {0}, n = 0, i = 0;
+    for (int k = 0; k < count; k++)
+        if (has[k]) of[n++] = k;
+    while (i + 2 < n && visibility_m > table_m[of[i + 1]]) i++;
+    for (int k = i; k < n && k < i + 2; k++)
+        if (n == 1 || visibility_m != table_m[of[k == i ? i + 1 : i]]) need[of[k]] = true;
+}
+
+/* The slices that are asked: of one visibility, or so many that any lies close between two. */
+static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
+{
+    double step_m[slices_made_max] = {visibility_m};
+    int steps = 1;
+    if (isnan(visibility_m)) steps = visibility_steps(step_m, tabled, count, atmosphere->low_m, atmosphere->high_m);
+    atmosphere->slice = calloc((size_t)steps, sizeof *atmosphere->slice);
+    if (!atmosphere->slice) return STATUS_NO_MEMORY;
+    Status status = STATUS_OK;
+    for (int i = 0; i < steps && status == STATUS_OK; i++) {
+        atmosphere->slices++;
+        status = slice_between(&atmosphere->slice[i], atmosphere, tabled, count, step_m[i]);
+    }
+    return status;
+}
+
+/* Beyond the tables' visibilities haze goes on by the same straight line in 1 / visibility, this far. */
+static const double visibility_below = 0.4, visibility_above = 2.2;
+
+/* list: visibilities and what is in visibilities.csv. A folder without paths_b.csv has no paths, one without
+ * sky_scattered.csv no scattered light; the neighbours' count there. */
+static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid *list, double visibility_m)
+{
+    const int count = list->nodes[0];
+    const double *table_m = list->axis[0];
+    bool paths[slices_max] = {false}, light[slices_max] = {false}, need[slices_max] = {false}, all[slices_max];
+    bool any_paths = false, any_light = false;
+    char slice_folder[slices_max][1024], name[32];
+    for (int i = 0; i < count; i++) {
+        snprintf(name, sizeof name, "%.0f", table_m[i]);
+        if (path_in(slice_folder[i], folder, name) != STATUS_OK) return STATUS_BAD_VALUE;
+        any_paths |= paths[i] = folder_has(slice_folder[i], "paths_b.csv");
+        any_light |= light[i] = folder_has(slice_folder[i], "sky_scattered.csv");
+        all[i] = true;
+    }
+    if (!any_paths) paths[0] = true; /* which file is missing will be said */
+    if (!any_light) light[0] = true;
+    atmosphere->low_m = table_m[0] * visibility_below;
+    atmosphere->high_m = table_m[count - 1] * visibility_above;
+    if (isnan(visibility_m)) {
+        memcpy(need, all, sizeof need);
+    } else {
+        visibility_m = clamp(visibility_m, atmosphere->low_m, atmosphere->high_m);
+        choose_tables(need, all, table_m, count, visibility_m);
+        choose_tables(need, paths, table_m, count, visibility_m);
+        choose_tables(need, light, table_m, count, visibility_m);
+    }
+
+    Slice *tabled = calloc((size_t)count, sizeof *tabled);
+    if (!tabled) return STATUS_NO_MEMORY;
+    int read = 0;
+    Status status = STATUS_OK;
+    for (int i = 0; i < count && status == STATUS_OK; i++) {
+        if (!need[i]) continue;
+        tabled[read].visibility_m = table_m[i];
+        tabled[read].longwave_down_w_m2 = list->value[i];
+        tabled[read].has_paths = paths[i];
+        tabled[read].has_scattered = light[i];
+        status = slice_open(&tabled[read++], atmosphere, slice_folder[i]);
+    }
+    if (status == STATUS_OK) status = make_slices(atmosphere, tabled, read, visibility_m);
+    for (int i = 0; i < read; i++) slice_close(&tabled[i]);
+    free(tabled);
+    return status;
+}
+
+static Status open_model(Atmosphere *atmosphere, const char *folder, double visibility_m)
+{
+    static const GridColumn visibility = {"visibility_m", 100, 500000}, longwave = {"longwave_down_w_m2", 1, 1000};
+    char path[1024];
+    Status status = path_in(path, folder, "visibilities.csv");
+    Grid list = {0};
+    if (status == STATUS_OK) status = grid_open(&list, path, &visibility, 1, &longwave, 1);
+    if (status != STATUS_OK) return status;
+    if (list.nodes[0] > slices_max) {
+        log_error("atmosphere: %s: more than %d visibilities", path, (int)slices_max);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) status = open_clear(atmosphere, folder);
+    if (status == STATUS_OK) status = open_slices(atmosphere, folder, &list, visibility_m);
+    grid_close(&list);
+    return status;
+}
+
+/* ---- tables of one shape ------------------------------------------------------------------------ */
+
+/* The first gives its number to those that are like it. */
+static void number_shapes(Atmosphere *atmosphere)
+{
+    PathTable *table[(slices_made_max + 1) * AIR_BAND_COUNT + slices_made_max];
+    int        count = 0;
+    for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->clear_path[air_tabled[k]];
+    for (int s = 0; s < atmosphere->slices; s++) {
+        for (int k = 0; k < air_tabled_count; k++) table[count++] = &atmosphere->slice[s].path[air_tabled[k]];
+        table[count++] = &atmosphere->slice[s].scattered;
+    }
+    for (int i = 0; i < count; i++) {
+        int first = 0;
+        while (first < i && !paths_same_shape(table[first], table[i])) first++;
+        table[i]->shape = first;
+    }
+}
+
+Status atmosphere_open(Atmosphere **out, const char *model) { return atmosphere_open_at(out, model, NAN); }
+
+/* Says which models there are, by their folders. */
+static Status no_model(const char *model)
+{
+    char folder[1024], path[1400], list[512] = "";
+    struct dirent **entry;
+    const int count = etc_path(folder, sizeof folder, "atmosphere") ? scandir(folder, &entry, NULL, alphasort) : -1;
+    for (int i = 0; i < count; i++) {
+        const size_t length = strlen(list);
+        snprintf(path, sizeof path, "%s/%s/visibilities.csv", folder, entry[i]->d_name);
+        if (access(path, F_OK) == 0)
+            snprintf(list + length, sizeof list - length, "%s%s", length ? ", " : "", entry[i]->d_name);
+        free(entry[i]);
+    }
+    if (count >= 0) free(entry);
+    log_error("atmosphere: no model %s; there are: %s (weather.atmosphere); etc/atmosphere/README.md is the format",
+              model, list);
+    return STATUS_BAD_VALUE;
+}
+
+Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m)
+{
+    char name[96], folder[512];
+    bool plain = *model && strlen(model) < 64;
+    const bool named = strpbrk(model, "/."); /* a folder */
+    for (const char *c = model; *c; c++)
+        plain = plain && ((*c >= 'a' && *c <= 'z') || (*c >= '0' && *c <= '9') || *c == '_');
+    if (!plain && !named) {
+        char shown[64];
+        text_escape(shown, sizeof shown, model, strlen(model));
+        log_error("atmosphere: a model's name is of a-z, 0-9 and _, not '%s'; a folder has a dot or a slash: ./NAME", shown);
+        return STATUS_BAD_VALUE;
+    }
+    if (!named) snprintf(name, sizeof name, "atmosphere/%s", model);
+    if (named ? snprintf(folder, sizeof folder, "%s", model) >= (int)sizeof folder
+              : !etc_path(folder, sizeof folder, name)) {
+        log_error("atmosphere: path too long: model=%s", model);
+        return STATUS_BAD_VALUE;
+    }
+    if (named && access(folder, F_OK) != 0) {
+        log_error("atmosphere: there is no folder %s (weather.atmosphere); etc/atmosphere/README.md is the format", model);
+        return STATUS_IO;
+    }
+    if (access(folder, F_OK) != 0) return no_model(model);
+    Atmosphere *atmosphere = calloc(1, sizeof *atmosphere);
+    if (!atmosphere) {
+        log_error("atmosphere: out of memory for model %s", model);
+        return STATUS_NO_MEMORY;
+    }
+    Status status = read_sun_top(atmosphere->sun_top_w_m2);
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        double low_m, high_m;
+        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
+        status = planck_table_create(&atmosphere->planck[k], low_m, high_m);
+    }
+    if (status == STATUS_OK) status = open_model(atmosphere, folder, visibility_m);
+    if (status != STATUS_OK) {
+        if (status == STATUS_NO_MEMORY) log_error("atmosphere: out of memory for model %s", model);
+        else log_error("atmosphere: cannot use model %s: etc/atmosphere/README.md is the format", model);
+        atmosphere_close(atmosphere);
+        return status;
+    }
+    number_shapes(atmosphere);
+    *out = atmosphere;
+    return STATUS_OK;
+}
+
+void atmosphere_close(Atmosphere *atmosphere)
+{
+    if (!atmosphere) return;
+    for (int i = 0; i < atmosphere->slices; i++) slice_close(&atmosphere->slice[i]);
+    free(atmosphere->slice);
+    for (int i = 0; i < AIR_BAND_COUNT; i++) paths_close(&atmosphere->clear_path[i]);
+    for (int i = 0; i < 2; i++)
+        if (atmosphere->planck[i]) planck_table_destroy(atmosphere->planck[i]);
+    grid_close(&atmosphere->temperature);
+    grid_close(&atmosphere->phase);
+    free(atmosphere);
+}

@@ -1,0 +1,217 @@
+/* render/frame/edges.c: where one sample does not speak for its pixel.
+ *
+ * A pixel is sampled again where it and a neighbour (left, right, above, below) show different entities, parts or
+ * materials, surfaces that stand at an angle, one in shadow and one not, or a step in depth that neither's own plane
+ * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls
+ * between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in the boxes of targets
+ * that are too large for a footprint and small enough to have such parts are sampled again whatever they show, and so
+ * is the ground where a small target's shadow falls. */
+#include "render/frame/render_private.h"
+
+/* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
+ * barrel is a sixtieth of its tank's length. */
+static const double middling_px = 64;
+static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
+static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
+static const double step_part = 0.05, step_ground = 0.5; /* of the range */
+static const double kinds_bent = 1; /* of what the range changes from pixel to pixel: ground is no plane */
+
+static void mark_box(Job *job, const double box[4], RefineFlag flag)
+{
+    const View *view = &job->request->view;
+    const int   x0 = (int)fmax(0, floor(box[0])), x1 = (int)fmin(view->width, ceil(box[2]));
+    const int   y0 = (int)fmax(0, floor(box[1])), y1 = (int)fmin(view->height, ceil(box[3]));
+    for (int y = y0; y < y1; y++)
+        for (int x = x0; x < x1; x++) job->refine[pixel_index(job, x, y)] |= (uint8_t)flag;
+}
+
+/* Box of a sphere's image, generous; false: not before the eye. */
+static bool sphere_box(double box[4], const View *view, const double centre_enu[3], double radius_m)
+{
+    double offset_enu[3], p_cam[3];
+    v3_sub(offset_enu, centre_enu, view->p_enu);
+    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
+    if (!(p_cam[2] > 2 * radius_m)) return false;
+    double at_px[2], half_px = view->focal_px * radius_m / (p_cam[2] - radius_m);
+    view_project(at_px, view, p_cam);
+    if (view_has_lens(view)) half_px *= 1.5; /* what a lens that is taken adds at most, and more */
+    for (int k = 0; k < 2; k++) box[k] = at_px[k] - half_px, box[k + 2] = at_px[k] + half_px;
+    return true;
+}
+
+/* From the target's foot to where its top's shadow falls on level ground. */
+static bool shadow_box(double box[4], const Job *job, int index)
+{
+    const SnapshotEntity *entity = &job->snapshot->entity[index];
+    const double         *sun    = job->air->sun_d_enu;
+    double                foot_enu[3], tip_enu[3], foot[4], tip[4];
+    if (entity->model < 0) return false;
+    const Model          *model  = catalog_model(job->world->catalog, entity->model);
+    if (!job->world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
+    enu_from_ecef(foot_enu, &job->world->frame, entity->p_ecef);
+    /* a flying one's shadow is elsewhere, and as faint as it is far */
+    const double above_m =
+        foot_enu[2] - elevation_height(&job->world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
+    if (!(fabs(above_m) < model->height_m)) return false;
+    v3_add_scaled(tip_enu, foot_enu, -model->height_m / sun[2], sun);
+    tip_enu[2] = foot_enu[2];
+    if (!sphere_box(foot, &job->request->view, foot_enu, 0.5 * model->radius_m) ||
+        !sphere_box(tip, &job->request->view, tip_enu, 0.5 * model->radius_m))
+        return false;
+    for (int k = 0; k < 2; k++) {
+        box[k]     = fmin(foot[k], tip[k]);
+        box[k + 2] = fmax(foot[k + 2], tip[k + 2]);
+    }
+    return fmin(box[2] - box[0], box[3] - box[1]) <= thin_px && fmax(box[2] - box[0], box[3] - box[1]) <= middling_px;
+}
+
+void mark_boxes(Job *job)
+{
+    const bool shadows = has_band(job->request->bands, BAND_OPTICAL) || has_band(job->request->bands, BAND_MWIR);
+    for (int i = 0; i < job->snapshot->count; i++) {
+        const TargetPixels *t = &job->boxes[i];
+        double              shadow[4];
+        if (!t->projected) continue;
+        const double *box = t->projected_box;
+        if (!(fmax(box[2] - box[0], box[3] - box[1]) <= middling_px)) continue;
+        if (!job->is_small[i]) mark_box(job, box, refine_all);
+        if (shadows && shadow_box(shadow, job, i)) mark_box(job, shadow, refine_sun);
+    }
+}
+
+/* ---- neighbours ------------------------------------------------------------------------------- */
+
+/* Range at which a ray meets the plane of another pixel's hit; the eye is the origin. NaN: never. */
+static double plane_range(const Picture *p, size_t at, const double d_at[3], const double d[3])
+{
+    const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
+    const double range_m = p->range_m[at] * v3_dot(n, d_at) / v3_dot(n, d);
+    return range_m > 0 && range_m < INFINITY ? range_m : NAN;
+}
+
+/* Whether hit b lies off the plane of hit a: by more than step_m and `bent` times what the range changes along it. */
+static bool lies_off(const Picture *p, size_t a, size_t b, const double d_a[3], const double d_b[3], double step_m,
+                     double bent)
+{
+    const double there_m = plane_range(p, a, d_a, d_b);
+    return !(fabs(there_m - p->range_m[b]) <= step_m + bent * fabs(there_m - p->range_m[a]));
+}
+
+/* Whether each of two hits lies off the other's plane; `either`: one of them is enough (a roof and the wall below it,
+ * one seen along its own plane). */
+static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step_m,
+                           double bent, bool either)
+{
+    const Picture *p = job->picture;
+    double         d_a[3], d_b[3];
+    if (fabsf(p->range_m[a] - p->range_m[b]) <= step_m) return false;
+    view_ray(d_a, &job->request->view, xa + 0.5, ya + 0.5);
+    view_ray(d_b, &job->request->view, xb + 0.5, yb + 0.5);
+    const bool from_a = lies_off(p, a, b, d_a, d_b, step_m, bent), from_b = lies_off(p, b, a, d_b, d_a, step_m, bent);
+    return either ? from_a || from_b : from_a && from_b;
+}
+
+static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
+{
+    const Picture *p = job->picture;
+    const size_t   a = pixel_index(job, xa, ya), b = pixel_index(job, xb, yb);
+    const bool     part = p->entity[a] || p->entity[b];
+    const bool     sky_a = !(p->range_m[a] < INFINITY), sky_b = !(p->range_m[b] < INFINITY);
+    if (sky_a && sky_b) return 0;
+    if (p->entity[a] != p->entity[b] || p->part[a] != p->part[b]) return refine_all;
+    if (sky_a != sky_b) return refine_step;
+    const bool   other = p->material[a] != p->material[b];
+    const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
+                          p->normal[2][a] * p->normal[2][b];
+    const double near_m = fmin(p->range_m[a], p->range_m[b]);
+    const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
+    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px : step_ground * near_m;
+    if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
+        return part ? refine_all : refine_step;
+    if (part && other) return refine_all;
+    return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
+}
+
+/* 1 where `count` pixels from a on and those from b on are plainly of one kind, as most are: in arrays, and never where
+ * edge_between would find anything. */
+static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_t b, int count)
+{
+    const Picture  *p = job->picture;
+    const float    *nx = p->normal[0], *ny = p->normal[1], *nz = p->normal[2], *range_m = p->range_m;
+    const uint32_t *entity = p->entity, *part = p->part, *material = p->material;
+    const float     cosine = (float)sharp_cosine * 1.0001f, step = (float)step_part * 0.999f;
+    for (int i = 0; i < count; i++) {
+        const size_t   k = a + (size_t)i, l = b + (size_t)i;
+        const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
+                               (uint32_t)(job->shadow[k] ^ job->shadow[l]);
+        const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
+        const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
+        const float    deep_m = fabsf(range_m[k] - range_m[l]);
+        plain[i] = (uint32_t)(other == 0) & (uint32_t)(turn > cosine) & (uint32_t)(deep_m <= step * near_m);
+    }
+}
+
+void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1)
+{
+    enum { side = tile_side_samples };
+    static const int beside[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+    const View      *view  = &job->request->view;
+    const int        width = x1 - x0;
+    uint32_t         across[side + 1], above[side], below[side]; /* across[k]: pixels x0 + k - 1 and x0 + k */
+    uint16_t         corner[corner_capacity];
+    const bool       grounds = job->world->landscape && job->request->samples == 1 &&
+                         job->request->bands & ~(1u << BAND_RADAR);
+    const int        left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
+    if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
+    if (y0 > 0) find_plain(above, job, pixel_index(job, x0, y0 - 1), pixel_index(job, x0, y0), width);
+    for (int y = y0; y < y1; y++) {
+        find_plain(across + left + 1 - x0, job, pixel_index(job, left, y), pixel_index(job, left + 1, y), right - left);
+        if (y + 1 < view->height) find_plain(below, job, pixel_index(job, x0, y), pixel_index(job, x0, y + 1), width);
+        for (int x = x0; x < x1; x++) {
+            const int       k = x - x0;
+            const uint32_t *plain[4] = {&across[k], &across[k + 1], &above[k], &below[k]};
+            unsigned        flag = job->refine[pixel_index(job, x, y)];
+            for (int n = 0; n < 4 && !(flag & refine_all); n++) {
+                const int xb = x + beside[n][0], yb = y + beside[n][1];
+                if (xb < 0 || yb < 0 || xb >= view->width || yb >= view->height || *plain[n]) continue;
+                flag |= edge_between(job, x, y, xb, yb);
+            }
+            const size_t px = pixel_index(job, x, y);
+            if (grounds && !(flag & refine_all) && !job->picture->entity[px] && job->picture->range_m[px] < INFINITY &&
+                corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
+                flag |= refine_ground;
+            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
+            flags[(y - y0) * width + k] = (uint8_t)flag;
+        }
+        if (y + 1 < y1) memcpy(above, below, sizeof above);
+    }
+}
+
+/* ---- ground --------------------------------------------------------------------------------- */
+
+void recall_ground(Scratch *s, const Job *job)
+{
+    const View    *view  = &job->request->view;
+    const Picture *p     = job->picture;
+    const Block   *block = &s->block;
+    s->hits.count   = s->rays.count = block->pixels;
+    s->hits.columns = s->rays.columns = 0;
+    for (int i = 0; i < s->hits.count; i++) {
+        const size_t px = pixel_index(job, block->x[i], block->y[i]);
+        double       d_enu[3];
+        view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
+        s->hits.range_m[i] = p->range_m[px];
+        s->hits.entity[i]  = 0;
+        s->hits.part[i] = s->hits.model[i] = 0;
+        s->hits.inside[i] = 0;
+        s->rays.far_m[i] = INFINITY;
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][i] = view->p_enu[k];
+            s->rays.d_enu[k][i] = d_enu[k];
+            s->hits.p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
+            s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
+        }
+        s->shadow[i] = job->shadow[px];
+    }
+    landscape_surfaces(s->hits.surface, job->world->landscape, s->hits.count, s->hits.p_enu[0], s->hits.p_enu[1]);
+}

@@ -1,0 +1,526 @@
+/* render/frame/footprint.c: targets that are small on the image, sampled over their own boxes.
+ *
+ * A target of a few pixels, or of a hundredth of one, falls between the samples of the pixels or does not, and
+ * flickers. Here its box on the image is divided into cells, always so many across the target whatever its size, and
+ * each is sampled once. The pattern moves with the target, not with the pixels: what it adds up to does not change as
+ * the target crosses them. A cell's result goes to the pixels it lies over by their shares of its area, exactly, so
+ * that the sum over pixels is that over the target. The pixels' own samples do not see small targets; in the end a
+ * pixel is its own value times what the footprints leave of it, plus the footprints.
+ *
+ * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
+#include "render/frame/render_private.h"
+
+/* The target's sample nearest the centre of a pixel. */
+typedef struct FootprintTruth {
+    double   square_px; /* of its distance */
+    float    range_m, temp_k, normal[3];
+    uint16_t part, material;
+} FootprintTruth;
+
+struct Footprint {
+    int     entity;                    /* snapshot index */
+    double  box[4];                    /* of all its vertices, px */
+    int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
+    int     x0, y0, x1, y1;            /* pixels that it may touch */
+    double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
+    double *area;                      /* px, a pixel */
+    FootprintTruth *truth;             /* a pixel; NULL: not wanted */
+    /* over the target, px within the image */
+    double  visible, amodal, hidden_ground, hidden_entity;
+    double  veiled[BAND_COUNT];          /* area x what the veil takes */
+    double  square[picture_plane_count]; /* area x radiance^2 */
+    double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
+    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
+    float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
+    bool   *met;                       /* cells that show the target */
+    int     amodal_box[4];
+};
+
+/* ---- planning ------------------------------------------------------------------------------- */
+
+/* Below this both ways (or this one way and four times as much the other) the footprint is the better of the two: edge
+ * samples, 1 / 16 px apart along an axis, are wrong by up to 1 / 16 px of width, 0.4 % of 16 px. */
+static bool is_small(const TargetPixels *t)
+{
+    const double w = t->projected_box[2] - t->projected_box[0], h = t->projected_box[3] - t->projected_box[1];
+    return t->projected && fmin(w, h) < small_target_px && fmax(w, h) < small_target_long_px;
+}
+
+static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
+{
+    const View *view = &job->request->view;
+    f->entity = index;
+    memcpy(f->box, job->boxes[index].projected_box, sizeof f->box);
+    const double w = f->box[2] - f->box[0], h = f->box[3] - f->box[1];
+    /* never fewer than the edges of larger targets get */
+    const int per_px = looks_for_edges(job->request) ? job->request->edge_samples : job->request->samples;
+    if (w > 0 && h > 0) {
+        f->columns = (int)fmax(job->request->target_samples, ceil(w) * per_px);
+        f->rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
+    }
+    f->x0 = (int)fmax(0, floor(f->box[0])), f->x1 = (int)fmin(view->width, ceil(f->box[2]));
+    f->y0 = (int)fmax(0, floor(f->box[1])), f->y1 = (int)fmin(view->height, ceil(f->box[3]));
+    const size_t pixels = (size_t)(f->x1 - f->x0) * (size_t)(f->y1 - f->y0);
+    bool         ok = (f->area = arena_alloc(arena, pixels, sizeof(double))) != NULL;
+    for (int k = 0; k < picture_plane_count; k++)
+        if (picture_plane(job->picture, k)) ok = (f->sum[k] = arena_alloc(arena, pixels, sizeof(double))) && ok;
+    if (job->picture->entity) {
+        ok = (f->truth = arena_alloc(arena, pixels, sizeof *f->truth)) && ok;
+        for (size_t i = 0; ok && i < pixels; i++) f->truth[i].square_px = INFINITY;
+    }
+    const size_t cells = (size_t)f->columns * (size_t)f->rows;
+    const bool   budget = job->request->budget, handed = job->request->hand_over_cells;
+    if (budget || handed) ok = (f->met = arena_alloc(arena, cells, sizeof *f->met)) && ok;
+    for (int k = 0; k < picture_plane_count; k++) {
+        const bool handed_plane = handed && k != picture_radar;
+        if (!picture_plane(job->picture, k)) continue;
+        if (budget || handed_plane) ok = (f->cell[k] = arena_alloc(arena, cells, sizeof(float))) && ok;
+        if (handed_plane) ok = (f->behind[k] = arena_alloc(arena, pixels, sizeof(float))) && ok;
+    }
+    if (job->picture->target)
+        ok = (f->hidden_by = arena_alloc(arena, (size_t)job->snapshot->count, sizeof(double))) && ok;
+    return ok ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+Status footprints_plan(Job *job, Arena *arena)
+{
+    const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
+    int          count = 0;
+    for (int i = 0; i < job->snapshot->count; i++) count += job->is_small[i] = is_small(&job->boxes[i]);
+    if (count == 0) return STATUS_OK;
+    job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
+    job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
+    job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
+    job->footprint_turn = arena_alloc(arena, (size_t)count, sizeof *job->footprint_turn);
+    if (!job->footprint || !job->footprint_turn || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
+    Status status = STATUS_OK;
+    for (int i = 0; i < job->snapshot->count && status == STATUS_OK; i++)
+        if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
+    if (job->request->hand_over_cells) {
+        job->picture->small.target = arena_alloc(arena, (size_t)count, sizeof *job->picture->small.target);
+        if (!job->picture->small.target) return STATUS_NO_MEMORY;
+    }
+    /* the largest first, so that no worker is left with one when the others are done */
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        int              at = n;
+        for (; at > 0; at--) {
+            const Footprint *before = &job->footprint[job->footprint_turn[at - 1]];
+            if (before->columns * before->rows >= f->columns * f->rows) break;
+            job->footprint_turn[at] = job->footprint_turn[at - 1];
+        }
+        job->footprint_turn[at] = n;
+    }
+    return status;
+}
+
+/* ---- cells ---------------------------------------------------------------------------------- */
+
+typedef struct Span {
+    double low, high; /* px */
+} Span;
+
+static Span cell_span(const Footprint *f, int axis, int cell)
+{
+    const int    cells = axis == 0 ? f->columns : f->rows;
+    const double low = f->box[axis], length = f->box[axis + 2] - low;
+    return (Span){low + length * cell / cells, low + length * (cell + 1) / cells};
+}
+
+static double overlap(Span a, double low, double high)
+{
+    const double length = fmin(a.high, high) - fmax(a.low, low);
+    return length > 0 ? length : 0;
+}
+
+void footprint_box(double box_px[4], const Footprint *f) { memcpy(box_px, f->box, sizeof f->box); }
+
+uint64_t footprint_key(const Footprint *f, int cell)
+{
+    return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
+}
+
+double footprint_area(const Footprint *f, int cell)
+{
+    return overlap(cell_span(f, 0, cell % f->columns), f->x0, f->x1) *
+           overlap(cell_span(f, 1, cell / f->columns), f->y0, f->y1);
+}
+
+/* Where a cell is sampled: columns shifted among rows, and rows among columns, by the golden section, so that an edge
+ * along either is met in many more steps than there are cells across, and one along a diagonal, too. */
+static void cell_sample(double at_px[2], const Footprint *f, int cell)
+{
+    static const double golden = 0.6180339887498949;
+    const int    column = cell % f->columns, row = cell / f->columns;
+    const double u = 0.5 + row * golden, v = 0.5 + column * golden;
+    at_px[0] = f->box[0] + (f->box[2] - f->box[0]) * (column + u - floor(u)) / f->columns;
+    at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
+}
+
+/* visit(user, pixel of the footprint, area) for each pixel that a cell lies over. */
+typedef void VisitPixel(void *user, const Footprint *f, int pixel, int x, int y, double area);
+
+static void over_pixels(const Footprint *f, int cell, VisitPixel *visit, void *user)
+{
+    const Span across = cell_span(f, 0, cell % f->columns), down = cell_span(f, 1, cell / f->columns);
+    for (int y = (int)fmax(f->y0, floor(down.low)); y < f->y1 && y < down.high; y++)
+        for (int x = (int)fmax(f->x0, floor(across.low)); x < f->x1 && x < across.high; x++) {
+            const double area = overlap(across, x, x + 1) * overlap(down, y, y + 1);
+            if (area > 0) visit(user, f, (y - f->y0) * (f->x1 - f->x0) + x - f->x0, x, y, area);
+        }
+}
+
+typedef struct Splat {
+    double *sum, value;
+} Splat;
+
+static void splat_pixel(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)f, (void)x, (void)y;
+    const Splat *splat = user;
+    splat->sum[pixel] += area * splat->value;
+}
+
+void footprint_splat(Scratch *s, int plane)
+{
+    Footprint *f = s->block.footprint;
+    for (int i = 0; i < s->hits.count; i++) {
+        Splat splat = {f->sum[plane], s->out[i]};
+        over_pixels(f, s->block.cell[i], splat_pixel, &splat);
+        if (f->cell[plane]) f->cell[plane][s->block.cell[i]] = s->out[i], f->met[s->block.cell[i]] = true;
+        f->square[plane] += footprint_area(f, s->block.cell[i]) * s->out[i] * s->out[i];
+    }
+}
+
+/* ---- sampling ------------------------------------------------------------------------------- */
+
+typedef struct TruthSample {
+    const Scratch *s;
+    int            sample;
+    double         at_px[2];
+} TruthSample;
+
+static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)area;
+    const TruthSample *t = user;
+    const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
+    FootprintTruth    *to = &f->truth[pixel];
+    const Scratch     *s = t->s;
+    if (!(square_px < to->square_px)) return;
+    *to = (FootprintTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
+                           .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
+                           .material = s->material[t->sample]};
+    for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
+}
+
+static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)f, (void)pixel, (void)area;
+    int *box = user;
+    box[0] = box[2] == 0 || x < box[0] ? x : box[0];
+    box[1] = box[3] == 0 || y < box[1] ? y : box[1];
+    box[2] = x + 1 > box[2] ? x + 1 : box[2];
+    box[3] = y + 1 > box[3] ? y + 1 : box[3];
+}
+
+/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked.
+ * Without SKIP_CELL all stay. */
+static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
+{
+    const int  count = s->rays.count;
+    const bool leave_out = skips(job->request->skips_off, SKIP_CELL);
+    int        kept = 0;
+    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity, &s->counters.visibility);
+    for (int i = 0; i < count; i++) {
+        if (!s->meets[i] && leave_out) continue;
+        s->block.cell[kept] = first_cell + i;
+        s->meets[kept]      = s->meets[i];
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][kept] = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept] = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    s->counters.visibility.skipped[SKIP_CELL] += (uint64_t)(count - kept);
+    s->rays.count   = kept;
+    s->rays.columns = 0;
+}
+
+/* What hides the target where its own samples did not meet it first. */
+static void count_hidden(Footprint *f, const Scratch *s)
+{
+    const uint32_t id = (uint32_t)f->entity + 1;
+    for (int i = 0; i < s->all.count; i++) {
+        if (!s->meets[i]) continue;
+        const int    cell = s->block.cell[i];
+        const double area = footprint_area(f, cell);
+        f->amodal += area;
+        over_pixels(f, cell, grow_amodal, f->amodal_box);
+        if (s->all.entity[i] == id) continue;
+        if (s->all.entity[i]) {
+            f->hidden_entity += area;
+            f->hidden_by[s->all.entity[i] - 1] += area;
+        } else {
+            f->hidden_ground += area;
+        }
+    }
+}
+
+/* Samples that met the target, close together: nobody else's are shaded here. */
+static void keep_target(const Footprint *f, Scratch *s)
+{
+    const uint32_t id = (uint32_t)f->entity + 1;
+    const Hits    *from = &s->all;
+    Hits          *to = &s->hits;
+    int            kept = 0;
+    for (int i = 0; i < from->count; i++) {
+        if (from->entity[i] != id) continue;
+        s->block.cell[kept] = s->block.cell[i];
+        to->range_m[kept]   = from->range_m[i];
+        to->entity[kept]    = from->entity[i];
+        to->part[kept]      = from->part[i];
+        to->model[kept]     = from->model[i];
+        to->inside[kept]    = from->inside[i];
+        to->surface[kept]   = from->surface[i];
+        for (int k = 0; k < 3; k++) {
+            to->p_enu[k][kept]       = from->p_enu[k][i];
+            to->n_geo[k][kept]       = from->n_geo[k][i];
+            to->n_enu[k][kept]       = from->n_enu[k][i];
+            s->rays.o_enu[k][kept]   = s->rays.o_enu[k][i];
+            s->rays.d_enu[k][kept]   = s->rays.d_enu[k][i];
+        }
+        s->rays.far_m[kept++] = s->rays.far_m[i];
+    }
+    to->count   = s->rays.count = kept;
+    to->columns = s->rays.columns = 0;
+}
+
+static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
+{
+    (void)user, (void)x, (void)y;
+    f->area[pixel] += area;
+}
+
+static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cell, int count, int listed)
+{
+    const View  *view = &job->request->view;
+    const double t0 = wall_clock_s();
+    for (int i = 0; i < count; i++) {
+        double at_px[2], d_enu[3];
+        cell_sample(at_px, f, first_cell + i);
+        view_ray(d_enu, view, at_px[0], at_px[1]);
+        for (int k = 0; k < 3; k++) {
+            s->rays.o_enu[k][i] = view->p_enu[k];
+            s->rays.d_enu[k][i] = d_enu[k];
+        }
+        s->rays.far_m[i] = INFINITY;
+    }
+    s->rays.count   = count;
+    s->rays.columns = f->columns;
+    s->counters.rays_primary += (uint64_t)count;
+    s->counters.rays_small_targets += (uint64_t)count;
+    keep_amodal(f, s, job, first_cell);
+    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
+                         &s->counters.visibility);
+    if (job->picture->target) count_hidden(f, s);
+    s->visibility_s += wall_clock_s() - t0;
+    keep_target(f, s);
+    if (s->hits.count == 0) return;
+    trace_shadows(s, job);
+    shade_block(s, job);
+    for (int i = 0; i < s->hits.count; i++) {
+        const int cell = s->block.cell[i];
+        f->visible += footprint_area(f, cell);
+        for (int b = 0; b < BAND_COUNT; b++) f->veiled[b] += footprint_area(f, cell) * veil_taken(s, job, (Band)b, i);
+        over_pixels(f, cell, add_area, NULL);
+        if (!f->truth) continue;
+        TruthSample truth = {.s = s, .sample = i};
+        cell_sample(truth.at_px, f, cell);
+        over_pixels(f, cell, offer_truth, &truth);
+    }
+}
+
+void footprint_task(void *user, int worker, int index)
+{
+    const Job *job = user;
+    Scratch   *s = job->scratch[worker];
+    Footprint *f = &job->footprint[job->footprint_turn[index]];
+    const int  cells = f->columns * f->rows;
+    s->counters.small_targets++;
+    if (cells == 0) return;
+    const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
+                                                 f->box[2], f->box[3], job->request->hidden_entity, &s->counters.visibility);
+    s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
+    /* whole rows, and fours of them where they fit: their rays go in squares */
+    const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
+    for (int cell = 0; cell < cells; cell += block)
+        sample_cells(f, s, job, cell, cells - cell < block ? cells - cell : block, listed);
+}
+
+/* ---- into the picture ----------------------------------------------------------------------- */
+
+void footprints_cover(Job *job)
+{
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        for (int y = f->y0, k = 0; y < f->y1; y++)
+            for (int x = f->x0; x < f->x1; x++, k++) {
+                const size_t px = pixel_index(job, x, y);
+                if (!(f->area[k] > 0)) continue;
+                /* float sums, one order; two that overlap share the pixel, and their own samples saw to it */
+                job->picture->covered[px] = fminf(job->picture->covered[px] + (float)f->area[k], 1);
+                if (f->area[k] > 0.5 * job->picture->covered[px]) job->coverer[px] = f->entity;
+            }
+    }
+}
+
+/* ---- how wrong -------------------------------------------------------------------------------- */
+
+/* Squared differences of neighbouring cells: as the picture shows them, beside the pixels behind them, and of the
+ * target's own radiance. */
+static void cell_pairs(double sums[2], const Footprint *f, const Job *job, int plane)
+{
+    const float *value = picture_plane(job->picture, plane);
+    const int    beside[2] = {1, f->columns};
+    sums[0] = sums[1] = 0;
+    for (int cell = 0; cell < f->columns * f->rows; cell++)
+        for (int k = 0; k < 2; k++) {
+            if (k == 0 ? cell % f->columns == f->columns - 1 : cell / f->columns == f->rows - 1) continue;
+            const int other = cell + beside[k], here = f->met[cell] ? cell : other;
+            if (!f->met[cell] && !f->met[other]) continue;
+            double own = f->cell[plane][here], shown = own;
+            if (f->met[cell] && f->met[other]) {
+                shown = own -= f->cell[plane][other];
+            } else {
+                const int column = (int)(f->box[0] + (here % f->columns + 0.5) * (f->box[2] - f->box[0]) / f->columns);
+                const int row = (int)(f->box[1] + (here / f->columns + 0.5) * (f->box[3] - f->box[1]) / f->rows);
+                if (column >= f->x0 && column < f->x1 && row >= f->y0 && row < f->y1)
+                    shown -= (double)value[pixel_index(job, column, row)];
+            }
+            sums[0] += shown * shown;
+            sums[1] += own * own;
+        }
+}
+
+/* Behind a target the pixel's mean stands for what is hidden: wrong by (1 - covered) covered of what the ground there
+ * differs by, and that is taken to be what neighbours do. */
+static double hidden_ground(const Footprint *f, const Job *job, const float *value)
+{
+    double sum = 0;
+    for (int y = f->y0; y < f->y1; y++)
+        for (int x = f->x0; x < f->x1; x++) {
+            const size_t px = pixel_index(job, x, y);
+            const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
+            if (job->coverer[px] == f->entity && share > 0) sum += share * share * plane_contrast(job->picture, value, x, y);
+        }
+    return sum;
+}
+
+void footprints_error(Job *job)
+{
+    for (int n = 0; n < job->footprints; n++) {
+        const Footprint *f = &job->footprint[n];
+        const int        cells = f->columns * f->rows;
+        if (cells == 0) continue;
+        const double cell_px = (f->box[2] - f->box[0]) * (f->box[3] - f->box[1]) / cells;
+        for (int plane = 0; plane < picture_plane_count; plane++) {
+            double sums[2];
+            if (!f->cell[plane]) continue;
+            cell_pairs(sums, f, job, plane);
+            job->footprint_law[plane] += mean_law * cell_px * cell_px * sums[0] +
+                                         hidden_ground(f, job, picture_plane(job->picture, plane));
+            if (job->picture->target)
+                job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_law * sums[1]);
+        }
+    }
+}
+
+static void put_truth_on(const Job *job, const Footprint *f, int k, size_t px)
+{
+    Picture              *picture = job->picture;
+    const FootprintTruth *t = &f->truth[k];
+    if (!(f->area[k] > 0.5)) return;
+    picture->entity[px]   = (uint32_t)f->entity + 1;
+    picture->range_m[px]  = t->range_m;
+    picture->part[px]     = t->part;
+    picture->material[px] = t->material;
+    picture->temp_k[px]   = t->temp_k;
+    for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
+}
+
+/* The cells and the pixels behind them, as they are before anything is put on. */
+static void hand_over(const Job *job, Footprint *f)
+{
+    SmallTargets *small = &job->picture->small;
+    if (!(f->visible > 0)) return;
+    SmallTarget *t = &small->target[small->count++];
+    *t = (SmallTarget){.columns = f->columns, .rows = f->rows, .x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1,
+                       .met = f->met, .area = f->area};
+    memcpy(t->box_px, f->box, sizeof t->box_px);
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = picture_plane(job->picture, plane);
+        if (!f->behind[plane]) continue;
+        for (int y = f->y0, k = 0; y < f->y1; y++)
+            for (int x = f->x0; x < f->x1; x++, k++) f->behind[plane][k] = value[pixel_index(job, x, y)];
+        t->cell[plane]   = f->cell[plane];
+        t->behind[plane] = f->behind[plane];
+    }
+}
+
+void footprints_put_on(Job *job)
+{
+    for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
+    /* first all that they hide, then all that they show: a pixel may hold parts of several */
+    for (int show = 0; show < 2; show++)
+        for (int n = 0; n < job->footprints; n++) {
+            const Footprint *f = &job->footprint[n];
+            for (int y = f->y0, k = 0; y < f->y1; y++)
+                for (int x = f->x0; x < f->x1; x++, k++) {
+                    const size_t px = pixel_index(job, x, y);
+                    if (!(f->area[k] > 0)) continue;
+                    for (int plane = 0; plane < picture_plane_count; plane++) {
+                        float *value = picture_plane(job->picture, plane);
+                        if (!value) continue;
+                        if (show) value[px] += (float)f->sum[plane][k];
+                        else if (job->coverer[px] == f->entity) value[px] *= 1 - job->picture->covered[px];
+                    }
+                    if (show && f->truth) put_truth_on(job, f, k, px);
+                }
+        }
+}
+
+static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
+{
+    target->small           = true;
+    target->visible         = f->visible;
+    target->amodal          = f->amodal;
+    target->occluded_ground = f->hidden_ground;
+    target->occluded_entity = f->hidden_entity;
+    for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
+    memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
+    double most = 0;
+    for (int i = 0; i < job->snapshot->count; i++)
+        if (f->hidden_by[i] > most) most = f->hidden_by[i], target->occluder = i;
+    for (int y = f->y0, k = 0; y < f->y1; y++)
+        for (int x = f->x0; x < f->x1; x++, k++) {
+            if (!(f->area[k] > 0)) continue;
+            grow_amodal(target->box, f, k, x, y, f->area[k]);
+            target->peak_area = fmax(target->peak_area, f->area[k]);
+            for (int plane = 0; plane < picture_plane_count; plane++) {
+                if (!f->sum[plane]) continue;
+                target->radiance[plane] += f->sum[plane][k] * pixel_cosine3(&job->request->view, x, y);
+                target->mean[plane] += f->sum[plane][k];
+            }
+        }
+    for (int plane = 0; plane < picture_plane_count && f->visible > 0; plane++) {
+        target->mean[plane] /= f->visible;
+        target->variance[plane] = fmax(0, f->square[plane] / f->visible - target->mean[plane] * target->mean[plane]);
+    }
+}
+
+void footprints_gather(const Job *job)
+{
+    for (int n = 0; n < job->footprints; n++)
+        gather_one(&job->picture->target[job->footprint[n].entity], job, &job->footprint[n]);
+}

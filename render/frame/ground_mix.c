@@ -1,0 +1,181 @@
+/* render/frame/ground_mix.c: pixels that show several kinds of ground.
+ *
+ * Grass beside asphalt is 10 K colder at noon: one sample of a pixel on their border is wrong by all of that, four
+ * samples by 0.6 K (rms), and as the eye moves the border flickers. The hit that is there already says where the ground
+ * lies, so no ray is needed: places over the sample's square are laid on the plane of its hit, their surface classes
+ * are looked up, and the hit is split into one for each class, at the mean of its places, weighted by their number. */
+#include "render/frame/render_private.h"
+
+#include <assert.h>
+
+/* Range at which the ray d meets the plane through a hit at range_m along d_hit. Seen from along it a plane runs off;
+ * the ground does not: then the hit's own range. */
+static double plane_through(const double n[3], const double d_hit[3], double range_m, const double d[3])
+{
+    const double at_m = range_m * v3_dot(n, d_hit) / v3_dot(n, d);
+    return at_m < 2 * range_m && at_m > 0.5 * range_m ? at_m : range_m;
+}
+
+/* ---- which pixels ---------------------------------------------------------------------------- */
+
+void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1)
+{
+    const View      *view = &job->request->view;
+    const Picture   *p = job->picture;
+    const Materials *materials = &job->world->materials;
+    const int        columns = x1 - x0 + 1;
+    double           x_m[tile_side_samples + 1], y_m[tile_side_samples + 1];
+    uint8_t          surface[tile_side_samples + 1];
+    for (int y = y0; y <= y1; y++) {
+        for (int x = x0; x <= x1; x++) {
+            /* the pixel below and to the right of the corner says where the ground is; at the picture's end the last */
+            const int    px = x < view->width ? x : view->width - 1, py = y < view->height ? y : view->height - 1;
+            const size_t at = pixel_index(job, px, py);
+            const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
+            double       d_hit[3], d[3];
+            x_m[x - x0] = y_m[x - x0] = NAN;
+            if (p->entity[at] || !(p->range_m[at] < INFINITY)) continue;
+            view_ray(d_hit, view, px + 0.5, py + 0.5);
+            view_ray(d, view, x, y);
+            const double range_m = plane_through(n, d_hit, p->range_m[at], d);
+            x_m[x - x0] = view->p_enu[0] + range_m * d[0];
+            y_m[x - x0] = view->p_enu[1] + range_m * d[1];
+        }
+        landscape_surfaces(surface, job->world->landscape, columns, x_m, y_m);
+        for (int k = 0; k < columns; k++)
+            out[(y - y0) * columns + k] =
+                surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
+    }
+}
+
+bool corners_differ(const uint16_t *corner, int columns, uint32_t material)
+{
+    const uint16_t of[4] = {corner[0], corner[1], corner[columns], corner[columns + 1]};
+    for (int k = 0; k < 4; k++)
+        if (of[k] != material_unknown && of[k] != material) return true;
+    return false;
+}
+
+/* ---- splitting -------------------------------------------------------------------------------- */
+
+/* A class within a sample's square. */
+typedef struct Patch {
+    uint8_t surface;
+    int     count;
+    double  place[2]; /* sum of its places, px */
+} Patch;
+
+/* Classes of the places over a square of 1 / n px about a sample's own place, those of most places first; the rest is
+ * counted to the first. Returns how many, 1 .. most; 0: no ground there. */
+static int find_patches(Patch patch[ground_mix_most], const Scratch *s, const Job *job, int i, const double centre_px[2],
+                        int side, int most)
+{
+    const View  *view = &job->request->view;
+    const Hits  *hits = &s->hits;
+    const int    places = side * side;
+    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    const double d_hit[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+    double       at_px[ground_mix_places][2], x_m[ground_mix_places], y_m[ground_mix_places];
+    uint8_t      surface[ground_mix_places];
+    Patch        found[SURFACE_COUNT] = {{0}};
+    for (int k = 0; k < places; k++) {
+        double place[2], d[3];
+        sample_place(place, side, k);
+        for (int c = 0; c < 2; c++) at_px[k][c] = centre_px[c] + (place[c] - 0.5) / s->block.n;
+        view_ray(d, view, at_px[k][0], at_px[k][1]);
+        const double range_m = plane_through(n, d_hit, hits->range_m[i], d);
+        x_m[k] = view->p_enu[0] + range_m * d[0];
+        y_m[k] = view->p_enu[1] + range_m * d[1];
+    }
+    landscape_surfaces(surface, job->world->landscape, places, x_m, y_m);
+    for (int k = 0; k < places; k++) {
+        Patch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
+        of->count++;
+        of->place[0] += at_px[k][0], of->place[1] += at_px[k][1];
+    }
+    int count = 0, total = 0;
+    for (; count < most; count++) {
+        int best = 0; /* of equals the first class */
+        for (int c = SURFACE_NONE + 1; c < SURFACE_COUNT; c++)
+            if (found[c].count > (best ? found[best].count : 0)) best = c;
+        if (!best) break;
+        patch[count] = found[best];
+        patch[count].surface = (uint8_t)best;
+        total += found[best].count;
+        found[best].count = 0;
+    }
+    if (count == 0) return 0;
+    for (int c = 0; c < 2; c++) {
+        for (int k = 0; k < count; k++) patch[k].place[c] /= patch[k].count;
+    }
+    patch[0].count += places - total;
+    return count;
+}
+
+/* Sample `to` of the split block is sample `from` of the one before. */
+static void copy_sample(Hits *hits, Rays *rays, int to, const Scratch *s, int from)
+{
+    hits->range_m[to] = s->hits.range_m[from];
+    hits->entity[to]  = s->hits.entity[from];
+    hits->part[to]    = s->hits.part[from];
+    hits->model[to]   = s->hits.model[from];
+    hits->surface[to] = s->hits.surface[from];
+    rays->far_m[to]   = s->rays.far_m[from];
+    for (int k = 0; k < 3; k++) {
+        hits->p_enu[k][to] = s->hits.p_enu[k][from];
+        hits->n_geo[k][to] = s->hits.n_geo[k][from];
+        hits->n_enu[k][to] = s->hits.n_enu[k][from];
+        rays->o_enu[k][to] = s->rays.o_enu[k][from];
+        rays->d_enu[k][to] = s->rays.d_enu[k][from];
+    }
+}
+
+/* Moves a ground sample to another place of the picture on the plane of its hit. */
+static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const double at_px[2])
+{
+    const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+    double       d[3];
+    view_ray(d, view, at_px[0], at_px[1]);
+    hits->range_m[i] = plane_through(n, d_hit, hits->range_m[i], d);
+    for (int k = 0; k < 3; k++) {
+        rays->d_enu[k][i] = d[k];
+        hits->p_enu[k][i] = view->p_enu[k] + hits->range_m[i] * d[k];
+    }
+}
+
+void split_ground(Scratch *s, const Job *job, int side, int most)
+{
+    Block    *block = &s->block;
+    const int samples = block->n * block->n, before = s->hits.count;
+    Hits     *hits = &s->all;
+    Rays     *rays = &s->some;
+    uint8_t   shadow[hits_capacity];
+    int       count = 0;
+    assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
+    for (int i = 0; i < before; i++) {
+        Patch        patch[ground_mix_most];
+        const int    pixel = i / samples;
+        const bool   ground = s->hits.surface[i] && !s->hits.entity[i] && s->hits.range_m[i] < INFINITY;
+        double       centre_px[2];
+        sample_place(centre_px, block->n, i % samples);
+        centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
+        const int patches = ground ? find_patches(patch, s, job, i, centre_px, side, most) : 0;
+        for (int k = 0; k < (patches > 1 ? patches : 1); k++, count++) {
+            copy_sample(hits, rays, count, s, i);
+            shadow[count]          = s->shadow[i];
+            block->pixel_of[count] = (uint16_t)pixel;
+            block->part_of[count]  = 1.0f / (float)samples;
+            if (patches == 0) continue;
+            block->part_of[count] = (float)patch[k].count / (float)(side * side * samples);
+            hits->surface[count]  = patch[k].surface;
+            if (patches > 1) move_sample(hits, rays, count, &job->request->view, patch[k].place);
+        }
+    }
+    for (int i = 0; i < count; i++) s->shadow[i] = shadow[i];
+    hits->count = rays->count = count;
+    hits->columns = rays->columns = 0;
+    s->hits = *hits;
+    s->rays = *rays;
+    block->split = true;
+}

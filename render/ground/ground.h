@@ -1,0 +1,71 @@
+/* render/ground/ground.h: rays against the nested height field, in double; one ray at a time (ground.c), eight at a time
+ * (ground8.c), and tiles of rays that keep together (ground_together.c), all to the same bits.
+ *
+ * Along a ray, its height over the surface is linear between the places where its track crosses a line of
+ * posts or a cell's diagonal. The hit is the first change of sign between two such places, so no ray slips
+ * between two triangles. The answer is a function of the ray and its cell alone: how the max pyramid was
+ * walked, what was skipped and who else is traced never shows in it.
+ *
+ * The ground is solid: a ray that starts under it, comes in through the side of the outermost level, or meets
+ * a step where two levels join, is stopped there. */
+#ifndef RENDER_GROUND_GROUND_H
+#define RENDER_GROUND_GROUND_H
+
+#include "terrain/elevation/elevation.h"
+
+/* One level as the tracer wants it: lengths in cells, heights in posts. */
+typedef struct GroundLevel {
+    const uint16_t *post;
+    const uint16_t *pyramid[elevation_pyramid_levels];
+    int             pyramid_nx[elevation_pyramid_levels];
+    const ElevationRise *rise[elevation_pyramid_levels]; /* NULL on the finest */
+    int             nx, cells_x, cells_y, top; /* posts a row; cells; index of the pyramid's single entry */
+    double          x0_m, y0_m, z0_m, cells_per_m, posts_per_m;
+    double          highest;                   /* post */
+} GroundLevel;
+
+/* Borrows the elevation's arrays; no allocation. */
+typedef struct Ground {
+    const Elevation *elevation;
+    int              level_count;
+    GroundLevel      level[elevation_max_levels];
+} Ground;
+
+/* Where a ray ended: the cell, and which half of it. */
+typedef struct GroundHit {
+    int  level, i, j;
+    bool north_west; /* triangle SW-NE-NW, else SW-SE-NE */
+} GroundHit;
+
+/* elevation NULL or without levels: a ground that nothing meets. */
+void ground_prepare(Ground *out, const Elevation *elevation);
+
+/* Distance to the first hit nearer than far_m along the unit direction d; INFINITY when there is none (or
+ * the ray is not finite, or starts more than 1e9 m out). hit may be NULL; written only with a hit. */
+double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3],
+                        double far_m);
+
+/* The same for count rays in arrays, eight at a time. range_m[i] and hit[i] (hit may be NULL) as above, to
+ * the bit, in whatever company a ray comes. */
+void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
+                       const double *const d_enu[3], const double *far_m);
+
+/* The same, to the bit (tests/render/test_ground_together.c), for rays that keep together: those of a tile from one eye,
+ * or from its hits to the sun; others are given to ground_first_hits. Over 12000 x 16000 posts of 1 m in tiles of
+ * 1024: eye rays 1.5 to 3.8 times faster, sun rays 1.7 to 2.3 (15 degrees) and 3.4 to 4.0 (35, 60 degrees) times; blocks
+ * of 16 eye rays 1.2 times. Rays that see only sky are a tenth slower. */
+void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *ground, int count,
+                                const double *const o_enu[3], const double *const d_enu[3], const double *far_m);
+
+/* Whether rays are known to meet no ground: all that begin in one box and end in another, or go on for good in a unit
+ * direction; boxes by low and high corner. False says nothing. Of rays from 0.5 m over gentle ground and up it knows most
+ * (tests/render/test_ground_clear.c). */
+bool ground_is_clear(const Ground *ground, const double from[2][3], const double to[2][3]);
+bool ground_is_clear_towards(const Ground *ground, const double from[2][3], const double d_enu[3]);
+
+/* Upward unit normal of the triangle that was hit, and the one interpolated between central differences at
+ * its posts, for shading. */
+void ground_normals(double n_geo[3], double n_enu[3], const Ground *ground, const GroundHit *hit, double x_m,
+                    double y_m);
+
+#endif

@@ -1,0 +1,195 @@
+/* Eight rays walk the pyramid side by side, each at its own node; a lane that is done takes the next ray of
+ * the list. A step is the same for every lane, in two vectors of four; looking up posts, the triangles of a
+ * cell and changes of ray are done a lane at a time.
+ *
+ * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
+#include "render/ground/ground_lanes.h"
+
+enum { lanes = 8 };
+
+
+/* Where the lanes are: all that a step reads and writes. */
+typedef struct Walk {
+    double u0[lanes], v0[lanes], w0[lanes], du[lanes], dv[lanes], dw[lanes], per_du[lanes], per_dv[lanes];
+    double east[lanes], north[lanes];       /* 1 where the ray goes that way, else 0 */
+    double last_u[lanes], last_v[lanes];    /* last cell */
+    double top[lanes], last_m[lanes], stop_m[lanes];
+    double t_m[lanes], i[lanes], j[lanes];  /* now at this distance, in this cell */
+    double k[lanes], size[lanes], per_size[lanes]; /* of the node: level, cells a side */
+} Walk __attribute__((aligned(64)));
+
+/* What half a step has found out about four lanes. */
+typedef struct Seen {
+    Four node_i, node_j, at_u, at_v, next_m;
+    Four clear; /* mask: above everything in the node */
+} Seen;
+
+/* Highest posts of four lanes' nodes. */
+static inline Four look_up(Four node_i, Four node_j, Four k, const GroundLevel *const level[4])
+{
+    int32_t i[4], j[4], at[4], z[4];
+    _mm_storeu_si128((__m128i *)i, _mm256_cvttpd_epi32(node_i));
+    _mm_storeu_si128((__m128i *)j, _mm256_cvttpd_epi32(node_j));
+    _mm_storeu_si128((__m128i *)at, _mm256_cvttpd_epi32(k));
+    for (int l = 0; l < 4; l++)
+        z[l] = level[l]->pyramid[at[l]][(size_t)j[l] * (size_t)level[l]->pyramid_nx[at[l]] + (size_t)i[l]];
+    return _mm256_cvtepi32_pd(_mm_set_epi32(z[3], z[2], z[1], z[0]));
+}
+
+static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
+{
+    const Four t = load(w->t_m + l), size = load(w->size + l), per_size = load(w->per_size + l);
+    const Four dw = load(w->dw + l);
+    Seen       s;
+    s.node_i = _mm256_floor_pd(load(w->i + l) * per_size);
+    s.node_j = _mm256_floor_pd(load(w->j + l) * per_size);
+    const Four highest = look_up(s.node_i, s.node_j, load(w->k + l), level);
+    s.at_u   = ((s.node_i + load(w->east + l)) * size - load(w->u0 + l)) * load(w->per_du + l);
+    s.at_v   = ((s.node_j + load(w->north + l)) * size - load(w->v0 + l)) * load(w->per_dv + l);
+    s.next_m = smaller(smaller(s.at_u, s.at_v), load(w->last_m + l));
+    const Four lowest = load(w->w0 + l) + pick(dw, s.next_m, t) * dw;
+    s.clear = less(highest + set(ground_clear_posts), lowest);
+    return s;
+}
+
+/* Lanes whose mask says so go on to the next node, up a level where they leave a parent; the others go down.
+ * Returns the bits of those that came to their end. */
+static inline unsigned move(Walk *w, int l, const Seen *s, Four on)
+{
+    const Four t = s->next_m, one = set(1), half = set(0.5);
+    const Four k = load(w->k + l);
+    const Four n_u = (s->node_i + load(w->east + l)) * half, n_v = (s->node_j + load(w->north + l)) * half;
+    const Four even_u = at_most(n_u, _mm256_floor_pd(n_u)), even_v = at_most(n_v, _mm256_floor_pd(n_v));
+    const Four leaves = either(both(at_most(s->at_u, t), even_u), both(at_most(s->at_v, t), even_v));
+    const Four up = both(leaves, less(k, load(w->top + l)));
+    const Four i = cell_at(load(w->u0 + l), load(w->du + l), load(w->per_du + l), t, load(w->last_u + l));
+    const Four j = cell_at(load(w->v0 + l), load(w->dv + l), load(w->per_dv + l), t, load(w->last_v + l));
+
+    _mm256_store_pd(w->t_m + l, pick(on, t, load(w->t_m + l)));
+    _mm256_store_pd(w->i + l, pick(on, i, load(w->i + l)));
+    _mm256_store_pd(w->j + l, pick(on, j, load(w->j + l)));
+    _mm256_store_pd(w->k + l, k + pick(on, both(up, one), set(-1)));
+    _mm256_store_pd(w->size + l, load(w->size + l) * pick(on, pick(up, set(2), one), half));
+    _mm256_store_pd(w->per_size + l, load(w->per_size + l) * pick(on, pick(up, half, one), set(2)));
+    return bits(unless(less(t, load(w->stop_m + l)), on));
+}
+
+/* The rays still to come, and what each lane is busy with. */
+typedef struct Stream {
+    const Ground        *ground;
+    int                  count, next;
+    const int           *list; /* which; NULL: all */
+    const double *const *o, *const *d;
+    const double        *far_m, *from_m; /* from_m NULL: from the origins */
+    double              *range_m;
+    GroundHit           *hit;
+    int                  ray_of[lanes];
+    const GroundLevel   *level[lanes];
+    GroundRay            ray[lanes];
+} Stream;
+
+static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, double start_m, double stop_m,
+                      int k)
+{
+    w->u0[l] = r->u0, w->v0[l] = r->v0, w->w0[l] = r->w0;
+    w->du[l] = r->du, w->dv[l] = r->dv, w->dw[l] = r->dw;
+    w->per_du[l] = r->per_du, w->per_dv[l] = r->per_dv;
+    w->east[l] = r->per_du > 0, w->north[l] = r->per_dv > 0;
+    w->last_u[l] = g->cells_x - 1, w->last_v[l] = g->cells_y - 1;
+    w->top[l] = g->top, w->last_m[l] = r->last_m, w->stop_m[l] = stop_m;
+    w->t_m[l] = start_m;
+    w->i[l] = ground_cell_at(r->u0, r->du, r->per_du, start_m, g->cells_x);
+    w->j[l] = ground_cell_at(r->v0, r->dv, r->per_dv, start_m, g->cells_y);
+    w->k[l] = k, w->size[l] = 1 << k, w->per_size[l] = 1 / w->size[l];
+}
+
+/* Gives the lane its ray's next piece over a level, or the next ray; false when there are no more. */
+static bool refill(Stream *stream, Walk *w, int l)
+{
+    for (;;) {
+        GroundRay *ray = &stream->ray[l];
+        while (ray->piece < ray->piece_count) {
+            const int          p = ray->piece++;
+            const GroundLevel *g = &stream->ground->level[ray->level[p]];
+            LevelRay          *r = &ray->of_level[ray->level[p]];
+            double             start_m, stop_m;
+            r->first_m = ray->first_m[p];
+            r->last_m  = ray->last_m[p];
+            ground_walk(&start_m, &stop_m, g, r, stream->far_m[stream->ray_of[l]]);
+            int k = ground_start_level(g, r);
+            if (stream->from_m && stream->from_m[stream->ray_of[l]] > start_m) {
+                start_m = stream->from_m[stream->ray_of[l]];
+                k = k < 2 ? k : 2;
+            }
+            if (!(start_m < stop_m)) continue;
+            stream->level[l] = g;
+            put_piece(w, l, g, r, start_m, stop_m, k);
+            return true;
+        }
+        if (stream->next >= stream->count) return false;
+        const int    m = stream->next++, n = stream->ray_of[l] = stream->list ? stream->list[m] : m;
+        const double o[3] = {stream->o[0][n], stream->o[1][n], stream->o[2][n]};
+        const double d[3] = {stream->d[0][n], stream->d[1][n], stream->d[2][n]};
+        stream->range_m[n] = INFINITY;
+        ground_ray(ray, stream->ground, o, d, stream->far_m[n]);
+    }
+}
+
+/* The triangles of the cell a lane is in. True: the ray is decided. */
+static bool meets_cell(Stream *stream, const Walk *w, int l)
+{
+    GroundRay *ray   = &stream->ray[l];
+    const int  level = ray->level[ray->piece - 1], n = stream->ray_of[l];
+    const int  i = (int)w->i[l], j = (int)w->j[l];
+    bool       north_west;
+    const double range_m = ground_cell_hit(stream->level[l], &ray->of_level[level], i, j, &north_west);
+    if (!(range_m < INFINITY)) return false;
+    ray->piece = ray->piece_count;
+    if (!(range_m < stream->far_m[n])) return true;
+    stream->range_m[n] = range_m;
+    if (stream->hit) stream->hit[n] = (GroundHit){.level = level, .i = i, .j = j, .north_west = north_west};
+    return true;
+}
+
+void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *ground, int count,
+                            const double *const o_enu[3], const double *const d_enu[3], const double *far_m,
+                            const double *from_m, const int *list)
+{
+    if (ground->level_count == 0) {
+        for (int n = 0; n < count; n++) range_m[list ? list[n] : n] = INFINITY;
+        return;
+    }
+    Walk     w;
+    Stream   stream = {.ground = ground, .count = count, .o = o_enu, .d = d_enu, .far_m = far_m,
+                       .from_m = from_m, .list = list, .range_m = range_m, .hit = hit};
+    unsigned busy = 0;
+    for (int l = 0; l < lanes; l++) {
+        /* an idle lane stands in the first cell of level 0 and is not listened to */
+        const GroundLevel *g = stream.level[l] = &ground->level[0];
+        put_piece(&w, l, g, &(LevelRay){.per_du = 1, .per_dv = 1, .last_m = 1}, 0, 1, 0);
+        if (refill(&stream, &w, l)) busy |= 1u << l;
+    }
+    while (busy) {
+        const Seen     low = look(&w, 0, stream.level), high = look(&w, 4, stream.level + 4);
+        const unsigned clear = bits(low.clear) | bits(high.clear) << 4;
+        const unsigned down = bits(less(set(0), load(w.k))) | bits(less(set(0), load(w.k + 4))) << 4;
+        unsigned       decided = 0, over;
+        for (unsigned at_cell = busy & ~(clear | down); at_cell; at_cell &= at_cell - 1) {
+            const int l = __builtin_ctz(at_cell);
+            if (meets_cell(&stream, &w, l)) decided |= 1u << l;
+        }
+        /* below a cell there is nothing to go down to */
+        over = move(&w, 0, &low, either(low.clear, at_most(load(w.k), set(0))));
+        over |= move(&w, 4, &high, either(high.clear, at_most(load(w.k + 4), set(0)))) << 4;
+        for (over = (over | decided) & busy; over; over &= over - 1) {
+            const int l = __builtin_ctz(over);
+            if (!refill(&stream, &w, l)) busy &= ~(1u << l);
+        }
+    }
+}
+
+void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
+                       const double *const d_enu[3], const double *far_m)
+{
+    ground_first_hits_from(range_m, hit, ground, count, o_enu, d_enu, far_m, NULL, NULL);
+}

@@ -1,0 +1,174 @@
+/* Where rays from one eye may begin to be walked.
+ *
+ * A strip is rays whose tracks run between two tracks from the eye. Along it, row by row of the max pyramid's nodes,
+ * the highest post between the two says how steeply a ray may come down and be clear so far; the flattest ray comes
+ * farthest. So one walk along a strip serves all its rays: each begins where the first row stands in its way. What
+ * it meets there, if anything, is its own affair (see ground_private.h), so that it is enough here never to begin
+ * too late.
+ *
+ * Distances a are along the axis that the tracks mostly follow. A ray is at c0 + m a across it and at the height
+ * w0 + q a. Strips and what is flat and steep in them hold for every level: m of metres and metres. */
+#include "render/ground/ground_private.h"
+
+/* Rays to a strip: with fewer, sweeping costs more than it saves. Buckets are of rays equally steep. */
+enum { strip_rays = 128, most_strips = 8, buckets = 128, highest_row = 8 };
+
+/* Room for rounding: the eye is within 1e6 cells and 1e7 posts of every level's corner, where c and w are good to
+ * 1e-9; and distances to 1e-9 of themselves and 1e-9 m. A hundred times that and more. */
+static const double near_cells = 1e6, near_posts = 1e7, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
+                    room_relative = 1e-9;
+
+typedef struct Strip {
+    int    count;
+    double m_low, m_high, q_low, q_high;
+    double per_bucket, buckets_per; /* of q: bucket b holds rays of q_low + b per_bucket and more */
+    double start_m[buckets];        /* a */
+} Strip;
+
+/* The eye and the axis, on one level: cells and posts. */
+typedef struct Axis {
+    bool   along_v, forward;
+    double a0, c0, w0;
+    int    a_cells, c_cells;
+    double eye_out; /* how far the eye is from being over the level, < 0 inside; cells */
+} Axis;
+
+static Axis axis_on(const GroundLevel *g, const double o_enu[3], bool along_v, bool forward)
+{
+    const double u0 = (o_enu[0] - g->x0_m) * g->cells_per_m, v0 = (o_enu[1] - g->y0_m) * g->cells_per_m;
+    Axis         axis = {.along_v = along_v, .forward = forward, .w0 = (o_enu[2] - g->z0_m) * g->posts_per_m};
+    axis.a0      = along_v ? v0 : u0;
+    axis.c0      = along_v ? u0 : v0;
+    axis.a_cells = along_v ? g->cells_y : g->cells_x;
+    axis.c_cells = along_v ? g->cells_x : g->cells_y;
+    axis.eye_out = fmax(fmax(-u0, u0 - g->cells_x), fmax(-v0, v0 - g->cells_y));
+    return axis;
+}
+
+static bool is_near(const Axis *axis)
+{
+    return fabs(axis->a0) <= near_cells && fabs(axis->c0) <= near_cells && fabs(axis->w0) <= near_posts;
+}
+
+/* Until which a the whole strip is over the level; 0 where the eye is not. Cells. */
+static double covered(const Axis *axis, const Strip *s)
+{
+    if (!(axis->eye_out < -1)) return 0;
+    double a = axis->forward ? axis->a_cells - axis->a0 : axis->a0;
+    if (s->m_high > 0) a = fmin(a, (axis->c_cells - axis->c0) / s->m_high);
+    if (s->m_low < 0) a = fmin(a, axis->c0 / -s->m_low);
+    return a * (1 - room_relative) - room_cells;
+}
+
+/* Highest post of a row of nodes between two c; -1: no node is there. */
+static int highest_between(const GroundLevel *g, const Axis *axis, int k, int row, double c_low, double c_high)
+{
+    if (!(c_high >= 0 && c_low <= axis->c_cells)) return -1;
+    const double    last = axis->c_cells - 1;
+    const int       from = (int)clamp(c_low, 0, last) >> k, to = (int)clamp(c_high, 0, last) >> k;
+    const size_t    nx = (size_t)g->pyramid_nx[k], step = axis->along_v ? 1 : nx;
+    const size_t    at = axis->along_v ? (size_t)row * nx + (size_t)from : (size_t)from * nx + (size_t)row;
+    const uint16_t *z = g->pyramid[k] + at;
+    int             highest = 0;
+    for (int n = from; n <= to; n++, z += step) highest = *z > highest ? *z : highest;
+    return highest;
+}
+
+/* Brings the strip's starts back to where this level's rows stand in the way, looking from a on. */
+static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double a)
+{
+    const double sign = axis->forward ? 1 : -1;
+    const double at_low = (0 - axis->a0) * sign, at_high = (axis->a_cells - axis->a0) * sign;
+    const double end = fmax(at_low, at_high), posts_per_cell = g->posts_per_m / g->cells_per_m;
+    const double q_low = (s->q_low - 1e-12 * fabs(s->q_low)) * posts_per_cell, q_step = s->per_bucket * posts_per_cell;
+    a = fmax(fmax(fmin(at_low, at_high), a), 0);
+    int    cell = (int)clamp(floor(axis->a0 + sign * a), 0, axis->a_cells - 1);
+    int    b = 0, k = g->top < 6 ? g->top : 6;
+    double q = q_low;
+    while (a < end) {
+        const int    row = cell >> k;
+        const double next = axis->forward ? (double)(row + 1) * (1 << k) - axis->a0 : axis->a0 - (double)row * (1 << k);
+        const double c_low = axis->c0 + s->m_low * (s->m_low < 0 ? next : a) - room_cells;
+        const double c_high = axis->c0 + s->m_high * (s->m_high > 0 ? next : a) + room_cells;
+        const int    highest = highest_between(g, axis, k, row, c_low, c_high);
+        const double limit = highest + room_posts - axis->w0;
+        if (highest >= 0 && !(q * (q < 0 ? next : a) > limit)) {
+            /* nodes half as wide as the strip are fine enough */
+            if (k > 0 && 2 * (1 << k) > (s->m_high - s->m_low) * next) {
+                k--;
+                continue;
+            }
+            do {
+                s->start_m[b] = fmin(s->start_m[b], a / g->cells_per_m);
+                if (++b == buckets) return;
+                q = q_low + b * q_step;
+            } while (!(q * (q < 0 ? next : a) > limit));
+        }
+        a    = next;
+        cell = axis->forward ? (row + 1) << k : (row << k) - 1;
+        if (k < g->top && k < highest_row && ((row + axis->forward) & 1) == 0) k++;
+    }
+}
+
+static void sweep_strip(Strip *s, const Ground *ground, const double o_enu[3], bool along_v, bool forward)
+{
+    s->buckets_per = s->q_high > s->q_low ? buckets * (1 - room_relative) / (s->q_high - s->q_low) : 0;
+    s->per_bucket  = s->q_high > s->q_low ? 1 / s->buckets_per : 0;
+    for (int b = 0; b < buckets; b++) s->start_m[b] = INFINITY;
+    double from_m = 0; /* up to here an inner level has been seen to */
+    for (int n = 0; n < ground->level_count && !(s->start_m[buckets - 1] <= from_m); n++) {
+        const GroundLevel *g    = &ground->level[n];
+        const Axis         axis = axis_on(g, o_enu, along_v, forward);
+        sweep_level(s, g, &axis, from_m * g->cells_per_m);
+        from_m = fmax(from_m, covered(&axis, s) / g->cells_per_m);
+    }
+}
+
+bool ground_sweep(double *from_m, const Ground *ground, int count, const double o_enu[3], const double *const d_enu[3])
+{
+    const int strips = count / strip_rays < most_strips ? count / strip_rays : most_strips;
+    double    sum[2] = {0}, per_a[ground_together], m[ground_together], q[ground_together];
+    uint8_t   strip_of[ground_together];
+    Strip     strip[most_strips];
+    if (strips == 0 || !v3_is_finite(o_enu)) return false;
+
+    for (int c = 0; c < 2; c++)
+        for (int i = 0; i < count; i++) sum[c] += d_enu[c][i];
+    const bool along_v = fabs(sum[1]) > fabs(sum[0]), forward = sum[along_v] > 0;
+    for (int n = 0; n < ground->level_count; n++) {
+        const Axis axis = axis_on(&ground->level[n], o_enu, along_v, forward);
+        if (!is_near(&axis)) return false;
+    }
+    double m_low = INFINITY, m_high = -INFINITY;
+    bool   fit = true; /* not for tracks that run apart, nor near straight up or down */
+    for (int i = 0; i < count; i++) {
+        const double a = forward ? d_enu[along_v][i] : -d_enu[along_v][i];
+        fit &= (a >= 0.02) & (a <= 2) & (fabs(d_enu[!along_v][i]) <= 2) & (fabs(d_enu[2][i]) <= 2);
+        per_a[i] = 1 / a;
+        m[i]     = d_enu[!along_v][i] * per_a[i];
+        q[i]     = d_enu[2][i] * per_a[i];
+        m_low    = m[i] < m_low ? m[i] : m_low;
+        m_high   = m[i] > m_high ? m[i] : m_high;
+    }
+    if (!fit || !(m_high - m_low < 0.5)) return false;
+
+    const double per_m = m_high > m_low ? strips * (1 - room_relative) / (m_high - m_low) : 0;
+    for (int k = 0; k < strips; k++)
+        strip[k] = (Strip){.m_low = INFINITY, .m_high = -INFINITY, .q_low = INFINITY, .q_high = -INFINITY};
+    for (int i = 0; i < count; i++) {
+        Strip *s = &strip[strip_of[i] = (uint8_t)((m[i] - m_low) * per_m)];
+        s->count++;
+        s->m_low  = m[i] < s->m_low ? m[i] : s->m_low;
+        s->m_high = m[i] > s->m_high ? m[i] : s->m_high;
+        s->q_low  = q[i] < s->q_low ? q[i] : s->q_low;
+        s->q_high = q[i] > s->q_high ? q[i] : s->q_high;
+    }
+    for (int k = 0; k < strips; k++)
+        if (strip[k].count > 0) sweep_strip(&strip[k], ground, o_enu, along_v, forward);
+    for (int i = 0; i < count; i++) {
+        const Strip *s = &strip[strip_of[i]];
+        const int    b = (int)((q[i] - s->q_low) * s->buckets_per);
+        from_m[i] = s->start_m[b] * per_a[i] * (1 - room_relative) - room_m;
+    }
+    return true;
+}

@@ -1,0 +1,355 @@
+/* render/light/materials.c: reads what things are made of, and ties names to rows once so that nobody compares
+ * strings again. */
+#include "render/light/materials.h"
+
+#include <stdlib.h>
+
+enum { materials_limit = 60000 }; /* a hit carries its row in 16 bits */
+
+int materials_find(const Materials *materials, const char *name)
+{
+    for (int i = 0; i < materials->count; i++)
+        if (strcmp(materials->material[i].name, name) == 0) return i;
+    return -1;
+}
+
+/* Every number column of a material, where it goes and what is allowed. */
+static const struct {
+    const char *name;
+    size_t      offset;
+    double      low, high;
+} number_columns[] = {
+    {"rho_b", offsetof(Material, rho[optical_channel_b]), 0, 1},
+    {"rho_g", offsetof(Material, rho[optical_channel_g]), 0, 1},
+    {"rho_r", offsetof(Material, rho[optical_channel_r]), 0, 1},
+    {"rho_pan", offsetof(Material, rho[optical_channel_pan]), 0, 1},
+    {"rho_nir", offsetof(Material, rho[optical_channel_nir]), 0, 1},
+    {"rho_mwir", offsetof(Material, rho_mwir), 0, 1},
+    {"rho_lwir", offsetof(Material, rho_lwir), 0, 1},
+    {"solar_absorptance", offsetof(Material, solar_absorptance), 0, 1},
+    {"gloss", offsetof(Material, gloss), 0, 1},
+    {"roughness_rad", offsetof(Material, roughness), 0, 1.5},
+    {"metal", offsetof(Material, metal), 0, 1},
+    {"radar_gamma", offsetof(Material, radar_gamma), 0, 100},
+    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with room */
+    {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000},
+    {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000},
+    {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000},
+};
+enum { number_column_count = sizeof number_columns / sizeof *number_columns };
+
+/* The rows of one file behind those that are there; a name that an earlier file has is left out. */
+static Status read_rows(Materials *m, const char *path)
+{
+    Table table = {0};
+    const int before = m->count;
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+
+    status = STATUS_BAD_VALUE;
+    const int name_column = table_column(&table, "name");
+    int column[number_column_count];
+    for (int i = -1; i < number_column_count; i++) {
+        if (i >= 0) column[i] = table_column(&table, number_columns[i].name);
+        if ((i < 0 ? name_column : column[i]) >= 0) continue;
+        log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0],
+                  i < 0 ? "name" : number_columns[i].name);
+        goto done;
+    }
+    if (table.rows > materials_limit - before) {
+        log_error("materials: too many rows: file=%s rows=%d limit=%d", path, table.rows, (int)materials_limit);
+        goto done;
+    }
+    Material *larger = realloc(m->material, ((size_t)before + (size_t)table.rows + 1) * sizeof *m->material);
+    if (!larger) {
+        status = STATUS_NO_MEMORY;
+        goto done;
+    }
+    m->material = larger;
+    for (int row = 0; row < table.rows; row++) {
+        const char *name = table_text(&table, row, name_column);
+        const size_t length = strlen(name);
+        const int same = materials_find(m, name);
+        if (length == 0 || length >= sizeof m->material->name || same == 0 || same >= before) {
+            log_error("materials: name empty, repeated or longer than %zu: file=%s line=%d name=%s",
+                      sizeof m->material->name - 1, path, table.line[row + 1], name);
+            goto done;
+        }
+        Material material = {0};
+        memcpy(material.name, name, length + 1);
+        for (int i = 0; i < number_column_count; i++) {
+            double value;
+            const Status got =
+                table_number(&value, &table, row, column[i], number_columns[i].low, number_columns[i].high);
+            if (got != STATUS_OK) goto done;
+            *(float *)((char *)&material + number_columns[i].offset) = (float)value;
+        }
+        if (same < 0) m->material[m->count++] = material; /* else the user's own row stands in its place */
+    }
+    status = STATUS_OK;
+done:
+    table_close(&table);
+    return status;
+}
+
+/* The user's own (models.materials), then those of the table. */
+static Status read_materials(Materials *m, const char *path)
+{
+    const char *own = etc_own("materials.csv");
+    Status status = STATUS_OK;
+    m->material = calloc(1, sizeof *m->material);
+    if (!m->material) return STATUS_NO_MEMORY;
+    /* row 0: absorbs everything, gives nothing back; its heat is that of dry sand */
+    m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
+                                .heat_capacity_j_kgk = 800};
+    m->count = 1;
+    if (own) status = read_rows(m, own);
+    return status == STATUS_OK ? read_rows(m, path) : status;
+}
+
+/* Row of the class of this name in a file of one row a class; logged when unknown. */
+static Status find_surface(SurfaceClass *out, const Table *table, int row, int column)
+{
+    const char *name = table_text(table, row, column);
+    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
+        if (strcmp(surface_name((SurfaceClass)s), name) == 0) {
+            *out = (SurfaceClass)s;
+            return STATUS_OK;
+        }
+    log_error("materials: no such surface class: file=%s line=%d surface=%s", table->path, table->line[row + 1], name);
+    return STATUS_BAD_VALUE;
+}
+
+/* Each class exactly once. */
+static Status check_all_seen(const bool seen[SURFACE_COUNT], const char *path)
+{
+    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
+        if (!seen[s]) {
+            log_error("materials: surface class missing: file=%s surface=%s", path, surface_name((SurfaceClass)s));
+            return STATUS_BAD_VALUE;
+        }
+    return STATUS_OK;
+}
+
+static Status read_surfaces(Materials *m, const char *path)
+{
+    Table table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+
+    status = STATUS_BAD_VALUE;
+    bool seen[SURFACE_COUNT] = {0};
+    const int surface_column = table_column(&table, "surface"), material_column = table_column(&table, "material");
+    if (surface_column < 0 || material_column < 0) {
+        log_error("materials: column missing: file=%s column=%s", path, surface_column < 0 ? "surface" : "material");
+        goto done;
+    }
+    for (int row = 0; row < table.rows; row++) {
+        const char *name = table_text(&table, row, material_column);
+        if (strcmp(table_text(&table, row, surface_column), surface_name(SURFACE_NONE)) == 0) continue; /* is "none" */
+        SurfaceClass surface;
+        if (find_surface(&surface, &table, row, surface_column) != STATUS_OK) goto done;
+        const int material = materials_find(m, name);
+        if (material < 0 || seen[surface]) {
+            log_error("materials: surface repeated or its material unknown: file=%s line=%d surface=%s material=%s",
+                      path, table.line[row + 1], surface_name(surface), name);
+            goto done;
+        }
+        seen[surface] = true;
+        m->surface[surface] = material;
+    }
+    status = check_all_seen(seen, path);
+    if (status != STATUS_OK) goto done;
+
+    int land = 0;
+    double sum[optical_channel_count] = {0};
+    for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
+        if (s >= SURFACE_WATER) continue; /* the common land: neither water nor what only cover files know */
+        for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
+        land++;
+    }
+    for (int c = 0; c < optical_channel_count; c++) m->ground_rho[c] = (float)(sum[c] / land);
+done:
+    table_close(&table);
+    return status;
+}
+
+static Status read_ground_heat(Materials *m)
+{
+    char path[1024];
+    if (!etc_path(path, sizeof path, "ground_heat.csv")) return STATUS_BAD_VALUE;
+    Table table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+
+    status = STATUS_BAD_VALUE;
+    bool seen[SURFACE_COUNT] = {0};
+    const int surface_column = table_column(&table, "surface"), rise_column = table_column(&table, "day_rise_k"),
+              fall_column = table_column(&table, "night_fall_k");
+    if (surface_column < 0 || rise_column < 0 || fall_column < 0) {
+        log_error("materials: column missing: file=%s columns=surface,day_rise_k,night_fall_k", path);
+        goto done;
+    }
+    for (int row = 0; row < table.rows; row++) {
+        SurfaceClass surface;
+        double rise_k, fall_k;
+        if (find_surface(&surface, &table, row, surface_column) != STATUS_OK ||
+            table_number(&rise_k, &table, row, rise_column, 0, 60) != STATUS_OK ||
+            table_number(&fall_k, &table, row, fall_column, 0, 20) != STATUS_OK)
+            goto done;
+        if (seen[surface]) {
+            log_error("materials: surface repeated: file=%s line=%d", path, table.line[row + 1]);
+            goto done;
+        }
+        seen[surface] = true;
+        m->ground_rise_k[surface] = (float)rise_k;
+        m->ground_fall_k[surface] = (float)fall_k;
+    }
+    status = check_all_seen(seen, path);
+done:
+    table_close(&table);
+    return status;
+}
+
+static Status find_part_material(int *out, const Materials *m, const Model *model, int part, const char *name, const char *path)
+{
+    *out = materials_find(m, name);
+    if (*out >= 0) return STATUS_OK;
+    log_error("materials: a part's material is not in the table: file=%s model=%s part=%s material=%s", path, model->name,
+              model->part[part].name, name);
+    return STATUS_BAD_VALUE;
+}
+
+static Status resolve_parts(Materials *m, const Catalog *catalog, const char *path)
+{
+    const int model_count = catalog_model_count(catalog), burnt = materials_find(m, "burnt");
+    m->part    = calloc((size_t)model_count + 1, sizeof *m->part);
+    m->damaged = calloc((size_t)model_count + 1, sizeof *m->damaged);
+    if (!m->part || !m->damaged) return STATUS_NO_MEMORY;
+    m->model_count = model_count;
+    for (int i = 0; i < model_count; i++) {
+        const Model *model = catalog_model(catalog, i);
+        m->part[i]    = calloc((size_t)model->part_count + 1, sizeof **m->part);
+        m->damaged[i] = calloc((size_t)model->part_count + 1, model_damage_states * sizeof **m->damaged);
+        if (!m->part[i] || !m->damaged[i]) return STATUS_NO_MEMORY;
+        for (int p = 0; p < model->part_count; p++) {
+            Status status = find_part_material(&m->part[i][p], m, model, p, model->part[p].material, path);
+            for (int state = 0; state < model_damage_states && status == STATUS_OK; state++) {
+                int        *row  = &m->damaged[i][p * model_damage_states + state];
+                const char *name = model->part[p].damage_material[state];
+                *row = state == model_damage_states - 1 && burnt >= 0 ? burnt : m->part[i][p];
+                if (state > 0 && *name) status = find_part_material(row, m, model, p, name, path);
+            }
+            if (status != STATUS_OK) return status;
+        }
+    }
+    return STATUS_OK;
+}
+
+Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog)
+{
+    Materials m = {0};
+    Status status = read_materials(&m, path);
+    if (status == STATUS_OK) status = read_surfaces(&m, surfaces_path);
+    if (status == STATUS_OK) status = read_ground_heat(&m);
+    if (status == STATUS_OK && catalog) status = resolve_parts(&m, catalog, path);
+    if (status != STATUS_OK) {
+        materials_close(&m);
+        return status;
+    }
+    *out = m;
+    return STATUS_OK;
+}
+
+void materials_close(Materials *materials)
+{
+    if (!materials) return;
+    for (int i = 0; i < materials->model_count; i++) {
+        if (materials->part) free(materials->part[i]);
+        if (materials->damaged) free(materials->damaged[i]);
+    }
+    free(materials->part);
+    free(materials->damaged);
+    free(materials->material);
+    *materials = (Materials){0};
+}
+
+/* Square of the refractive index whose reflectance at normal incidence, (n - 1)^2 / (n + 1)^2, this is. */
+static double index_squared(double rho_normal)
+{
+    const double root = sqrt(rho_normal), index = (1 + root) / (1 - root);
+    return index * index;
+}
+
+/* Unpolarised reflectance of a dielectric (Fresnel), the squares of its two polarisations over one denominator. */
+static double fresnel_dielectric(double index2, double cosine)
+{
+    const double inside = sqrt(index2 - 1 + cosine * cosine); /* times the index: its cosine */
+    const double a = cosine - inside, b = cosine + inside, c = index2 * cosine - inside, d = index2 * cosine + inside;
+    const double ad = a * d, bc = b * c, bd = b * d;
+    return 0.5 * (ad * ad + bc * bc) / (bd * bd);
+}
+
+/* Schlick (Computer Graphics Forum 13, 1994): for metals, whose dip before grazing is slight. */
+static double fresnel_schlick(double rho_normal, double cosine)
+{
+    const double away = 1 - cosine, away2 = away * away;
+    return rho_normal + (1 - rho_normal) * away2 * away2 * away;
+}
+
+/* What reflects less than water (0.02) at normal incidence is only partly covered by gloss, and rises by that part;
+ * what reflects more than 0.3 is a metal, and between 0.2 and 0.3 we cannot know. A rough surface takes part less: its
+ * facets seldom graze when it does (the square is a guess, that leaves grass dull). */
+double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
+{
+    if (!(gloss_rho > 0)) return 0;
+    if (gloss_rho >= 1) return 1;
+    const double cover = fmin(gloss_rho / 0.02, 1), normal = fmax(gloss_rho, 0.02), c = clamp(cosine, 0, 1);
+    const double metal = clamp((normal - 0.2) / 0.1, 0, 1);
+    static const double water_index2 = 1.7673876858061457; /* of 0.02, below which most ground is */
+    double reflected = 0;
+    if (metal < 1) reflected += (1 - metal) * fresnel_dielectric(gloss_rho > 0.02 ? index_squared(normal) : water_index2, c);
+    if (metal > 0) reflected += metal * fresnel_schlick(normal, c);
+    const double smooth = 1 - fmin(roughness_rad, 1);
+    return gloss_rho + cover * smooth * smooth * (reflected - normal);
+}
+
+void material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine)
+{
+    const double gloss_rho = rho * gloss;
+    *lobe    = material_fresnel(gloss_rho, roughness_rad, cosine);
+    /* what the lobe takes at grazing angles the diffuse share gives up */
+    *diffuse = gloss_rho < 1 ? (rho - gloss_rho) * (1 - *lobe) / (1 - gloss_rho) : 0;
+}
+
+/* Smith's masking for Beckmann slopes, as the rational fit of Walter, Marschner, Li, Torrance (EGSR 2007). */
+static double smith_shadow(double slope, double cosine)
+{
+    const double sine2 = 1 - cosine * cosine;
+    if (!(sine2 > 1e-12)) return 1;
+    const double a = cosine / (slope * sqrt(sine2));
+    return a >= 1.6 ? 1 : a * (3.535 + 2.181 * a) / (1 + a * (2.276 + 2.577 * a));
+}
+
+double material_slope2(double roughness_rad)
+{
+    /* the sun's disc, 4.65 mrad in radius, blurs the lobe as slopes of half that would; it also keeps a perfect
+     * mirror finite */
+    return roughness_rad * roughness_rad + 0.0023 * 0.0023;
+}
+
+double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3])
+{
+    const double n_eye = v3_dot(n, towards_eye), n_sun = v3_dot(n, towards_sun);
+    if (!(n_eye > 0 && n_sun > 0)) return 0;
+    double half[3];
+    v3_add(half, towards_eye, towards_sun);
+    if (!v3_normalize(half, half)) return 0;
+    const double n_half = v3_dot(n, half), n_half2 = n_half * n_half;
+    if (!(n_half > 1e-3)) return 0;
+    const double slope2 = material_slope2(roughness_rad);
+    const double tangent2 = (1 - n_half2) / n_half2;
+    if (tangent2 > 40 * slope2) return 0; /* e^-40 */
+    const double slopes = exp(-tangent2 / slope2) / (pi_rad * slope2 * n_half2 * n_half2), slope = sqrt(slope2);
+    return slopes * smith_shadow(slope, n_eye) * smith_shadow(slope, n_sun) / (4 * n_eye);
+}

@@ -1,0 +1,68 @@
+/* render/light/materials.h: optics of every material, from etc/materials.csv (source a row).
+ *
+ * Reflectances are hemispherical band averages; emissivity = 1 - reflectance (Kirchhoff, opaque). */
+#ifndef RENDER_LIGHT_MATERIALS_H
+#define RENDER_LIGHT_MATERIALS_H
+
+#include "entities/models/catalog.h"
+#include "terrain/surface.h"
+
+/* In the order of AirBand (render/air/atmosphere.h). */
+enum {
+    optical_channel_b, optical_channel_g, optical_channel_r, optical_channel_pan, optical_channel_nir,
+    optical_channel_count
+};
+
+typedef struct Material {
+    char  name[32];
+    float rho[optical_channel_count]; /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7, 0.7-1.1 um */
+    float rho_mwir, rho_lwir;         /* 3.4-4.8, 8-12 um */
+    float solar_absorptance;
+    float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
+    float roughness;                  /* width of that lobe, rad rms slope */
+    float metal;                      /* 1: mirrors radar; 0: does not */
+    float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
+    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of what lies under the surface */
+} Material;
+
+typedef struct Materials {
+    int       count;
+    Material *material;              /* [0] is "none", black */
+    int       surface[SURFACE_COUNT];/* material of each surface class */
+    int     **part;                  /* [model][part] */
+    int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. What a model
+                                      * says of itself, else destroyed is `burnt`, where there is such a row */
+    int       model_count;
+    /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that
+     * a horizontal plane loses to the sky (etc/ground_heat.csv). 0: at air temperature. */
+    float     ground_rise_k[SURFACE_COUNT], ground_fall_k[SURFACE_COUNT];
+    float     ground_rho[optical_channel_count]; /* mean of the land classes: what lights things from below */
+} Materials;
+
+/* surfaces_path: CSV surface, material. Every material a model or surface names must exist: otherwise a
+ * logged error and STATUS_BAD_VALUE. catalog may be NULL (no models). */
+Status materials_open(Materials *out, const char *path, const char *surfaces_path, const Catalog *catalog);
+void   materials_close(Materials *materials);
+int    materials_find(const Materials *materials, const char *name); /* -1: none */
+
+/* Row of a part of a model in a state of damage (snapshot_damage). */
+static inline int material_of_part(const Materials *m, int model, int part, int damage)
+{
+    if (damage > 0 && m->damaged) return m->damaged[model][part * model_damage_states + damage];
+    return m->part[model][part];
+}
+
+/* The lobe of a glossy surface. material_fresnel: share reflected by it at an angle of this cosine, from gloss_rho
+ * (reflectance times gloss) at normal incidence to 1 at grazing where it is smooth; 0 for gloss_rho = 0. Smooth, and
+ * 0.02 .. 0.2 at normal incidence: Fresnel's own for the refractive index that has it (0.04: glass of 1.5).
+ * material_split: that, and what is left of the diffuse share so that their sum never passes 1.
+ * material_lobe: radiance over irradiance facing the sun, 1/sr, for a reflectance of 1: Beckmann's slopes of
+ * rms roughness_rad with Smith's masking; its whole over all directions is at most the cosine n_sun.
+ * All vectors are unit; n and towards_eye must be on the same side. 0 when the sun is behind.
+ * material_slope2: square of the slopes of that lobe, the sun's disc in it. */
+double material_fresnel(double gloss_rho, double roughness_rad, double cosine);
+void   material_split(double *diffuse, double *lobe, double rho, double gloss, double roughness_rad, double cosine);
+double material_slope2(double roughness_rad);
+double material_lobe(double roughness_rad, const double n[3], const double towards_eye[3], const double towards_sun[3]);
+
+#endif

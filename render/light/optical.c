@@ -1,0 +1,88 @@
+/* render/light/optical.c: what the eye gets of sun and sky: reflected by what was hit, then through the air.
+ *
+ * A surface reflects diffusely and, as far as it is glossy, in a lobe: the sun by its own width, the sky by the
+ * mirror direction. Without gathered light, sky and ground light every surface by what its tilt sees of them and what
+ * stands around does not hide them; a mirror shows sky or ground, not its neighbours. */
+#include "render/light/optical.h"
+
+double optical_ground_w_m2(int channel, const Air *air, const Materials *materials)
+{
+    return materials->ground_rho[channel] *
+           (air->sun_w_m2[channel] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[channel]);
+}
+
+void optical_white(double w_m2_sr[3], const Air *air)
+{
+    static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
+    for (int c = 0; c < 3; c++)
+        w_m2_sr[c] = (air->sun_w_m2[rgb[c]] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[rgb[c]]) / pi_rad;
+}
+
+float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *v, int i)
+{
+    double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
+    if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
+    return (float)seen;
+}
+
+void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
+                   const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
+                   const float *around_w_m2, const Veils *veils, const Facing *facing)
+{
+    const AirBand band = (AirBand)channel;
+    const double *sun_d_enu = air->sun_d_enu, sun_w_m2 = air->sun_w_m2[channel];
+    const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
+    Veils own;
+    if (!veils) air_veils(&own, air, band, hits, rays, NULL);
+    const Veils *v = veils ? veils : &own;
+    Facing found;
+    if (!facing) {
+        air_facing(&found, air, materials, hits, rays, material);
+        facing = &found;
+    }
+
+    for (int i = 0; i < hits->count; i++) {
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        if (!(hits->range_m[i] < INFINITY)) {
+            out[i] = optical_beyond(channel, air, ground_w_m2, d_enu, v, i);
+            continue;
+        }
+        const Material *m = &materials->material[material[i]];
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        const double rho = fmin(m->rho[channel] * texture[i], 1);
+        const double n_sun = shadow[i] ? 0 : fmax(v3_dot(n_enu, sun_d_enu), 0);
+        const double around =
+            around_w_m2 ? around_w_m2[i]
+                        : air_plane_there(air, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
+        const double irradiance_w_m2 = sun_w_m2 * n_sun + around;
+
+        double radiance;
+        if (!(m->gloss > 0)) {
+            radiance = rho * irradiance_w_m2 / pi_rad;
+        } else {
+            const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
+            double diffuse, lobe_rho;
+            material_split(&diffuse, &lobe_rho, rho, m->gloss, m->roughness, n_eye);
+            radiance = diffuse * irradiance_w_m2 / pi_rad;
+
+            double mirror_enu[3];
+            v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
+            /* a rough lobe near the horizon sees some of both */
+            const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
+            double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
+            if (sees_sky > 0) seen += sees_sky * air_sky_there(&air->sky[band], &facing->mirror[i]);
+            radiance += lobe_rho * seen;
+
+            if (n_sun > 0) {
+                const double eye_enu[3] = {-d_enu[0], -d_enu[1], -d_enu[2]};
+                const double lobe = material_lobe(m->roughness, n_enu, eye_enu, sun_d_enu);
+                if (lobe > 0) {
+                    /* at the facet: half the angle between eye and sun */
+                    const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, sun_d_enu)), 0));
+                    radiance += material_fresnel(rho * m->gloss, m->roughness, cosine) * lobe * sun_w_m2;
+                }
+            }
+        }
+        out[i] = (float)(radiance * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
+    }
+}

@@ -1,0 +1,45 @@
+/* render/light/surface_light.h: what ground and parts send to the eye in all bands, eight hits at a time.
+ *
+ * The same light as render/light/optical.c and thermal.c give (no term is left out), in float, from tables that hold all
+ * bands of a place side by side: what depends on the hit alone is found once for all bands. Within 3e-5 of those for
+ * anything as rough as ground and flat paint, 1e-3 where a mirror flashes (tests/render/test_surface_light.c). */
+#ifndef RENDER_LIGHT_SURFACE_LIGHT_H
+#define RENDER_LIGHT_SURFACE_LIGHT_H
+
+#include "render/air/air.h"
+#include "render/scene/hits.h"
+
+enum { surface_light_bands = 8 }; /* AIR_BAND_COUNT and one to spare */
+
+/* One Air's, for a frame. */
+typedef struct SurfaceLight {
+    const Air *air;
+    float plane[air_plane_ups + 1][air_plane_azimuths + 1][surface_light_bands];    /* as Air.plane_w_m2 */
+    float scattered[air_sky_ups + 1][air_sky_azimuths + 1][surface_light_bands];    /* sky in a mirror, as AirSky */
+    float thermal[air_sky_ups + 1][surface_light_bands], around_sun[air_sky_angles + 2][surface_light_bands];
+    float level_w_m2_sr[surface_light_bands], sun_w_m2[surface_light_bands]; /* level ground's radiance; the sun */
+    float (*rho)[surface_light_bands], (*gloss)[surface_light_bands];               /* [materials]; GlossValue */
+    bool  any_sun;
+} SurfaceLight;
+
+/* STATUS_NO_MEMORY: of the arena, which owns the tables by material. */
+Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials *materials, Arena *arena);
+
+/* A block's hits and what is known of them. */
+typedef struct SurfaceBlock {
+    const Hits    *hits;
+    const Rays    *rays;
+    const uint16_t *material;                   /* row of each hit; 0 for sky */
+    const float   *texture[AIR_BAND_COUNT];     /* of the optical bands: brightness over the material's */
+    const float   *temp_k;                      /* thermal bands */
+    const uint8_t *shadow;
+    const float   *around_w_m2[AIR_BAND_COUNT]; /* gathered; NULL: sky and ground by what the slope sees of them */
+    const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1 */
+    const Veils   *veils;                       /* [AIR_BAND_COUNT] */
+} SurfaceBlock;
+
+/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rays that met nothing get nonsense: whoever
+ * knows the sky comes after. */
+void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block);
+
+#endif

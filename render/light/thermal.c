@@ -1,0 +1,189 @@
+/* render/light/thermal.c: how warm things are, and what of it arrives.
+ *
+ * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get
+ * unobstructed, in steady balance with the wind of the moment. That is the first model; layered conduction with a
+ * history of shadow comes after it.
+ *
+ * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each through the veil as its own
+ * spectrum goes. In a closed isothermal cavity
+ * everything reads Planck(T), whatever the material (tests/render/test_thermal.c). */
+#include "render/light/thermal.h"
+
+#include "render/light/surface_balance.h"
+#include "terrain/eight.h"
+
+/* ---- temperature -------------------------------------------------------------------------- */
+
+/* A part without a heat source of its own. Steel conducts and holds heat for an hour, so every face shares in what
+ * the whole gets: 0.3 of the sun on level ground for a face turned down, 0.7 for one turned up (a guess, that puts
+ * a green tank at 10 .. 20 K above the air at noon and keeps a turning vehicle from flipping its temperatures). */
+static double passive_part_k(const Air *air, double air_temp_k, const Material *material, double n_up,
+                             double sun_level_w_m2, double film)
+{
+    const double emissivity = 1 - material->rho_lwir;
+    const double up = 0.5 * (1 + n_up);
+    const double gain_w_m2 = material->solar_absorptance * sun_level_w_m2 * (0.3 + 0.4 * up) -
+                             emissivity * air->longwave_loss_w_m2 * up;
+    return air_temp_k + gain_w_m2 / (film + emission_w_m2_k(emissivity, air_temp_k));
+}
+
+/* What holds for all of a class: its excess in this wind, and the temperatures between which it is what it is. */
+typedef struct GroundDay {
+    float rise_k[SURFACE_COUNT], fall_k[SURFACE_COUNT], least_k[SURFACE_COUNT], most_k[SURFACE_COUNT];
+} GroundDay;
+
+static void ground_day(GroundDay *out, const Air *air, const Materials *materials)
+{
+    static const double melts_k = 273.15, sea_freezes_k = 271.35;
+    for (int s = 0; s < SURFACE_COUNT; s++) {
+        const Material *m = &materials->material[materials->surface[s]];
+        const double    other = emission_w_m2_k(1 - m->rho_lwir, air->weather.air_temp_k) +
+                             daily_wave_w_m2_k(m->conductivity_w_mk, m->density_kg_m3, m->heat_capacity_j_kgk);
+        const double share = ground_heat_share(air->weather.wind_mps, other);
+        out->rise_k[s]  = (float)(share * materials->ground_rise_k[s]);
+        out->fall_k[s]  = (float)(share * materials->ground_fall_k[s]);
+        out->least_k[s] = s == SURFACE_WATER ? (float)sea_freezes_k : 0;
+        out->most_k[s]  = s == SURFACE_SNOW ? (float)melts_k : INFINITY;
+    }
+}
+
+/* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
+static Eight air_k8(const Air *air, const Hits *hits, int first)
+{
+    const Eight    x = eight_of_doubles(hits->p_enu[0] + first), y = eight_of_doubles(hits->p_enu[1] + first);
+    const Eight    level = eight_of_doubles(hits->p_enu[2] + first) - eight_all(air->zero_z_m);
+    const Eight    height_m = eight_fma(eight_fma(x, x, y * y), eight_all(1 / (2 * 6371e3)), level);
+    const Eight    at = eight_clamp(height_m * eight_all(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
+    const EightInt node = eight_to_ints(eight_clamp(at, 0, air_warmer_nodes - 2));
+    const Eight    low = eight_gather(air->warmer_k, node), high = eight_gather(air->warmer_k + 1, node);
+    return eight_mix(low, high, at - eight_of_ints(node)) + eight_all(air->weather.air_temp_k);
+}
+
+/* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
+ * relative brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
+ * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that law
+ * would be colder than the air at noon. Eight hits at once, within 3e-5 K; what is not ground becomes air. */
+static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, Eight air_k, const uint8_t surface[8],
+                      const float *const n_enu[3], const float texture[8])
+{
+    const EightInt class = eight_of_bytes(surface);
+    const Eight    along = eight_fma(eight_load(n_enu[0]), eight_all(air->sun_d_enu[0]),
+                                     eight_fma(eight_load(n_enu[1]), eight_all(air->sun_d_enu[1]),
+                                               eight_load(n_enu[2]) * eight_all(air->sun_d_enu[2])));
+    const Eight rise = eight_gather(day->rise_k, class), fall = eight_gather(day->fall_k, class);
+    const Eight level = (eight_all(1) + eight_load(n_enu[2])) * eight_all(0.5 * air->solar_diffuse_w_m2);
+    const Eight slope_kw_m2 =
+        eight_fma(eight_max(along, eight_all(0)), eight_all(air->solar_direct_w_m2), level) * eight_all(1e-3);
+    const Eight dark = eight_all(1.5) - eight_all(0.5) * eight_clamp(eight_load(texture), 0.6, 1.4);
+    const Eight above = eight_fma(rise * slope_kw_m2, dark, fall * eight_all(-1e-2 * air->longwave_loss_w_m2));
+    const Eight least = eight_gather(day->least_k, class), most = eight_gather(day->most_k, class);
+    eight_store(temp_k, eight_min(eight_max(above + air_k, least), most));
+}
+
+void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
+                         const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture)
+{
+    const double sun_level_w_m2 = air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2;
+    const double film = film_w_m2_k(air->weather.wind_mps);
+    GroundDay    day;
+    ground_day(&day, air, materials);
+
+    for (int first = 0; first < hits->count; first += 8) {
+        const float *const n_enu[3] = {hits->n_enu[0] + first, hits->n_enu[1] + first, hits->n_enu[2] + first};
+        const int          some = hits->count - first < 8 ? hits->count - first : 8;
+        uint8_t            surface[8] = {0};
+        float              found[8], air_k[8];
+        for (int k = 0; k < some; k++)
+            surface[k] = hits->surface[first + k] < SURFACE_COUNT ? hits->surface[first + k] : SURFACE_NONE;
+        const Eight there_k = air_k8(air, hits, first);
+        eight_store(air_k, there_k);
+        ground_k8(found, air, &day, there_k, surface, n_enu, texture + first);
+        for (int k = 0; k < some; k++) {
+            const int i = first + k;
+            temp_k[i] = found[k];
+            if (!(hits->range_m[i] < INFINITY)) {
+                temp_k[i] = NAN;
+            } else if (hits->entity[i]) {
+                const HeatRole  role = catalog_model(catalog, hits->model[i])->part[hits->part[i] - 1].role;
+                const double    above_k = snapshot->entity[hits->entity[i] - 1].heat[role];
+                const Material *m = &materials->material[material[i]];
+                temp_k[i] = (float)(passive_part_k(air, (double)air_k[k], m, (double)hits->n_enu[2][i], sun_level_w_m2,
+                                                  film) + above_k);
+            }
+        }
+    }
+}
+
+/* ---- radiance ----------------------------------------------------------------------------- */
+
+float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Veils *v, int i)
+{
+    const AirBand air_band = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
+    double seen = air->ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
+    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[AIR_MWIR] * air_sun_disc(air, d_enu);
+    return (float)seen;
+}
+
+void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
+                   const float *around_w_m2, const Veils *veils, const Facing *facing)
+{
+    const bool mwir = band == BAND_MWIR;
+    const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
+    const PlanckTable *planck = mwir ? air->planck_mwir : air->planck_lwir;
+    const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
+    /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
+    const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0;
+    Veils own;
+    if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
+    const Veils *v = veils ? veils : &own;
+    Facing found;
+    if (!facing) {
+        air_facing(&found, air, materials, hits, rays, material);
+        facing = &found;
+    }
+
+    for (int i = 0; i < hits->count; i++) {
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        if (!(hits->range_m[i] < INFINITY)) {
+            out[i] = thermal_beyond(band, air, d_enu, v, i);
+            continue;
+        }
+        const Material *m = &materials->material[material[i]];
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        const double n_eye = fmax(-v3_dot(n_enu, d_enu), 0);
+        double diffuse, lobe_rho;
+        material_split(&diffuse, &lobe_rho, mwir ? m->rho_mwir : m->rho_lwir, m->gloss, m->roughness, n_eye);
+
+        /* Kirchhoff, at this angle: what is not reflected is emitted */
+        const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
+        /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
+        const double around = around_w_m2 ? around_w_m2[i] / pi_rad
+                                          : air_plane_there(air, air_band, &facing->plane[i]) / pi_rad +
+                                                ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
+        double reflected = diffuse * around;
+        if (lobe_rho > 0) {
+            double mirror_enu[3];
+            v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
+            const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
+            const double sky = air_sky_there(&air->sky[air_band], &facing->mirror[i]);
+            reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
+        }
+        double sunlit = 0;
+        if (sun_w_m2 > 0 && !shadow[i]) {
+            const double n_sun = v3_dot(n_enu, air->sun_d_enu);
+            if (n_sun > 0) {
+                sunlit = diffuse * n_sun / pi_rad;
+                if (lobe_rho > 0) {
+                    const double eye_enu[3] = {-d_enu[0], -d_enu[1], -d_enu[2]};
+                    const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, air->sun_d_enu)), 0));
+                    sunlit += material_fresnel((mwir ? m->rho_mwir : m->rho_lwir) * m->gloss, m->roughness, cosine) *
+                              material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
+                }
+                sunlit *= sun_w_m2;
+            }
+        }
+        out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +
+                         sunlit * v->sun_transmittance[i] + v->added_w_m2_sr[i]);
+    }
+}

@@ -1,0 +1,91 @@
+/* render/parts/parts.h: rays against the moving parts, through Embree.
+ *
+ * One committed Embree scene for each node of each model, in the node's own axes, shared by every entity of
+ * that model. A ray is taken to the node in double, advanced to the node's bounding sphere, narrowed once, and
+ * told whose boxes it passes; which triangle it meets, distance and normals are found in double. So a
+ * joint that turns costs a transform and no commit, nothing here changes between frames, and any number of
+ * frames and threads may trace at once. */
+#ifndef RENDER_PARTS_PARTS_H
+#define RENDER_PARTS_PARTS_H
+
+#include "entities/models/model.h"
+#include "render/scene/visibility.h"
+
+/* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. */
+Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);
+int    tracer_model_count(const Tracer *tracer);
+/* Builds the geometry of a model of the catalog that was not built when the tracer was made. One thread, before
+ * parts_pose. */
+Status tracer_need(Tracer *tracer, int model);
+const Model *tracer_model(const Tracer *tracer, int model);
+
+typedef struct NodeMesh NodeMesh;
+
+/* A node that has triangles, where it is now. */
+typedef struct PosedNode {
+    const NodeMesh *mesh;
+    double p_enu[3];
+    double r_enu_from_node[9];
+} PosedNode;
+
+/* An entity where it is now. Sphere and box hold all of its nodes as they are posed, whatever the model says. */
+typedef struct PosedEntity {
+    int          damage;     /* 0 .. model_damage_states - 1 */
+    int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
+    int          node_count; /* those with triangles */
+    PosedNode   *node;
+    double       centre_enu[3], radius_m;
+    double       p_enu[3], r_enu_from_body[9];
+    double       box_low[3], box_high[3]; /* body axes */
+} PosedEntity;
+
+typedef struct PartHit {
+    int      node;     /* of PosedEntity.node */
+    uint32_t triangle; /* of the model */
+} PartHit;
+
+/* All vertices of a posed node, each once, in its axes. */
+const double (*parts_node_corners(const PosedNode *node, int *count))[3];
+
+/* The three corners of its triangle number k, in its axes; NULL: it has no more. */
+const double (*parts_node_triangle(const PosedNode *node, int k))[3];
+
+/* The most nodes that posing an entity of this model needs room for. */
+int parts_node_count(const Tracer *tracer, int model);
+/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are
+ * not there. */
+void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
+                const double r_enu_from_body[9], int damage);
+
+/* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is
+ * asked even where the entity's box or a node's sphere is missed, which must not change the answer. */
+double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],
+                       double far_m, bool ask_all);
+/* Whether any triangle is ahead. */
+bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
+/* The same of rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where one is
+ * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. Returns how many ray-node
+ * pairs Embree was asked for. */
+uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
+/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. Returns as above. */
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+                    const double *far_m, const int *list, int count, bool ask_all);
+/* A triangle that was met, as it stands now: for as many hits as meet it. */
+typedef struct PosedFacet {
+    const PosedNode *node;     /* NULL: none */
+    uint32_t triangle;
+    bool     even;             /* one shading normal for all of it */
+    double   corner[3], ab[3], ac[3], n[3], area2; /* node axes */
+    double   geo_enu[3];       /* unit; 0: a triangle without area */
+    double   even_enu[3];      /* unit */
+} PosedFacet;
+
+void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit);
+/* Unit normals at a distance along the ray, on the ray's side: of the triangle, and interpolated. */
+void parts_facet_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedFacet *facet,
+                         const double o_enu[3], const double d_enu[3], double range_m);
+void parts_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedEntity *entity, const PartHit *hit,
+                   const double o_enu[3], const double d_enu[3], double range_m);
+
+#endif

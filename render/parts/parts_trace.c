@@ -1,0 +1,643 @@
+/* render/parts/parts_trace.c: who is met. Embree nominates triangles, in floats, by boxes round them with ample room
+ * (parts.c); each nominee is judged here, in double, by the triangle itself. So neither the instruction set nor the
+ * company in which a ray travels can show in an answer.
+ *
+ * The answer: the nearest triangle that the ray passes through; and of all those at its distance to 0.1 mm that the
+ * ray passes through, or by within 20 um, the lowest. Faces of two parts often lie in one place, a tyre's and its
+ * disc's, and at an edge two always do.
+ *
+ * Four rays at a time in intrinsics, as in ground8.c: the compiler would not. */
+#include <immintrin.h>
+
+#include "render/parts/parts_private.h"
+
+enum { lanes = 16, ties_kept = 8, chunk_rays = 128 };
+
+static const double same_edge_m = 2e-5, same_range_m = 1e-4;
+static const double through_m = -1e-9; /* inside by this: a corner leaves room for roundings between its triangles */
+static const double slack_m = 2e-3;    /* beyond the nearest: room for its ties, and for Embree's floats */
+
+typedef __m256d Four;
+
+static inline Four set(double x) { return _mm256_set1_pd(x); }
+static inline Four load(const double *p) { return _mm256_load_pd(p); }
+static inline void store(double *p, Four x) { _mm256_store_pd(p, x); }
+static inline Four less(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
+static inline Four at_most(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
+static inline Four both(Four a, Four b) { return _mm256_and_pd(a, b); }
+static inline Four pick(Four mask, Four yes, Four no) { return _mm256_blendv_pd(no, yes, mask); }
+static inline Four smaller4(Four a, Four b) { return _mm256_min_pd(a, b); } /* a < b ? a : b */
+static inline Four larger4(Four a, Four b) { return _mm256_max_pd(a, b); }  /* a > b ? a : b */
+static inline unsigned bits(Four mask) { return (unsigned)_mm256_movemask_pd(mask); }
+static inline double smaller(double a, double b) { return a < b ? a : b; }
+static inline double larger(double a, double b) { return a > b ? a : b; }
+
+typedef struct Vector {
+    Four x, y, z;
+} Vector;
+
+static inline Vector load3(const double *x, const double *y, const double *z) { return (Vector){load(x), load(y), load(z)}; }
+static inline Vector set3(const double p[3]) { return (Vector){set(p[0]), set(p[1]), set(p[2])}; }
+static inline Vector sub(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
+static inline Vector add_scaled(Vector a, Four s, Vector b)
+{
+    return (Vector){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
+}
+static inline Four dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline Vector cross(Vector a, Vector b)
+{
+    return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+/* transpose(m) a */
+static inline Vector turned_back(const double m[9], Vector a)
+{
+    return (Vector){set(m[0]) * a.x + set(m[3]) * a.y + set(m[6]) * a.z,
+                    set(m[1]) * a.x + set(m[4]) * a.y + set(m[7]) * a.z,
+                    set(m[2]) * a.x + set(m[5]) * a.y + set(m[8]) * a.z};
+}
+
+/* Narrows the way in .. out through a box to one of its three slabs; a ray along it is in or out, by its sign. */
+static inline void through_slab(Four *in, Four *out, Four low, Four high, Four d)
+{
+    const Four along = less(_mm256_andnot_pd(set(-0.0), d), set(1e-30));
+    const Four per = pick(along, set(1e30), set(1) / d);
+    const Four a = low * per, b = high * per;
+    *in  = larger4(*in, smaller4(a, b));
+    *out = smaller4(*out, larger4(a, b));
+}
+
+/* ---- a node's rays ---------------------------------------------------------------------------- */
+
+/* Rays close together, from a block's; filled up to a multiple of four. */
+typedef struct Chunk {
+    double o[3][chunk_rays], d[3][chunk_rays];
+    double best_m[chunk_rays];  /* nothing farther is asked for */
+    int    ray[chunk_rays];     /* of the block */
+    int    count;
+} __attribute__((aligned(64))) Chunk;
+
+/* In a node's axes, each from where it enters the node's sphere. */
+typedef struct NodeRays {
+    double   o[3][chunk_rays], d[3][chunk_rays];
+    double   start_m[chunk_rays], length_m[chunk_rays]; /* of o along the ray that was asked; through the sphere */
+    unsigned meets[chunk_rays / 4]; /* 1 << place in four: the node's sphere and box, ahead and before best_m */
+} __attribute__((aligned(64))) NodeRays;
+
+/* Those that Embree takes: where a ray does not come near a node nothing else has looked at its numbers. */
+static inline unsigned in_embree(Vector at, Vector d)
+{
+    static const double most = 1e18;
+    const Four sign = set(-0.0), far = _mm256_andnot_pd(sign, at.x) + _mm256_andnot_pd(sign, at.y) + _mm256_andnot_pd(sign, at.z);
+    return bits(both(less(far, set(most)), less(dot(d, d), set(2))));
+}
+
+/* A ray that misses the sphere is given a start as near as it comes. */
+static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool ask_all)
+{
+    const NodeMesh *mesh = node->mesh;
+    const Vector    centre = set3(mesh->centre), half = set3(mesh->half);
+    const Four      zero = set(0), radius_m = set(mesh->radius_m);
+    for (int i = 0; i < chunk->count; i += 4) {
+        const Vector from = sub(load3(chunk->o[0] + i, chunk->o[1] + i, chunk->o[2] + i), set3(node->p_enu));
+        const Vector o = turned_back(node->r_enu_from_node, from);
+        const Vector d = turned_back(node->r_enu_from_node, load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i));
+        const Vector m = sub(centre, o);
+        const Four   along = dot(m, d);
+        const Vector across = add_scaled(m, -along, d); /* not |m|^2 - along^2, which cancels from afar */
+        const Four   left = radius_m * radius_m - dot(across, across);
+        const Four   half_m = _mm256_sqrt_pd(larger4(left, zero));
+        const Four   start_m = larger4(along - half_m, zero), length_m = along + half_m - start_m;
+        const Vector at = add_scaled(o, start_m, d), middle = sub(centre, at);
+        Four         in = zero, out = set(INFINITY);
+        through_slab(&in, &out, middle.x - half.x, middle.x + half.x, d.x);
+        through_slab(&in, &out, middle.y - half.y, middle.y + half.y, d.y);
+        through_slab(&in, &out, middle.z - half.z, middle.z + half.z, d.z);
+        store(r->o[0] + i, at.x), store(r->o[1] + i, at.y), store(r->o[2] + i, at.z);
+        store(r->d[0] + i, d.x), store(r->d[1] + i, d.y), store(r->d[2] + i, d.z);
+        store(r->start_m + i, start_m);
+        store(r->length_m + i, ask_all ? larger4(length_m, radius_m) : length_m);
+        const Four meets = both(both(less(zero, left), less(zero, length_m)),
+                                both(less(start_m, load(chunk->best_m + i)), at_most(in, out)));
+        r->meets[i / 4] = ask_all ? in_embree(at, d) : bits(meets);
+    }
+}
+
+/* What a chunk's rays have in common: all from one point, or all one way. */
+typedef struct Bundle {
+    double origin[3], radius_m; /* all begin in this sphere */
+    double axis[3], sine, cosine; /* and stay within this angle; cosine 0: nothing in common */
+} Bundle;
+
+static Bundle bundle_of(const Chunk *chunk)
+{
+    Bundle b = {.cosine = 1};
+    bool   one_point = true, one_way = true;
+    for (int i = 1; i < chunk->count; i++)
+        for (int c = 0; c < 3; c++) {
+            one_point &= chunk->o[c][i] == chunk->o[c][0];
+            one_way &= chunk->d[c][i] == chunk->d[c][0];
+        }
+    for (int i = 0; i < chunk->count; i++)
+        for (int c = 0; c < 3; c++) {
+            b.origin[c] += chunk->o[c][i] / chunk->count;
+            b.axis[c] += chunk->d[c][i];
+        }
+    if ((!one_point && !one_way) || !v3_normalize(b.axis, b.axis)) return (Bundle){.cosine = 0};
+    double farthest = 0;
+    for (int i = 0; i < chunk->count; i++) {
+        double from[3], square = 0, cosine = 0;
+        for (int c = 0; c < 3; c++) {
+            from[c] = chunk->o[c][i] - b.origin[c];
+            square += from[c] * from[c];
+            cosine += chunk->d[c][i] * b.axis[c];
+        }
+        farthest = larger(farthest, square);
+        b.cosine = smaller(b.cosine, cosine);
+    }
+    b.radius_m = sqrt(farthest);
+    b.cosine -= 1e-12; /* a rounding of 1 - cosine is 1e-6 rad */
+    b.sine = sqrt(1 - b.cosine * b.cosine);
+    if (one_way) b.sine = 0, b.cosine = 1;
+    return b;
+}
+
+/* The sphere's centre may be no farther from the cone's side than this. */
+static bool bundle_may_meet(const Bundle *b, const PosedNode *node)
+{
+    double turned[3], v[3], across[3];
+    if (!(b->cosine > 0)) return true;
+    m3_mul_v3(turned, node->r_enu_from_node, node->mesh->centre);
+    for (int c = 0; c < 3; c++) v[c] = node->p_enu[c] + turned[c] - b->origin[c];
+    const double along = v3_dot(v, b->axis);
+    v3_add_scaled(across, v, -along, b->axis);
+    const double away_m = v3_length(across) * b->cosine - along * b->sine;
+    return away_m <= (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
+}
+
+/* ---- nominees and their judge ----------------------------------------------------------------- */
+
+/* Rays of a node side by side, and what was found of each. */
+typedef struct Packet {
+    struct RTCIntersectContext base; /* first: Embree hands it back */
+    const NodeMesh *mesh;
+    bool     lowest_only;         /* collects into `lowest`: nearest_m is known */
+    int      count;
+    double   o[3][lanes] __attribute__((aligned(64))), d[3][lanes];
+    double   start_m[lanes], length_m[lanes];
+    double   far_m[lanes];        /* nothing farther counts */
+    double   nearest_m[lanes];    /* of those passed through */
+    float    end_m[lanes];        /* where Embree stops */
+    int      ties[lanes];
+    bool     crowded[lanes];      /* more than were kept */
+    uint32_t tie[lanes][ties_kept]; /* of the node, at nearest_m and somewhat beyond */
+    double   tie_m[lanes][ties_kept];
+    uint32_t lowest[lanes];
+    double   lowest_m[lanes];
+    int      ray[lanes];          /* of the chunk */
+} __attribute__((aligned(64))) Packet;
+
+/* Of four lanes at a time, as they are asked for. */
+typedef struct Verdict {
+    double   at_m[lanes];   /* where near: distance to the plane, held between the corners: edge-on it says nothing */
+    unsigned judged;        /* 1 << lane / 4 */
+    unsigned near[lanes / 4], through[lanes / 4]; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
+} __attribute__((aligned(64))) Verdict;
+
+/* Neighbours find the same number with the other sign for their common side, whatever the rounding, so nothing gets
+ * through between them. */
+static void judge(Verdict *v, const Packet *p, const Facet *facet, int four)
+{
+    const int    l = 4 * four;
+    const Vector o = load3(p->o[0] + l, p->o[1] + l, p->o[2] + l), d = load3(p->d[0] + l, p->d[1] + l, p->d[2] + l);
+    const Vector a = sub(set3(facet->corner[0]), o), b = sub(set3(facet->corner[1]), o), c = sub(set3(facet->corner[2]), o);
+    const Four   ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
+    const Four   whole = ab + bc + ca, share = set(1) / whole;
+    const Four   inside_m = smaller4(ab * share * set((double)facet->height_m[0]),
+                                     smaller4(bc * share * set((double)facet->height_m[1]),
+                                              ca * share * set((double)facet->height_m[2])));
+    const Four   seen = _mm256_cmp_pd(whole, set(0), _CMP_NEQ_OQ); /* not edge-on */
+    const Four   near = both(seen, at_most(set(-same_edge_m), inside_m));
+    v->judged |= 1u << four;
+    v->near[four] = bits(near);
+    if (v->near[four] == 0) return;
+    const Vector n = cross(sub(b, a), sub(c, a));
+    const Four   at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
+    const Four   low = smaller4(at_a, smaller4(at_b, at_c)), high = larger4(at_a, larger4(at_b, at_c));
+    const Four   t = dot(n, a) / dot(n, d);
+    const Four   at_m = pick(at_most(low, t), smaller4(t, high), low); /* and when t is not a number */
+    const Four   ahead = at_most(set(0), at_m);
+    store(v->at_m + l, at_m);
+    v->near[four]    = bits(both(near, ahead));
+    v->through[four] = v->near[four] & bits(at_most(set(through_m), inside_m));
+}
+
+static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
+{
+    if (p->ties[lane] == ties_kept) {
+        p->crowded[lane] = true;
+        return;
+    }
+    const int k = p->ties[lane]++;
+    p->tie[lane][k]   = triangle;
+    p->tie_m[lane][k] = at_m;
+}
+
+static void bring_nearer(Packet *p, int lane, double at_m)
+{
+    int kept = 0;
+    p->nearest_m[lane] = at_m;
+    for (int k = 0; k < p->ties[lane]; k++)
+        if (p->tie_m[lane][k] <= at_m + same_range_m) {
+            p->tie[lane][kept]     = p->tie[lane][k];
+            p->tie_m[lane][kept++] = p->tie_m[lane][k];
+        }
+    p->ties[lane] = kept;
+}
+
+static void offer_lowest(Packet *p, int lane, uint32_t triangle, double at_m)
+{
+    if (!(triangle < p->lowest[lane] && fabs(at_m - p->nearest_m[lane]) <= same_range_m)) return;
+    p->lowest[lane]   = triangle;
+    p->lowest_m[lane] = at_m;
+}
+
+/* Fields of N rays lie one after another (rtcore_ray.h), and they may stand in any order. */
+void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
+{
+    Packet         *p = (Packet *)a->context;
+    const unsigned  n = a->N;
+    float          *end_m = (float *)a->rayhit + 8 * n;
+    const uint32_t *id = (const uint32_t *)a->rayhit + 10 * n;
+    Verdict         v;
+    v.judged = 0;
+    for (unsigned k = 0; k < n; k++) {
+        if (!a->valid[k]) continue;
+        const int lane = (int)id[k], four = lane / 4, bit = lane % 4;
+        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[a->primID], four);
+        if (!(v.near[four] >> bit & 1)) continue;
+        const double at_m = v.at_m[lane];
+        if (p->lowest_only) {
+            offer_lowest(p, lane, a->primID, at_m);
+            continue;
+        }
+        if (!(at_m <= p->nearest_m[lane] + same_range_m)) continue;
+        if (v.through[four] >> bit & 1 && at_m < p->nearest_m[lane]) {
+            bring_nearer(p, lane, at_m);
+            const float stop_m = (float)(at_m + slack_m);
+            if (stop_m < p->end_m[lane]) end_m[k] = p->end_m[lane] = stop_m;
+        }
+        keep_tie(p, lane, a->primID, at_m);
+    }
+}
+
+void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
+{
+    Packet         *p = (Packet *)a->context;
+    const unsigned  n = a->N;
+    float          *end_m = (float *)a->ray + 8 * n;
+    const uint32_t *id = (const uint32_t *)a->ray + 10 * n;
+    Verdict         v;
+    v.judged = 0;
+    for (unsigned k = 0; k < n; k++) {
+        if (!a->valid[k]) continue;
+        const int lane = (int)id[k], four = lane / 4;
+        if (!(v.judged >> four & 1)) judge(&v, p, &p->mesh->facet[a->primID], four);
+        if (!(v.near[four] & v.through[four] & 1u << lane % 4 && v.at_m[lane] < p->far_m[lane])) continue;
+        end_m[k]            = -INFINITY;
+        p->nearest_m[lane] = 0; /* met */
+    }
+}
+
+/* ---- asking ------------------------------------------------------------------------------------- */
+
+static void packet_open(Packet *p, const NodeMesh *mesh)
+{
+    rtcInitIntersectContext(&p->base); /* never COHERENT: rtcOccluded16 of 3.13 may then not return under AVX-512 */
+    p->mesh        = mesh;
+    p->lowest_only = false;
+    p->count       = 0;
+}
+
+static inline void packet_add(Packet *p, const NodeRays *r, int i, double best_m)
+{
+    const int l = p->count++;
+    for (int c = 0; c < 3; c++) {
+        p->o[c][l] = r->o[c][i];
+        p->d[c][l] = r->d[c][i];
+    }
+    p->start_m[l]   = r->start_m[i];
+    p->length_m[l]  = r->length_m[i];
+    p->far_m[l]     = best_m - r->start_m[i];
+    p->nearest_m[l] = INFINITY;
+    p->ties[l]      = 0;
+    p->crowded[l]   = false;
+    p->ray[l]       = i;
+}
+
+static void packet_narrow(struct RTCRay16 *ray, int valid[lanes], Packet *p)
+{
+    const double *centre = p->mesh->centre;
+    for (int l = p->count; l < lanes; l++) { /* lanes without a ray are judged with the others, and meet nothing */
+        for (int c = 0; c < 3; c++) p->o[c][l] = p->o[c][0], p->d[c][l] = p->d[c][0];
+        p->length_m[l] = p->far_m[l] = p->nearest_m[l] = -INFINITY;
+        p->ties[l] = 0;
+    }
+    for (int l = 0; l < lanes; l++) {
+        ray->org_x[l] = (float)(p->o[0][l] - centre[0]);
+        ray->org_y[l] = (float)(p->o[1][l] - centre[1]);
+        ray->org_z[l] = (float)(p->o[2][l] - centre[2]);
+        ray->dir_x[l] = (float)p->d[0][l], ray->dir_y[l] = (float)p->d[1][l], ray->dir_z[l] = (float)p->d[2][l];
+        const double pass_m = p->length_m[l] * 1.001 + slack_m, far_m = p->far_m[l] + slack_m;
+        p->end_m[l]   = ray->tfar[l] = (float)smaller(pass_m, far_m);
+        ray->tnear[l] = ray->time[l] = 0;
+        ray->mask[l]  = 0xFFFFFFFFu;
+        ray->id[l]    = (uint32_t)l;
+        ray->flags[l] = 0;
+        valid[l]      = l < p->count ? -1 : 0;
+    }
+}
+
+static struct RTCRayHit single(const struct RTCRay16 *r, int l)
+{
+    return (struct RTCRayHit){.ray = {.org_x = r->org_x[l], .org_y = r->org_y[l], .org_z = r->org_z[l],
+                                      .dir_x = r->dir_x[l], .dir_y = r->dir_y[l], .dir_z = r->dir_z[l],
+                                      .tfar = r->tfar[l], .mask = r->mask[l], .id = r->id[l]},
+                              .hit = {.geomID = RTC_INVALID_GEOMETRY_ID, .instID = {RTC_INVALID_GEOMETRY_ID}}};
+}
+
+/* The lowest of the ties of a lane; its distance. */
+static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays, int l)
+{
+    const double nearest_m = p->nearest_m[l];
+    p->lowest[l] = UINT32_MAX;
+    if (p->crowded[l]) {
+        struct RTCRayHit ray = single(rays, l);
+        ray.ray.tfar   = (float)(nearest_m + slack_m);
+        p->lowest_only = true;
+        rtcIntersect1(p->mesh->scene, &p->base, &ray);
+        p->lowest_only = false;
+    } else {
+        for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
+    }
+    *triangle = p->mesh->triangle[p->lowest[l]];
+    return p->lowest_m[l];
+}
+
+static void packet_first_hits(double *range_m, PartHit *hit, Packet *p, Chunk *chunk, int node, bool alone)
+{
+    struct RTCRayHit16 rays;
+    int                valid[lanes] __attribute__((aligned(64)));
+    if (p->count == 0) return;
+    packet_narrow(&rays.ray, valid, p);
+    for (int l = 0; l < lanes; l++) rays.hit.geomID[l] = rays.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;
+    if (alone) {
+        for (int l = 0; l < p->count; l++) {
+            struct RTCRayHit one = single(&rays.ray, l);
+            rtcIntersect1(p->mesh->scene, &p->base, &one);
+        }
+    } else {
+        rtcIntersect16(valid, p->mesh->scene, &p->base, &rays);
+    }
+    for (int l = 0; l < p->count; l++) {
+        if (!(p->nearest_m[l] < INFINITY)) continue;
+        uint32_t     triangle;
+        const int    i = p->ray[l];
+        const double at_m = settle(&triangle, p, &rays.ray, l);
+        const double at_range_m = larger(0, p->start_m[l] + at_m);
+        if (!(at_range_m < chunk->best_m[i])) continue;
+        chunk->best_m[i]       = at_range_m;
+        range_m[chunk->ray[i]] = at_range_m;
+        hit[chunk->ray[i]]     = (PartHit){.node = node, .triangle = triangle};
+    }
+    p->count = 0;
+}
+
+static void packet_any_hits(uint8_t *met, Packet *p, const Chunk *chunk, bool alone)
+{
+    struct RTCRay16 rays;
+    int             valid[lanes] __attribute__((aligned(64)));
+    if (p->count == 0) return;
+    packet_narrow(&rays, valid, p);
+    if (alone) {
+        for (int l = 0; l < p->count; l++) {
+            struct RTCRayHit one = single(&rays, l);
+            rtcOccluded1(p->mesh->scene, &p->base, &one.ray);
+        }
+    } else {
+        rtcOccluded16(valid, p->mesh->scene, &p->base, &rays);
+    }
+    for (int l = 0; l < p->count; l++) met[chunk->ray[p->ray[l]]] |= p->nearest_m[l] < INFINITY;
+    p->count = 0;
+}
+
+/* ---- a block's rays ------------------------------------------------------------------------------ */
+
+/* Lanes without a ray go where the last one goes. */
+static void fill_up(Chunk *chunk)
+{
+    for (int i = chunk->count; i % 4; i++) {
+        for (int c = 0; c < 3; c++) {
+            chunk->o[c][i] = chunk->o[c][chunk->count - 1];
+            chunk->d[c][i] = chunk->d[c][chunk->count - 1];
+        }
+        chunk->best_m[i] = 0;
+    }
+}
+
+/* Those of the list that may meet the entity's box ahead: one look that spares most rays a look at every node. */
+static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *const o[3], const double *const d[3],
+                       const double *far_m, const int *list, int count, bool ask_all)
+{
+    for (int i = 0; i < count; i++) {
+        const int k = list[i];
+        for (int c = 0; c < 3; c++) {
+            chunk->o[c][i] = o[c][k];
+            chunk->d[c][i] = d[c][k];
+        }
+        chunk->best_m[i] = far_m[k];
+        chunk->ray[i]    = k;
+    }
+    chunk->count = count;
+    fill_up(chunk);
+    if (ask_all) return;
+    const Vector low = set3(entity->box_low), high = set3(entity->box_high);
+    int          kept = 0;
+    for (int i = 0; i < count; i += 4) {
+        const Vector at = load3(chunk->o[0] + i, chunk->o[1] + i, chunk->o[2] + i);
+        const Vector from = turned_back(entity->r_enu_from_body, sub(at, set3(entity->p_enu)));
+        const Vector way = load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i);
+        const Vector along = turned_back(entity->r_enu_from_body, way);
+        Four         in = set(0), out = set(INFINITY);
+        through_slab(&in, &out, low.x - from.x, high.x - from.x, along.x);
+        through_slab(&in, &out, low.y - from.y, high.y - from.y, along.y);
+        through_slab(&in, &out, low.z - from.z, high.z - from.z, along.z);
+        const unsigned meets = bits(both(at_most(in, out), less(in, load(chunk->best_m + i))));
+        for (int j = i; j < i + 4 && j < count && meets; j++) {
+            if (!(meets >> (j - i) & 1)) continue;
+            for (int c = 0; c < 3; c++) {
+                chunk->o[c][kept] = chunk->o[c][j];
+                chunk->d[c][kept] = chunk->d[c][j];
+            }
+            chunk->best_m[kept] = chunk->best_m[j];
+            chunk->ray[kept++]  = chunk->ray[j];
+        }
+    }
+    chunk->count = kept;
+    if (kept > 0) fill_up(chunk);
+}
+
+static uint64_t first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o[3],
+                       const double *const d[3], const double *far_m, const int *list, int count, bool ask_all, bool alone)
+{
+    Chunk    chunk;
+    NodeRays rays;
+    Packet   packet;
+    uint64_t asked = 0;
+    for (int first = 0; first < count; first += chunk_rays) {
+        take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
+                   ask_all);
+        if (chunk.count == 0) continue;
+        const Bundle bundle = ask_all || entity->node_count == 1 ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        for (int k = 0; k < entity->node_count; k++) {
+            const PosedNode *node = &entity->node[k];
+            if (!bundle_may_meet(&bundle, node)) continue;
+            to_node(&rays, &chunk, node, ask_all);
+            packet_open(&packet, node->mesh);
+            for (int i = 0; i < chunk.count; i++) {
+                if (!(rays.meets[i / 4] >> i % 4 & 1)) continue;
+                packet_add(&packet, &rays, i, chunk.best_m[i]);
+                asked++;
+                if (packet.count == lanes) packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
+            }
+            packet_first_hits(range_m, hit, &packet, &chunk, k, alone);
+        }
+    }
+    return asked;
+}
+
+static uint64_t any_hits(uint8_t *met, const PosedEntity *entity, const double *const o[3], const double *const d[3],
+                     const double *far_m, const int *list, int count, bool ask_all, bool alone)
+{
+    Chunk    chunk;
+    NodeRays rays;
+    Packet   packet;
+    uint64_t asked = 0;
+    for (int first = 0; first < count; first += chunk_rays) {
+        take_chunk(&chunk, entity, o, d, far_m, list + first, count - first < chunk_rays ? count - first : chunk_rays,
+                   ask_all);
+        if (chunk.count == 0) continue;
+        const Bundle bundle = ask_all || entity->node_count == 1 ? (Bundle){.cosine = 0} : bundle_of(&chunk);
+        for (int k = 0; k < entity->node_count; k++) {
+            const PosedNode *node = &entity->node[k];
+            if (!bundle_may_meet(&bundle, node)) continue;
+            to_node(&rays, &chunk, node, ask_all);
+            packet_open(&packet, node->mesh);
+            for (int i = 0; i < chunk.count; i++) {
+                if (!(rays.meets[i / 4] >> i % 4 & 1) || (met[chunk.ray[i]] && !ask_all)) continue;
+                packet_add(&packet, &rays, i, chunk.best_m[i]);
+                asked++;
+                if (packet.count == lanes) packet_any_hits(met, &packet, &chunk, alone);
+            }
+            packet_any_hits(met, &packet, &chunk, alone);
+        }
+    }
+    return asked;
+}
+
+uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
+                      const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all)
+{
+    return first_hits(range_m, hit, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
+}
+
+uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
+                    const double *far_m, const int *list, int count, bool ask_all)
+{
+    return any_hits(met, entity, o_enu, d_enu, far_m, list, count, ask_all, false);
+}
+
+double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],
+                       double far_m, bool ask_all)
+{
+    const double *const o[3] = {&o_enu[0], &o_enu[1], &o_enu[2]}, *const d[3] = {&d_enu[0], &d_enu[1], &d_enu[2]};
+    const int           list[1] = {0};
+    double              range_m = INFINITY;
+    first_hits(&range_m, hit, entity, o, d, &far_m, list, 1, ask_all, true);
+    return range_m;
+}
+
+bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all)
+{
+    const double *const o[3] = {&o_enu[0], &o_enu[1], &o_enu[2]}, *const d[3] = {&d_enu[0], &d_enu[1], &d_enu[2]};
+    const double        far_m = INFINITY;
+    const int           list[1] = {0};
+    uint8_t             met = 0;
+    any_hits(&met, entity, o, d, &far_m, list, 1, ask_all, true);
+    return met != 0;
+}
+
+/* ---- what was met -------------------------------------------------------------------------------- */
+
+void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit)
+{
+    const PosedNode *node  = &entity->node[hit->node];
+    const uint32_t  *index = model->triangle[hit->triangle];
+    const float     *normal[3] = {model->normal[index[0]], model->normal[index[1]], model->normal[index[2]]};
+    double           shading[3];
+    facet->node     = node;
+    facet->triangle = hit->triangle;
+    v3_scale(facet->corner, 1, model->vertex[index[0]]);
+    v3_sub(facet->ab, model->vertex[index[1]], facet->corner);
+    v3_sub(facet->ac, model->vertex[index[2]], facet->corner);
+    v3_cross(facet->n, facet->ab, facet->ac);
+    facet->area2 = v3_dot(facet->n, facet->n);
+    m3_mul_v3(facet->geo_enu, node->r_enu_from_node, facet->n);
+    if (!v3_normalize(facet->geo_enu, facet->geo_enu)) memset(facet->geo_enu, 0, sizeof facet->geo_enu);
+    for (int c = 0; c < 3; c++) shading[c] = normal[0][c];
+    m3_mul_v3(facet->even_enu, node->r_enu_from_node, shading);
+    facet->even = v3_normalize(facet->even_enu, facet->even_enu);
+    for (int c = 0; c < 3; c++) facet->even &= normal[0][c] == normal[1][c] && normal[0][c] == normal[2][c];
+}
+
+/* Shading normal at a place of the facet. False: none. */
+static bool interpolate(double n_enu[3], const Model *model, const PosedFacet *facet, const double o_enu[3],
+                        const double d_enu[3], double range_m)
+{
+    const PosedNode *node  = facet->node;
+    const uint32_t  *index = model->triangle[facet->triangle];
+    double           at_enu[3], at[3], w[3], cross[3], shading[3] = {0, 0, 0};
+    /* barycentric weights of the place on the plane; just outside the triangle they are held to it */
+    for (int c = 0; c < 3; c++) at_enu[c] = o_enu[c] + range_m * d_enu[c] - node->p_enu[c];
+    m3_tmul_v3(at, node->r_enu_from_node, at_enu);
+    v3_sub(at, at, facet->corner);
+    v3_cross(cross, at, facet->ac);
+    w[1] = clamp(v3_dot(cross, facet->n) / facet->area2, 0, 1);
+    v3_cross(cross, facet->ab, at);
+    w[2] = clamp(v3_dot(cross, facet->n) / facet->area2, 0, 1);
+    w[0] = larger(0, 1 - w[1] - w[2]);
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 3; c++) shading[c] += w[k] * model->normal[index[k]][c];
+    m3_mul_v3(n_enu, node->r_enu_from_node, shading);
+    return v3_normalize(n_enu, n_enu);
+}
+
+void parts_facet_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedFacet *facet,
+                         const double o_enu[3], const double d_enu[3], double range_m)
+{
+    const bool some = facet->geo_enu[0] != 0 || facet->geo_enu[1] != 0 || facet->geo_enu[2] != 0;
+    v3_scale(n_geo, some ? 1 : -1, some ? facet->geo_enu : d_enu);
+    if (facet->even) v3_scale(n_enu, 1, facet->even_enu);
+    else if (!interpolate(n_enu, model, facet, o_enu, d_enu, range_m)) v3_scale(n_enu, 1, n_geo);
+    if (v3_dot(n_geo, d_enu) > 0) {
+        v3_scale(n_geo, -1, n_geo);
+        v3_scale(n_enu, -1, n_enu);
+    }
+}
+
+void parts_normals(double n_geo[3], double n_enu[3], const Model *model, const PosedEntity *entity, const PartHit *hit,
+                   const double o_enu[3], const double d_enu[3], double range_m)
+{
+    PosedFacet facet;
+    parts_facet(&facet, model, entity, hit);
+    parts_facet_normals(n_geo, n_enu, model, &facet, o_enu, d_enu, range_m);
+}

@@ -1,0 +1,604 @@
+#include "render/scene/visibility.h"
+
+#include "render/ground/ground.h"
+#include "render/parts/parts.h"
+
+struct Visibility {
+    const Tracer    *tracer;
+    const Landscape *landscape;
+    Ground           ground;
+    unsigned         skips_off;
+    int              count, drawable;
+    PosedEntity     *entity; /* [count], as in the snapshot */
+    int             *in_view; /* those that blocks within the image of visibility_look may see; NULL: not asked */
+    int              in_view_count;
+    double           in_view_columns, in_view_rows;
+};
+
+Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
+                         const Snapshot *snapshot, unsigned skips_off, Arena *arena)
+{
+    const int   count = snapshot->count;
+    Visibility *v = arena_alloc(arena, 1, sizeof *v);
+    if (!v) return STATUS_NO_MEMORY;
+    *v = (Visibility){.tracer = tracer, .landscape = ground, .skips_off = skips_off, .count = count};
+    ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
+    v->entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->entity);
+    if (!v->entity) return STATUS_NO_MEMORY;
+
+    for (int k = 0; k < count; k++) {
+        const SnapshotEntity *e = &snapshot->entity[k];
+        PosedEntity          *posed = &v->entity[k];
+        double                p_enu[3], r_enu_from_body[9];
+        posed->model  = -1;
+        posed->damage = 0;
+        if (e->model < 0 || e->model >= tracer_model_count(tracer)) continue;
+        if (tracer_need(tracer, e->model) != STATUS_OK) return STATUS_NO_MEMORY;
+        posed->node = arena_alloc(arena, (size_t)parts_node_count(tracer, e->model) + 1, sizeof *posed->node);
+        if (!posed->node) return STATUS_NO_MEMORY;
+        enu_from_ecef(p_enu, frame, e->p_ecef);
+        m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
+        parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body,
+                   snapshot_damage(e));
+        v->drawable += posed->model >= 0;
+    }
+    *out = v;
+    return STATUS_OK;
+}
+
+int visibility_count(const Visibility *v) { return v->count; }
+const PosedEntity *visibility_posed(const Visibility *v, int index) { return &v->entity[index]; }
+
+int visibility_damage(const Visibility *v, int index) { return v->entity[index].damage; }
+
+/* ---- which entities a block may see ------------------------------------------------------- */
+
+/* Of among[count] (NULL: the first count), those whose bounding sphere meets the block's pyramid; all without SKIP_BLOCK. */
+static int spheres_in_block(int *list, const Visibility *v, const View *view, const int *among, int among_count,
+                            const double box_px[4], int hidden)
+{
+    /* tangents of the block's four sides, and what turns an offset from a side into a distance */
+    double tangent[4];
+    view_box_tangents(tangent, view, box_px);
+    const double left = tangent[0], top = tangent[1], right = tangent[2], bottom = tangent[3];
+    const double per_left = 1 / sqrt(1 + left * left), per_right = 1 / sqrt(1 + right * right);
+    const double per_top = 1 / sqrt(1 + top * top), per_bottom = 1 / sqrt(1 + bottom * bottom);
+    int          count = 0;
+    for (int i = 0; i < among_count; i++) {
+        const int k = among ? among[i] : i;
+        if (k == hidden || v->entity[k].model < 0) continue;
+        if (skips(v->skips_off, SKIP_BLOCK)) {
+            double from_eye[3], c_cam[3];
+            v3_sub(from_eye, v->entity[k].centre_enu, view->p_enu);
+            m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
+            /* room for rounding, a thousand times what it can be */
+            const double r = v->entity[k].radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
+            if (c_cam[2] < -r || (c_cam[0] - left * c_cam[2]) * per_left < -r ||
+                (right * c_cam[2] - c_cam[0]) * per_right < -r || (c_cam[1] - top * c_cam[2]) * per_top < -r ||
+                (bottom * c_cam[2] - c_cam[1]) * per_bottom < -r)
+                continue;
+        }
+        list[count++] = k;
+    }
+    return count;
+}
+
+Status visibility_look(Visibility *v, const View *view, Arena *arena)
+{
+    const double image_px[4] = {0, 0, view->width, view->height};
+    v->in_view = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->in_view);
+    if (!v->in_view) return STATUS_NO_MEMORY;
+    v->in_view_count   = spheres_in_block(v->in_view, v, view, NULL, v->count, image_px, -1);
+    v->in_view_columns = view->width;
+    v->in_view_rows    = view->height;
+    return STATUS_OK;
+}
+
+int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters)
+{
+    /* what lies beyond a side of the image is met by no ray of a block within the image */
+    const bool within = v->in_view && column0_px >= 0 && row0_px >= 0 && column1_px <= v->in_view_columns &&
+                        row1_px <= v->in_view_rows;
+    const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
+    const int listed = spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px,
+                                        hidden);
+    const int hides = hidden >= 0 && v->entity[hidden].model >= 0;
+    counters->skipped[SKIP_BLOCK] += (uint64_t)(v->drawable - hides - listed);
+    return listed;
+}
+
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
+ * out: nothing here to branch on. */
+static void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+                             const double *limit_m, const double centre[3], double radius_m)
+{
+    const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
+    for (int i = 0; i < count; i++) {
+        const double mx = centre[0] - ox[i], my = centre[1] - oy[i], mz = centre[2] - oz[i];
+        const double along = mx * dx[i] + my * dy[i] + mz * dz[i];
+        const double cx = mx - along * dx[i], cy = my - along * dy[i], cz = mz - along * dz[i];
+        const double left = radius_m * radius_m - (cx * cx + cy * cy + cz * cz);
+        const double half = sqrt(left > 0 ? left : 0);
+        meets[i] = (left > 0) & (along + half > 0) & (along - half < limit_m[i]);
+    }
+}
+
+/* Rays of a picture's rows in squares of 4 x 4, which go through a tracer together; others as they are. */
+static void order_rays(int order[hits_capacity], int count, int columns)
+{
+    const bool squares = columns > 1 && columns <= count && count % columns == 0;
+    const int  width = squares ? columns : count, height = squares ? count / columns : 1;
+    int        at = 0;
+    for (int y0 = 0; y0 < height; y0 += 4)
+        for (int x0 = 0; x0 < width; x0 += 4)
+            for (int y = y0; y < y0 + 4 && y < height; y++)
+                for (int x = x0; x < x0 + 4 && x < width; x++) order[at++] = y * width + x;
+}
+
+/* Which of them are to be asked, in that order. */
+static int list_asked(int list[hits_capacity], const int order[hits_capacity], const uint8_t *ask, int count)
+{
+    int listed = 0;
+    for (int k = 0; k < count; k++) {
+        list[listed] = order[k];
+        listed += ask[order[k]] != 0;
+    }
+    return listed;
+}
+
+/* The shading normal leans with the curved surface that the facets stand for; where it leans away from the
+ * ray it is brought back to edge-on. */
+static void store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
+{
+    double       n[3] = {n_enu[0], n_enu[1], n_enu[2]};
+    const double away = v3_dot(n, d_enu);
+    if (away > 0) {
+        v3_add_scaled(n, n, -away, d_enu);
+        if (!v3_normalize(n, n)) v3_scale(n, 1, n_geo);
+    }
+    for (int c = 0; c < 3; c++) {
+        hits->n_geo[c][i] = (float)n_geo[c];
+        hits->n_enu[c][i] = (float)n[c];
+    }
+}
+
+static void clear_hit(Hits *hits, int i)
+{
+    for (int c = 0; c < 3; c++) {
+        hits->p_enu[c][i] = 0;
+        hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
+    }
+    hits->entity[i]  = 0;
+    hits->part[i]    = 0;
+    hits->model[i]   = 0;
+    hits->inside[i]  = 0;
+    hits->surface[i] = 0;
+}
+
+static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const GroundHit *hit, const double d[3])
+{
+    const double x_m = hits->p_enu[0][i], y_m = hits->p_enu[1][i];
+    double       n_geo[3], n_enu[3];
+    ground_normals(n_geo, n_enu, &v->ground, hit, x_m, y_m);
+    if (v3_dot(n_geo, d) > 0) { /* stopped inside the solid ground */
+        v3_scale(n_geo, -1, n_geo);
+        v3_scale(n_enu, -1, n_enu);
+    }
+    store_normals(hits, i, n_geo, n_enu, d);
+}
+
+static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
+                              PosedFacet *facet, const double o[3], const double d[3])
+{
+    const PosedEntity *posed = &v->entity[entity];
+    const Model       *model = tracer_model(v->tracer, posed->model);
+    double             n_geo[3], n_enu[3];
+    if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
+    parts_facet_normals(n_geo, n_enu, model, facet, o, d, hits->range_m[i]);
+    store_normals(hits, i, n_geo, n_enu, d);
+    hits->entity[i] = (uint32_t)entity + 1;
+    hits->model[i]  = (uint16_t)posed->model;
+    hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
+    hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+}
+
+/* What the ground is where it was met. */
+static void classify_ground(Hits *hits, const Landscape *landscape)
+{
+    double x_m[hits_capacity], y_m[hits_capacity];
+    for (int i = 0; i < hits->count; i++) {
+        const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0;
+        x_m[i] = ground ? hits->p_enu[0][i] : NAN;
+        y_m[i] = ground ? hits->p_enu[1][i] : NAN;
+    }
+    landscape_surfaces(hits->surface, landscape, hits->count, x_m, y_m);
+}
+
+static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
+                        const double *const d[3], const double *far_m, VisibilityCounters *counters)
+{
+    if (skips(v->skips_off, SKIP_GROUND_WALK)) {
+        ground_first_hits_together(range_m, hit, &v->ground, count, o, d, far_m);
+        counters->skipped[SKIP_GROUND_WALK] += (uint64_t)count;
+    } else {
+        ground_first_hits(range_m, hit, &v->ground, count, o, d, far_m);
+    }
+}
+
+enum { clear_rays = 128 }; /* that are looked at together */
+
+static void grow_box(double box[2][3], const double p[3])
+{
+    for (int c = 0; c < 3; c++) {
+        box[0][c] = p[c] < box[0][c] ? p[c] : box[0][c];
+        box[1][c] = p[c] > box[1][c] ? p[c] : box[1][c];
+    }
+}
+
+/* Whether every ray meets an entity, and all of the ground lies below all of them until there. */
+static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int count, const double *const o[3],
+                              const double *const d[3], const double *until_m)
+{
+    for (int i = 0; i < count; i++)
+        if (!entity[i]) return false;
+    for (int first = 0; first < count; first += clear_rays) {
+        const int end = first + clear_rays < count ? first + clear_rays : count;
+        double    start[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}}, met[2][3];
+        memcpy(met, start, sizeof met);
+        for (int i = first; i < end; i++) {
+            const double p[3] = {o[0][i], o[1][i], o[2][i]}, way[3] = {d[0][i], d[1][i], d[2][i]};
+            double       at[3];
+            v3_add_scaled(at, p, until_m[i], way);
+            grow_box(start, p);
+            grow_box(met, at);
+        }
+        if (!ground_is_clear(&v->ground, met, start)) return false;
+    }
+    return true;
+}
+
+static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                      bool ground, VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const int           count = rays->count;
+    GroundHit           ground_hit[hits_capacity];
+    PartHit             part_hit[hits_capacity];
+    double              limit_m[hits_capacity]; /* of what may still be nearer */
+    double              nearer_m[hits_capacity], *until_m = nearer_m;
+    int                 order[hits_capacity], asked_ray[hits_capacity];
+    uint8_t             ask[hits_capacity];
+
+    hits->count   = count;
+    hits->columns = rays->columns;
+    memcpy(limit_m, rays->far_m, (size_t)count * sizeof *limit_m);
+    memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
+    const int asked_count = list_count < 0 ? v->count : list_count;
+    uint64_t  offered = 0, asked = 0, drawable = 0;
+    for (int k = 0; k < v->count; k++) drawable += k != hidden && v->entity[k].model >= 0;
+    bool ordered = false;
+    for (int k = 0; k < asked_count; k++) {
+        const int          index = list_count < 0 ? k : list[k];
+        const PosedEntity *entity = &v->entity[index];
+        if (index == hidden || entity->model < 0) continue;
+        if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
+        else memset(ask, 1, sizeof ask);
+        if (!ordered) order_rays(order, count, rays->columns);
+        ordered = true;
+        const int listed = list_asked(asked_ray, order, ask, count);
+        offered += (uint64_t)count;
+        if (listed == 0) continue;
+        asked += (uint64_t)listed;
+        for (int n = 0; n < listed; n++) nearer_m[asked_ray[n]] = INFINITY;
+        counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                        parts_first_hits(nearer_m, part_hit, entity, o, d, limit_m, asked_ray, listed,
+                                                         !skips(v->skips_off, SKIP_PART));
+        for (int n = 0; n < listed; n++) {
+            const int i = asked_ray[n];
+            if (!(nearer_m[i] < INFINITY)) continue;
+            limit_m[i]      = nearer_m[i];
+            hits->entity[i] = (uint32_t)index + 1;
+        }
+    }
+    /* the ground comes first where it is as near: it is asked just past whom the ray met */
+    const bool behind = skips(v->skips_off, SKIP_GROUND_BEHIND);
+    for (int i = 0; i < count; i++) {
+        until_m[i] = hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
+        counters->skipped[SKIP_GROUND_BEHIND] += behind && hits->entity[i];
+    }
+    if (!ground) {
+        for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
+    } else if (skips(v->skips_off, SKIP_GROUND_BELOW) && ground_lies_below(v, hits->entity, count, o, d, until_m)) {
+        for (int i = 0; i < count; i++) hits->range_m[i] = INFINITY;
+        counters->skipped[SKIP_GROUND_BELOW] += (uint64_t)count;
+    } else {
+        ground_hits(hits->range_m, ground_hit, v, count, o, d, behind ? until_m : rays->far_m, counters);
+    }
+    for (int i = 0; i < count; i++) {
+        if (!hits->entity[i]) continue;
+        if (hits->range_m[i] <= limit_m[i]) hits->entity[i] = 0;
+        else hits->range_m[i] = limit_m[i];
+    }
+    if (ground) counters->rays_ground += (uint64_t)count;
+    counters->rays_parts += asked;
+    counters->skipped_parts += drawable * (uint64_t)count - asked;
+    counters->skipped[SKIP_SPHERE] += offered - asked;
+
+    PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
+    for (int i = 0; i < count; i++) {
+        const uint32_t entity = hits->entity[i];
+        clear_hit(hits, i);
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double o_enu[3] = {o[0][i], o[1][i], o[2][i]}, d_enu[3] = {d[0][i], d[1][i], d[2][i]};
+        for (int c = 0; c < 3; c++) hits->p_enu[c][i] = o_enu[c] + hits->range_m[i] * d_enu[c];
+        if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
+        else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
+    }
+    if (v->landscape) classify_ground(hits, v->landscape);
+}
+
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
+                          VisibilityCounters *counters)
+{
+    first_hit(hits, v, rays, list, list_count, hidden, true, counters);
+}
+
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                           VisibilityCounters *counters)
+{
+    first_hit(hits, v, rays, list, list_count, -1, false, counters);
+}
+
+/* ---- shadows ------------------------------------------------------------------------------ */
+
+/* A sphere round the origins of a block's sun rays. */
+static double bound_points(double centre[3], int count, const double *const p[3])
+{
+    double square = 0;
+    for (int c = 0; c < 3; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int i = 0; i < count; i++) {
+            low  = p[c][i] < low ? p[c][i] : low;
+            high = p[c][i] > high ? p[c][i] : high;
+        }
+        centre[c] = 0.5 * (low + high);
+        square += 0.25 * (high - low) * (high - low);
+    }
+    return sqrt(square) * (1 + 1e-9) + 1e-6;
+}
+
+/* Whether a ray along d from within a sphere can meet another. */
+static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3], double radius_m, const double d[3])
+{
+    double       m[3], across[3];
+    const double reach_m = radius_m + entity->radius_m;
+    v3_sub(m, entity->centre_enu, centre);
+    const double along = v3_dot(m, d);
+    v3_add_scaled(across, m, -along, d);
+    return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
+}
+
+/* ask: of sun rays from places close together, those that the ground might stop. */
+static void leave_out_clear(uint8_t *ask, const Visibility *v, int count, const double *const o[3], const uint8_t *dark,
+                            const double d_enu[3])
+{
+    for (int first = 0; first < count; first += clear_rays) {
+        const int end = first + clear_rays < count ? first + clear_rays : count;
+        double    box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+        bool      any = false;
+        for (int i = first; i < end; i++) {
+            const double p[3] = {o[0][i], o[1][i], o[2][i]};
+            if (dark[i]) continue;
+            grow_box(box, p);
+            any = true;
+        }
+        memset(ask + first, any && !ground_is_clear_towards(&v->ground, box, d_enu), (size_t)(end - first));
+    }
+}
+
+void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
+                       VisibilityCounters *counters)
+{
+    static const double offset_m = 1e-3; /* no self-hits at any range tried, and hidden in any pixel */
+    double  start[3][hits_capacity], towards[3][hits_capacity], far_m[hits_capacity], range_m[hits_capacity];
+    int     hit_of[hits_capacity], order[hits_capacity], in_turn[hits_capacity], list[hits_capacity], count = 0;
+    uint8_t dark[hits_capacity], ask[hits_capacity];
+
+    /* the lit candidates, close together: neither sky nor turned away */
+    order_rays(order, hits->count, hits->columns);
+    for (int k = 0; k < hits->count; k++) {
+        const int i = order[k];
+        shadow[i] = 0;
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+        if (!(v3_dot(n, d_enu) > 0)) {
+            shadow[i] = 1;
+            continue;
+        }
+        for (int c = 0; c < 3; c++) {
+            start[c][count]   = hits->p_enu[c][i] + offset_m * n[c];
+            towards[c][count] = d_enu[c];
+        }
+        far_m[count]    = INFINITY;
+        dark[count]     = 0;
+        in_turn[count]  = count;
+        hit_of[count++] = i;
+    }
+    if (count == 0) return;
+
+    const double *o[3] = {start[0], start[1], start[2]}, *d[3] = {towards[0], towards[1], towards[2]};
+    double        centre[3];
+    const double  radius_m = bound_points(centre, count, o);
+    uint64_t      asked = 0, drawable = 0;
+    for (int k = 0; k < v->count; k++) {
+        const PosedEntity *entity = &v->entity[k];
+        if (entity->model < 0) continue;
+        drawable++;
+        if (skips(v->skips_off, SKIP_SUN_SPHERE)) {
+            if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
+            rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
+            for (int i = 0; i < count; i++) ask[i] &= !dark[i];
+        } else {
+            memset(ask, 1, sizeof ask);
+        }
+        const int listed = list_asked(list, in_turn, ask, count);
+        counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                        parts_any_hits(dark, entity, o, d, far_m, list, listed,
+                                                       !skips(v->skips_off, SKIP_PART));
+        asked += (uint64_t)listed;
+    }
+    counters->rays_sun_parts += asked;
+    counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
+    counters->skipped[SKIP_SUN_SPHERE] += drawable * (uint64_t)count - asked;
+
+    /* the ground is asked only for what the parts left lit */
+    int left = 0, lit = 0;
+    if (skips(v->skips_off, SKIP_SUN_CLEAR)) leave_out_clear(ask, v, count, o, dark, d_enu);
+    else memset(ask, 1, (size_t)count);
+    for (int i = 0; i < count; i++) {
+        shadow[hit_of[i]] = dark[i];
+        const bool stopped = dark[i] && skips(v->skips_off, SKIP_SUN_STOPPED);
+        counters->skipped[SKIP_SUN_STOPPED] += stopped;
+        counters->skipped[SKIP_SUN_CLEAR] += !stopped && !ask[i];
+        lit += !stopped;
+        if (stopped || !ask[i]) continue;
+        for (int c = 0; c < 3; c++) start[c][left] = start[c][i];
+        hit_of[left++] = hit_of[i];
+    }
+    ground_hits(range_m, NULL, v, left, o, d, far_m, counters);
+    for (int i = 0; i < left; i++) shadow[hit_of[i]] |= range_m[i] < INFINITY;
+    counters->rays_sun_ground += (uint64_t)lit;
+}
+
+/* ---- one entity alone --------------------------------------------------------------------- */
+
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters)
+{
+    const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
+    const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
+    const PosedEntity  *entity = &v->entity[index];
+    if (entity->model < 0) {
+        memset(meets, 0, (size_t)rays->count);
+        return;
+    }
+    if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(meets, rays->count, o, d, rays->far_m, entity->centre_enu, entity->radius_m);
+    else memset(meets, 1, (size_t)rays->count);
+    int       order[hits_capacity], list[hits_capacity];
+    order_rays(order, rays->count, rays->columns);
+    const int listed = list_asked(list, order, meets, rays->count);
+    memset(meets, 0, (size_t)rays->count);
+    counters->skipped[SKIP_SPHERE] += (uint64_t)(rays->count - listed);
+    counters->skipped[SKIP_PART] += (uint64_t)listed * (uint64_t)entity->node_count -
+                                    parts_any_hits(meets, entity, o, d, rays->far_m, list, listed,
+                                                   !skips(v->skips_off, SKIP_PART));
+}
+
+bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
+{
+    const PosedEntity *entity = &v->entity[index];
+    double             m[3], across[3];
+    if (!skips(v->skips_off, SKIP_AMODAL)) return true;
+    if (entity->model < 0) return false;
+    v3_sub(m, entity->centre_enu, o_enu);
+    const double along = v3_dot(m, d_enu), past_m = range_m - along;
+    if (!(past_m < entity->radius_m)) return false;
+    v3_add_scaled(across, m, -along, d_enu);
+    const double left = entity->radius_m * entity->radius_m - v3_dot(across, across);
+    return left > 0 && (past_m <= 0 || past_m * past_m < left);
+}
+
+static void grow_image_box(double box_px[4], const double at_px[2])
+{
+    for (int a = 0; a < 2; a++) {
+        box_px[a]     = at_px[a] < box_px[a] ? at_px[a] : box_px[a];
+        box_px[a + 2] = at_px[a] > box_px[a + 2] ? at_px[a] : box_px[a + 2];
+    }
+}
+
+static void project_between(double at_px[2], const View *view, const double a[3], const double b[3], double t)
+{
+    const double p_cam[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
+    view_project(at_px, view, p_cam);
+}
+
+/* Through a lens an edge is bowed, and may reach beyond its ends: its extremes by samples and the parabola through the
+ * three about the farthest, good to 0.01 px of a bow of 10 px. */
+static void grow_by_bowed_edge(double box_px[4], const View *view, const double a[3], const double b[3])
+{
+    enum { parts = 16 };
+    double at_px[parts + 1][2], middle_px[2];
+    project_between(at_px[0], view, a, b, 0);
+    project_between(at_px[1], view, a, b, 1);
+    project_between(middle_px, view, a, b, 0.5);
+    bool may = false;
+    for (int c = 0; c < 2; c++) {
+        /* four times how far the middle is from between the ends: more than a smooth bow can reach */
+        const double room_px = 4 * fabs(middle_px[c] - 0.5 * (at_px[0][c] + at_px[1][c]));
+        may |= fmin(at_px[0][c], at_px[1][c]) - room_px < box_px[c] ||
+               fmax(at_px[0][c], at_px[1][c]) + room_px > box_px[c + 2];
+    }
+    if (!may) return;
+    for (int n = 0; n <= parts; n++) {
+        project_between(at_px[n], view, a, b, (double)n / parts);
+        grow_image_box(box_px, at_px[n]);
+    }
+    for (int n = 1; n < parts; n++) {
+        double top_px[2] = {at_px[n][0], at_px[n][1]};
+        for (int c = 0; c < 2; c++) {
+            const double before = at_px[n - 1][c] - at_px[n][c], after = at_px[n + 1][c] - at_px[n][c],
+                         bend = before + after;
+            if (before * after > 0) top_px[c] -= (after - before) * (after - before) / (8 * bend);
+        }
+        grow_image_box(box_px, top_px);
+    }
+}
+
+static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, const View *view)
+{
+    for (int k = 0; k < entity->node_count; k++) {
+        const PosedNode *node = &entity->node[k];
+        const double   (*triangle)[3];
+        double           r_cam_from_node[9], from_eye[3], p_cam[3], corner[3][3];
+        m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
+        v3_sub(from_eye, node->p_enu, view->p_enu);
+        m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
+        for (int n = 0; (triangle = parts_node_triangle(node, n)); n++) {
+            for (int c = 0; c < 3; c++) {
+                m3_mul_v3(corner[c], r_cam_from_node, triangle[c]);
+                v3_add(corner[c], corner[c], p_cam);
+            }
+            for (int c = 0; c < 3; c++) grow_by_bowed_edge(box_px, view, corner[c], corner[(c + 1) % 3]);
+        }
+    }
+}
+
+bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
+{
+    const PosedEntity *entity = &v->entity[index];
+    double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
+    if (entity->model < 0) return false;
+    for (int k = 0; k < entity->node_count; k++) {
+        const PosedNode *node = &entity->node[k];
+        int              count;
+        const double   (*corner)[3] = parts_node_corners(node, &count);
+        double           r_cam_from_node[9], from_eye[3], p_cam[3];
+        m3_tmul(r_cam_from_node, view->r_enu_from_cam, node->r_enu_from_node);
+        v3_sub(from_eye, node->p_enu, view->p_enu);
+        m3_tmul_v3(p_cam, view->r_enu_from_cam, from_eye);
+        for (int c = 0; c < count; c++) {
+            double at[3];
+            m3_mul_v3(at, r_cam_from_node, corner[c]);
+            v3_add(at, at, p_cam);
+            if (!(at[2] > 0)) return false;
+            double image_px[2];
+            view_project(image_px, view, at);
+            grow_image_box(box, image_px);
+        }
+    }
+    if (view_has_lens(view)) grow_by_bowed_edges(box, entity, view);
+    memcpy(box_px, box, sizeof box);
+    return true;
+}

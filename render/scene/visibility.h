@@ -1,0 +1,86 @@
+/* render/scene/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
+ * parts; nobody else knows how they are traced.
+ *
+ * The ground is our own height field, in double, scalar and eight wide with the same bits. Each moving part is
+ * traced in its own node's frame: the ray is taken there in double, advanced to the node's bounding sphere,
+ * narrowed once, and given to Embree, which only nominates triangles; who is met, range and normal are found in
+ * double. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
+ * entity's triangles, within 0.1 mm, to the lowest. */
+#ifndef RENDER_SCENE_VISIBILITY_H
+#define RENDER_SCENE_VISIBILITY_H
+
+#include "entities/models/catalog.h"
+#include "entities/table/snapshot.h"
+#include "render/scene/hits.h"
+#include "render/scene/skip.h"
+#include "render/scene/view.h"
+#include "terrain/elevation/elevation.h"
+#include "terrain/landscape/landscape.h"
+#include "terrain/earth/local_frame.h"
+
+/* Lives across frames: the Embree device, the geometry of every model. */
+typedef struct Tracer Tracer;
+
+/* isa: NULL or "" leaves the choice to Embree; else "avx512", "avx2", "sse4.2" (passed as its isa setting). */
+Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
+void   tracer_destroy(Tracer *tracer);
+
+/* One frame's world, posed. Posing costs transforms only; nothing is committed or kept between frames, so any
+ * number of them may be alive and traced at once. */
+typedef struct Visibility Visibility;
+
+typedef struct VisibilityCounters {
+    uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* asked of each tracer */
+    uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
+    uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
+} VisibilityCounters;
+
+/* ground may be NULL (none). The arena owns what the frame needs. skips_off: 1 << Skip. */
+Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
+                         const Snapshot *snapshot, unsigned skips_off, Arena *arena);
+
+/* Entities of the snapshot, and each as it stands; its model is -1 where it cannot be drawn (render/parts/parts.h). */
+struct PosedEntity;
+int visibility_count(const Visibility *v);
+const struct PosedEntity *visibility_posed(const Visibility *v, int index);
+
+/* How damaged an entity is shown: snapshot_damage. */
+int visibility_damage(const Visibility *v, int index);
+
+/* Once a frame, before visibility_block_entities is asked about blocks of this view by threads: who is in the image at
+ * all. Without, or for blocks beyond the image, everybody is asked: longer lists, by some that no ray of the image
+ * meets. */
+Status visibility_look(Visibility *v, const View *view, Arena *arena);
+
+/* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
+ * without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
+int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
+                              double column1_px, double row1_px, int hidden,
+                              VisibilityCounters *counters);
+
+/* First hits of a block against the ground and the listed entities. A list of count -1 means every entity
+ * but `hidden`, culled per ray. Thread-safe; counters are the caller's own. */
+void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                          int hidden, VisibilityCounters *counters);
+
+/* The same as if there were no ground. */
+void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
+                           VisibilityCounters *counters);
+
+/* 1 where something (anybody, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
+ * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
+void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
+                       VisibilityCounters *counters);
+
+/* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
+void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
+
+/* Whether any of entity `index` may lie farther along a ray than the first hit there, at range_m, which was looked for
+ * with it: else it is not in the ray's way at all. True without SKIP_AMODAL. */
+bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
+
+/* Bounding box of an entity on the image (of its vertices; through a lens, which bows them, of its edges), clipped to
+ * nothing: x0, y0, x1, y1 in px. False when any of its box is behind the eye. */
+bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index);
+
+#endif

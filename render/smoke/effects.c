@@ -1,0 +1,185 @@
+/* render/smoke/effects.c: the light of a puff: its own by Planck, the sun's and the surroundings' by its albedo.
+ *
+ * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean of what arrives. The sun arrives with a
+ * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in veil_orders orders, each
+ * with half the share, half the asymmetry and half the depth of the one before (Wrenninge, Kulla, Lundqvist 2013): an
+ * approximation for pictures, that leaves a thick white cloud lit from behind the eye at a reflectance of about 0.4. */
+#include "render/smoke/effects.h"
+
+#include <stdlib.h>
+
+_Static_assert((int)effect_band_count == (int)veil_bands, "a volume's bands are the effects'");
+_Static_assert((int)effect_band_count == (int)AIR_BAND_COUNT && (int)effect_band_pan == (int)AIR_PAN &&
+               (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
+               "effects, air and materials have their bands in one order");
+
+static double phase_per_sr(double asymmetry, double cosine)
+{
+    const double g2 = asymmetry * asymmetry, base = 1 + g2 - 2 * asymmetry * cosine;
+    return (1 - g2) / (4 * pi_rad * base * sqrt(base));
+}
+
+/* Below 500 K nothing shows to 1.1 um: under 2e-5 W/(m2 sr). */
+static double glow_w_m2_sr(int band, double temp_k)
+{
+    if (band < effect_band_mwir && temp_k < 500) return 0;
+    double low_m, high_m;
+    air_band_edges(&low_m, &high_m, (AirBand)band);
+    return planck_band(low_m, high_m, temp_k, NULL);
+}
+
+typedef struct Placed {
+    VeilVolume       volume;
+    const EffectLaw *law;
+    double           d_eye_enu[3], temp_k; /* from the eye to its centre */
+    uint32_t         group;
+    int              index; /* in the snapshot: decides between equals */
+} Placed;
+
+/* Source terms of one volume in one band. i: its path among the veils. */
+static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const Veils *veils, int i)
+{
+    VeilVolume  *v = &p->volume;
+    const bool   optical = band < effect_band_mwir;
+    const double albedo = p->law->albedo[band], sun_w_m2 = air->sun_w_m2[band];
+    /* mean radiances from above and below: thermal ground shines by itself, ground in daylight by what falls on it */
+    const double above = air->sky_w_m2[band] / pi_rad;
+    const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->sun_d_enu[2], 0) / pi_rad + above)
+                                 : air->ground_w_m2_sr[band];
+    const double lit = veils->air_transmittance[i] * albedo * 0.5;
+    v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
+                      veils->transmittance[i] * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
+    v->from_top[band] = lit * (above - below);
+
+    const double cosine = v3_dot(p->d_eye_enu, air->sun_d_enu); /* forward: the sun behind the puff */
+    double       share = veils->sun_transmittance[i] * albedo * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
+    for (int order = 0; order < veil_orders; order++) {
+        v->sun[band][order] = share * phase_per_sr(asymmetry, cosine);
+        share *= 0.5;
+        asymmetry *= 0.5;
+    }
+}
+
+/* The paths from the eye to all centres, as many at a time as a block holds. */
+static Status light_volumes(Placed *placed, int count, const View *view, const Air *air, const float *ground_rho,
+                            unsigned bands, Arena *arena)
+{
+    Rays  *rays = arena_alloc(arena, 1, sizeof *rays);
+    Hits  *hits = arena_alloc(arena, 1, sizeof *hits);
+    Veils *veils = arena_alloc(arena, 1, sizeof *veils);
+    float  temp_k[hits_capacity];
+    if (!rays || !hits || !veils) return STATUS_NO_MEMORY;
+    for (int first = 0; first < count; first += hits_capacity) {
+        Placed *some = placed + first;
+        hits->count = rays->count = count - first < hits_capacity ? count - first : hits_capacity;
+        for (int i = 0; i < rays->count; i++) {
+            for (int k = 0; k < 3; k++) {
+                rays->o_enu[k][i] = view->p_enu[k];
+                rays->d_enu[k][i] = some[i].d_eye_enu[k];
+                hits->p_enu[k][i] = some[i].volume.p_enu[k];
+            }
+            hits->range_m[i] = some[i].volume.range_m;
+            temp_k[i]        = (float)some[i].temp_k;
+        }
+        for (int b = 0; b < effect_band_count; b++) {
+            if (!(bands >> b & 1)) continue;
+            air_veils(veils, air, (AirBand)b, hits, rays, b < effect_band_mwir ? NULL : temp_k);
+            for (int i = 0; i < rays->count; i++) light_volume(&some[i], b, air, ground_rho, veils, i);
+        }
+    }
+    return STATUS_OK;
+}
+
+/* ---- order -------------------------------------------------------------------------------- */
+
+static int by_group(const void *a, const void *b)
+{
+    const Placed *p = a, *q = b;
+    if (p->group != q->group) return p->group < q->group ? -1 : 1;
+    return (p->index > q->index) - (p->index < q->index);
+}
+
+static int by_range(const void *a, const void *b)
+{
+    const Placed *p = a, *q = b;
+    if (p->volume.range_m != q->volume.range_m) return p->volume.range_m < q->volume.range_m ? -1 : 1;
+    return (p->index > q->index) - (p->index < q->index);
+}
+
+/* Depth of a cloud's other puffs before the sun, at each one's centre. */
+static void shade_group(Placed *first, int count, unsigned bands)
+{
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < count; k++) {
+            if (k == i) continue;
+            VeilVolume       *to = &first[i].volume;
+            const VeilVolume *from = &first[k].volume;
+            const double      column_m = veil_column_m(from, to->p_enu, to->d_sun_enu, 0, INFINITY);
+            if (!(column_m > 0)) continue;
+            for (int b = 0; b < veil_bands; b++)
+                if (bands >> b & 1) to->sun_depth[b] += from->extinction_per_m[b] * column_m;
+        }
+}
+
+/* Whether any of it can fall into the picture, or shade what does: a cone about the corners, widened. */
+static bool may_matter(const View *view, const EffectVolume *v)
+{
+    double half[2], off[3], cam[3];
+    view_half_tangents(half, view);
+    const double reach = 3 * fmax(v->along_m, v->across_m) + 20, tangent = sqrt(half[0] * half[0] + half[1] * half[1]);
+    v3_sub(off, v->p_enu, view->p_enu);
+    m3_tmul_v3(cam, view->r_enu_from_cam, off);
+    if (cam[2] < -reach) return false;
+    const double secant = sqrt(1 + tangent * tangent);
+    return (sqrt(cam[0] * cam[0] + cam[1] * cam[1]) - fmax(cam[2], 0) * tangent) <= reach * secant;
+}
+
+Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
+                     const Air *air, const float *ground_rho, unsigned bands, Arena *arena)
+{
+    *out = (EffectScene){0};
+    if (snapshot->puff_count == 0 || !snapshot->effect_table || bands == 0) return STATUS_OK;
+    Placed *placed = arena_alloc(arena, (size_t)snapshot->puff_count, sizeof *placed);
+    if (!placed) return STATUS_NO_MEMORY;
+
+    int count = 0;
+    for (int i = 0; i < snapshot->puff_count; i++) {
+        const EffectPuff *puff = &snapshot->puff[i];
+        const EffectLaw  *law = &snapshot->effect_table->law[puff->kind];
+        EffectVolume      volume;
+        if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
+        if (!effect_volume(&volume, snapshot->effect_table, puff, &air->weather, frame)) continue;
+        if (!may_matter(view, &volume)) continue;
+
+        VeilVolume *v = &placed[count].volume;
+        double     *d_eye_enu = placed[count].d_eye_enu;
+        *v = (VeilVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
+        memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
+        memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
+        memcpy(v->d_sun_enu, air->sun_d_enu, sizeof v->d_sun_enu);
+        memcpy(v->extinction_per_m, volume.extinction_per_m, sizeof v->extinction_per_m);
+        v3_sub(d_eye_enu, volume.p_enu, view->p_enu);
+        v->range_m = v3_length(d_eye_enu);
+        if (!v3_normalize(d_eye_enu, d_eye_enu)) d_eye_enu[2] = 1;
+        for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
+        v->pattern[2] -= 0.25 * puff->age_s; /* it rolls upwards through its own outline */
+        placed[count].law    = law;
+        placed[count].temp_k = volume.temp_k + air_temp_at(air, volume.p_enu) - air->weather.air_temp_k;
+        placed[count].group  = puff->group;
+        placed[count].index  = i;
+        count++;
+    }
+    const Status status = light_volumes(placed, count, view, air, ground_rho, bands, arena);
+    if (status != STATUS_OK) return status;
+    qsort(placed, (size_t)count, sizeof *placed, by_group);
+    for (int first = 0, end; first < count; first = end) {
+        for (end = first + 1; end < count && placed[end].group == placed[first].group;) end++;
+        shade_group(placed + first, end - first, bands);
+    }
+    qsort(placed, (size_t)count, sizeof *placed, by_range);
+    VeilVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);
+    if (!volume) return STATUS_NO_MEMORY;
+    for (int i = 0; i < count; i++) volume[i] = placed[i].volume;
+    *out = (EffectScene){count, volume};
+    return STATUS_OK;
+}

@@ -1,0 +1,21 @@
+/* render/smoke/effects.h: puffs of the snapshot as volumes that shine, scatter and hide: once a frame. */
+#ifndef RENDER_SMOKE_EFFECTS_H
+#define RENDER_SMOKE_EFFECTS_H
+
+#include "entities/table/snapshot.h"
+#include "render/air/air.h"
+#include "render/smoke/veil.h"
+
+typedef struct EffectScene {
+    int         count;
+    VeilVolume *volume; /* sorted by range */
+} EffectScene;
+
+/* Volumes that the view can see, with the air between them and the eye. hidden: the snapshot index of the host, whose own
+ * smoke its eye does not see, as it does not see its own parts (a missile's reported and interpolated places differ by
+ * more than its length at launch, and its trail must not come before its nose); -1: none. bands: 1 << band of veil.h that will be asked
+ * for. ground_rho: of the lit ground below, by optical channel. No puffs: count 0, and nothing is done. */
+Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, const LocalFrame *frame, const View *view,
+                     const Air *air, const float *ground_rho, unsigned bands, Arena *arena);
+
+#endif

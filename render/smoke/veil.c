@@ -1,0 +1,314 @@
+/* render/smoke/veil.c: spheroids along a ray. A spheroid is brought to a unit ball by stretching space along its axis; along
+ * a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
+#include "render/smoke/veil.h"
+
+#include <stdlib.h>
+
+/* ---- one volume along one ray ------------------------------------------------------------- */
+
+typedef struct Chord {
+    double middle_m, half_m; /* where the ray is nearest the centre, half its way inside */
+    double rate2;            /* |d|^2 in the ball's units: density is (rate2 (half^2 - u^2))^2 */
+    double q2;               /* squared distance of nearest approach, 0 .. 1 */
+} Chord;
+
+static void to_ball(double out[3], const VeilVolume *v, const double a_enu[3])
+{
+    const double across = 1 / v->across_m, more = v3_dot(a_enu, v->axis_enu) * (1 / v->along_m - across);
+    for (int i = 0; i < 3; i++) out[i] = a_enu[i] * across + more * v->axis_enu[i];
+}
+
+/* o and d in the ball's units. */
+static bool chord_of(Chord *chord, const double o[3], const double d[3])
+{
+    const double rate2 = v3_dot(d, d), middle_m = -v3_dot(o, d) / rate2;
+    double       nearest[3];
+    /* the point itself, not the difference of two large squares */
+    v3_add_scaled(nearest, o, middle_m, d);
+    const double q2 = v3_dot(nearest, nearest);
+    if (!(q2 < 1)) return false;
+    *chord = (Chord){middle_m, sqrt((1 - q2) / rate2), rate2, q2};
+    return true;
+}
+
+/* Integral of the density from the middle to u metres beyond it, |u| <= half. */
+static inline double column_to(const Chord *c, bool even, double u)
+{
+    if (even) return u;
+    const double h2 = c->half_m * c->half_m, u2 = u * u;
+    return c->rate2 * c->rate2 * u * (h2 * h2 - u2 * (2.0 / 3 * h2 - 0.2 * u2));
+}
+
+static double chord_column(const Chord *c, bool even, double from_m, double to_m)
+{
+    const double a = clamp(from_m - c->middle_m, -c->half_m, c->half_m);
+    const double b = clamp(to_m - c->middle_m, -c->half_m, c->half_m);
+    return b > a ? column_to(c, even, b) - column_to(c, even, a) : 0;
+}
+
+double veil_column_m(const VeilVolume *volume, const double o_enu[3], const double d_enu[3], double from_m, double to_m)
+{
+    double off[3], o[3], d[3];
+    Chord  chord;
+    v3_sub(off, o_enu, volume->p_enu);
+    to_ball(o, volume, off);
+    to_ball(d, volume, d_enu);
+    return chord_of(&chord, o, d) ? chord_column(&chord, volume->even, from_m, to_m) : 0;
+}
+
+/* ---- its pattern -------------------------------------------------------------------------- */
+
+static inline float lattice(int32_t x, int32_t y, int32_t z)
+{
+    uint32_t h = (uint32_t)x * 0x8da6b343u ^ (uint32_t)y * 0xd8163841u ^ (uint32_t)z * 0xcb1ab31fu;
+    h ^= h >> 15, h *= 0x2c1b3c6du, h ^= h >> 12, h *= 0x297a2d39u, h ^= h >> 15;
+    return (float)(int32_t)h * (1 / 2147483648.0f);
+}
+
+static float lattice_noise(const double p[3])
+{
+    int32_t i[3];
+    float   f[3];
+    for (int k = 0; k < 3; k++) {
+        const double low = floor(p[k]);
+        i[k] = (int32_t)low;
+        const float t = (float)(p[k] - low);
+        f[k] = t * t * (3 - 2 * t);
+    }
+    float plane[2];
+    for (int z = 0; z < 2; z++) {
+        const float a = lattice(i[0], i[1], i[2] + z), b = lattice(i[0] + 1, i[1], i[2] + z);
+        const float c = lattice(i[0], i[1] + 1, i[2] + z), d = lattice(i[0] + 1, i[1] + 1, i[2] + z);
+        const float low = a + f[0] * (b - a), high = c + f[0] * (d - c);
+        plane[z] = low + f[1] * (high - low);
+    }
+    return plane[0] + f[2] * (plane[1] - plane[0]);
+}
+
+/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. Each octave
+ * has axes of its own: lattices that lie over each other show as squares. */
+static double billows(const double p[3])
+{
+    static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
+    double at[3], turned[3];
+    m3_mul_v3(turned, turn, p);
+    v3_scale(at, 1.7, turned);
+    double sum = lattice_noise(at);
+    for (int octave = 0; octave < 2; octave++) {
+        m3_mul_v3(turned, turn, at);
+        for (int k = 0; k < 3; k++) at[k] = 2.17 * turned[k] + 11.3;
+        sum += (octave ? 0.4 : 0.7) * (0.62 - 1.9 * fabs((double)lattice_noise(at)));
+    }
+    return sum;
+}
+
+/* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is
+ * stretched by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up
+ * for what the stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
+static double pattern_stretch(double *factor, const VeilVolume *v, const double nearest[3], double q2)
+{
+    double p[3];
+    v3_add(p, nearest, v->pattern);
+    const double n = billows(p), f = 1 + v->billow * n * (0.7 + 1.2 * q2);
+    *factor = (1 + 0.42 * v->billow) * fmax(f, 0);
+    return 1 + 0.38 * v->billow * clamp(0.6 - n, 0, 1.6);
+}
+
+/* ---- a ray -------------------------------------------------------------------------------- */
+
+typedef struct Crossing {
+    const VeilVolume *volume;
+    Chord  chord;
+    double from_m, to_m, factor;
+    double source[veil_bands];
+} Crossing;
+
+/* What the volume shows on this ray: lit by what of the sun gets to the place where the eye's look comes to rest. */
+static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
+{
+    const VeilVolume *v = c->volume;
+    const double      at_m = fmax(c->from_m, c->chord.middle_m - 0.55 * c->chord.half_m);
+    double            at[3], d_sun[3], up[3];
+    Chord             sunward;
+
+    v3_add_scaled(at, o, at_m, d);
+    to_ball(d_sun, v, v->d_sun_enu);
+    double column_m = 0;
+    if (chord_of(&sunward, at, d_sun)) column_m = c->factor * chord_column(&sunward, v->even, 0, INFINITY);
+    static const double zenith_enu[3] = {0, 0, 1};
+    to_ball(up, v, zenith_enu);
+    const double top = clamp(v3_dot(at, up) / v3_length(up), -1, 1);
+    for (int b = 0; b < veil_bands; b++) {
+        if (!(bands >> b & 1)) continue;
+        double lit = v->source[b] + top * v->from_top[b];
+        if (v->sun[b][0] > 0) {
+            const double e4 = exp(-0.25 * (v->extinction_per_m[b] * column_m + v->sun_depth[b])), e2 = e4 * e4;
+            lit += v->sun[b][0] * e2 * e2 + v->sun[b][1] * e2 + v->sun[b][2] * e4;
+        }
+        c->source[b] = lit;
+    }
+}
+
+static int compare_m(const void *a, const void *b)
+{
+    const double p = *(const double *)a, q = *(const double *)b;
+    return p < q ? -1 : p > q;
+}
+
+/* Sorted boundaries, joined to at most veil_cuts by leaving some of the inner ones out. */
+static int cuts_of(double cut_m[veil_cuts], const Crossing *crossing, int count)
+{
+    double edge_m[2 * veil_most_on_a_ray];
+    int    edges = 0;
+    for (int i = 0; i < count; i++) edge_m[edges++] = crossing[i].from_m, edge_m[edges++] = crossing[i].to_m;
+    if (edges == 2) {
+        cut_m[0] = edge_m[0], cut_m[1] = edge_m[1];
+        return 2;
+    }
+    qsort(edge_m, (size_t)edges, sizeof *edge_m, compare_m);
+    const int cuts = edges < veil_cuts ? edges : veil_cuts;
+    for (int i = 0; i < cuts; i++) cut_m[i] = edge_m[(int64_t)i * (edges - 1) / (cuts - 1)];
+    return cuts;
+}
+
+/* 1 - exp(-depth) to 1e-12 of itself, in a quarter of expm1's time. */
+static inline double absorbed(double depth)
+{
+    return depth > 1e-3 ? 1 - exp(-depth) : depth * (1 - depth * (0.5 - depth * (1.0 / 6 - depth * (1.0 / 24))));
+}
+
+static void compose(VeilRays *out, int ray, const Crossing *crossing, int count, unsigned bands)
+{
+    double cut_m[veil_cuts], through[veil_bands], added[veil_bands] = {0};
+    const int cuts = cuts_of(cut_m, crossing, count);
+    for (int b = 0; b < veil_bands; b++) through[b] = 1;
+
+    for (int k = 0; k + 1 < cuts; k++) {
+        double depth[veil_bands] = {0}, shown[veil_bands] = {0};
+        bool   any = false;
+        for (int i = 0; i < count; i++) {
+            const Crossing *c = &crossing[i];
+            if (!(c->from_m < cut_m[k + 1] && c->to_m > cut_m[k])) continue;
+            const double column_m = c->factor * chord_column(&c->chord, c->volume->even, fmax(cut_m[k], c->from_m),
+                                                             fmin(cut_m[k + 1], c->to_m));
+            any = true;
+            for (int b = 0; b < veil_bands; b++) {
+                if (!(bands >> b & 1)) continue;
+                const double depth_here = c->volume->extinction_per_m[b] * column_m;
+                depth[b] += depth_here;
+                shown[b] += depth_here * c->source[b];
+            }
+        }
+        if (!any) continue;
+        bool goes_on = false;
+        for (int b = 0; b < veil_bands; b++) {
+            if (!(bands >> b & 1) || !(depth[b] > 0)) {
+                goes_on = goes_on || bands >> b & 1;
+                continue;
+            }
+            const double taken = absorbed(depth[b]);
+            added[b] += through[b] * taken * (shown[b] / depth[b]);
+            through[b] *= 1 - taken;
+            goes_on = goes_on || through[b] > 1e-7;
+        }
+        if (!goes_on) break;
+    }
+    for (int b = 0; b < veil_bands; b++) {
+        out->transmittance[b][ray] = (float)through[b];
+        out->added[b][ray] = (float)added[b];
+    }
+}
+
+void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int count, const Rays *rays,
+               const double *far_m, unsigned bands)
+{
+    Crossing crossing[veil_most_on_a_ray];
+
+    out->any = false;
+    for (int r = 0; count > 0 && r < rays->count; r++) {
+        const double o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
+        const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
+        int crossed = 0;
+        for (int n = 0; n < count && crossed < veil_most_on_a_ray; n++) {
+            const VeilVolume *v = &volume[list[n]];
+            Crossing         *c = &crossing[crossed];
+            double            off[3], o[3], d[3];
+            v3_sub(off, o_enu, v->p_enu);
+            /* its ball first: most volumes of a block miss most rays */
+            const double along = v3_dot(off, d_enu), reach = fmax(v->along_m, v->across_m);
+            if (v3_dot(off, off) - along * along > reach * reach * 1.001) continue;
+            to_ball(o, v, off);
+            to_ball(d, v, d_enu);
+            if (!chord_of(&c->chord, o, d)) continue;
+            c->volume = v;
+            c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
+            c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m[r]);
+            if (!(c->to_m > c->from_m)) continue;
+            c->factor = 1;
+            if (v->billow > 0) {
+                double nearest[3];
+                v3_add_scaled(nearest, o, c->chord.middle_m, d);
+                const double stretch = pattern_stretch(&c->factor, v, nearest, c->chord.q2);
+                v3_scale(o, stretch, o);
+                v3_scale(d, stretch, d);
+                if (!(c->factor > 0) || !chord_of(&c->chord, o, d)) continue;
+                c->from_m = fmax(c->chord.middle_m - c->chord.half_m, 0);
+                c->to_m = fmin(c->chord.middle_m + c->chord.half_m, far_m[r]);
+                if (!(c->to_m > c->from_m)) continue;
+            }
+            light_crossing(c, o, d, bands);
+            crossed++;
+        }
+        if (crossed > 0) {
+            if (!out->any)
+                for (int b = 0; b < veil_bands; b++)
+                    for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
+            out->any = true;
+            compose(out, r, crossing, crossed, bands);
+        }
+    }
+}
+
+void veil_apply(float *radiance, const VeilRays *veil, int band, int count)
+{
+    if (!veil->any) return;
+    const float *t = veil->transmittance[band], *a = veil->added[band];
+    for (int i = 0; i < count; i++) radiance[i] = radiance[i] * t[i] + a[i];
+}
+
+/* ---- a block of pixels -------------------------------------------------------------------- */
+
+int veil_block(int *list, const VeilVolume *volume, int count, const View *view, double column0_px, double row0_px,
+               double column1_px, double row1_px)
+{
+    /* a cone about the block: its middle, and the widest of its corners */
+    const double corner_px[4][2] = {{column0_px, row0_px}, {column1_px, row0_px}, {column0_px, row1_px},
+                                    {column1_px, row1_px}};
+    double middle[3], cosine = 1, tangent[4];
+    if (view_has_lens(view)) /* its sides are bent: the straight box about them */
+        view_box_tangents(tangent, view, (const double[4]){column0_px, row0_px, column1_px, row1_px});
+    view_ray(middle, view, 0.5 * (column0_px + column1_px), 0.5 * (row0_px + row1_px));
+    for (int c = 0; c < 4; c++) {
+        double d[3];
+        if (view_has_lens(view)) {
+            const double d_cam[3] = {tangent[c % 2 ? 2 : 0], tangent[c / 2 ? 3 : 1], 1};
+            m3_mul_v3(d, view->r_enu_from_cam, d_cam);
+            v3_scale(d, 1 / v3_length(d_cam), d);
+        } else {
+            view_ray(d, view, corner_px[c][0], corner_px[c][1]);
+        }
+        cosine = fmin(cosine, v3_dot(middle, d));
+    }
+    const double sine = sqrt(fmax(1 - cosine * cosine, 0));
+    int listed = 0;
+    for (int n = 0; n < count; n++) {
+        const VeilVolume *v = &volume[n];
+        const double      reach = fmax(v->along_m, v->across_m) * 1.001;
+        double            off[3];
+        v3_sub(off, v->p_enu, view->p_enu);
+        const double along = v3_dot(off, middle), aside = sqrt(fmax(v3_dot(off, off) - along * along, 0));
+        /* distance from the cone's mantle; inside: negative. Behind the eye by more than its size: out */
+        if (along > -reach && aside * cosine - along * sine <= reach) list[listed++] = n;
+    }
+    return listed;
+}

@@ -1,0 +1,74 @@
+/* sensor/bench/bench_private.h: what the files of the bench command share. */
+#ifndef SENSOR_BENCH_BENCH_PRIVATE_H
+#define SENSOR_BENCH_BENCH_PRIVATE_H
+
+#include "sensor/bench/bench.h"
+#include "sensor/publish/html.h"
+
+enum { bench_options_max = 16, bench_parts_max = 64 };
+
+typedef struct BenchOption {
+    char        name[24];
+    const char *value;
+} BenchOption;
+
+/* A row as it is kept for the report: its texts are its own. */
+typedef struct BenchKept {
+    BenchRow row;
+    char    *plot;     /* SVG that stands behind the row; NULL: none */
+} BenchKept;
+
+/* The rows of one approximation, for the report; its plot stands behind the last. */
+typedef struct BenchBlock {
+    int  first, rows, chosen;  /* of the rows kept; chosen: the default's, -1: none */
+    bool broken;               /* a row of it is beyond its limit */
+    char name[96], turned_by[96], of[128], also[64], words[512];
+} BenchBlock;
+
+typedef struct BenchPart {     /* a suite, of all rooms */
+    const char *name, *help, *reads;
+    int         first, count;  /* of the rows kept */
+    int         failed;        /* suites that could not be run to their end */
+    double      took_s;
+} BenchPart;
+
+typedef struct BenchMachine {
+    char        processor[128], governor[32], system[80], compiler[80], libraries[512];
+    const char *isa;
+    int         cores;
+    double      load, memory_gb;   /* load: of the last minute, before the run; NaN: unknown */
+} BenchMachine;
+void bench_machine_read(BenchMachine *out);
+void bench_machine_line(char out[512], const BenchMachine *machine);
+
+struct Bench {
+    const char *suite;
+    bool        quick, all;
+    int         threads, options, rows, broken; /* broken: rows whose error is beyond its limit */
+    BenchOption option[bench_options_max];
+    const char *plots;         /* folder; NULL: none asked for */
+    bool        out_of_memory, spoilt; /* spoilt: a plot could not be written */
+    FILE       *csv;
+    BenchKept  *kept;          /* [kept_count] */
+    int         kept_count, kept_capacity;
+    BenchBlock *block;         /* [blocks], by their first rows */
+    int         blocks, blocks_capacity;
+    BenchPart  *part;          /* [parts] */
+    int         parts;
+};
+
+/* At share 0 .. 1 of sorted values, between them in proportion. */
+double bench_quantile(const double *value, int count, double share);
+/* Three figures and a unit; seconds in what fits. */
+void   bench_show(char out[32], double value, const char *unit);
+/* Whether its error keeps its limit, or has none. */
+bool   bench_holds(const BenchRow *row);
+
+/* The rows that are kept, part by part, with their plots, what failed first. took_s: the whole run. */
+Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s);
+/* `bench compare A.csv B.csv [--report FILE] [--slower FACTOR]`; argv[0]: compare. Exit code. */
+int    bench_compare(int argc, char **argv);
+/* Frees what is kept. */
+void   bench_forget(Bench *bench);
+
+#endif

@@ -1,0 +1,9 @@
+/* sensor/bench/dis/stability.h: this room's part of `pitviper bench stability`. */
+#ifndef SENSOR_BENCH_DIS_STABILITY_H
+#define SENSOR_BENCH_DIS_STABILITY_H
+
+#include "sensor/bench/bench.h"
+
+Status dis_bench_stability(Bench *bench);
+
+#endif

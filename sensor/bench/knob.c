@@ -1,0 +1,274 @@
+/* sensor/bench/knob.c: time against error: which settings of an approximation are worth having.
+ *
+ * The rule. A setting dominates another when it is better, beyond noise, in time, error or memory, and not worse in
+ * any of them.
+ *     time    rounds are in turn, so each gives a ratio that a busy machine hardly touches. Better: their median is
+ * below 0.9 and their upper quartile below 1. Worse: their median is above 1.05, or their lower quartile above 1. error
+ * the same inputs give the same error: its noise is what other inputs, a finer reference or another rounding would
+ * change. Better: below 0.9 of the other's, and by more than a hundredth of what is stated. Worse: above 1.02 of it. A
+ * second error of the same settings (of another band) is judged like the first. memory  is counted, and has no noise; a
+ * tenth less is better, anything more is worse. To be better takes more than not to be worse: what noise can explain
+ * dominates nobody. The front are those that nobody dominates. A default off the front fails, as does one whose error
+ * is above what is stated: there is another setting that costs nothing. On quick rounds the times judge nobody: what
+ * dominates is shown. */
+#include "sensor/bench/bench_private.h"
+
+#include <errno.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+typedef enum Verdict { WORSE, SAME, BETTER } Verdict;
+
+static Verdict by_time(const BenchPoint *a, const BenchPoint *b)
+{
+    double    ratio[bench_rounds_max];
+    const int rounds = a->time.rounds < b->time.rounds ? a->time.rounds : b->time.rounds;
+    if (rounds < 1) return SAME;
+    for (int r = 0; r < rounds; r++) ratio[r] = a->time.item_s[r] / b->time.item_s[r];
+    const double low = bench_quantile(ratio, rounds, 0.25), middle = bench_quantile(ratio, rounds, 0.5);
+    if (middle < 0.9 && bench_quantile(ratio, rounds, 0.75) < 1) return BETTER;
+    return middle <= 1.05 && low <= 1 ? SAME : WORSE; /* NaN is worse */
+}
+
+static Verdict by_error(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b)
+{
+    const double floor_error = isfinite(knob->stated) ? 0.01 * knob->stated : 0;
+    if (a->error < 0.9 * b->error && b->error - a->error > floor_error) return BETTER;
+    return a->error <= 1.02 * b->error ? SAME : WORSE;
+}
+
+static Verdict by_also(const BenchPoint *a, const BenchPoint *b)
+{
+    return a->also < 0.9 * b->also ? BETTER : a->also <= 1.02 * b->also ? SAME : WORSE;
+}
+
+static Verdict by_bytes(const BenchPoint *a, const BenchPoint *b)
+{
+    if (!(a->bytes > 0) || !(b->bytes > 0)) return SAME;
+    return a->bytes < 0.9 * b->bytes ? BETTER : a->bytes <= b->bytes ? SAME : WORSE;
+}
+
+bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b)
+{
+    const Verdict verdict[4] = {by_time(a, b), by_error(knob, a, b), by_also(a, b), by_bytes(a, b)};
+    bool          better = false;
+    for (int k = 0; k < 4; k++) {
+        if (verdict[k] == WORSE) return false;
+        better |= verdict[k] == BETTER;
+    }
+    return better;
+}
+
+bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, int index)
+{
+    if (isnan(point[index].error)) return false;
+    for (int i = 0; i < count; i++)
+        if (i != index && bench_dominates(knob, &point[i], &point[index])) return false;
+    return true;
+}
+
+/* ---- the plot --------------------------------------------------------------------------------- */
+
+/* As a file is called: letters, digits and `-`. */
+static void file_name(char out[64], const char *name)
+{
+    int n = 0;
+    for (; *name && n < 59; name++) {
+        const bool plain = (*name >= 'a' && *name <= 'z') || (*name >= '0' && *name <= '9');
+        const bool large = *name >= 'A' && *name <= 'Z';
+        if (plain || large) out[n++] = (char)(large ? *name - 'A' + 'a' : *name);
+        else if (n > 0 && out[n - 1] != '-') out[n++] = '-';
+    }
+    while (n > 0 && out[n - 1] == '-') n--;
+    strcpy(out + n, ".svg");
+}
+
+static char *plot_text(const BenchKnob *knob, const BenchPoint *point, int count)
+{
+    char  *text = NULL;
+    size_t octets;
+    FILE  *to = open_memstream(&text, &octets);
+    if (!to) return NULL;
+    plot_knob(to, knob, point, count);
+    if (fclose(to) == 0) return text;
+    free(text);
+    return NULL;
+}
+
+static void write_plot(Bench *bench, const BenchKnob *knob, const char *text)
+{
+    char path[4096], name[64];
+    file_name(name, knob->name);
+    const bool fits = (size_t)snprintf(path, sizeof path, "%s/%s", bench->plots, name) < sizeof path;
+    errno = ENAMETOOLONG;
+    if (fits) mkdir(bench->plots, 0777); /* if it is not there; if it cannot be, fopen says so */
+    FILE *file = fits ? fopen(path, "w") : NULL;
+    bool  ok = file && fputs(text, file) >= 0;
+    ok = file && fclose(file) == 0 && ok;
+    if (ok) return;
+    log_error("bench: cannot write %s: %s; choose another folder with --plots", path, strerror(errno));
+    bench->spoilt = true;
+}
+
+/* ---- rows ------------------------------------------------------------------------------------- */
+
+/* Who dominates the default: the best of those that do, NULL: nobody, and how many. */
+static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, const BenchPoint *point, int count,
+                                       int chosen)
+{
+    const BenchPoint *best = NULL;
+    *how_many = 0;
+    for (int i = 0; i < count; i++) {
+        if (i == chosen || !bench_dominates(knob, &point[i], &point[chosen])) continue;
+        if ((*how_many)++ == 0 || bench_dominates(knob, &point[i], best)) best = &point[i];
+    }
+    return best;
+}
+
+static int default_of(const BenchPoint *point, int count)
+{
+    int chosen = -1;
+    for (int i = 0; i < count; i++)
+        if (point[i].is_default) chosen = i;
+    return chosen;
+}
+
+static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen)
+{
+    char              what[160], against[256];
+    int               better;
+    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen), *held = &point[chosen];
+    snprintf(what, sizeof what, "%s: settings better than the default", knob->name);
+    BenchRow row = bench_row(what);
+    row.error    = better;
+    if (!bench->quick) row.error_limit = 0;
+    row.error_unit = better == 1 ? "setting" : "settings";
+    snprintf(against, sizeof against, "none is better in time, error or memory alone");
+    if (best) {
+        char   with[96] = "";
+        if (best->bytes > 0 && held->bytes > 0)
+            snprintf(with, sizeof with, ", %.2g x the memory", best->bytes / held->bytes);
+        snprintf(against, sizeof against, "'%.60s': %.2g x the time, %.2g x the error%s%s", best->setting,
+                 bench_ratio(&best->time, &held->time), held->error > 0 ? best->error / held->error : 1, with,
+                 bench->quick ? "; quick rounds, not judged" : "");
+    }
+    row.against = against;
+    bench_add(bench, &row);
+}
+
+/* ---- in words ----------------------------------------------------------------------------------- */
+
+__attribute__((format(printf, 3, 4))) static void say(char *out, size_t size, const char *format, ...)
+{
+    const size_t n = strlen(out);
+    va_list      arguments;
+    va_start(arguments, format);
+    vsnprintf(out + n, size - n, format, arguments);
+    va_end(arguments);
+}
+
+static void say_trade(char *out, size_t size, const char *what, const BenchPoint *other, const BenchPoint *held)
+{
+    const double ratio = bench_ratio(&other->time, &held->time);
+    if (other->error > 0 && held->error > 0)
+        say(out, size, "%s '%.40s': %.2g x the time, %.2g x the error", what, other->setting, ratio,
+            other->error / held->error);
+    else
+        say(out, size, "%s '%.40s': %.2g x the time, %s", what, other->setting, ratio,
+            other->error > 0 ? "some error" : "no error");
+    if (other->bytes > 1 && held->bytes > 1 && other->bytes != held->bytes)
+        say(out, size, ", %.2g x the memory", other->bytes / held->bytes);
+}
+
+void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick)
+{
+    const size_t size = 512;
+    const int    chosen = default_of(point, count);
+    char         error[32], stated[32];
+    *out = 0;
+    if (chosen < 0) {
+        say(out, size, "No setting is the default: nothing is judged.");
+        return;
+    }
+    const BenchPoint *held = &point[chosen], *faster = NULL, *closer = NULL;
+    bench_show(error, held->error, knob->error_unit);
+    bench_show(stated, knob->stated, knob->error_unit);
+    if (isnan(held->error)) say(out, size, "The error of the default, '%.40s', is unknown.", held->setting);
+    else if (isnan(knob->stated)) say(out, size, "The default, '%.40s', has an error of %s.", held->setting, error);
+    else say(out, size, "The default, '%.40s', %s: %s, stated at most %s.", held->setting,
+             held->error <= knob->stated ? "keeps its stated error" : "MISSES its stated error", error, stated);
+    int better;
+    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen);
+    if (best) {
+        say(out, size, " %d better setting%s", better, better > 1 ? "s;" : ":");
+        say_trade(out, size, "", best, held);
+        say(out, size, quick ? " (quick rounds: not judged)." : ". The default is NOT on the front.");
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        if (i == chosen || isnan(point[i].error)) continue;
+        const bool quicker = by_time(&point[i], held) == BETTER;
+        if (quicker && (!faster || point[i].time.median_s > faster->time.median_s)) faster = &point[i];
+        if (by_error(knob, &point[i], held) == BETTER && (!closer || point[i].time.median_s < closer->time.median_s))
+            closer = &point[i];
+    }
+    say(out, size, " It is on the front: ");
+    if (faster) say_trade(out, size, "the next faster one is", faster, held);
+    else say(out, size, "none is faster");
+    say(out, size, "; ");
+    if (closer) say_trade(out, size, "the next closer one is", closer, held);
+    else say(out, size, "none is closer");
+    say(out, size, ".");
+}
+
+static void keep_block(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen, int first)
+{
+    if (bench->blocks == bench->blocks_capacity) {
+        const int   larger = bench->blocks_capacity ? 2 * bench->blocks_capacity : 32;
+        BenchBlock *grown = realloc(bench->block, (size_t)larger * sizeof *grown);
+        if (!grown) {
+            bench->out_of_memory = true;
+            return;
+        }
+        bench->block           = grown;
+        bench->blocks_capacity = larger;
+    }
+    BenchBlock *b = &bench->block[bench->blocks++];
+    *b = (BenchBlock){.first = first, .rows = bench->kept_count - first, .chosen = chosen < 0 ? -1 : first + chosen};
+    snprintf(b->name, sizeof b->name, "%s", knob->name);
+    snprintf(b->turned_by, sizeof b->turned_by, "%s", knob->turned_by ? knob->turned_by : "");
+    snprintf(b->of, sizeof b->of, "%s", knob->of ? knob->of : "");
+    snprintf(b->also, sizeof b->also, "%s", point[0].also_is ? point[0].also_is : "");
+    bench_verdict(b->words, knob, point, count, bench->quick);
+    for (int i = first; i < bench->kept_count; i++) b->broken |= !bench_holds(&bench->kept[i].row);
+}
+
+void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count)
+{
+    const int chosen = default_of(point, count), before = bench->kept_count;
+    char      what[256];
+    for (int i = 0; i < count; i++) {
+        const bool front = bench_on_front(knob, point, count, i);
+        snprintf(what, sizeof what, "%s: %s", knob->name, point[i].setting);
+        BenchRow row   = bench_row_of(what, &point[i].time, NULL, 1);
+        row.error      = point[i].error;
+        row.error_unit = knob->error_unit;
+        row.against    = knob->against;
+        row.mark       = i == chosen ? (front ? "* default" : "default") : front ? "*" : NULL;
+        if (point[i].bytes > 1) row.rate = 1e-6 * point[i].bytes, row.rate_unit = "MB";
+        if (i == chosen) row.error_limit = knob->stated;
+        else if (chosen >= 0) row.ratio = bench_ratio(&point[i].time, &point[chosen].time), row.to = "default";
+        bench_add(bench, &row);
+    }
+    if (chosen >= 0) add_verdict(bench, knob, point, count, chosen);
+    char *text = plot_text(knob, point, count);
+    if (!text) bench->out_of_memory = true;
+    if (text && bench->plots) write_plot(bench, knob, text);
+    if (bench->kept_count > before && !bench->kept[bench->kept_count - 1].plot) {
+        bench->kept[bench->kept_count - 1].plot = text;
+        keep_block(bench, knob, point, count, chosen, before);
+    } else {
+        free(text);
+    }
+}

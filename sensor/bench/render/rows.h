@@ -1,0 +1,15 @@
+/* sensor/bench/render/rows.h: what `pitviper bench` can measure of this room. */
+#ifndef SENSOR_BENCH_RENDER_ROWS_H
+#define SENSOR_BENCH_RENDER_ROWS_H
+
+#include "sensor/bench/bench.h"
+
+extern const BenchSuite render_benches[];
+extern const int        render_bench_count;
+
+/* Of the suite `precision`. */
+Status bench_precision_light(Bench *bench);
+Status bench_precision_air(Bench *bench);
+Status bench_precision_trace(Bench *bench);
+
+#endif

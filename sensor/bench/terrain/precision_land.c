@@ -1,0 +1,285 @@
+/* sensor/bench/terrain/precision_land.c: the ground as posts, and its texture under a pixel. */
+#include "sensor/bench/terrain/rows.h"
+
+#include "sensor/bench/quick_landscape.h"
+#include "sensor/bench/turn.h"
+
+#include <stdlib.h>
+
+/* ---- invented ground ------------------------------------------------------------------------------ */
+
+typedef struct MakeSet {
+    LandscapeConfig   config;
+    const LocalFrame *frame;
+    Status            status;
+} MakeSet;
+
+static void make_land(void *user)
+{
+    MakeSet  *s = user;
+    Landscape landscape = {0};
+    s->status = landscape_create(&landscape, &s->config, s->frame, NULL, 0, NULL, 0);
+    bench_keep(&landscape);
+    if (s->status == STATUS_OK) landscape_destroy(&landscape);
+}
+
+/* Rms difference in height within a ring about the origin. */
+static double rms_m(const Elevation *got, const Elevation *want, double from_m, double to_m)
+{
+    enum { places = 20000 };
+    double square = 0;
+    for (int i = 0; i < places; i++) {
+        const double r = from_m + (to_m - from_m) * random_uniform(41, 0, 0, (uint64_t)i),
+            a = 2 * pi_rad * random_uniform(41, 1, 0, (uint64_t)i);
+        const double off = elevation_height(got, r * cos(a), r * sin(a), NULL)
+            - elevation_height(want, r * cos(a), r * sin(a), NULL);
+        square += off * off;
+    }
+    return sqrt(square / places);
+}
+
+static double bytes_of(const Elevation *e)
+{
+    size_t posts, pyramids;
+    bench_ground_bytes(&posts, &pyramids, e);
+    return (double)(posts + pyramids);
+}
+
+/* Every so-manieth post of a ground. */
+static Status thinned(Elevation *out, const ElevationLevel *from, int step)
+{
+    const int    nx = (from->nx - 1) / step + 1, ny = (from->ny - 1) / step + 1;
+    const Status status = elevation_level_create(out, 0, nx, ny, from->x0_m, from->y0_m, step * from->spacing_m,
+                                                 from->z0_m, from->step_m);
+    if (status != STATUS_OK) return status;
+    for (int j = 0; j < ny; j++)
+        for (int i = 0; i < nx; i++)
+            out->level[0].post[(size_t)j * (size_t)nx + (size_t)i] =
+                from->post[(size_t)j * step * (size_t)from->nx + (size_t)i * step];
+    elevation_build_pyramids(out);
+    return STATUS_OK;
+}
+
+/* A landscape of another spacing is another landscape, so one of 1 m is thinned. */
+static Status knob_spacing(Bench *bench, const LocalFrame *frame)
+{
+    enum { settings = 4 };
+    static const char *const name[settings] = {"8 m", "4 m", "2 m", "1 m"};
+    static const int         step[settings] = {8, 4, 2, 1};
+    const double             half_m = bench_quick(bench) ? 300 : 1000;
+    MakeSet    set[settings];
+    BenchWork  work[settings];
+    BenchPoint point[settings] = {0};
+    Landscape  fine = {0};
+    LandscapeConfig config = landscape_default_config();
+    config.half_width_m = half_m, config.horizon_m = 4 * half_m, config.spacing_m = 1;
+    Status status = landscape_create(&fine, &config, frame, NULL, 0, NULL, 0);
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        Elevation thin = {0};
+        config.spacing_m = step[k];
+        set[k]  = (MakeSet){.config = config, .frame = frame};
+        work[k] = (BenchWork){make_land, &set[k], 1};
+        status  = thinned(&thin, &fine.elevation.level[0], step[k]);
+        point[k] = (BenchPoint){.setting = name[k], .error = status == STATUS_OK
+                                ? rms_m(&thin, &fine.elevation, 0, 0.9 * half_m) : NAN,
+                                .is_default = step[k] == 4, .bytes = bytes_of(&thin)};
+        elevation_destroy(&thin);
+    }
+    if (status == STATUS_OK)
+        bench_turn(bench, &(BenchKnob){"spacing of invented ground", "terrain.spacing_m", "to make the ground", "m",
+                                       "rms of height, posts of 1 m", 0.1}, work, point, settings);
+    landscape_destroy(&fine);
+    return status;
+}
+
+/* How far the finest level reaches: what a coarser one costs there, over its distance. */
+static Status knob_reach(Bench *bench, const LocalFrame *frame)
+{
+    enum { settings = 4 };
+    static const char *const name[settings] = {"1.5 km", "3 km", "4.5 km", "6 km"};
+    static const double      half_m[settings] = {1500, 3000, 4500, 6000};
+    const bool               quick = bench_quick(bench);
+    MakeSet    set[settings];
+    BenchWork  work[settings];
+    BenchPoint point[settings] = {0};
+    LandscapeConfig config = landscape_default_config();
+    Landscape  fine = {0}, land;
+    if (quick) config.spacing_m = 16; /* a quarter as fine: the same levels from four times as far */
+    config.half_width_m = 8000;
+    Status status = landscape_create(&fine, &config, frame, NULL, 0, NULL, 0);
+    for (int k = 0; k < settings && status == STATUS_OK; k++) {
+        config.half_width_m = half_m[k];
+        set[k]  = (MakeSet){.config = config, .frame = frame};
+        work[k] = (BenchWork){make_land, &set[k], 1};
+        status  = landscape_create(&land, &config, frame, NULL, 0, NULL, 0);
+        if (status != STATUS_OK) break;
+        /* just outside the level, where it shows most: 1 / 989 rad is a pixel of 720 across 40 degrees */
+        const double near_m = 1.02 * half_m[k], far_m = fmin(1.5 * half_m[k], 7900);
+        point[k] = (BenchPoint){.setting = name[k],
+                                .error = rms_m(&land.elevation, &fine.elevation, near_m, far_m) / near_m * 989,
+                                .is_default = half_m[k] == 6000, .bytes = bytes_of(&land.elevation)};
+        landscape_destroy(&land);
+    }
+    if (status == STATUS_OK)
+        bench_turn(bench, &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground", "px",
+                                       quick ? "rms just outside it, the finest level; posts of 16 m"
+                                             : "rms just outside it, the finest level; 720 px across 40 degrees",
+                                                 quick ? 0.5 : 0.05},
+                   work, point, settings);
+    landscape_destroy(&fine);
+    return status;
+}
+
+/* ---- height of a post ----------------------------------------------------------------------------- */
+
+enum { side_posts = 512 };
+
+typedef struct PostSet {
+    double   z0_m, step_m;    /* 0: floats */
+    uint16_t post[side_posts * side_posts];
+    float    narrow[side_posts * side_posts];
+    double   at[1024][2], z_m[1024];
+} PostSet;
+
+/* Hills of 60 m, as nobody can store them. */
+static double true_height(double x, double y)
+{
+    return 500 + 30 * sin(x / 97.3) * cos(y / 61.7) + 7 * sin(x / 13.1 + 1) * sin(y / 17.9)
+        + 0.9 * cos(x / 3.3 - y / 4.1);
+}
+
+static void ask_posts(void *user)
+{
+    PostSet *s = user;
+    for (int i = 0; i < 1024; i++) {
+        const int    x = (int)s->at[i][0], y = (int)s->at[i][1];
+        const double u = s->at[i][0] - x, v = s->at[i][1] - y;
+        double       z[4];
+        for (int k = 0; k < 4; k++) {
+            const int at = (y + k / 2) * side_posts + x + k % 2;
+            z[k] = s->step_m > 0 ? s->z0_m + s->step_m * s->post[at] : (double)s->narrow[at];
+        }
+        s->z_m[i] = u >= v ? z[0] + u * (z[1] - z[0]) + v * (z[3] - z[1]) : z[0] + u * (z[3] - z[2])
+            + v * (z[2] - z[0]);
+    }
+    bench_keep(s->z_m);
+}
+
+static void knob_posts(Bench *bench)
+{
+    enum { settings = 5 };
+    static const char *const name[settings] =
+        {"steps of 1 m", "steps of 1 / 8 m", "steps of 1 / 64 m", "steps of 1 / 256 m", "floats"};
+    static const double step_m[settings] = {1, 1 / 8.0, 1 / 64.0, 1 / 256.0, 0};
+    static PostSet set[settings];
+    BenchWork      work[settings];
+    BenchPoint     point[settings] = {0};
+    for (int k = 0; k < settings; k++) {
+        PostSet *s = &set[k];
+        s->z0_m = 384, s->step_m = step_m[k];
+        for (int i = 0; i < side_posts * side_posts; i++) {
+            const double z = true_height(i % side_posts, i / side_posts);
+            s->narrow[i] = (float)z;
+            if (s->step_m > 0) s->post[i] = (uint16_t)((z - s->z0_m) / s->step_m + 0.5);
+            const double held = s->step_m > 0 ? s->z0_m + s->step_m * s->post[i] : (double)s->narrow[i];
+            bench_worst(&point[k].error, fabs(held - z));
+        }
+        for (int i = 0; i < 1024; i++)
+            for (int c = 0; c < 2; c++) s->at[i][c] =
+                (side_posts - 2) * random_uniform(42, (uint32_t)c, 0, (uint64_t)i);
+        work[k] = (BenchWork){ask_posts, s, 1024};
+        point[k].setting    = name[k];
+        point[k].is_default = k == 3;
+        point[k].bytes      = (s->step_m > 0 ? 2.0 : 4.0) * side_posts * side_posts;
+    }
+    bench_turn(bench, &(BenchKnob){"height of a post", "terrain/landscape/levels.c", "a height between posts", "m",
+                                   "largest, double, hills of 80 m", 0.002}, work, point, settings);
+}
+
+/* ---- texture under a pixel ------------------------------------------------------------------------- */
+
+enum { spots = 192, most_side = 48 };
+
+typedef struct TextureSet {
+    const Landscape *land;
+    int              side; /* places a side of the footprint; 0: by its wavelengths */
+    double           x_m[spots], y_m[spots];
+    float            footprint_m[spots], out[spots];
+} TextureSet;
+
+static void ask_textures(void *user)
+{
+    static double   x_m[most_side * most_side], y_m[most_side * most_side];
+    static float    none[most_side * most_side], fine[most_side * most_side];
+    static uint8_t  class[most_side * most_side];
+    TextureSet     *s = user;
+    memset(class, SURFACE_GRASS, sizeof class);
+    if (s->side < 2)
+        landscape_textures(s->out, s->land, spots, class, s->x_m, s->y_m, s->side == 0 ? s->footprint_m : none);
+    for (int i = 0; s->side > 1 && i < spots; i++) {
+        double sum = 0;
+        for (int k = 0; k < s->side * s->side; k++) {
+            x_m[k] = s->x_m[i] + (double)s->footprint_m[i] * ((k % s->side + 0.5) / s->side - 0.5);
+            y_m[k] = s->y_m[i] + (double)s->footprint_m[i] * ((k / s->side + 0.5) / s->side - 0.5);
+        }
+        landscape_textures(fine, s->land, s->side * s->side, class, x_m, y_m, none);
+        for (int k = 0; k < s->side * s->side; k++) sum += (double)fine[k];
+        s->out[i] = (float)(sum / (s->side * s->side));
+    }
+    bench_keep(s->out);
+}
+
+static void knob_texture(Bench *bench, const Landscape *land)
+{
+    enum { settings = 5 };
+    static const char *const name[settings] =
+        {"unfiltered", "2 x 2 places", "4 x 4 places", "8 x 8 places", "wavelengths faded out"};
+    static const int  side[settings] = {1, 2, 4, 8, 0};
+    static TextureSet set[settings], fine;
+    BenchWork         work[settings];
+    BenchPoint        point[settings] = {0};
+    for (int k = -1; k < settings; k++) {
+        TextureSet *s = k < 0 ? &fine : &set[k];
+        s->land = land, s->side = k < 0 ? (bench_quick(bench) ? 24 : most_side) : side[k];
+        for (int i = 0; i < spots; i++) {
+            s->x_m[i] = 800 * (random_uniform(43, 0, 0, (uint64_t)i) - 0.5);
+            s->y_m[i] = 800 * (random_uniform(43, 1, 0, (uint64_t)i) - 0.5);
+            s->footprint_m[i] = (float)(0.1 * pow(40, random_uniform(43, 2, 0, (uint64_t)i)));
+        }
+        ask_textures(s);
+        if (k < 0) continue;
+        double square = 0;
+        for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i])
+            * ((double)s->out[i] - (double)fine.out[i]);
+        work[k]  = (BenchWork){ask_textures, s, spots};
+        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / spots),
+                                .is_default = k == settings - 1};
+    }
+    bench_turn(bench, &(BenchKnob){"texture under a pixel", "terrain/landscape/texture.c",
+                                   "a pixel of 0.1 .. 4 m on grass", "%",
+                                   bench_quick(bench) ? "rms of brightness, 24 x 24 places"
+                                       : "rms of brightness, 48 x 48 places", 4},
+               work, point, settings);
+}
+
+Status bench_precision_land(Bench *bench)
+{
+    const Geodetic  origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
+    LandscapeConfig config = landscape_default_config();
+    LocalFrame      frame;
+    Landscape       land = {0};
+    config.half_width_m = 500, config.horizon_m = 2000;
+    bench_progress(bench, "invented ground");
+    Status status = local_frame_at(&frame, &origin);
+    if (status == STATUS_OK) status = knob_spacing(bench, &frame);
+    if (status == STATUS_OK) status = knob_reach(bench, &frame);
+    if (status == STATUS_OK) status = landscape_create(&land, &config, &frame, NULL, 0, NULL, 0);
+    if (status == STATUS_OK) {
+        knob_posts(bench);
+        knob_texture(bench, &land);
+    } else {
+        log_error("bench: precision: ground: %s", status_name(status));
+    }
+    landscape_destroy(&land);
+    return status;
+}

@@ -1,0 +1,11 @@
+/* sensor/bench/terrain/stability.h: this room's part of `pitviper bench stability`. */
+#ifndef SENSOR_BENCH_TERRAIN_STABILITY_H
+#define SENSOR_BENCH_TERRAIN_STABILITY_H
+
+#include "sensor/bench/bench.h"
+
+Status terrain_bench_stability(Bench *bench);
+/* sensor/bench/terrain/stability_ground.c: its second half. */
+Status terrain_bench_stability_ground(Bench *bench);
+
+#endif

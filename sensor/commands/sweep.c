@@ -1,0 +1,491 @@
+/* sensor/commands/sweep.c: `replay --sweep`: tries every variant, then runs one after another, each a process of its own. */
+#include "sensor/commands/sweep.h"
+
+#include "sensor/commands/contact_sheet.h"
+#include "sensor/node/frame_files.h"
+#include "sensor/node/host_run.h"
+#include "sensor/node/stop.h"
+#include "sensor/commands/sweep_file.h"
+#include "sensor/publish/coco_merge.h"
+#include "sensor/publish/variant_record.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { path_size = 4200, name_size = 16, words_size = 4096 };
+
+typedef struct Variant {
+    int  number;               /* of the file, 0 is the first */
+    char name[name_size];
+    char config_sha256[sha256_text_size];
+    char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones make the same run */
+} Variant;
+
+typedef struct SweepRun {
+    const Options *options;
+    Sweep          sweep;
+    Variant       *variant;
+    int            count, repeated;
+    char           log_sha256[sha256_text_size];
+    FILE          *manifest;
+    ContactSheet   sheet;
+    CocoMerge     *coco;
+    int            made, kept, failed;
+    bool           stopped;            /* by a signal, before the last */
+} SweepRun;
+
+/* How one variant ended. */
+typedef struct Outcome {
+    const char *status;
+    bool        has_run;
+    MadeRun     run;           /* run.json */
+    char        why[400];      /* of a failure */
+    double      seconds;
+} Outcome;
+
+/* ---- before the first ------------------------------------------------------------------------- */
+
+/* key=value of the axes, separated; as much as there is room for. */
+static void settings_words(char out[words_size], const Sweep *sweep, int number, const char *between)
+{
+    char   value[sweep_value_size];
+    size_t n = 0;
+    *out = 0;
+    for (int i = 0; i < sweep->axis_count && n < words_size; i++) {
+        sweep_value(value, sweep, number, i);
+        n += (size_t)snprintf(out + n, words_size - n, "%s%s=%s", i ? between : "", sweep->axis[i].key, value);
+    }
+}
+
+static int by_key(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
+
+/* By what its axes say, in the order of the keys: not by its number, nor by the order of the file. */
+static Status name_variant(char name[name_size], const Sweep *sweep, int number)
+{
+    char  *line[sweep_axes_max], value[sweep_value_size], sha256[sha256_text_size], *text = NULL;
+    size_t octets;
+    int    lines  = 0;
+    Status status = STATUS_OK;
+    for (; lines < sweep->axis_count && status == STATUS_OK; lines++) {
+        sweep_value(value, sweep, number, lines);
+        if (asprintf(&line[lines], "%s=%s\n", sweep->axis[lines].key, value) < 0) line[lines] = NULL;
+        if (!line[lines]) status = STATUS_NO_MEMORY;
+    }
+    FILE *all = status == STATUS_OK ? open_memstream(&text, &octets) : NULL;
+    if (all) {
+        qsort(line, (size_t)lines, sizeof *line, by_key);
+        for (int i = 0; i < lines; i++) fputs(line[i], all);
+        status = fclose(all) == 0 ? sha256_bytes(sha256, text, octets) : STATUS_NO_MEMORY;
+        if (status == STATUS_OK) snprintf(name, name_size, "v%.10s", sha256);
+    } else {
+        status = STATUS_NO_MEMORY;
+    }
+    free(text);
+    for (int i = 0; i < lines; i++) free(line[i]);
+    return status;
+}
+
+/* Options that are no settings, but change what is made: they belong to what a variant is. */
+static void write_again(FILE *file, const Options *o)
+{
+    char escaped[1024];
+    fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n# Again: pitviper replay LOG --config THIS");
+    for (int i = 0; i < o->given_count; i++) {
+        const OptionGiven *given = &o->given[i];
+        if (given->same_products) continue;
+        if (given->argument) text_escape(escaped, sizeof escaped, given->argument, strlen(given->argument));
+        fprintf(file, " %s%s%s", given->flag, given->argument ? " " : "", given->argument ? escaped : "");
+    }
+    fputc('\n', file);
+}
+
+/* All settings, as the file that the run reads. */
+static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const Options *o,
+                               const Config *config)
+{
+    *text      = NULL;
+    FILE *file = open_memstream(text, octets);
+    if (!file) return STATUS_NO_MEMORY;
+    write_again(file, o);
+    config_write_settings(file, config);
+    return fclose(file) == 0 ? sha256_bytes(sha256, *text, *octets) : STATUS_NO_MEMORY;
+}
+
+static Status try_variant(Variant *variant, const SweepRun *s)
+{
+    char   words[words_size], *text = NULL;
+    size_t octets;
+    Run   *run = calloc(1, sizeof *run); /* too large for a stack */
+    if (!run) return STATUS_NO_MEMORY;
+    run->options  = *s->options;
+    Status status = sweep_config(&run->options.config, &s->sweep, &s->options->config, variant->number);
+    if (status == STATUS_OK) status = config_check(&run->options.config);
+    if (status == STATUS_OK)
+        status = settings_text_of(&text, &octets, variant->settings_sha256, s->options, &run->options.config);
+    free(text);
+    if (status == STATUS_OK) status = run_prepare(run);
+    if (status == STATUS_OK) {
+        strcpy(variant->config_sha256, run->config_sha256);
+        status = name_variant(variant->name, &s->sweep, variant->number);
+    } else {
+        settings_words(words, &s->sweep, variant->number, ", ");
+        log_error("sweep: that is of variant %d, %s; nothing has been run", variant->number + 1, words);
+    }
+    free(run);
+    return status;
+}
+
+static int by_settings(const void *a, const void *b)
+{
+    const Variant *x = a, *y = b;
+    const int      settings = strcmp(x->settings_sha256, y->settings_sha256);
+    return settings ? settings : (x->number > y->number) - (x->number < y->number);
+}
+
+static int by_number(const void *a, const void *b)
+{
+    const Variant *x = a, *y = b;
+    return (x->number > y->number) - (x->number < y->number);
+}
+
+/* A list may say a value twice: the first of its variants is run. */
+static void drop_repeated(SweepRun *s)
+{
+    int kept = 0;
+    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_settings);
+    for (int i = 0; i < s->count; i++)
+        if (i == 0 || strcmp(s->variant[i].settings_sha256, s->variant[kept - 1].settings_sha256) != 0)
+            s->variant[kept++] = s->variant[i];
+    s->repeated = s->count - kept;
+    s->count    = kept;
+    qsort(s->variant, (size_t)s->count, sizeof *s->variant, by_number);
+}
+
+static Status prepare(SweepRun *s)
+{
+    const Options *o = s->options;
+    if (o->host_count > 1) {
+        log_error("sweep: --host is given several times; a sweep has one a variant: make exercise.host an axis");
+        return STATUS_BAD_VALUE;
+    }
+    Status status = sweep_read(&s->sweep, o->sweep, &o->config);
+    if (status != STATUS_OK) return status;
+    s->variant = calloc((size_t)s->sweep.count, sizeof *s->variant);
+    if (!s->variant) return STATUS_NO_MEMORY;
+    for (s->count = 0; s->count < s->sweep.count && status == STATUS_OK; s->count++) {
+        s->variant[s->count].number = s->count;
+        status = try_variant(&s->variant[s->count], s);
+    }
+    if (status == STATUS_OK) drop_repeated(s);
+    return status;
+}
+
+static bool is_run(const MadeRun *run, const SweepRun *s, const Variant *v)
+{
+    return strcmp(run->version, PITVIPER_VERSION) == 0 && strcmp(run->config_sha256, v->config_sha256) == 0 &&
+           strcmp(run->log_sha256, s->log_sha256) == 0;
+}
+
+static bool read_run(MadeRun *out, const char *folder, const char *name)
+{
+    char path[path_size + 32];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    return made_run_read(out, path);
+}
+
+static bool has_coco(const char *folder)
+{
+    char path[path_size + 32];
+    snprintf(path, sizeof path, "%s/coco.json", folder);
+    return access(path, R_OK) == 0;
+}
+
+/* A run of another log, other settings or another version in a variant's folder is no earlier try of this sweep. */
+static Status check_folders(const SweepRun *s)
+{
+    char   folder[path_size];
+    Status status = STATUS_OK;
+    for (int i = 0; i < s->count && status == STATUS_OK && !s->options->overwrite; i++) {
+        const Variant *v = &s->variant[i];
+        MadeRun        run;
+        snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
+        bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
+        made_run_free(&run);
+        if (!other && read_run(&run, folder, "variant.json")) { /* what no hash of pictures holds: the span, the planes */
+            other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
+            made_run_free(&run);
+        }
+        if (!other) continue;
+        log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder with --out, "
+                  "or --overwrite, which takes it away", folder);
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+static Status open_products(SweepRun *s)
+{
+    const Options *o = s->options;
+    char           path[path_size], title[256];
+    Status         status = sha256_file(s->log_sha256, o->log);
+    if (status == STATUS_OK) status = check_folders(s);
+    if (status == STATUS_OK) status = frame_files_folder(o->out);
+    if (status != STATUS_OK) return status;
+    const char *slash = strrchr(o->log, '/');
+    snprintf(title, sizeof title, "Sweep of %s: %d variants", slash ? slash + 1 : o->log, s->count);
+    status = sheet_begin(&s->sheet, o->out, title);
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
+    s->manifest = fopen(path, "w");
+    if (s->manifest) return coco_merge_open(&s->coco, o->out);
+    log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* ---- one variant ------------------------------------------------------------------------------ */
+
+/* A whole run of these settings; its run.json is then the outcome's. */
+static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
+{
+    MadeRun    variant, run;
+    const bool whole = read_run(&variant, folder, "variant.json") && is_run(&variant, s, v) &&
+                       strcmp(variant.settings_sha256, v->settings_sha256) == 0 && (!coco || has_coco(folder));
+    const bool kept  = read_run(&run, folder, "run.json") && whole && is_run(&run, s, v) && run.complete;
+    made_run_free(&variant);
+    if (kept) *outcome = (Outcome){.status = "kept", .has_run = true, .run = run};
+    else made_run_free(&run);
+    return kept;
+}
+
+static Status write_file(const char *path, const char *text, size_t octets)
+{
+    FILE      *file = fopen(path, "w");
+    const bool whole = file && fwrite(text, 1, octets, file) == octets;
+    if (file && fclose(file) == 0 && whole) return STATUS_OK;
+    log_error("sweep: cannot write %s: %s", path, strerror(errno));
+    return STATUS_IO;
+}
+
+/* A stop that this process was asked for is the child's too: it ends with its frame. A terminal has told it already. */
+static void wait_for(int *state, pid_t child)
+{
+    bool told = false;
+    while (waitpid(child, state, WNOHANG) == 0) {
+        if (stop_asked() && !told) kill(child, SIGTERM);
+        told = stop_asked();
+        nanosleep(&(struct timespec){0, 5000000}, NULL);
+    }
+}
+
+/* This program again, in a process of its own. Its exit code; -1: it ended otherwise. */
+static int run_child(const Options *o, const char *folder)
+{
+    char        settings[path_size + 32], said[path_size + 32];
+    const char *argv[options_variant_argv];
+    snprintf(settings, sizeof settings, "%s/settings.yaml", folder);
+    snprintf(said, sizeof said, "%s/log.txt", folder);
+    options_variant(argv, o, settings, folder);
+    posix_spawn_file_actions_t files;
+    pid_t                      child;
+    int                        state = -1;
+    if (posix_spawn_file_actions_init(&files) != 0) return -1;
+    const bool ready = posix_spawn_file_actions_addopen(&files, 0, "/dev/null", O_RDONLY, 0) == 0 &&
+                       posix_spawn_file_actions_addopen(&files, 1, said, O_WRONLY | O_CREAT | O_TRUNC, 0666) == 0 &&
+                       posix_spawn_file_actions_adddup2(&files, 1, 2) == 0;
+    if (ready && posix_spawn(&child, "/proc/self/exe", &files, NULL, (char *const *)argv, environ) == 0)
+        wait_for(&state, child);
+    posix_spawn_file_actions_destroy(&files);
+    return state != -1 && WIFEXITED(state) ? WEXITSTATUS(state) : -1;
+}
+
+/* The last error that the run logged. */
+static void find_reason(char *why, size_t size, const char *folder, int code)
+{
+    char   path[path_size + 32], *text = NULL;
+    size_t octets;
+    if (code >= 0) snprintf(why, size, "exit code %d", code);
+    else snprintf(why, size, "it ended by a signal, or could not be started");
+    snprintf(path, sizeof path, "%s/log.txt", folder);
+    if (access(path, R_OK) != 0 || text_read_file(&text, &octets, "sweep", path, 1 << 24) != STATUS_OK) return;
+    for (char *line = text, *end; *line; line = end) {
+        end = line + strcspn(line, "\n");
+        if (strncmp(line, "error: ", 7) == 0) text_escape(why, size, line + 7, (size_t)(end - line - 7));
+        end += *end == '\n';
+    }
+    free(text);
+}
+
+/* Its line of the manifest. NULL: out of memory. */
+static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome)
+{
+    char        text[sweep_axes_max][sweep_value_size];
+    const char *key[sweep_axes_max], *value[sweep_axes_max];
+    for (int i = 0; i < s->sweep.axis_count; i++) {
+        sweep_value(text[i], &s->sweep, v->number, i);
+        key[i]   = s->sweep.axis[i].key;
+        value[i] = text[i];
+    }
+    return variant_line(&(VariantRecord){
+        .name = v->name, .status = outcome->status, .error = outcome->why, .number = v->number + 1,
+        .setting_count = s->sweep.axis_count, .key = key, .value = value, .config_sha256 = v->config_sha256,
+        .settings_sha256 = v->settings_sha256, .log_sha256 = s->log_sha256, .seconds = outcome->seconds,
+        .run = outcome->has_run ? &outcome->run : NULL,
+    });
+}
+
+/* The settings file, which must read back as the settings that the variant was tried with. */
+static Status write_settings(const char *path, const Options *o, const Variant *v, const Config *config)
+{
+    char    sha256[sha256_text_size], *text = NULL, *again = NULL;
+    size_t  octets;
+    Config *back   = malloc(sizeof *back);
+    Status  status = back ? settings_text_of(&text, &octets, sha256, o, config) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) {
+        *back  = config_default();
+        status = write_file(path, text, octets);
+    }
+    if (status == STATUS_OK) status = config_read(back, path);
+    if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
+    if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
+        const char *key = config_difference(config, back);
+        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose "
+                  "another", path, key ? key : "a setting");
+        status = STATUS_BAD_VALUE;
+    }
+    free(back);
+    free(text);
+    free(again);
+    return status;
+}
+
+static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const Config *config)
+{
+    char path[path_size + 32];
+    *outcome = (Outcome){.status = "failed"};
+    if (frame_files_folder(folder) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its folder cannot be written");
+        return;
+    }
+    snprintf(path, sizeof path, "%s/variant.json", folder);
+    unlink(path);
+    snprintf(path, sizeof path, "%s/settings.yaml", folder);
+    if (write_settings(path, s->options, v, config) != STATUS_OK) {
+        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written, or not be read back");
+        return;
+    }
+    const double begun_s = wall_clock_s();
+    const int    code    = run_child(s->options, folder);
+    outcome->seconds     = wall_clock_s() - begun_s;
+    outcome->has_run     = code == 0 && read_run(&outcome->run, folder, "run.json");
+    if (stop_asked() && code != 0) {
+        *outcome = (Outcome){.status = "stopped", .seconds = outcome->seconds};
+        return;
+    }
+    if (outcome->has_run && is_run(&outcome->run, s, v)) outcome->status = "made";
+    else if (code == 0) snprintf(outcome->why, sizeof outcome->why, "run.json is not of these settings and this log");
+    else find_reason(outcome->why, sizeof outcome->why, folder, code);
+}
+
+static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
+{
+    char words[words_size], text[words_size + 600];
+    settings_words(words, &s->sweep, v->number, "\n");
+    snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
+    /* the frame in the middle of the run: mid-course, its target in view */
+    sheet_add(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text, *outcome->why);
+    settings_words(words, &s->sweep, v->number, ", ");
+    if (*outcome->why)
+        log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
+                  s->options->out, v->name);
+    else
+        log_say("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+               outcome->run.frames, outcome->seconds);
+    fflush(stdout);
+}
+
+/* Makes it, or keeps what is there. */
+static Status make_or_keep(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder)
+{
+    Config *config = malloc(sizeof *config);
+    Status  status = config ? sweep_config(config, &s->sweep, &s->options->config, v->number) : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && !is_kept(outcome, s, v, folder, config->publish.coco))
+        make_variant(outcome, s, v, folder, config);
+    free(config);
+    return status;
+}
+
+static Status one_variant(SweepRun *s, int place)
+{
+    const Variant *v = &s->variant[place];
+    char           folder[path_size], path[path_size + 32], part[path_size + 48];
+    Outcome        outcome;
+    if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder) return STATUS_BAD_VALUE;
+    Status status = make_or_keep(&outcome, s, v, folder);
+    if (status != STATUS_OK) return status;
+    s->stopped = strcmp(outcome.status, "stopped") == 0;
+    s->made += strcmp(outcome.status, "made") == 0;
+    s->kept += strcmp(outcome.status, "kept") == 0;
+    s->failed += strcmp(outcome.status, "failed") == 0;
+    tell(s, v, &outcome, place);
+
+    char *text = line_of(s, v, &outcome);
+    if (!text) status = STATUS_NO_MEMORY;
+    if (text && (fprintf(s->manifest, "%s\n", text) < 0 || fflush(s->manifest) != 0)) {
+        log_error("sweep: cannot write %s/manifest.jsonl: %s", s->options->out, strerror(errno));
+        status = STATUS_IO;
+    }
+    if (status == STATUS_OK && strcmp(outcome.status, "made") == 0) {
+        snprintf(path, sizeof path, "%s/variant.json", folder);
+        snprintf(part, sizeof part, "%s.part", path);
+        status = write_file(part, text, strlen(text));
+        if (status == STATUS_OK && rename(part, path) != 0) status = STATUS_IO;
+    }
+    free(text);
+    if (status == STATUS_OK && outcome.has_run && has_coco(folder)) status = coco_merge_add(s->coco, v->name);
+    made_run_free(&outcome.run);
+    return status;
+}
+
+static Status run_all(SweepRun *s)
+{
+    Status status = open_products(s);
+    if (status == STATUS_OK && s->repeated > 0)
+        log_say("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
+                s->repeated == 1 ? "is" : "are");
+    for (int i = 0; i < s->count && status == STATUS_OK && !s->stopped; i++) {
+        s->stopped = stop_asked();
+        if (!s->stopped) status = one_variant(s, i);
+    }
+    if (s->sheet.page) {
+        const Status ended = sheet_end(&s->sheet);
+        if (status == STATUS_OK) status = ended;
+    }
+    if (s->manifest && fclose(s->manifest) != 0 && status == STATUS_OK) status = STATUS_IO;
+    const Status merged = coco_merge_close(s->coco, status == STATUS_OK);
+    if (status == STATUS_OK) status = merged;
+    if (s->stopped)
+        log_warn("sweep: stopped with %d of %d variants made; the same command goes on from there", s->made + s->kept, s->count);
+    if (status == STATUS_OK)
+        log_say("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+               s->kept, s->failed);
+    return status;
+}
+
+int sweep_replay(const Options *options)
+{
+    SweepRun     s      = {.options = options};
+    const Status tried  = prepare(&s);
+    const Status status = tried == STATUS_OK ? run_all(&s) : tried;
+    if (status == STATUS_NO_MEMORY) log_error("sweep: out of memory");
+    free(s.variant);
+    sweep_close(&s.sweep);
+    if (tried == STATUS_BAD_VALUE) return 2;
+    if (status == STATUS_OK && s.stopped) return stop_exit_code();
+    return status != STATUS_OK || s.failed > 0;
+}

@@ -1,8 +1,0 @@
-/* sensor/node/inspect.h: `pitviper inspect LOG`: who was there, when, what they did, what was malformed. */
-#ifndef SENSOR_NODE_INSPECT_H
-#define SENSOR_NODE_INSPECT_H
-
-/* argv[0] = "inspect". 0: done; 1: the log cannot be read or the output not written; 2: usage. */
-int inspect_command(int argc, char **argv);
-
-#endif

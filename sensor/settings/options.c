@@ -1,0 +1,363 @@
+/* sensor/settings/options.c: the options of replay and run: their table, their help, how a line of them is read, and how
+ * those of a sweep reach its variants. */
+#include "sensor/settings/options.h"
+
+#include "sensor/commands/next_option.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
+enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SWEEP, HELP, KEY };
+
+static const char *const names[] = {"replay", "run"};
+
+/* In the order of the help. key: the setting that the option is short for; of one without an argument with its value.
+ * What changes settings alone reaches the variants of a sweep in their settings file (in_settings), and all else that is not
+ * the sweep's own (of_sweep) as it was given, on their command lines. */
+static const struct Row {
+    const char *name;
+    int         what, where;
+    const char *key, *argument, *help;
+} rows[] = {
+    {"address", KEY, IN_RUN, "network.address", "ADDRESS",
+     "of the exercise, in numbers: a multicast group, a broadcast or a host\n(default: hear all, send to 255.255.255.255)"},
+    {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
+    {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
+    {"out", OUT, IN_BOTH, NULL, "DIR", "where the products go (default: out)"},
+    {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL, "let go what an earlier run left in DIR, or a recording of that name; otherwise\nit is kept and nothing is done"},
+    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "any of optical,mwir,lwir,radar (default: all)"},
+    {"size", SIZE, IN_BOTH, NULL, "WxH", "picture size in pixels (default: 720x486)"},
+    {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
+     "frames a second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
+    {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
+    {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
+     "only this span: exercise time in seconds as `pitviper inspect` shows it, or\n+12: after the recording's beginning, -5: before its end; frames keep the\nnumbers they have in the whole"},
+    {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
+     "these frames alone, by their numbers; each is what it is in the whole,\n"
+     "but for a display's automatic level (detector.agc_s)"},
+    {"host", HOST, IN_REPLAY, NULL, "ID",
+     "site:application:entity that carries the sensor, or observer; may be\n"
+     "given several times; munition, alone: those that fly, guided ones\nfirst, one after the other"},
+    {"host", HOST, IN_RUN, NULL, "ID",
+     "site:application:entity that carries the sensor, now or later; observer;\n"
+     "munition: those that appear, guided ones first, one after the other\n(default: chosen)"},
+    {"samples", KEY, IN_BOTH, "sensor.samples", "N", "N x N rays a pixel (default: 1)"},
+    {"config", CONFIG, IN_BOTH, NULL, "FILE", "or -c: a YAML file of settings; options here override it"},
+    {"set", SET, IN_BOTH, NULL, "KEY=VALUE", "one setting, as the printed choices name them; may be given several\ntimes"},
+    {"threads", THREADS, IN_BOTH, NULL, "N", "default: one for each processor"},
+    {"seed", KEY, IN_BOTH, "seed", "N", "of everything random (default: 1)"},
+    {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds a second, or max (default: max)"},
+    {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
+     "use only what had been received by each frame and by each choice: the\nframes that `pitviper run` makes of it, to the bit"},
+    {"for", FOR, IN_RUN, NULL, "S", "stop after so many seconds (default: never)"},
+    {"frames", FRAMES, IN_RUN, NULL, "N", "stop after so many frames (default: never)"},
+    {"record", KEY, IN_RUN, "record.path", "LOG", "all that is heard, into a pcapng file that `replay --causal` shows again"},
+    {"no-skip", NO_SKIP, IN_BOTH, NULL, NULL, "compute what is known to change nothing; the pictures stay the same to\nthe bit"},
+    {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
+    {"no-png", KEY, IN_BOTH, "publish.png=false", NULL, "no display pictures, only EXR"},
+    {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no pictures in files: truth.jsonl and run.json alone"},
+    {"planes", KEY, IN_BOTH, "publish.planes", "LIST",
+     "truth per pixel in files: none, or any of range,entity,part,material,\ntemperature,normal (default: all); truth.jsonl is written in any case"},
+    {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
+     "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
+    {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},
+    {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
+     "one run for each combination of the settings in a YAML file, in folders\nof DIR, with manifest.jsonl and manifest.html; again: goes on"},
+    {"help", HELP, IN_BOTH, NULL, NULL, "this"},
+};
+enum { row_count = sizeof rows / sizeof rows[0] };
+
+const char *options_command(const Options *o) { return names[o->command]; }
+
+/* ---- help ------------------------------------------------------------------------------------ */
+
+static void print_help(CommandName command)
+{
+    enum { column = 21 };
+    static const char *const about[] = {
+        "usage: pitviper replay LOG [options]\n"
+        "\n"
+        "Shows what the seeker of the missile in a recorded DIS exercise (pcap, pcapng) saw: pictures per band,\n"
+        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key. LOG may be\n"
+        "compressed (gzip, zstd, bzip2, xz). Stopped by Ctrl-C (exit code 130) or SIGTERM (143) it finishes its frame, and\n"
+        "run.json says so. A video of a band, at --rate 5:\n"
+        "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
+        "usage: pitviper run [-c FILE] [options]\n"
+        "\n"
+        "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
+        "(exercise.listen_s), and shows frame after frame until it is told to stop (Ctrl-C). It sends nothing unless asked\n"
+        "(--set publish.dis=sensor, or truth). What --record kept shows the same pictures again, to the bit. It says why it\n"
+        "is silent, once when the reason changes. It ends with 1 when it made no frame, or of what it was told to publish\n"
+        "nothing could be sent or written, and says why.\n\n"};
+    fputs(about[command], stdout);
+    for (int i = 0; i < row_count; i++) {
+        const struct Row *row = &rows[i];
+        char              left[40];
+        if (!(row->where >> command & 1)) continue;
+        snprintf(left, sizeof left, "  --%s%s%s%s", row->name, row->argument ? " " : "",
+                 row->argument ? row->argument : "", row->help ? "" : ",");
+        if (!row->help) { /* a pair on one line */
+            printf("%s", left);
+            continue;
+        }
+        const bool paired = i > 0 && !rows[i - 1].help && rows[i - 1].where == row->where;
+        if (paired) printf("%-*s", column - (int)strlen("  --from S,"), left + 1);
+        else printf("%-*s", column, left);
+        for (const char *at = row->help; *at;) {
+            const int n = (int)strcspn(at, "\n");
+            printf("%*s%.*s\n", at == row->help ? 0 : column, "", n, at);
+            at += n + (at[n] == '\n');
+        }
+    }
+}
+
+/* ---- one option ------------------------------------------------------------------------------ */
+
+static bool set_size(Config *config, const char *text)
+{
+    char        width[16];
+    const char *x = strchr(text, 'x');
+    if (!x || x == text || x - text >= (long)sizeof width) {
+        log_error("options: --size: '%s' is not WIDTHxHEIGHT, for example 720x486", text);
+        return false;
+    }
+    memcpy(width, text, (size_t)(x - text));
+    width[x - text] = 0;
+    return config_set(config, "sensor.width_px", width, "--size") == STATUS_OK &&
+           config_set(config, "sensor.height_px", x + 1, "--size") == STATUS_OK;
+}
+
+static bool set_pair(Config *config, const char *text, const char *source)
+{
+    char        key[64];
+    const char *equals = strchr(text, '=');
+    if (!equals || equals - text >= (long)sizeof key) {
+        log_error("options: --set: '%s' is not KEY=VALUE, for example sensor.hfov_deg=3", text);
+        return false;
+    }
+    memcpy(key, text, (size_t)(equals - text));
+    key[equals - text] = 0;
+    return config_set(config, key, equals + 1, source) == STATUS_OK;
+}
+
+static bool whole(int *out, const char *name, const char *text, long long low, long long high)
+{
+    long long  number;
+    const bool ok = text_to_long(&number, text) && number >= low && number <= high;
+    if (ok) *out = (int)number;
+    else log_error("options: --%s: '%s' is not a whole number in %lld .. %lld", name, text, low, high);
+    return ok;
+}
+
+static bool add_host(Options *o, const char *text)
+{
+    if (o->host_count == (o->command == COMMAND_RUN ? 1 : options_hosts_max)) {
+        log_error(o->command == COMMAND_RUN ? "options: --host: a live node has %d; start another node for another"
+                                            : "options: --host: more than %d hosts", o->host_count);
+        return false;
+    }
+    o->host[o->host_count++] = text;
+    return true;
+}
+
+static int compare_ints(const void *a, const void *b)
+{
+    const int x = *(const int *)a, y = *(const int *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* 3,7,12: in order, each once. */
+static bool parse_only(Options *o, const char *text)
+{
+    char      one[16];
+    long long number;
+    o->only_count = 0;
+    for (const char *at = text; at;) {
+        const size_t length = strcspn(at, ",");
+        snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), at);
+        if (!text_to_long(&number, one) || number < 0 || number > 999999 || o->only_count == options_only_max) {
+            log_error("options: --only: '%s' is not a list of at most %d frame numbers in 0 .. 999999, for example "
+                      "3,7,12", text, options_only_max);
+            return false;
+        }
+        o->only[o->only_count++] = (int)number;
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    qsort(o->only, (size_t)o->only_count, sizeof *o->only, compare_ints);
+    int kept = 1;
+    for (int i = 1; i < o->only_count; i++)
+        if (o->only[i] != o->only[kept - 1]) o->only[kept++] = o->only[i];
+    o->only_count = kept;
+    return true;
+}
+
+static bool take(Options *o, const struct Row *row, const char *text)
+{
+    char source[24];
+    bool ok = true;
+    snprintf(source, sizeof source, "--%s", row->name);
+    switch (row->what) {
+    case KEY:
+        if (!row->argument) return set_pair(&o->config, row->key, source);
+        return config_set(&o->config, row->key, text, source) == STATUS_OK;
+    case OUT: o->out = text; return true;
+    case SIZE: return set_size(&o->config, text);
+    case SET: return set_pair(&o->config, text, source);
+    case HOST: return add_host(o, text);
+    case THREADS: return whole(&o->threads, row->name, text, 1, 256);
+    case FRAMES: return whole(&o->frames, row->name, text, 1, 1000000000);
+    case SPEED:
+        if (strcmp(text, "max") == 0) o->speed = INFINITY;
+        else ok = text_to_double(&o->speed, text) && o->speed >= 1e-3 && o->speed <= 1e6;
+        if (!ok) log_error("options: --speed: '%s' is neither `max` nor a number in 0.001 .. 1000000", text);
+        return ok;
+    case FOR:
+        ok = text_to_double(&o->for_s, text) && o->for_s > 0 && o->for_s <= 1e8;
+        if (!ok) log_error("options: --for: '%s' is not a number of seconds above 0", text);
+        return ok;
+    case NO_SKIP: o->no_skip = true; return true;
+    case ISA:
+        ok = strcmp(text, "avx2") == 0 || strcmp(text, "sse4.2") == 0 || strcmp(text, "avx512") == 0;
+        if (!ok) log_error("options: --isa: '%s' is not avx2, sse4.2 or avx512", text);
+        o->isa = text;
+        return ok;
+    case ONLY: return parse_only(o, text);
+    case SWEEP: o->sweep = text; return true;
+    case OVERWRITE: o->overwrite = true; return true;
+    default: return true; /* CONFIG was read before */
+    }
+}
+
+/* ---- a sweep's variants ---------------------------------------------------------------------- */
+
+static bool in_settings(const struct Row *row)
+{
+    return row->what == KEY || row->what == SIZE || row->what == SET || row->what == CONFIG || row->what == HOST;
+}
+
+static bool of_sweep(const struct Row *row)
+{
+    return row->what == OUT || row->what == OVERWRITE || row->what == SWEEP || row->what == HELP;
+}
+
+/* To the bit, whatever they say: a variant that was made with another is kept. */
+static bool same_products(const struct Row *row)
+{
+    return row->what == THREADS || row->what == SPEED || row->what == NO_SKIP || row->what == ISA;
+}
+
+/* What a variant is told on its command line. A new option is among it until its row says otherwise. */
+static bool note_given(Options *o, const struct Row *row, const char *text)
+{
+    if (in_settings(row) || of_sweep(row)) return true;
+    if (o->given_count == options_given_max) {
+        log_error("options: --%s: the %dth option that is no setting; there is room for %d", row->name,
+                  options_given_max + 1, options_given_max);
+        return false;
+    }
+    OptionGiven *given = &o->given[o->given_count++];
+    *given = (OptionGiven){.argument = row->argument ? text : NULL, .same_products = same_products(row)};
+    snprintf(given->flag, sizeof given->flag, "--%s", row->name);
+    return true;
+}
+
+void options_variant(const char *argv[options_variant_argv], const Options *o, const char *settings, const char *out)
+{
+    const char *const fixed[] = {"pitviper", names[o->command], "--config", settings, "--out", out, "--overwrite"};
+    int               n       = 0;
+    for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) argv[n++] = fixed[i];
+    for (int i = 0; i < o->given_count; i++) {
+        argv[n++] = o->given[i].flag;
+        if (o->given[i].argument) argv[n++] = o->given[i].argument;
+    }
+    argv[n++] = "--";
+    argv[n++] = o->log;
+    argv[n]   = NULL;
+}
+
+/* ---- the line -------------------------------------------------------------------------------- */
+
+int options_count(void) { return row_count; }
+
+bool options_option(const char **name, bool *argument, CommandName command, int i)
+{
+    *name     = rows[i].name;
+    *argument = rows[i].argument != NULL;
+    return rows[i].where >> command & 1;
+}
+
+static void list_options(struct option list[row_count + 1], CommandName command)
+{
+    int n = 0;
+    for (int i = 0; i < row_count; i++)
+        if (rows[i].where >> command & 1)
+            list[n++] = (struct option){rows[i].name, rows[i].argument != NULL, NULL, KEY + 1 + i};
+    list[n] = (struct option){NULL, 0, NULL, 0};
+}
+
+static const struct Row *row_of(int option)
+{
+    for (int i = 0; option == 'c' && i < row_count; i++)
+        if (rows[i].what == CONFIG) return &rows[i];
+    return option > KEY ? &rows[option - KEY - 1] : NULL;
+}
+
+/* The configuration file first, whatever its place on the line: options override it. */
+static Status read_config(Config *config, const struct option *list, int argc, char **argv)
+{
+    Status status = STATUS_OK;
+    char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
+    if (!copy) return STATUS_NO_MEMORY;
+    memcpy(copy, argv, (size_t)argc * sizeof *copy);
+    optind = 0; /* start anew */
+    opterr = 0; /* the pass over all options speaks */
+    for (int option; status == STATUS_OK && (option = getopt_long(argc, copy, "c:", list, NULL)) != -1;) {
+        const struct Row *row = row_of(option);
+        if (row && row->what == CONFIG) status = config_read(config, optarg);
+    }
+    free(copy);
+    return status;
+}
+
+int options_parse(Options *o, CommandName command, int argc, char **argv)
+{
+    struct option list[row_count + 1];
+    const char   *name = names[command];
+    list_options(list, command);
+    *o = (Options){.command = command, .out = "out", .isa = "avx2", .threads = thread_processors(), .speed = INFINITY,
+                   .for_s = INFINITY, .config = config_default()};
+    const Status status = read_config(&o->config, list, argc, argv);
+    if (status == STATUS_NO_MEMORY) log_error("%s: out of memory", name);
+    if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
+    optind = 0;
+    for (int option; (option = next_option(argc, argv, "c:", list)) != -1;) {
+        const struct Row *row = row_of(option); /* NULL: getopt has said which */
+        if (row && row->what == HELP) {
+            print_help(command);
+            return 1 + 0;
+        }
+        if (!row || !take(o, row, optarg) || !note_given(o, row, optarg)) {
+            fprintf(stderr, "see `pitviper %s --help`\n", name);
+            return 1 + 2;
+        }
+    }
+    if (optind + (command == COMMAND_REPLAY) != argc) {
+        if (command == COMMAND_RUN)
+            log_error("options: '%s' is no option; a node listens, it is `replay` that takes a log", argv[optind]);
+        fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
+                command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
+        return 1 + 2;
+    }
+    if (command == COMMAND_REPLAY) o->log = argv[optind];
+    if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
+    if (o->host_count == 1) o->host_count = 0; /* one host is a setting like any other */
+    if (command == COMMAND_RUN && (strcmp(o->config.publish.pairs, "off") != 0 || o->config.publish.coco)) {
+        log_error("options: publish.%s: is made by `replay`; --record what is heard, and replay it --causal",
+                  o->config.publish.coco ? "coco" : "pairs");
+        return 1 + 2;
+    }
+    if (o->sweep) return 0; /* its axes are settings too: what must go together is checked of each variant */
+    return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
+}

@@ -1,0 +1,19 @@
+/* sensor/settings/plane_choice.h: which planes of truth go into files (publish.planes, --planes). All are computed in any case:
+ * truth.jsonl, coco.json and the hash of a frame say the same whatever is kept. */
+#ifndef SENSOR_SETTINGS_PLANE_CHOICE_H
+#define SENSOR_SETTINGS_PLANE_CHOICE_H
+
+#include "pitviper.h"
+
+typedef enum PlaneChoice {
+    PLANE_RANGE, PLANE_ENTITY, PLANE_PART, PLANE_MATERIAL, PLANE_TEMPERATURE, PLANE_NORMAL, PLANE_CHOICES
+} PlaneChoice;
+
+enum { planes_none = 0, planes_all = (1 << PLANE_CHOICES) - 1 };
+
+extern const char *const plane_choice_name[PLANE_CHOICES];
+
+/* all, none, or a list of names with commas, as a set of 1 << PlaneChoice. False: it is neither. */
+bool plane_choice_parse(unsigned *planes, const char *text);
+
+#endif

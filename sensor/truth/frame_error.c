@@ -1,0 +1,142 @@
+#include "sensor/truth/frame_error.h"
+
+#include "dis/enumerations.h"
+#include "render/frame/error_budget.h"
+
+/* Rows of a target that are looked at, at most about so many pixels. */
+enum { most_px = 4096 };
+
+/* Of one target in one plane: squared differences of neighbours, one of them at least the target's, less what the ground
+ * of those pixels differs by itself, as it does about it; and of its pixels to the mean about it. Sums over pixels. */
+typedef struct Outline {
+    double steps, apart;
+} Outline;
+
+static double square(double x) { return x * x; }
+
+/* How much of a pixel is the target's. */
+static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, size_t at)
+{
+    if (px->small && p->covered && p->covered[at] > 0) return (double)p->covered[at];
+    return p->entity[at] == id;
+}
+
+typedef struct Steps {
+    double on, ground, ground_pairs, ground_seen; /* squares with the target and without; squared shares of ground with */
+} Steps;
+
+static void add_step(Steps *s, double share_a, double share_b, double step)
+{
+    if (share_a > 0 || share_b > 0) {
+        s->on += square(step);
+        s->ground_seen += square(1 - share_a) + square(1 - share_b);
+    } else {
+        s->ground += square(step);
+        s->ground_pairs++;
+    }
+}
+
+static Outline outline_of(const Picture *p, const TargetPixels *px, int index, const float *value)
+{
+    const int box[4] = {px->box[0] > 0 ? px->box[0] - 1 : 0, px->box[1] > 0 ? px->box[1] - 1 : 0,
+                        px->box[2] < p->width ? px->box[2] + 1 : p->width, px->box[3] < p->height ? px->box[3] + 1 : p->height};
+    const int      area = (box[2] - box[0]) * (box[3] - box[1]), stride = 1 + area / most_px;
+    const uint32_t id = (uint32_t)index + 1;
+    Outline        o = {0, 0};
+    Steps          s = {0, 0, 0, 0};
+    double         ring = 0, ring_px = 0, sum = 0, sum_2 = 0, on_px = 0;
+    for (int y = box[1]; y < box[3]; y += stride)
+        for (int x = box[0]; x < box[2]; x++) {
+            const size_t at = (size_t)y * (size_t)p->width + (size_t)x, right = at + 1, below = at + (size_t)p->width;
+            const double on = share_of(p, px, id, at);
+            if (on > 0) sum += value[at], sum_2 += square(value[at]), on_px++;
+            else ring += value[at], ring_px++;
+            if (x + 1 < p->width) add_step(&s, on, share_of(p, px, id, right), (double)value[right] - (double)value[at]);
+            if (y + 1 < p->height) add_step(&s, on, share_of(p, px, id, below), (double)value[below] - (double)value[at]);
+        }
+    const double mean = ring_px > 0 ? ring / ring_px : on_px > 0 ? sum / on_px : 0;
+    o.apart = fmax(sum_2 - 2 * mean * sum + mean * mean * on_px, 0);
+    o.steps = fmax(s.on - (s.ground_pairs > 0 ? 0.5 * s.ground / s.ground_pairs * s.ground_seen : 0), 0) * stride;
+    o.apart *= stride;
+    return o;
+}
+
+/* Squared error over the picture of showing it `way` pixels off: by the square of the way below a pixel, as what is swept
+ * beyond, and at most as if it were somewhere else altogether. */
+static double shifted(const Outline *o, double way_px)
+{
+    const double swept = o->steps * way_px * way_px / (2 + 0.5 * pi_rad * way_px), most = 2 * o->apart;
+    return swept > 0 && most > 0 ? swept * most / (swept + most) : 0;
+}
+
+static Band band_of(int plane)
+{
+    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+}
+
+/* How far the ground under four places of it, half its radius from its middle, may be from where it should be shifts and
+ * leans who stands on it. */
+static double ground_way_m(const World *world, const SnapshotEntity *e, const Model *model)
+{
+    static const double place[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+    double       p_enu[3], turn_enu[3], rise_m[4];
+    const double half_m = 0.5 * model->radius_m;
+    if (!world->landscape || e->type.kind != dis_kind_platform || e->type.domain != dis_domain_land) return 0;
+    enu_from_ecef(p_enu, &world->frame, e->p_ecef);
+    for (int k = 0; k < 4; k++)
+        if (!error_budget_coarser(turn_enu, &rise_m[k], &world->landscape->elevation, p_enu[0] + half_m * place[k][0],
+                                  p_enu[1] + half_m * place[k][1]))
+            return 0;
+    /* as much as the places rise is what its middle rises by, and its outline, as far from there, leans by */
+    const double mean_m = 0.25 * (rise_m[0] + rise_m[1] + rise_m[2] + rise_m[3]);
+    const double lean_m = 0.5 * hypot(rise_m[0] - rise_m[1], rise_m[2] - rise_m[3]);
+    return hypot(mean_m, lean_m);
+}
+
+bool frame_error(FrameError *out, const Picture *picture, const World *world, const Snapshot *snapshot,
+                 const RenderRequest *request, const Target *target, int targets, double sag_m, bool clamped)
+{
+    const ErrorBudget *budget = picture->budget;
+    const double       pixels = (double)picture->width * picture->height;
+    double             sums[BAND_COUNT][error_sources] = {{0}};
+    int                planes[BAND_COUNT] = {0};
+    if (!budget || !picture->entity || !picture->target) return false;
+    for (int k = 0; k < picture_plane_count; k++) {
+        const float *value = picture_plane(picture, k);
+        const Band   b = band_of(k);
+        double       drift = 0, facets = 0;
+        if (!value || !(budget->mean[k] > 0)) continue;
+        for (int i = 0; i < targets; i++) {
+            const SnapshotEntity *e = &snapshot->entity[target[i].index];
+            const TargetPixels   *px = &picture->target[target[i].index];
+            if (!(px->visible > 0) || !(target[i].range_m > 0)) continue;
+            const double  per_m = request->view.focal_px / target[i].range_m;
+            const Model  *model = catalog_model(world->catalog, e->model);
+            const Outline o = outline_of(picture, px, target[i].index, value);
+            /* of a way in space two of three directions show; a turn moves the outline by half the radius, in the mean */
+            const double way_m = hypot(sqrt(2.0 / 3) * e->drift_m, 0.5 * model->radius_m * e->drift_rad);
+            drift += shifted(&o, way_m * per_m);
+            const double ground_m = clamped ? ground_way_m(world, e, model) : 0;
+            facets += shifted(&o, hypot(2.0 / 3 * sag_m, ground_m) * per_m);
+        }
+        const double square_of_mean = square(budget->mean[k]);
+        const double squares[ERROR_TOTAL] = {square(budget->sampling[k]), square(budget->level_of_detail[k]) + facets / pixels,
+                                             square(budget->tables[k]), drift / pixels};
+        for (int s = 0; s < ERROR_TOTAL; s++) {
+            sums[b][s] += squares[s] / square_of_mean;
+            sums[b][ERROR_TOTAL] += squares[s] / square_of_mean;
+        }
+        planes[b]++;
+    }
+    for (int b = 0; b < BAND_COUNT; b++) {
+        const int          plane = b == BAND_MWIR ? picture_mwir : picture_lwir;
+        const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : world->planck_lwir;
+        for (int s = 0; s < error_sources; s++) {
+            out->share[b][s]  = planes[b] > 0 ? sqrt(sums[b][s] / planes[b]) : NAN;
+            out->kelvin[b][s] = planes[b] > 0 && (b == BAND_MWIR || b == BAND_LWIR)
+                                    ? error_budget_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
+                                    : NAN;
+        }
+    }
+    return true;
+}

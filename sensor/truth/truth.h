@@ -1,0 +1,58 @@
+/* sensor/truth/truth.h: what an automatic target recogniser is trained and judged by: per target and frame.
+ *
+ * A value that was not computed is NaN here and absent in the files. */
+#ifndef SENSOR_TRUTH_TRUTH_H
+#define SENSOR_TRUTH_TRUTH_H
+
+#include "render/frame/render.h"
+
+/* The target's pixels are those whose truth it is. A small one (TargetPixels.small) has its own samples instead, and a
+ * ring of pixels that no small target touches. */
+typedef struct TargetBand {
+    double contrast_k;      /* mean of the target's pixels less mean of a ring of its own area, apparent K */
+    double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
+    double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
+    double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
+                             * times the share it has of the pixel it fills most */
+    double intensity_w_sr;  /* in-band, at the aperture: its own radiance by the area it fills, at its range */
+    double intensity_error_w_sr; /* rms of the sampling; of a small target, in a frame with a budget */
+    double veil_transmittance; /* of smoke and dust before it, mean over its visible pixels; 1: none */
+} TargetBand;
+
+typedef struct Target {
+    int    index;                           /* of the snapshot */
+    double range_m, closing_mps, aspect_rad, depression_rad;
+    double los_az_rad, los_el_rad;          /* from the host, in its own ENU */
+    double los_rate_rps[2];                 /* inertial; camera right and up */
+    double boresight_error_rad[2];          /* camera right and up */
+    double pixels;                          /* area, parts of pixels too */
+    double visible_fraction;                /* of its area on the image; 1: an occluder is not named; NaN: no sample */
+    int    box[4];                          /* visible pixels; empty: all 0 */
+    double amodal_box[4];                   /* of its vertices, not clipped to the image */
+    const char *occluder;                   /* "ground", "entity" with occluder_index >= 0, or NULL */
+    int    occluder_index;
+    TargetBand band[BAND_COUNT];
+} Target;
+
+/* Hidden share of a target below which nothing occludes it: what a fraction of two decimals shows, and what the tracks
+ * of vehicles on uneven ground are in it (up to 0.9 % in etc/scenarios/demo.yaml). */
+static const double truth_occluded_least = 0.01;
+
+/* What noise the detector adds, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
+typedef struct TruthNoise {
+    double optical_w_m2_sr, netd_mwir_k, netd_lwir_k;
+} TruthNoise;
+
+/* The eye, as line of sight and its rate need it. */
+typedef struct EyeState {
+    double p_ecef[3], v_ecef_mps[3];
+    double r_ecef_from_cam[9];
+    int    host_index; /* never a target; -1 */
+} EyeState;
+
+/* Targets in the field of view, by snapshot index. out: capacity snapshot->count. Returns the count.
+ * The picture must hold truth planes. */
+int truth_targets(Target *out, const Picture *picture, const World *world, const Snapshot *snapshot,
+                  const RenderRequest *request, const EyeState *eye, const TruthNoise *noise);
+
+#endif

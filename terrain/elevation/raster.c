@@ -1,0 +1,461 @@
+/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what to do. */
+#include "terrain/elevation/raster.h"
+
+#include <strings.h>
+#include <cpl_conv.h>
+#include <dirent.h>
+#include <errno.h>
+#include <gdal.h>
+#include <ogr_srs_api.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+
+/* most_side: of a sheet, px; sheets lie within 1e8 px of the first, so that sums stay in an int */
+enum { most_sheets = 4096, path_size = 4096, most_side = 100000000 };
+
+static pthread_once_t once = PTHREAD_ONCE_INIT;
+
+static void register_drivers(void) { GDALAllRegister(); }
+
+/* GDAL's reason for the last failure, or a word of ours. */
+static const char *reason(const char *else_text)
+{
+    const char *text = CPLGetLastErrorMsg();
+    return text && *text ? text : else_text;
+}
+
+static void quiet(void)
+{
+    pthread_once(&once, register_drivers);
+    CPLPushErrorHandler(CPLQuietErrorHandler);
+    CPLErrorReset();
+}
+
+static void loud(void) { CPLPopErrorHandler(); }
+
+/* ---- one sheet ------------------------------------------------------------------------------ */
+
+/* What decides whether sheets share a grid. */
+typedef struct Opened {
+    double transform[6];
+    int    width, height, bands;
+    bool   ellipsoidal, bytes, whole;
+    double metres_per_unit;
+    OGRSpatialReferenceH crs;
+} Opened;
+
+/* As GDAL hands them on from files; 0: not a length that we know. */
+static double metres_of_unit(const char *unit)
+{
+    static const struct {
+        const char *name;
+        double      metres;
+    } units[] = {{"", 1}, {"m", 1}, {"metre", 1}, {"metres", 1}, {"meter", 1}, {"meters", 1},
+                 {"dm", 0.1}, {"decimetre", 0.1}, {"decimeter", 0.1}, {"cm", 0.01}, {"centimetre", 0.01}, {"centimeter", 0.01},
+                 {"km", 1000}, {"kilometre", 1000}, {"kilometer", 1000}, {"ft", 0.3048}, {"foot", 0.3048}, {"feet", 0.3048},
+                 {"us-ft", 1200.0 / 3937}, {"ftUS", 1200.0 / 3937}, {"US survey foot", 1200.0 / 3937}};
+    for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+        if (strcasecmp(unit, units[i].name) == 0) return units[i].metres;
+    return 0;
+}
+
+static Status describe(Opened *out, GDALDatasetH file, const char *path, const char *key)
+{
+    Opened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file), .bands = GDALGetRasterCount(file)};
+    const OGRSpatialReferenceH crs = GDALGetSpatialRef(file);
+    double inverse[6];
+    if (o.bands < 1 || o.width < 2 || o.height < 2) {
+        log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands, o.width,
+                  o.height);
+        return STATUS_BAD_VALUE;
+    }
+    if (o.width > most_side || o.height > most_side) {
+        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key, path,
+                  o.width, o.height, (int)most_side);
+        return STATUS_BAD_VALUE;
+    }
+    if (!crs) {
+        log_error("%s: %s does not say its coordinate system; gdal_edit.py -a_srs EPSG:nnnn %s", key, path, path);
+        return STATUS_BAD_VALUE;
+    }
+    if (GDALGetGeoTransform(file, o.transform) != CE_None || !GDALInvGeoTransform(o.transform, inverse)) {
+        log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path, path);
+        return STATUS_BAD_VALUE;
+    }
+    o.crs             = OSRClone(crs);
+    o.ellipsoidal     = !OSRIsCompound(crs) && OSRGetAxesCount(crs) == 3;
+    o.bytes           = GDALGetRasterDataType(GDALGetRasterBand(file, 1)) == GDT_Byte;
+    o.whole           = GDALDataTypeIsInteger(GDALGetRasterDataType(GDALGetRasterBand(file, 1)));
+    o.metres_per_unit = metres_of_unit(GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+    if (o.metres_per_unit == 0) {
+        if (!o.bytes) /* codes and photographs have no length */
+            log_warn("%s: %s: its unit is '%s', which is not a length that is known here; taken as metres", key, path,
+                     GDALGetRasterUnitType(GDALGetRasterBand(file, 1)));
+        o.metres_per_unit = 1;
+    }
+    OSRStripVertical(o.crs);
+    OSRDemoteTo2D(o.crs, NULL);
+    OSRSetAxisMappingStrategy(o.crs, OAMS_TRADITIONAL_GIS_ORDER);
+    *out = o;
+    return STATUS_OK;
+}
+
+/* ---- grids ---------------------------------------------------------------------------------- */
+
+static bool same_grid(const Raster *raster, const Opened *o, double at_px[2])
+{
+    const double *a = raster->crs_from_px, *b = o->transform;
+    if (!OSRIsSame(raster->crs, o->crs) || raster->ellipsoidal != o->ellipsoidal || raster->bytes != o->bytes ||
+        raster->bands != o->bands || raster->metres_per_unit != o->metres_per_unit)
+        return false;
+    static const int terms[4] = {1, 2, 4, 5};
+    for (int k = 0; k < 4; k++)
+        if (!(fabs(a[terms[k]] - b[terms[k]]) <= 1e-6 * (fabs(a[1]) + fabs(a[2])))) return false;
+    const double dx = b[0] - a[0], dy = b[3] - a[3];
+    const double *to = raster->px_from_crs;
+    at_px[0] = to[1] * dx + to[2] * dy;
+    at_px[1] = to[4] * dx + to[5] * dy;
+    if (raster->whole_turn_px > 0) at_px[0] -= raster->whole_turn_px * rint(at_px[0] / raster->whole_turn_px);
+    return fabs(at_px[0] - rint(at_px[0])) < 0.01 && fabs(at_px[1] - rint(at_px[1])) < 0.01 &&
+           fabs(at_px[0]) < 1e8 && fabs(at_px[1]) < 1e8;
+}
+
+static Status start_raster(Raster *raster, Opened *o)
+{
+    OGRSpatialReferenceH earth = OSRNewSpatialReference(NULL);
+    Status status = STATUS_BAD_VALUE;
+    memcpy(raster->crs_from_px, o->transform, sizeof o->transform);
+    raster->bands           = o->bands;
+    raster->ellipsoidal     = o->ellipsoidal;
+    raster->metres_per_unit = o->metres_per_unit;
+    raster->bytes           = o->bytes;
+    raster->whole           = o->whole;
+    raster->crs             = o->crs;
+    o->crs                  = NULL;
+    if (OSRIsGeographic(raster->crs)) {
+        double turn = 2 * pi_rad / OSRGetAngularUnits(raster->crs, NULL);
+        raster->whole_turn_px = fabs(turn / raster->crs_from_px[1]);
+        if (!isfinite(raster->whole_turn_px)) raster->whole_turn_px = 0;
+    }
+    if (earth && OSRImportFromEPSG(earth, 4326) == OGRERR_NONE) {
+        OSRSetAxisMappingStrategy(earth, OAMS_TRADITIONAL_GIS_ORDER);
+        raster->crs_from_earth = OCTNewCoordinateTransformation(earth, raster->crs);
+        raster->earth_from_crs = OCTNewCoordinateTransformation(raster->crs, earth);
+        if (raster->crs_from_earth && raster->earth_from_crs && GDALInvGeoTransform(raster->crs_from_px, raster->px_from_crs))
+            status = STATUS_OK;
+    }
+    if (earth) OSRDestroySpatialReference(earth);
+    return status;
+}
+
+static Status add_sheet(RasterSet *set, const char *path, const char *key)
+{
+    Opened o = {0};
+    Status status = STATUS_IO;
+    double at_px[2] = {0, 0};
+    GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
+    if (!file) {
+        log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"), path);
+        return STATUS_IO;
+    }
+    status = describe(&o, file, path, key);
+    GDALClose(file);
+    if (status != STATUS_OK) return status;
+
+    Raster *raster = NULL;
+    for (int k = 0; !raster && k < set->count; k++)
+        if (same_grid(&set->raster[k], &o, at_px)) raster = &set->raster[k];
+    if (!raster) {
+        Raster *more = realloc(set->raster, ((size_t)set->count + 1) * sizeof *more);
+        if (!more) {
+            status = STATUS_NO_MEMORY;
+            goto done;
+        }
+        set->raster = more;
+        raster      = &set->raster[set->count++];
+        *raster     = (Raster){0};
+        at_px[0] = at_px[1] = 0;
+        status = start_raster(raster, &o);
+        if (status != STATUS_OK) {
+            log_error("%s: no way from WGS 84 to the coordinate system of %s: %s; gdalwarp -t_srs EPSG:4326 %s OUT.tif",
+                      key, path, reason("unknown to PROJ"), path);
+            goto done;
+        }
+    }
+    RasterSheet *sheets = realloc(raster->sheet, ((size_t)raster->sheet_count + 1) * sizeof *sheets);
+    if (!sheets) {
+        status = STATUS_NO_MEMORY;
+        goto done;
+    }
+    raster->sheet = sheets;
+    sheets[raster->sheet_count] = (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height};
+    if (sheets[raster->sheet_count].path) raster->sheet_count++;
+    else status = STATUS_NO_MEMORY;
+done:
+    if (o.crs) OSRDestroySpatialReference(o.crs);
+    return status;
+}
+
+/* The outermost corner becomes pixel (0, 0). */
+static Status finish_raster(Raster *raster)
+{
+    int x0 = raster->sheet[0].x0, y0 = raster->sheet[0].y0, x1 = x0, y1 = y0;
+    for (int k = 0; k < raster->sheet_count; k++) {
+        const RasterSheet *s = &raster->sheet[k];
+        x0 = s->x0 < x0 ? s->x0 : x0;
+        y0 = s->y0 < y0 ? s->y0 : y0;
+        x1 = s->x0 + s->width > x1 ? s->x0 + s->width : x1;
+        y1 = s->y0 + s->height > y1 ? s->y0 + s->height : y1;
+    }
+    for (int k = 0; k < raster->sheet_count; k++) {
+        raster->sheet[k].x0 -= x0;
+        raster->sheet[k].y0 -= y0;
+    }
+    raster->width  = x1 - x0;
+    raster->height = y1 - y0;
+    double *t = raster->crs_from_px;
+    t[0] += x0 * t[1] + y0 * t[2];
+    t[3] += x0 * t[4] + y0 * t[5];
+    if (!GDALInvGeoTransform(t, raster->px_from_crs)) return STATUS_BAD_VALUE;
+
+    const double cx = 0.5 * raster->width, cy = 0.5 * raster->height;
+    double x[3] = {cx, cx + 1, cx}, y[3] = {cy, cy, cy + 1}, p_ecef[3][3];
+    raster_earth_from_px(raster, 3, x, y);
+    for (int k = 0; k < 3; k++) {
+        const Geodetic place = {.lat_rad = y[k], .lon_rad = x[k]};
+        const Status   status = ecef_from_geodetic(p_ecef[k], NULL, &place);
+        if (status != STATUS_OK) return status;
+    }
+    for (int k = 0; k < 2; k++) {
+        double d[3];
+        v3_sub(d, p_ecef[k + 1], p_ecef[0]);
+        raster->posting_m[k] = v3_length(d);
+    }
+    return raster->posting_m[0] > 0 && raster->posting_m[1] > 0 ? STATUS_OK : STATUS_BAD_VALUE;
+}
+
+/* ---- lists of files ------------------------------------------------------------------------- */
+
+static int by_name(const void *a, const void *b) { return strcmp(*(char *const *)a, *(char *const *)b); }
+
+static Status add_folder(RasterSet *set, const char *path, const char *key)
+{
+    char  **name = NULL, full[path_size];
+    int     names = 0, used = 0;
+    Status  status = STATUS_OK;
+    DIR    *folder = opendir(path);
+    if (!folder) {
+        log_error("%s: cannot read the folder %s: %s", key, path, strerror(errno));
+        return STATUS_IO;
+    }
+    for (struct dirent *entry; status == STATUS_OK && (entry = readdir(folder));) {
+        struct stat about;
+        const int   n = snprintf(full, sizeof full, "%s/%s", path, entry->d_name);
+        if (n < 0 || n >= (int)sizeof full || stat(full, &about) != 0 || !S_ISREG(about.st_mode)) continue;
+        if (!GDALIdentifyDriver(full, NULL)) continue; /* notes, world files, overviews' sidecars */
+        char **more = names < most_sheets ? realloc(name, ((size_t)names + 1) * sizeof *name) : NULL;
+        if (more) name = more;
+        if (!more || !(name[names] = strdup(full))) status = STATUS_NO_MEMORY;
+        else names++;
+    }
+    closedir(folder);
+    if (names > 0) qsort(name, (size_t)names, sizeof *name, by_name);
+    for (int k = 0; k < names; k++) {
+        if (status == STATUS_OK) status = add_sheet(set, name[k], key);
+        used++;
+        free(name[k]);
+    }
+    free(name);
+    if (status == STATUS_OK && used == 0) {
+        log_error("%s: the folder %s holds nothing that GDAL reads; gdalinfo --formats lists what it does", key, path);
+        status = STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+static int finer_first(const void *a, const void *b)
+{
+    const Raster *p = a, *q = b;
+    const double  x = fmax(p->posting_m[0], p->posting_m[1]), y = fmax(q->posting_m[0], q->posting_m[1]);
+    if (x != y) return x < y ? -1 : 1;
+    return strcmp(p->sheet[0].path, q->sheet[0].path);
+}
+
+Status raster_set_open(RasterSet *out, const char *paths, const char *key)
+{
+    RasterSet set = {0};
+    Status    status = STATUS_OK;
+    quiet();
+    for (const char *at = paths; status == STATUS_OK && *at;) {
+        char         path[path_size];
+        struct stat  about;
+        const size_t length = strcspn(at, ",");
+        size_t       skip = strspn(at, " "), end = length;
+        if (skip > length) skip = length;
+        while (end > skip && at[end - 1] == ' ') end--;
+        const int n = snprintf(path, sizeof path, "%.*s", (int)(end - skip), at + skip);
+        at += length + (at[length] == ',');
+        if (n == 0) continue;
+        if (n < 0 || n >= (int)sizeof path) status = STATUS_BAD_VALUE;
+        else if (stat(path, &about) == 0 && S_ISDIR(about.st_mode)) status = add_folder(&set, path, key);
+        else status = add_sheet(&set, path, key);
+    }
+    for (int k = 0; status == STATUS_OK && k < set.count; k++) {
+        status = finish_raster(&set.raster[k]);
+        if (status != STATUS_OK)
+            log_error("%s: %s does not lie on the Earth; gdalinfo says its corners", key, set.raster[k].sheet[0].path);
+    }
+    if (status == STATUS_OK && set.count == 0) {
+        log_error("%s: names no file", key);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK) qsort(set.raster, (size_t)set.count, sizeof *set.raster, finer_first);
+    loud();
+    if (status == STATUS_OK) *out = set;
+    else raster_set_close(&set);
+    return status;
+}
+
+void raster_set_close(RasterSet *set)
+{
+    for (int k = 0; k < set->count; k++) {
+        Raster *raster = &set->raster[k];
+        for (int n = 0; n < raster->sheet_count; n++) free(raster->sheet[n].path);
+        free(raster->sheet);
+        if (raster->crs_from_earth) OCTDestroyCoordinateTransformation(raster->crs_from_earth);
+        if (raster->earth_from_crs) OCTDestroyCoordinateTransformation(raster->earth_from_crs);
+        if (raster->crs) OSRDestroySpatialReference(raster->crs);
+    }
+    free(set->raster);
+    *set = (RasterSet){0};
+}
+
+/* ---- places --------------------------------------------------------------------------------- */
+
+static void through(const double t[6], int count, double *x, double *y)
+{
+    for (int k = 0; k < count; k++) {
+        const double a = x[k], b = y[k];
+        const bool   ok = isfinite(a) && isfinite(b);
+        x[k] = ok ? t[0] + a * t[1] + b * t[2] : NAN;
+        y[k] = ok ? t[3] + a * t[4] + b * t[5] : NAN;
+    }
+}
+
+void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, double *lat_to_y)
+{
+    for (int k = 0; k < count; k++) {
+        lon_to_x[k] /= rad_per_deg;
+        lat_to_y[k] /= rad_per_deg;
+    }
+    quiet();
+    OCTTransform(raster->crs_from_earth, count, lon_to_x, lat_to_y, NULL);
+    loud();
+    through(raster->px_from_crs, count, lon_to_x, lat_to_y);
+    if (raster->whole_turn_px > 0) /* the turn on which the sheet lies */
+        for (int k = 0; k < count; k++)
+            lon_to_x[k] -= raster->whole_turn_px * rint((lon_to_x[k] - 0.5 * raster->width) / raster->whole_turn_px);
+}
+
+void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, double *y_to_lat)
+{
+    through(raster->crs_from_px, count, x_to_lon, y_to_lat);
+    quiet();
+    OCTTransform(raster->earth_from_crs, count, x_to_lon, y_to_lat, NULL);
+    loud();
+    for (int k = 0; k < count; k++) {
+        const bool ok = isfinite(x_to_lon[k]) && isfinite(y_to_lat[k]) && fabs(y_to_lat[k]) <= 90;
+        x_to_lon[k] = ok ? x_to_lon[k] * rad_per_deg : NAN;
+        y_to_lat[k] = ok ? y_to_lat[k] * rad_per_deg : NAN;
+    }
+}
+
+/* ---- pixels --------------------------------------------------------------------------------- */
+
+/* One sheet's share of the window, over what is there already: the first sheet that has a value wins. */
+static Status read_sheet(float *out, const RasterSheet *s, int number, int x0, int y0, int width,
+                         int height, const char *key)
+{
+    const int wx0 = x0 > s->x0 ? x0 : s->x0, wy0 = y0 > s->y0 ? y0 : s->y0;
+    const int wx1 = x0 + width < s->x0 + s->width ? x0 + width : s->x0 + s->width;
+    const int wy1 = y0 + height < s->y0 + s->height ? y0 + height : s->y0 + s->height;
+    if (wx0 >= wx1 || wy0 >= wy1) return STATUS_OK;
+    const int w = wx1 - wx0, h = wy1 - wy0;
+    const int strip = h < 256 ? h : 256;
+
+    Status         status = STATUS_NO_MEMORY;
+    GDALDatasetH   file = NULL;
+    float         *value = malloc((size_t)w * (size_t)strip * sizeof *value);
+    unsigned char *mask = malloc((size_t)w * (size_t)strip);
+    if (!value || !mask) goto done;
+    status = STATUS_IO;
+    file   = GDALOpen(s->path, GA_ReadOnly);
+    GDALRasterBandH band = file ? GDALGetRasterBand(file, number) : NULL;
+    if (!band || GDALGetRasterXSize(file) != s->width || GDALGetRasterYSize(file) != s->height) {
+        log_error("%s: %s: %s", key, s->path, reason("it has no such band, or changed under our hands"));
+        goto done;
+    }
+    const bool masked = !(GDALGetMaskFlags(band) & GMF_ALL_VALID);
+    int        has_scale = 0, has_offset = 0;
+    double     scale = GDALGetRasterScale(band, &has_scale), offset = GDALGetRasterOffset(band, &has_offset);
+    if (!has_scale || !(scale != 0) || !isfinite(scale)) scale = 1;
+    if (!has_offset || !isfinite(offset)) offset = 0;
+    for (int y = wy0; y < wy1; y += strip) {
+        const int rows = wy1 - y < strip ? wy1 - y : strip;
+        if (GDALRasterIO(band, GF_Read, wx0 - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) != CE_None ||
+            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, wx0 - s->x0, y - s->y0, w, rows, mask, w, rows, GDT_Byte,
+                                    0, 0) != CE_None)) {
+            log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
+            goto done;
+        }
+        for (int r = 0; r < rows; r++) {
+            float *to = out + (size_t)(y + r - y0) * (size_t)width + (size_t)(wx0 - x0);
+            const float         *from = value + (size_t)r * (size_t)w;
+            const unsigned char *valid = mask + (size_t)r * (size_t)w;
+            for (int i = 0; i < w; i++)
+                if (isnan(to[i]) && !(masked && !valid[i])) to[i] = (float)(from[i] * scale + offset);
+        }
+    }
+    status = STATUS_OK;
+done:
+    if (file) GDALClose(file);
+    free(value);
+    free(mask);
+    return status;
+}
+
+void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px)
+{
+    enum { side = 16 };
+    low_m[0] = low_m[1] = INFINITY;
+    high_m[0] = high_m[1] = -INFINITY;
+    const double w = raster->width - 2 * inset_px, h = raster->height - 2 * inset_px;
+    for (int edge = 0; edge < 4; edge++)
+        for (int k = 0; k <= side; k++) {
+            const double along = (double)k / side;
+            double       x = inset_px + (edge < 2 ? along * w : edge == 2 ? 0 : w);
+            double       y = inset_px + (edge < 2 ? edge ? h : 0 : along * h);
+            double       p_ecef[3], p_enu[3];
+            raster_earth_from_px(raster, 1, &x, &y);
+            const Geodetic place = {.lat_rad = y, .lon_rad = x};
+            if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) continue;
+            enu_from_ecef(p_enu, frame, p_ecef);
+            for (int c = 0; c < 2; c++) {
+                low_m[c]  = fmin(low_m[c], p_enu[c]);
+                high_m[c] = fmax(high_m[c], p_enu[c]);
+            }
+        }
+}
+
+Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key)
+{
+    Status       status = STATUS_OK;
+    const size_t count = (size_t)width * (size_t)height;
+    for (size_t k = 0; k < count; k++) out[k] = NAN;
+    quiet();
+    for (int k = 0; status == STATUS_OK && k < raster->sheet_count; k++)
+        status = read_sheet(out, &raster->sheet[k], band, x0, y0, width, height, key);
+    loud();
+    return status;
+}

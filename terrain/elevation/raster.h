@@ -1,0 +1,53 @@
+/* terrain/elevation/raster.h: georeferenced pixels of anything GDAL reads (GeoTIFF, DTED, HGT, VRT ...); with the elevation,
+ * cover and photographs that are made of them, the only files that know it: raster.c.
+ *
+ * Sheets of one grid (same CRS, same pixel size, a whole number of pixels apart) are one Raster, as tiles of a survey
+ * are. Pixel (i, j) covers [i, i+1) x [j, j+1), row 0 northernmost as a rule; its post, or centre, is at (i + 0.5,
+ * j + 0.5), whether the file calls itself pixel-is-point or area: GDAL places the corners accordingly. */
+#ifndef TERRAIN_ELEVATION_RASTER_H
+#define TERRAIN_ELEVATION_RASTER_H
+
+#include "terrain/earth/local_frame.h"
+
+typedef struct RasterSheet {
+    char *path;
+    int   x0, y0, width, height; /* px of the Raster */
+} RasterSheet;
+
+typedef struct Raster {
+    int     width, height, bands;
+    double  posting_m[2];        /* along a row and along a column, at the middle */
+    bool    ellipsoidal;         /* the CRS is three-dimensional: heights above the ellipsoid */
+    double  metres_per_unit;     /* of band 1 */
+    bool    bytes;               /* its samples are octets: of a picture, or a class */
+    bool    whole;               /* they are whole numbers: no elevation in float */
+    int     sheet_count;
+    RasterSheet *sheet;
+    /* private: */
+    double  crs_from_px[6], px_from_crs[6];
+    double  whole_turn_px;       /* geographic: px of 360 degrees; else 0 */
+    void   *crs, *crs_from_earth, *earth_from_crs;
+} Raster;
+
+typedef struct RasterSet {
+    int     count;
+    Raster *raster;              /* finest posting first; equals in the order given */
+} RasterSet;
+
+/* paths: files and folders, separated by commas; of a folder, what GDAL knows. key: the setting, for messages. What
+ * cannot be used is one logged line with the next step, and STATUS_IO or STATUS_BAD_VALUE. */
+Status raster_set_open(RasterSet *out, const char *paths, const char *key);
+void   raster_set_close(RasterSet *set); /* accepts zeroes */
+
+/* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has none. */
+void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, double *lat_to_y);
+void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, double *y_to_lat);
+
+/* ENU box, x and y, of a rectangle inset_px within the raster's outline (0.5: of its outermost posts), at height 0. */
+void raster_enu_box(double low_m[2], double high_m[2], const Raster *raster, const LocalFrame *frame, double inset_px);
+
+/* band from 1, its scale and offset applied. out [height][width]; NaN for void, nodata, masked, and between sheets.
+ * The window may reach beyond the raster. STATUS_IO, logged, when a file turns out to be damaged. */
+Status raster_read(float *out, const Raster *raster, int band, int x0, int y0, int width, int height, const char *key);
+
+#endif

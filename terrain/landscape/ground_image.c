@@ -1,0 +1,550 @@
+#include "terrain/landscape/ground_image.h"
+
+#include "terrain/elevation/raster.h"
+
+#include <stdlib.h>
+
+static const char cover_key[] = "terrain.cover", photo_key[] = "terrain.orthophoto";
+
+/* ---- from ENU to pixels --------------------------------------------------------------------- */
+
+/* A window of square cells, and where the corners of blocks of them lie in a raster. */
+typedef struct Window {
+    double x0_m, y0_m, cell_m;
+    int    nx, ny;
+} Window;
+
+enum { block_cells = 32 };
+
+/* Pixel of the raster under each cell's centre, a row of blocks at a time: exact at the corners of blocks on the
+ * surface itself, linear between (over 32 cells of 1 m the lean of a 100 m cliff 8 km out would show as 0.1 m). */
+typedef struct Finder {
+    const Raster    *raster;
+    const Elevation *elevation;
+    const LocalFrame *frame;
+    Window           window;
+    double          *x, *y; /* [2][blocks + 1] */
+    int              blocks, row; /* row of blocks that is loaded */
+} Finder;
+
+static Status finder_create(Finder *f, const Raster *raster, const Elevation *elevation, const LocalFrame *frame,
+                            const Window *window)
+{
+    *f = (Finder){.raster = raster, .elevation = elevation, .frame = frame, .window = *window, .row = -1};
+    f->blocks = (window->nx - 1) / block_cells + 1;
+    f->x = malloc(4 * (size_t)(f->blocks + 1) * sizeof *f->x);
+    if (!f->x) return STATUS_NO_MEMORY;
+    f->y = f->x + 2 * (f->blocks + 1);
+    return STATUS_OK;
+}
+
+static void finder_load(Finder *f, int row)
+{
+    const int corners = f->blocks + 1;
+    for (int side = 0; side < 2; side++)
+        for (int c = 0; c < corners; c++) {
+            double p_enu[3] = {f->window.x0_m + c * block_cells * f->window.cell_m,
+                               f->window.y0_m + (row + side) * block_cells * f->window.cell_m, 0}, p_ecef[3];
+            Geodetic place = {NAN, NAN, 0};
+            const double z_m = elevation_height(f->elevation, p_enu[0], p_enu[1], NULL);
+            p_enu[2] = isfinite(z_m) ? z_m : 0;
+            ecef_from_enu(p_ecef, f->frame, p_enu);
+            (void)geodetic_from_ecef(&place, p_ecef);
+            f->x[side * corners + c] = place.lon_rad;
+            f->y[side * corners + c] = place.lat_rad;
+        }
+    raster_px_from_earth(f->raster, 2 * corners, f->x, f->y);
+    f->row = row;
+}
+
+static void finder_at(double px[2], Finder *f, int i, int j)
+{
+    if (j / block_cells != f->row) finder_load(f, j / block_cells);
+    const int    corners = f->blocks + 1, c = i / block_cells;
+    const double u = (i % block_cells + 0.5) / block_cells, v = (j % block_cells + 0.5) / block_cells;
+    const double *of[2] = {f->x, f->y};
+    for (int k = 0; k < 2; k++) {
+        const double *a = of[k] + c, *b = a + corners;
+        const double  south = a[0] + u * (a[1] - a[0]), north = b[0] + u * (b[1] - b[0]);
+        px[k] = south + v * (north - south);
+    }
+}
+
+static void finder_free(Finder *f) { free(f->x); }
+
+/* Pixels of the raster that one row of blocks can touch; false: none. Reading row by row keeps memory small. */
+static bool finder_bounds(int box[4], Finder *f, int row)
+{
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    finder_load(f, row);
+    for (int c = 0; c < 2 * (f->blocks + 1); c++) {
+        if (!isfinite(f->x[c]) || !isfinite(f->y[c])) continue;
+        low[0]  = fmin(low[0], f->x[c]);
+        high[0] = fmax(high[0], f->x[c]);
+        low[1]  = fmin(low[1], f->y[c]);
+        high[1] = fmax(high[1], f->y[c]);
+    }
+    if (!(high[0] > 0 && high[1] > 0 && low[0] < f->raster->width && low[1] < f->raster->height)) return false;
+    box[0] = (int)fmax(floor(low[0]) - 2, 0);
+    box[1] = (int)fmax(floor(low[1]) - 2, 0);
+    box[2] = (int)fmin(ceil(high[0]) + 3, f->raster->width);
+    box[3] = (int)fmin(ceil(high[1]) + 3, f->raster->height);
+    return box[2] - box[0] > 1 && box[3] - box[1] > 1;
+}
+
+/* ENU rectangle of a raster about the origin, no wider than `half_m` each way, in whole blocks. */
+static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame, double cell_m, double half_m)
+{
+    double low[2], high[2];
+    raster_enu_box(low, high, raster, frame, 0);
+    const double margin_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
+    int n[2];
+    for (int c = 0; c < 2; c++) {
+        low[c]  = floor(fmax(low[c] - margin_m, -half_m) / cell_m) * cell_m;
+        high[c] = fmin(high[c] + margin_m, half_m);
+        if (!(high[c] > low[c])) return false;
+        n[c] = ((int)((high[c] - low[c]) / cell_m) / block_cells + 1) * block_cells;
+    }
+    *out = (Window){low[0], low[1], cell_m, n[0], n[1]};
+    return true;
+}
+
+/* ---- cover ---------------------------------------------------------------------------------- */
+
+/* Elevation given in the wrong place is the usual mistake, and comes in float. */
+static Status open_whole(RasterSet *set, const char *paths, const char *key, const char *what)
+{
+    const Status status = raster_set_open(set, paths, key);
+    for (int k = 0; status == STATUS_OK && k < set->count; k++) {
+        if (set->raster[k].whole) continue;
+        log_error("%s: %s holds numbers with fractions, not %s; is it elevation (terrain.elevation)?", key,
+                  set->raster[k].sheet[0].path, what);
+        raster_set_close(set);
+        *set = (RasterSet){0};
+        return STATUS_BAD_VALUE;
+    }
+    return status;
+}
+
+enum { most_codes = 256 };
+
+typedef struct CoverTable {
+    bool    known[most_codes];
+    uint8_t surface[most_codes];
+} CoverTable;
+
+static Status cover_table_read(CoverTable *out, const char *path)
+{
+    Table  table = {0};
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    CoverTable t = {0};
+    const int code_column = table_column(&table, "code"), surface_column = table_column(&table, "surface");
+    status = STATUS_BAD_VALUE;
+    if (code_column < 0 || surface_column < 0) {
+        log_error("cover: %s needs the columns code and surface", path);
+        goto done;
+    }
+    for (int row = 0; row < table.rows; row++) {
+        double      code;
+        const char *name = table_text(&table, row, surface_column);
+        if (table_number(&code, &table, row, code_column, 1, most_codes - 1) != STATUS_OK) goto done;
+        const SurfaceClass surface = surface_find(name);
+        if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
+            log_error("cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
+                      "etc/surfaces.csv list them", path, table.line[row + 1], code, name);
+            goto done;
+        }
+        t.known[(int)code]   = true;
+        t.surface[(int)code] = (uint8_t)surface;
+    }
+    *out   = t;
+    status = STATUS_OK;
+done:
+    table_close(&table);
+    return status;
+}
+
+Status cover_table_check(const char *path)
+{
+    CoverTable table;
+    return cover_table_read(&table, path);
+}
+
+static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
+
+/* The table that knows most of the pixels; of equals the first. */
+static Status choose_table(CoverTable *out, const char **name, const char *asked, const long histogram[most_codes])
+{
+    char path[4096], file[64];
+    bool named = false;
+    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) named |= strcmp(asked, built_in[k]) == 0;
+    if (*asked) {
+        *name = asked;
+        if (!named) return cover_table_read(out, asked);
+        snprintf(file, sizeof file, "cover_%s.csv", asked);
+        return etc_path(path, sizeof path, file) ? cover_table_read(out, path) : STATUS_BAD_VALUE;
+    }
+    long best = -1;
+    for (size_t k = 0; k < sizeof built_in / sizeof *built_in; k++) {
+        CoverTable table;
+        long       known = 0;
+        snprintf(file, sizeof file, "cover_%s.csv", built_in[k]);
+        if (!etc_path(path, sizeof path, file)) return STATUS_BAD_VALUE;
+        const Status status = cover_table_read(&table, path);
+        if (status != STATUS_OK) return status;
+        for (int c = 1; c < most_codes; c++) known += table.known[c] ? histogram[c] : 0;
+        if (known <= best) continue;
+        best  = known;
+        *out  = table;
+        *name = built_in[k];
+    }
+    return STATUS_OK;
+}
+
+static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band, const Elevation *elevation,
+                          const LocalFrame *frame)
+{
+    Finder f;
+    Status status = finder_create(&f, raster, elevation, frame, window);
+    for (int j0 = 0; status == STATUS_OK && j0 < window->ny; j0 += block_cells) {
+        int box[4];
+        if (!finder_bounds(box, &f, j0 / block_cells)) continue;
+        const size_t w = (size_t)(box[2] - box[0]), h = (size_t)(box[3] - box[1]);
+        float       *px = malloc(w * h * sizeof *px);
+        status = px ? raster_read(px, raster, band, box[0], box[1], (int)w, (int)h, cover_key) : STATUS_NO_MEMORY;
+        for (int j = j0; status == STATUS_OK && j < j0 + block_cells && j < window->ny; j++)
+            for (int i = 0; i < window->nx; i++) {
+                double at[2];
+                finder_at(at, &f, i, j);
+                const double x = floor(at[0]) - box[0], y = floor(at[1]) - box[1];
+                if (!(x >= 0 && y >= 0 && x < (double)w && y < (double)h)) continue;
+                const float value = px[(size_t)y * w + (size_t)x];
+                if (value >= 1 && value < most_codes && code[(size_t)j * (size_t)window->nx + (size_t)i] == 0)
+                    code[(size_t)j * (size_t)window->nx + (size_t)i] = (uint8_t)value;
+            }
+        free(px);
+    }
+    finder_free(&f);
+    return status;
+}
+
+Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table, int band,
+                       const Elevation *elevation, const LocalFrame *frame)
+{
+    static const double most_cells[cover_windows] = {16e6, 4e6};
+    RasterSet   set = {0};
+    CoverGrid   grid[cover_windows] = {{0}};
+    CoverReport r = {0};
+    CoverTable  chosen;
+    Status      status = open_whole(&set, paths, cover_key, "classes");
+    if (status != STATUS_OK) return status;
+    const Raster *first = &set.raster[0];
+    r.band      = band > 0 ? band : first->bands >= 8 ? 4 : 1;
+    r.posting_m = fmin(first->posting_m[0], first->posting_m[1]);
+    for (int k = 0; k < set.count; k++)
+        if (r.band > set.raster[k].bands) {
+            log_error("%s: %s has %d bands, not %d; set terrain.cover_band", cover_key, set.raster[k].sheet[0].path,
+                      set.raster[k].bands, r.band);
+            status = STATUS_BAD_VALUE;
+            goto done;
+        }
+    const double cell_m = fmax(rint(r.posting_m * 4) / 4, 0.25);
+    for (int w = 0; w < cover_windows; w++) {
+        const double size_m = w ? 8 * cell_m : cell_m;
+        double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+        for (int k = 0; k < set.count; k++) {
+            Window one;
+            if (!window_of(&one, &set.raster[k], frame, size_m, 0.5 * sqrt(most_cells[w]) * size_m)) continue;
+            low[0]  = fmin(low[0], one.x0_m);
+            low[1]  = fmin(low[1], one.y0_m);
+            high[0] = fmax(high[0], one.x0_m + one.nx * size_m);
+            high[1] = fmax(high[1], one.y0_m + one.ny * size_m);
+        }
+        if (!(high[0] > low[0])) continue;
+        CoverGrid *g = &grid[w];
+        *g = (CoverGrid){.x0_m = low[0], .y0_m = low[1], .cell_m = size_m};
+        g->nx = (int)((high[0] - low[0]) / size_m) + 1;
+        g->ny = (int)((high[1] - low[1]) / size_m) + 1;
+        g->surface = calloc((size_t)g->nx * (size_t)g->ny, 1);
+        status = g->surface ? STATUS_OK : STATUS_NO_MEMORY;
+        const Window window = {g->x0_m, g->y0_m, size_m, g->nx, g->ny};
+        for (int k = 0; status == STATUS_OK && k < set.count; k++)
+            status = cover_codes(g->surface, &window, &set.raster[k], r.band, elevation, frame);
+        if (status != STATUS_OK) goto done;
+    }
+    long histogram[most_codes] = {0}, classed = 0, of_class[SURFACE_COUNT] = {0};
+    for (int w = 0; w < cover_windows; w++)
+        for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) histogram[grid[w].surface[n]]++;
+    status = choose_table(&chosen, &r.table, table, histogram);
+    if (status != STATUS_OK) goto done;
+    for (int w = 0; w < cover_windows; w++)
+        for (size_t n = 0; n < (size_t)grid[w].nx * (size_t)grid[w].ny; n++) {
+            const uint8_t code = grid[w].surface[n];
+            if (code && !chosen.known[code] && w == 0) r.unknown++;
+            grid[w].surface[n] = chosen.surface[code];
+            if (w == 0) of_class[grid[w].surface[n]]++;
+        }
+    for (int s = 1; s < SURFACE_COUNT; s++) classed += of_class[s];
+    for (int s = 1; s < SURFACE_COUNT; s++) r.share[s] = classed ? (double)of_class[s] / (double)classed : 0;
+    if (classed == 0) {
+        log_error("%s: none of the codes of %s about the action is in the table %s; set terrain.cover_table", cover_key,
+                  first->sheet[0].path, r.table);
+        status = STATUS_BAD_VALUE;
+        goto done;
+    }
+    memcpy(out, grid, sizeof grid);
+    memset(grid, 0, sizeof grid);
+    *report = r;
+done:
+    cover_grid_free(grid);
+    raster_set_close(&set);
+    return status;
+}
+
+void cover_grid_free(CoverGrid grid[cover_windows])
+{
+    for (int w = 0; w < cover_windows; w++) {
+        free(grid[w].surface);
+        grid[w] = (CoverGrid){0};
+    }
+}
+
+SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, double y_m)
+{
+    for (int w = 0; w < cover_windows; w++) {
+        const CoverGrid *g = &grid[w];
+        const double     x = (x_m - g->x0_m) / g->cell_m, y = (y_m - g->y0_m) / g->cell_m;
+        if (!(g->surface && x >= 0 && y >= 0 && x < g->nx && y < g->ny)) continue;
+        const SurfaceClass surface = (SurfaceClass)g->surface[(size_t)y * (size_t)g->nx + (size_t)x];
+        if (surface != SURFACE_NONE) return surface;
+    }
+    return SURFACE_NONE;
+}
+
+/* ---- photograph ----------------------------------------------------------------------------- */
+
+/* IEC 61966-2-1. */
+static double linear_of(double encoded)
+{
+    return encoded <= 0.04045 ? encoded / 12.92 : pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+static double encoded_of(double linear)
+{
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
+}
+
+typedef struct Codes {
+    float   linear[256];
+    uint8_t of_linear[4096]; /* finer than an octet's steps where they are finest */
+} Codes;
+
+static const Codes *codes(void)
+{
+    static Codes c;
+    static bool  ready;
+    if (!ready) { /* first called by photo_read, before there are threads */
+        for (int k = 0; k < 256; k++) c.linear[k] = (float)linear_of(k / 255.0);
+        for (int k = 0; k < 4096; k++) c.of_linear[k] = (uint8_t)lrint(255 * encoded_of(k / 4095.0));
+        ready = true;
+    }
+    return &c;
+}
+
+static void halve(Photo *p, int k)
+{
+    const Codes *c = codes();
+    const int nx = p->nx[k - 1], ny = p->ny[k - 1];
+    for (int j = 0; j < p->ny[k]; j++)
+        for (int i = 0; i < p->nx[k]; i++) {
+            float sum[3] = {0}, cover = 0;
+            for (int n = 0; n < 4; n++) {
+                const int a = 2 * i + (n & 1), b = 2 * j + (n >> 1);
+                if (a >= nx || b >= ny) continue;
+                const uint8_t *from = p->rgba[k - 1] + 4 * ((size_t)b * (size_t)nx + (size_t)a);
+                for (int ch = 0; ch < 3; ch++) sum[ch] += from[3] * c->linear[from[ch]];
+                cover += from[3];
+            }
+            uint8_t *to = p->rgba[k] + 4 * ((size_t)j * (size_t)p->nx[k] + (size_t)i);
+            for (int ch = 0; ch < 3; ch++) to[ch] = cover > 0 ? c->of_linear[(int)(4095 * sum[ch] / cover + 0.5f)] : 0;
+            to[3] = (uint8_t)(cover / 4 + 0.5f);
+        }
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* White of wide samples: what one in a thousand exceeds, of a few rows all over. */
+static Status white_of(double *white, const Raster *raster, int bands)
+{
+    enum { rows = 64 };
+    const size_t w = (size_t)raster->width;
+    float       *some = malloc(rows * w * sizeof *some);
+    Status       status = some ? STATUS_OK : STATUS_NO_MEMORY;
+    *white = 0;
+    for (int b = 1; status == STATUS_OK && b <= bands; b++) {
+        size_t kept = 0;
+        for (int r = 0; status == STATUS_OK && r < rows; r++)
+            status = raster_read(some + (size_t)r * w, raster, b, 0, (int)((int64_t)r * raster->height / rows), raster->width, 1,
+                                 photo_key);
+        for (size_t n = 0; status == STATUS_OK && n < rows * w; n++)
+            if (isfinite(some[n])) some[kept++] = some[n];
+        if (status != STATUS_OK || kept == 0) continue;
+        qsort(some, kept, sizeof *some, by_value);
+        *white = fmax(*white, some[(size_t)(0.999 * (double)(kept - 1))]);
+    }
+    free(some);
+    if (!(*white > 0)) *white = 1;
+    return status;
+}
+
+/* One cell: bilinear between pixel centres, in linear light, held at the rim. px: the bands of a box w x h. */
+static void photo_cell(uint8_t to[4], float *const px[3], int bands, bool bytes, double white, int w, int h, double x, double y)
+{
+    const Codes *c = codes();
+    x = clamp(x - 0.5, 0, w - 1);
+    y = clamp(y - 0.5, 0, h - 1);
+    const int    a = (int)x < w - 1 ? (int)x : w - 2, b = (int)y < h - 1 ? (int)y : h - 2;
+    const double u = x - a, v = y - b, weight[4] = {(1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v};
+    uint8_t      value[3] = {0};
+    for (int k = 0; k < bands; k++) {
+        const float *q = px[k] + (size_t)b * (size_t)w + (size_t)a, four[4] = {q[0], q[1], q[w], q[w + 1]};
+        double       sum = 0;
+        for (int n = 0; n < 4; n++) {
+            if (!isfinite(four[n])) return;
+            sum += weight[n] * (bytes ? (double)c->linear[(int)clamp(four[n], 0, 255)] : four[n] / white);
+        }
+        value[k] = c->of_linear[(int)(4095 * clamp(sum, 0, 1) + 0.5)];
+    }
+    for (int k = 0; k < 3; k++) to[k] = value[bands == 3 ? k : 0];
+    to[3] = 255;
+}
+
+static Status photo_pixels(Photo *p, const Raster *raster, const Elevation *elevation, const LocalFrame *frame)
+{
+    const Window window = {p->x0_m, p->y0_m, p->cell_m, p->nx[0], p->ny[0]};
+    const int    bands = raster->bands >= 3 ? 3 : 1;
+    double       white = 255;
+    Finder       f;
+    Status       status = raster->bytes ? STATUS_OK : white_of(&white, raster, bands);
+    if (status != STATUS_OK) return status;
+    status = finder_create(&f, raster, elevation, frame, &window);
+    for (int j0 = 0; status == STATUS_OK && j0 < window.ny; j0 += block_cells) {
+        int box[4];
+        if (!finder_bounds(box, &f, j0 / block_cells)) continue;
+        const int w = box[2] - box[0], h = box[3] - box[1];
+        float    *px[3] = {NULL};
+        for (int b = 0; status == STATUS_OK && b < bands; b++) {
+            px[b]  = malloc((size_t)w * (size_t)h * sizeof **px);
+            status = px[b] ? raster_read(px[b], raster, b + 1, box[0], box[1], w, h, photo_key) : STATUS_NO_MEMORY;
+        }
+        for (int j = j0; status == STATUS_OK && j < j0 + block_cells && j < window.ny; j++)
+            for (int i = 0; i < window.nx; i++) {
+                uint8_t *to = p->rgba[0] + 4 * ((size_t)j * (size_t)window.nx + (size_t)i);
+                double   at[2];
+                if (to[3]) continue; /* an earlier, finer photograph has it */
+                finder_at(at, &f, i, j);
+                if (at[0] >= 0 && at[1] >= 0 && at[0] < raster->width && at[1] < raster->height)
+                    photo_cell(to, px, bands, raster->bytes, white, w, h, at[0] - box[0], at[1] - box[1]);
+            }
+        for (int b = 0; b < 3; b++) free(px[b]);
+    }
+    finder_free(&f);
+    return status;
+}
+
+Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation, const LocalFrame *frame)
+{
+    static const double most_cells = 36e6;
+    RasterSet set = {0};
+    Photo     p = {0};
+    Window    window;
+    Status    status = open_whole(&set, paths, photo_key, "a photograph");
+    if (status != STATUS_OK) return status;
+    const Raster *first = &set.raster[0];
+    *posting_m = fmin(first->posting_m[0], first->posting_m[1]);
+    p.cell_m   = *posting_m;
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int k = 0; k < set.count; k++) {
+        if (!window_of(&window, &set.raster[k], frame, p.cell_m, 0.5 * sqrt(most_cells) * p.cell_m)) continue;
+        low[0]  = fmin(low[0], window.x0_m);
+        low[1]  = fmin(low[1], window.y0_m);
+        high[0] = fmax(high[0], window.x0_m + window.nx * p.cell_m);
+        high[1] = fmax(high[1], window.y0_m + window.ny * p.cell_m);
+    }
+    if (!(high[0] > low[0])) {
+        log_error("%s: %s does not reach the action; name a photograph of the place, or leave it out", photo_key,
+                  first->sheet[0].path);
+        status = STATUS_BAD_VALUE;
+        goto done;
+    }
+    p.x0_m  = low[0];
+    p.y0_m  = low[1];
+    p.nx[0] = (int)((high[0] - low[0]) / p.cell_m + 0.5);
+    p.ny[0] = (int)((high[1] - low[1]) / p.cell_m + 0.5);
+    for (int k = 0;; k++) {
+        p.rgba[k] = calloc((size_t)p.nx[k] * (size_t)p.ny[k], 4);
+        if (!p.rgba[k]) {
+            status = STATUS_NO_MEMORY;
+            goto done;
+        }
+        p.mips = k + 1;
+        if (k == ground_image_mips - 1 || (p.nx[k] == 1 && p.ny[k] == 1)) break;
+        p.nx[k + 1] = (p.nx[k] + 1) / 2;
+        p.ny[k + 1] = (p.ny[k] + 1) / 2;
+    }
+    for (int k = 0; status == STATUS_OK && k < set.count; k++) status = photo_pixels(&p, &set.raster[k], elevation, frame);
+    if (status != STATUS_OK) goto done;
+    for (int k = 1; k < p.mips; k++) halve(&p, k);
+    *out = p;
+    p    = (Photo){0};
+done:
+    photo_free(&p);
+    raster_set_close(&set);
+    return status;
+}
+
+void photo_free(Photo *photo)
+{
+    for (int k = 0; k < ground_image_mips; k++) free(photo->rgba[k]);
+    *photo = (Photo){0};
+}
+
+/* Premultiplied by coverage, so that what lies beyond the rim does not darken it. */
+static void mip_at(double sum[4], const Photo *p, int k, double x, double y, double share)
+{
+    const Codes *c = codes();
+    const int    nx = p->nx[k], ny = p->ny[k];
+    x -= 0.5;
+    y -= 0.5;
+    const double fx = floor(x), fy = floor(y), u = x - fx, v = y - fy;
+    if (!(fx >= -1 && fy >= -1 && fx < nx && fy < ny)) return;
+    for (int n = 0; n < 4; n++) {
+        const int a = (int)fx + (n & 1), b = (int)fy + (n >> 1);
+        if (a < 0 || b < 0 || a >= nx || b >= ny) continue;
+        const uint8_t *from = p->rgba[k] + 4 * ((size_t)b * (size_t)nx + (size_t)a);
+        const double   weight = share * (n & 1 ? u : 1 - u) * (n >> 1 ? v : 1 - v) * from[3] / 255;
+        for (int ch = 0; ch < 3; ch++) sum[ch] += weight * (double)c->linear[from[ch]];
+        sum[3] += weight;
+    }
+}
+
+double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m)
+{
+    double sum[4] = {0};
+    if (photo->mips == 0) return 0;
+    const double x = (x_m - photo->x0_m) / photo->cell_m, y = (y_m - photo->y0_m) / photo->cell_m;
+    if (!(x > -1 && y > -1 && x < photo->nx[0] + 1 && y < photo->ny[0] + 1)) return 0;
+    const double mip = clamp(log2(fmax(footprint_m / photo->cell_m, 1)), 0, photo->mips - 1);
+    const int    k = (int)mip;
+    const double between = mip - k, s = exp2(-k);
+    mip_at(sum, photo, k, x * s, y * s, 1 - between);
+    if (between > 0) mip_at(sum, photo, k + 1, 0.5 * x * s, 0.5 * y * s, between);
+    if (!(sum[3] > 0)) return 0;
+    for (int ch = 0; ch < photo_channels; ch++) linear[ch] = sum[ch] / sum[3];
+    return fmin(sum[3], 1);
+}

@@ -1,0 +1,53 @@
+/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a photograph. */
+#ifndef TERRAIN_LANDSCAPE_GROUND_IMAGE_H
+#define TERRAIN_LANDSCAPE_GROUND_IMAGE_H
+
+#include "terrain/elevation/elevation.h"
+#include "terrain/earth/local_frame.h"
+#include "terrain/surface.h"
+
+enum { ground_image_mips = 16, cover_windows = 2 };
+
+/* Classes by nearest pixel. Window 0 is fine and about the origin, window 1 eight times coarser and wider. */
+typedef struct CoverGrid {
+    int      nx, ny;       /* 0: none */
+    double   x0_m, y0_m, cell_m; /* south-west corner of the first cell */
+    uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files say nothing */
+} CoverGrid;
+
+typedef struct CoverReport {
+    const char *table;     /* in static storage, or the caller's */
+    double      posting_m;
+    int         band;
+    long        unknown;   /* cells whose code the table does not hold */
+    double      share[SURFACE_COUNT]; /* of the cells of window 0 that have a class */
+} CoverReport;
+
+/* table: a CSV (code, surface, note), a name such as worldcover, nlcd or fbfm40 for etc/cover_NAME.csv, or empty: the
+ * one of these three that knows the most of the codes met. band 0: the only one, or FBFM's fourth where there are eight
+ * or more, as in landscape files. Failures are logged. */
+Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table, int band,
+                       const Elevation *elevation, const LocalFrame *frame);
+/* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */
+Status cover_table_check(const char *path);
+void   cover_grid_free(CoverGrid grid[cover_windows]);
+SurfaceClass cover_grid_at(const CoverGrid grid[cover_windows], double x_m, double y_m);
+
+enum { photo_red, photo_green, photo_blue, photo_channels };
+
+/* A photograph: linear light encoded as sRGB in octets, and coverage. */
+typedef struct Photo {
+    int      mips;         /* 0: none */
+    int      nx[ground_image_mips], ny[ground_image_mips];
+    double   x0_m, y0_m, cell_m; /* corner; of mip 0 */
+    uint8_t *rgba[ground_image_mips]; /* [ny][nx][4] */
+    float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled by who knows the classes */
+} Photo;
+
+/* Three bands or one, octets (taken as sRGB) or wider (taken as linear, brightest thousandth cut). */
+Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation, const LocalFrame *frame);
+void   photo_free(Photo *photo);
+/* Linear light averaged over the footprint, and how much of it the photograph covers (0 .. 1). */
+double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m);
+
+#endif

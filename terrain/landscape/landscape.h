@@ -1,0 +1,107 @@
+/* terrain/landscape/landscape.h: the ground: of files (terrain/landscape/landscape_import.h), or when nobody gave any an invented landscape
+ * fitted to what the exercise says of it. Surface, texture and albedo are asked here for both.
+ *
+ * The invented one:
+ *
+ * it passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
+ * paths, and the sight lines of shots that hit), has relief, fields, tracks and at least five surface
+ * classes, and reaches the horizon without edge or hole. A pure function of its inputs. */
+#ifndef TERRAIN_LANDSCAPE_LANDSCAPE_H
+#define TERRAIN_LANDSCAPE_LANDSCAPE_H
+
+#include "terrain/elevation/elevation.h"
+#include "terrain/earth/local_frame.h"
+#include "terrain/surface.h"
+
+/* Somewhere the ground is known. The fixes of one voter (one entity) are one vote together; a fix of voter 0 is a vote
+ * of its own, and only judged by its slopes to others. */
+typedef struct GroundFix {
+    double p_enu[3];
+    int    voter; /* >= 0 */
+} GroundFix;
+
+/* A place of which only this is known: sea, or dry land. */
+typedef struct CoastPlace {
+    double x_m, y_m;
+    bool   sea;
+} CoastPlace;
+
+/* A straight line that the ground must leave clear, from a to b, by 2 m where there is room and 0.15 m under any
+ * circumstances. An end within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at
+ * 4 m posts; in proportion on the coarser levels) the line claims nothing, so a shot may end on the ground it hits.
+ * Elsewhere lines win: a fix above one is dropped. Give the places of gun, seeker and burst, not the point between
+ * a vehicle's tracks: a line from base to base along flat ground drops every fix beside it. */
+typedef struct ClearLine {
+    double a_enu[3], b_enu[3];
+} ClearLine;
+
+typedef struct LandscapeConfig {
+    uint64_t seed;
+    double   relief_m;       /* rms height of the invented hills far from any fix, 0 .. 200 */
+    double   spacing_m;      /* of level 0, 1 .. 30 */
+    double   half_width_m;   /* of level 0 */
+    double   horizon_m;      /* half width of the outermost level */
+} LandscapeConfig;
+
+/* All that an exercise says of its ground. Without a place of sea there is no sea. */
+typedef struct LandscapeEvidence {
+    int               fix_count, line_count, place_count;
+    const GroundFix  *fix;
+    const ClearLine  *line;
+    const CoastPlace *place;
+    double            sea_h_m; /* of the water's surface, above the ellipsoid */
+} LandscapeEvidence;
+
+typedef struct Landscape {
+    LocalFrame      frame;
+    Elevation       elevation;
+    LandscapeConfig config;
+    double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
+    int             fixes_dropped;/* contradicted by their neighbours, above a clear line, or not on this ground */
+    void           *cover;        /* private; surface and texture need it */
+} Landscape;
+
+LandscapeConfig landscape_default_config(void);
+/* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
+ * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
+ * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one; before that
+ * whole voters go that their neighbours contradict (ground_votes). With neither fixes nor
+ * low lines the country lies at ellipsoid height 0. fix, line may be NULL when their count is 0. */
+Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                        const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
+/* The same with a sea: flat at sea_h_m, wherever a place of sea is nearer than a place of dry land, the line between
+ * bent by up to a third of the distance; a third of the way from a place to its nearest opposite is always of its own
+ * kind. Land comes down to the water within 400 m of the shore, less where a place of dry land is nearer. Fixes on the
+ * water are dropped, and lines do not lower it. */
+Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
+                             const LandscapeEvidence *evidence);
+/* Which fixes are of a voter that the others outvote: [fix_count] bytes, 1: outvoted. Voters are numbered from 1 and
+ * are no more than the fixes. See landscape_votes.c. */
+Status ground_votes(uint8_t *outvoted, const GroundFix *fix, int fix_count);
+/* How far places are above the ground that the voters near them stand on (the plane that suits best), and how far the
+ * nearest of them is, m; NaN: none within 300 m. */
+Status ground_votes_at(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
+                       int fix_count);
+void   landscape_destroy(Landscape *landscape);
+
+/* How far a line leaves the ground alone about an end that has come down to a fix. */
+double landscape_taper_m(const LandscapeConfig *config);
+
+/* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. Of many
+ * places at once a tenth of the time each, and the same answers. */
+SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
+void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
+/* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of
+ * footprint_m and larger so that it neither aliases nor shimmers. */
+double landscape_texture(const Landscape *landscape, SurfaceClass surface, double x_m, double y_m, double footprint_m);
+void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
+                        const double *x_m, const double *y_m, const float *footprint_m);
+/* Where there is a photograph: its brightness relative to its own mean over that class, a channel, averaged over the
+ * footprint; multiplied by a material's reflectance the mean over the class is that of the material. 1 without. Texture
+ * then adds only what is finer than the photograph's pixels. factor: red, green, blue, and all three together. */
+bool   landscape_has_photo(const Landscape *landscape);
+enum { albedo_red, albedo_green, albedo_blue, albedo_all, albedo_channels };
+void   landscape_albedo(float factor[albedo_channels], const Landscape *landscape, SurfaceClass surface, double x_m,
+                        double y_m, double footprint_m);
+
+#endif

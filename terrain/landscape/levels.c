@@ -1,0 +1,188 @@
+/* terrain/landscape/levels.c: from heights above the ellipsoid to the stored levels: bent over the curved Earth into
+ * ENU, joined to the level around, and quantised, coarse before fine, so that edge posts fall exactly on the level
+ * around them. */
+#include "terrain/landscape/landscape_private.h"
+
+#include <stdlib.h>
+
+/* ---- curvature ---------------------------------------------------------------------------- */
+
+void curve_of_frame(Curve *out, const LocalFrame *frame)
+{
+    static const double a_m = 6378137, b_m = 6356752.314245179498; /* WGS 84 */
+    for (int k = 0; k < 3; k++) {
+        const double inv = out->inv_scale[k] = 1 / (k < 2 ? a_m : b_m);
+        out->origin[k] = frame->origin_ecef[k] * inv;
+        out->east[k] = frame->r_ecef_from_enu[3 * k] * inv;
+        out->north[k] = frame->r_ecef_from_enu[3 * k + 1] * inv;
+        out->up[k] = frame->r_ecef_from_enu[3 * k + 2] * inv;
+    }
+}
+
+void curve_at(const Curve *curve, double x_m, double y_m, double *z_m, double *dz_per_h)
+{
+    /* the vertical line at (x, y) meets the unit sphere where A z^2 + 2 B z + C = 0; C is zero at the origin,
+     * so the root is taken without a difference */
+    double q[3];
+    for (int k = 0; k < 3; k++) q[k] = curve->origin[k] + x_m * curve->east[k] + y_m * curve->north[k];
+    const double a = v3_dot(curve->up, curve->up), b = v3_dot(q, curve->up), c = v3_dot(q, q) - 1;
+    const double root = sqrt(fmax(b * b - a * c, 0));
+    const double z = -c / (b + root);
+
+    /* the normal, in ECEF, is the scaled point scaled once more; up is already scaled once */
+    double n[3];
+    for (int k = 0; k < 3; k++) n[k] = (q[k] + z * curve->up[k]) * curve->inv_scale[k];
+    const double nz = v3_dot(q, curve->up) + z * a;
+    *z_m = z;
+    *dz_per_h = v3_length(n) / fmax(nz, 1e-12);
+}
+
+/* Turns a level's heights above the ellipsoid into ENU z. Exact on every stride-th post, bilinear between: over
+ * 64 m the ellipsoid bends by 0.1 mm. */
+Status levels_bend(Field *posts, const Curve *curve)
+{
+    int stride = (int)(64 / posts->spacing_m);
+    if (stride < 1) stride = 1;
+    const int nx = (posts->nx - 1) / stride + 2;
+    double   *z = malloc(4 * (size_t)nx * sizeof *z);
+    if (!z) return STATUS_NO_MEMORY;
+
+    /* two rows of exact values: z and dz/dh, south and north of the rows between them */
+    double *z_of[2] = {z, z + nx}, *g_of[2] = {z + 2 * nx, z + 3 * nx};
+    for (int j0 = 0; j0 < posts->ny; j0 += stride) {
+        for (int side = 0; side < 2; side++)
+            for (int c = 0; c < nx; c++)
+                curve_at(curve, (posts->i0 + c * stride) * posts->spacing_m,
+                         (posts->j0 + j0 + side * stride) * posts->spacing_m, &z_of[side][c], &g_of[side][c]);
+        for (int j = j0; j < j0 + stride && j < posts->ny; j++) {
+            const double v = (double)(j - j0) / stride;
+            float       *row = posts->v + (size_t)j * posts->nx;
+            for (int c = 0; c * stride < posts->nx; c++) {
+                const double zw = z_of[0][c] + v * (z_of[1][c] - z_of[0][c]);
+                const double ze = z_of[0][c + 1] + v * (z_of[1][c + 1] - z_of[0][c + 1]);
+                const double g = g_of[0][c];
+                const int    end = (c + 1) * stride < posts->nx ? stride : posts->nx - c * stride;
+                for (int i = 0; i < end; i++)
+                    row[c * stride + i] = (float)(zw + (ze - zw) * i / stride + g * row[c * stride + i]);
+            }
+        }
+    }
+    free(z);
+    return STATUS_OK;
+}
+
+/* ---- joining --------------------------------------------------------------------------------- */
+
+/* Leads the posts near the outline over to the surface of the level around, on which the outline itself lies. */
+void levels_join(WorkLevel *level, const WorkLevel *outer, int band)
+{
+    Field *z = &level->z;
+    for (int j = 0; j < z->ny; j++) {
+        const int dj = j < z->ny - 1 - j ? j : z->ny - 1 - j;
+        for (int i = 0; i < z->nx; i++) {
+            const int di = i < z->nx - 1 - i ? i : z->nx - 1 - i, d = di < dj ? di : dj;
+            if (d >= band) {
+                i = z->nx - band - 1 > i ? z->nx - band - 1 : i; /* across the middle */
+                continue;
+            }
+            int          corner[3];
+            double       weight[3];
+            const double around_m = posts_at(&outer->z, (z->i0 + i) * z->spacing_m, (z->j0 + j) * z->spacing_m,
+                                             corner, weight);
+            const double share = smooth_step(0, band, d);
+            float       *post = &z->v[(size_t)j * z->nx + i];
+            *post = (float)(around_m + share * (*post - around_m));
+        }
+    }
+}
+
+/* ---- quantisation ------------------------------------------------------------------------- */
+
+typedef struct Quanta {
+    double z0_m, step_m;
+} Quanta;
+
+/* Power-of-two step that holds the level's heights; origin a multiple of every step that can occur. */
+static Quanta choose_quanta(const Field *z)
+{
+    static const double finest_m = 0x1p-8, origin_m = 64;
+    float               low = z->v[0], high = z->v[0];
+    const size_t        posts = (size_t)z->nx * z->ny;
+    for (size_t n = 0; n < posts; n++) {
+        low = low < z->v[n] ? low : z->v[n];
+        high = high > z->v[n] ? high : z->v[n];
+    }
+    Quanta q = {.z0_m = floor((low - 16) / origin_m) * origin_m, .step_m = finest_m};
+    while ((high + 16 - q.z0_m) / q.step_m > 65535) q.step_m *= 2;
+    return q;
+}
+
+/* Posts of the hole's outline become multiples of the coarse step and of 8 fine steps, rounded down (towards
+ * clear lines): then the seven posts between them are whole fine steps. */
+static void quantise(Elevation *elevation, const WorkLevel *levels, int count, const Quanta *quanta)
+{
+    for (int k = count - 1; k >= 0; k--) {
+        const WorkLevel *level = &levels[k];
+        const Field     *z = &level->z;
+        ElevationLevel  *to = &elevation->level[k];
+        const float      inv_step = (float)(1 / quanta[k].step_m), z0 = (float)quanta[k].z0_m;
+        /* coarse steps may rival the clearance of lines: round down there */
+        const float  half = k < 2 ? 0.5f : 0.0f;
+        const size_t posts = (size_t)z->nx * z->ny;
+        for (size_t n = 0; n < posts; n++) to->post[n] = (uint16_t)((z->v[n] - z0) * inv_step + half);
+
+        if (k > 0) {
+            const double coarse = fmax(quanta[k].step_m, level_ratio * quanta[k - 1].step_m);
+            for (int j = level->hole_j0; j <= level->hole_j1; j++)
+                for (int i = level->hole_i0; i <= level->hole_i1; i++) {
+                    const bool rim = i == level->hole_i0 || i == level->hole_i1 || j == level->hole_j0 ||
+                                     j == level->hole_j1;
+                    if (!rim) {
+                        i = level->hole_i1 - 1;
+                        continue;
+                    }
+                    const size_t at = (size_t)(j - z->j0) * z->nx + (i - z->i0);
+                    to->post[at] = (uint16_t)((floor(z->v[at] / coarse) * coarse - quanta[k].z0_m) / quanta[k].step_m);
+                }
+        }
+        if (level->outermost) continue;
+
+        const ElevationLevel *outer = &elevation->level[k + 1];
+        const int oi = z->i0 / level_ratio - levels[k + 1].z.i0, oj = z->j0 / level_ratio - levels[k + 1].z.j0;
+        for (int side = 0; side < 4; side++) {
+            const bool along_x = side < 2, far_side = side & 1;
+            const int  n = along_x ? z->nx : z->ny;
+            for (int m = 0; m < n; m++) {
+                const int    i = along_x ? m : far_side ? z->nx - 1 : 0, j = along_x ? far_side ? z->ny - 1 : 0 : m;
+                const int    c = m / level_ratio, part = m % level_ratio;
+                const size_t a = (size_t)(oj + (along_x ? j / level_ratio : c)) * outer->nx + oi + (along_x ? c : i / level_ratio);
+                const size_t b = part ? a + (along_x ? 1 : (size_t)outer->nx) : a;
+                const double za = outer->z0_m + outer->step_m * outer->post[a];
+                const double zb = outer->z0_m + outer->step_m * outer->post[b];
+                to->post[(size_t)j * z->nx + i] =
+                    (uint16_t)((za + (zb - za) * part / level_ratio - quanta[k].z0_m) / quanta[k].step_m);
+            }
+        }
+    }
+}
+
+Status levels_store(Elevation *out, const WorkLevel *levels, int count)
+{
+    Elevation elevation = {0};
+    Quanta    quanta[elevation_max_levels];
+    for (int k = 0; k < count; k++) {
+        const Field *z = &levels[k].z;
+        quanta[k] = choose_quanta(z);
+        const Status status =
+            elevation_level_create(&elevation, k, z->nx, z->ny, z->i0 * z->spacing_m, z->j0 * z->spacing_m,
+                                   z->spacing_m, quanta[k].z0_m, quanta[k].step_m);
+        if (status != STATUS_OK) {
+            elevation_destroy(&elevation);
+            return status;
+        }
+    }
+    quantise(&elevation, levels, count, quanta);
+    elevation_build_pyramids(&elevation);
+    *out = elevation;
+    return STATUS_OK;
+}

@@ -1,0 +1,61 @@
+/* terrain/landscape/plots.c: the invented fields: cells of a jittered grid, some joined in twos and fours. What belongs
+ * to a cell and not to a place is found once, however many places ask. */
+#include "terrain/landscape/landscape_eight_private.h"
+
+static uint64_t field_of_site(uint64_t seed, int64_t i, int64_t j)
+{
+    const double four = unit_from_hash(landscape_hash(seed + 1, i >> 1, j >> 1));
+    if (four < 0.25) return landscape_hash(seed + 2, i >> 1, j >> 1);
+    if (four < 0.45) return landscape_hash(seed + 3, i >> 1, j);
+    if (four < 0.60) return landscape_hash(seed + 4, i, j >> 1);
+    return landscape_hash(seed + 5, i, j);
+}
+
+static SurfaceClass crop_of_field(uint64_t id, bool arable)
+{
+    static const struct {
+        double       arable, pasture; /* up to this share */
+        SurfaceClass surface;
+    } share[] = {
+        {0.38, 0.10, SURFACE_CROP},      {0.58, 0.15, SURFACE_PLOUGHED},  {0.70, 0.20, SURFACE_BARE_SOIL},
+        {0.88, 0.62, SURFACE_GRASS},     {1.00, 0.90, SURFACE_DRY_GRASS}, {1.00, 1.00, SURFACE_SCRUB},
+    };
+    const double u = unit_from_hash(landscape_hash(id, 7, 0));
+    for (size_t n = 0; n < sizeof share / sizeof share[0]; n++)
+        if (u < (arable ? share[n].arable : share[n].pasture)) return share[n].surface;
+    return SURFACE_GRASS;
+}
+
+static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
+{
+    static const double jitter = 0.8;
+    double              whole_x[16] = {0}, whole_y[16] = {0}; /* a place that belongs to the field as a whole */
+    *cell = (PlotCell){.i = ci, .j = cj, .known = true};
+    for (int n = 0; n < plot_sites; n++) {
+        const int64_t  di = n % 3 - 1, dj = n / 3 - 1, i = ci + di, j = cj + dj;
+        const uint64_t h = landscape_hash(seed, i, j);
+        const double   ux = (double)(h & 0xffffffffu) * 0x1p-32 - 0.5, uy = (double)(h >> 32) * 0x1p-32 - 0.5;
+        cell->x_m[n] = (float)(((double)di + 0.5 + jitter * ux) * plot_m);
+        cell->y_m[n] = (float)(((double)dj + 0.5 + jitter * uy) * plot_m);
+        cell->id[n]  = field_of_site(seed, i, j);
+        cell->field[n] = n;
+        for (int k = n - 1; k >= 0; k--)
+            if (cell->id[k] == cell->id[n]) cell->field[n] = k;
+        whole_x[n] = (double)(i >> 1) * 2 * plot_m, whole_y[n] = (double)(j >> 1) * 2 * plot_m;
+
+        const uint64_t turn = landscape_hash(cell->id[n], 8, 0);
+        const double   dx = unit_from_hash(turn) - 0.5, dy = unit_from_hash(landscape_hash(turn, 9, 0)) - 0.5;
+        const double   length = fmax(sqrt(dx * dx + dy * dy), 1e-3);
+        cell->across_x[n] = (float)(dx / length), cell->across_y[n] = (float)(dy / length);
+    }
+    float arable[16];
+    for (int n = 0; n < 16; n += 8) eight_store(arable + n, noise_eight(seed + 13, 1900, whole_x + n, whole_y + n));
+    for (int n = 0; n < plot_sites; n++) cell->crop[n] = (int32_t)crop_of_field(cell->id[n], arable[n] > -0.15f);
+}
+
+const PlotCell *plot_cell_at(PlotCells *cells, uint64_t seed, int64_t i, int64_t j)
+{
+    PlotCell *cell = &cells->cell[(uint64_t)(i + 5 * j) % plot_cells_kept];
+    if (!cell->known || cell->i != i || cell->j != j) find_cell(cell, seed, i, j);
+    return cell;
+}
