@@ -4,6 +4,7 @@
 #include "sensor/commands/check.h"
 #include "sensor/bench/suites.h"
 #include "sensor/commands/exercise.h"
+#include "sensor/framefile/frame_command.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
 #include "sensor/commands/model.h"
@@ -96,6 +97,7 @@ static const struct Command {
 } commands[] = {
     {"run", run_command, "listen to an exercise on the network and show it live", true},
     {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw", true},
+    {"frame", frame_command, "render one saved frame again, without its log, and say whether it is the same", true},
     {"regress", regress_command, "show recorded exercises again and compare with what they showed", true},
     {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed", true},
     {"check", check_command, "say whether a file of settings is good; or print one to begin with", true},

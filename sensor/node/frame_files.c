@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <time.h>
 
-enum { path_size = 4096, max_planes = 24, max_jobs = 16 };
+enum { path_size = 4096, max_planes = frame_planes_most, max_jobs = 16 };
 
 /* Bands whose pictures come from a detector. */
 static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
@@ -380,11 +380,9 @@ static Status write_profile(const FrameFiles *frame, int band)
     return STATUS_IO;
 }
 
-static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
+int frame_files_planes(Plane plane[frame_planes_most], char name[frame_planes_most][32], const FrameFiles *frame)
 {
-    Plane plane[max_planes];
-    char  name[max_planes][32];
-    int   planes = 0;
+    int planes = 0;
     for (int b = 0; b <= BAND_COUNT; b++) {
         if (b < BAND_COUNT && !(frame->request->bands >> b & 1)) continue;
         const int added = band_planes(plane + planes, frame, b, planes_all); /* whatever is kept */
@@ -399,7 +397,14 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
         plane[planes] = plane_f64(name[planes], radar_bounces, frame->request->profile_bins, frame->picture->profile);
         planes++;
     }
-    return plane_hash(hash, plane, planes);
+    return planes;
+}
+
+static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
+{
+    Plane plane[frame_planes_most];
+    char  name[frame_planes_most][32];
+    return plane_hash(hash, plane, frame_files_planes(plane, name, frame));
 }
 
 /* Task 0 hashes, each other one writes a file. */

@@ -59,6 +59,9 @@ void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pic
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
 /* What lies behind a detector alone: display pictures and raw counts of its bands. */
 Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
+/* The planes that the hash is of, named as it names them; how many. */
+enum { frame_planes_most = 24 };
+int    frame_files_planes(Plane plane[frame_planes_most], char name[frame_planes_most][32], const FrameFiles *frame);
 /* The same hash, and no file. */
 Status frame_files_hash(char hash[sha256_text_size], const FrameFiles *frame);
 

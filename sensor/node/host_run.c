@@ -1,6 +1,7 @@
 #include "sensor/node/host_run.h"
 
 #include "sensor/node/frame_files.h"
+#include "sensor/node/frame_world.h"
 #include "sensor/settings/quality.h"
 #include "sensor/node/shape_choice.h"
 
@@ -199,13 +200,10 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     if (status == STATUS_OK)
         status = choose_ground(landscape, contact, choices, &run->survey, &o->config, &frame, run->catalog, plan);
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
-    if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
-    if (status == STATUS_OK)
-        status = atmosphere_open_at(&world->atmosphere, o->config.weather.atmosphere, o->config.weather.visibility_m);
+    if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
     if (status != STATUS_OK) return status;
     say_visibility(choices, &o->config, world->atmosphere);
     say_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
-    world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
     choice_say_night(choices, run->bands, *unix_s, plan, &frame);
     for (int i = 0; i < choices->count; i++) log_say("%s\n", choices->line[i]);
@@ -266,7 +264,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN, .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
-                                  .user = run->user};
+                                  .user = run->user, .save_count = o->save_count, .save = o->save};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

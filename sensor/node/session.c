@@ -1,5 +1,6 @@
 #include "sensor/node/session_private.h"
 
+#include "sensor/framefile/frame_save.h"
 #include "sensor/node/scene_rate.h"
 
 #include <errno.h>
@@ -19,51 +20,6 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 }
 
 /* ---- one frame ------------------------------------------------------------------------------ */
-
-/* Sun at the eye's own place, its direction turned into the world's frame. */
-static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s,
-                       Arena *arena)
-{
-    const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    World               *world = shared->world;
-    Weather              weather = {.visibility_m = config->weather.visibility_m,
-                                    .air_temp_k = config->weather.air_temp_k,
-                                    .pressure_mbar = config->weather.pressure_mbar,
-                                    .wind_mps = config->weather.wind_mps,
-                                    .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
-    if (isnan(weather.air_temp_k)) weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
-    Geodetic place;
-    double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
-    Status   status = geodetic_from_ecef(&place, eye->state.p_ecef);
-    if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
-    if (status == STATUS_OK)
-        status = sun_at(sun, shared->unix_s + t_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
-    if (status != STATUS_OK) return status;
-    Sun local = *sun;
-    m3_mul_v3(d_ecef, r_ecef_from_host, sun->d_enu);
-    m3_tmul_v3(local.d_enu, shared->world->frame.r_ecef_from_enu, d_ecef);
-    m3_tmul(r_host_from_enu, r_ecef_from_host, shared->world->frame.r_ecef_from_enu);
-
-    /* heights of the air are above the ground at the origin, and the tangent plane leaves the Earth */
-    const double     *p_enu = eye->view.p_enu;
-    const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
-    const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
-    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
-    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, config_optical(config)), &eye->view};
-    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, arena);
-}
-
-void turn_normals(Picture *picture, const double r_host_from_enu[9])
-{
-    const size_t count = (size_t)picture->width * (size_t)picture->height;
-    for (size_t i = 0; i < count; i++) {
-        const double n[3] = {picture->normal[0][i], picture->normal[1][i], picture->normal[2][i]};
-        double       turned[3];
-        m3_mul_v3(turned, r_host_from_enu, n);
-        for (int k = 0; k < 3; k++) picture->normal[k][i] = (float)turned[k];
-    }
-}
 
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
@@ -120,6 +76,17 @@ static Status write_files(char hash[sha256_text_size], Session *s, const FrameFi
     return status == STATUS_IO ? STATUS_OK : status;
 }
 
+/* Where it is asked for: the frame as a file of its own. */
+static Status save_frame(const Session *s, const FrameFiles *files, const FrameRecord *record, const Eye *eye)
+{
+    const SessionShared *shared = s->shared;
+    for (int i = 0; i < shared->save_count; i++)
+        if (shared->save[i] == files->frame)
+            return frame_save(&(FrameSave){files, record, &eye->state, shared->unix_s, shared->contact == GROUND_CONTACT_ALL,
+                                           shared->pool});
+    return STATUS_OK;
+}
+
 static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
 {
     const SessionShared *shared = s->shared;
@@ -141,7 +108,9 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     double        r_host_from_enu[9] = {0};
     Picture       picture;
     RenderRequest request;
-    status = light_at(&air, &sun, r_host_from_enu, s, &eye, t_s, arena);
+    const FrameEye at = {shared->unix_s + t_s, {eye.state.p_ecef[0], eye.state.p_ecef[1], eye.state.p_ecef[2]}, &eye.view,
+                         shared->bands};
+    status = frame_light(&air, &sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, arena);
     make_request(&request, s, &eye);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK)
@@ -182,6 +151,7 @@ static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
     if (status == STATUS_OK && s->coco) status = coco_frame(s->coco, &record, picture.entity);
     if (status == STATUS_OK && s->pairs)
         status = pairs_frame(s->pairs, &files, done->hash, &air, r_host_from_enu, s->plan.aim, eye.hidden, arena);
+    if (status == STATUS_OK) status = save_frame(s, &files, &record, &eye);
     if (status != STATUS_OK) return status;
 
     const double end_s = wall_clock_s();

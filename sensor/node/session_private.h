@@ -3,6 +3,7 @@
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
 #include "sensor/node/frame_files.h"
+#include "sensor/node/frame_light.h"
 #include "sensor/node/frame_writer.h"
 #include "sensor/node/mount.h"
 #include "sensor/node/pairs.h"
@@ -64,7 +65,5 @@ bool session_host_is_there(const Session *s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
  * host is not there. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
-/* Products give normals in the host's own ENU. */
-void turn_normals(Picture *picture, const double r_host_from_enu[9]);
 
 #endif
