@@ -38,7 +38,10 @@ void sink_bytes(ByteSink *sink, const void *bytes, size_t count)
 
 void sink_u32(ByteSink *sink, uint32_t value) { sink_bytes(sink, &value, sizeof value); }
 void sink_u64(ByteSink *sink, uint64_t value) { sink_bytes(sink, &value, sizeof value); }
-void sink_f64s(ByteSink *sink, const double *value, int count) { sink_bytes(sink, value, (size_t)count * sizeof *value); }
+void sink_f64s(ByteSink *sink, const double *value, int count)
+{
+    sink_bytes(sink, value, (size_t)count * sizeof *value);
+}
 
 void sink_text(ByteSink *sink, const char *text)
 {
@@ -76,9 +79,10 @@ void chunks_put(ByteSink *file, const char *name, const ByteSink *content)
     uint8_t       *packed = malloc(stored);
     file->failed |= content->failed || !packed;
     if (file->failed) goto done;
-    const bool shorter = content->count > 0 &&
-                         compress2(packed, &stored, content->bytes, (uLong)content->count, Z_DEFAULT_COMPRESSION) == Z_OK &&
-                         stored < content->count;
+    const bool shorter =
+        content->count > 0 && stored > 0 &&
+        compress2(packed, &stored, content->bytes, (uLong)content->count, Z_DEFAULT_COMPRESSION) == Z_OK &&
+        stored < content->count;
     if (!shorter) stored = content->count;
     put_header(file, name, shorter ? method_zlib : method_plain, crc, content->count, stored);
     sink_bytes(file, shorter ? packed : content->bytes, stored);

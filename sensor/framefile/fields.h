@@ -13,7 +13,10 @@ typedef struct Fields {
     bool        no_memory;
 } Fields;
 
-static inline bool fields_good(const Fields *f) { return !f->fault && !f->no_memory && !(f->from && f->from->truncated); }
+static inline bool fields_good(const Fields *f)
+{
+    return !f->fault && !f->no_memory && !(f->from && f->from->truncated);
+}
 
 void field_int(Fields *f, const char *name, int *value, int low, int high);
 void field_u32(Fields *f, uint32_t *value);

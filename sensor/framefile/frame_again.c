@@ -89,8 +89,9 @@ int frame_differences(const FrameFile *file, const FrameMade *made, bool said)
             log_error("frame: %s is not among the planes that this request gives here", was->name);
             continue;
         }
-        log_error("frame: %s differs: mean %.9g, was %.9g; from %.9g to %.9g, was %.9g to %.9g; %.0f finite values, were "
-                  "%.0f", was->name, is->mean, was->mean, is->low, is->high, was->low, was->high, is->finite, was->finite);
+        log_error("frame: %s differs: mean %.9g, was %.9g; from %.9g to %.9g, was %.9g to %.9g; %.0f finite values, "
+                  "were %.0f", was->name, is->mean, was->mean, is->low, is->high, was->low, was->high, is->finite,
+                  was->finite);
     }
     for (int i = 0; i < made->plane_count; i++) {
         if (plane_named(file->plane, file->plane_count, made->plane[i].name)) continue;

@@ -1,5 +1,5 @@
-/* sensor/framefile/frame_command.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says whether
- * the planes are the same to the bit. */
+/* sensor/framefile/frame_command.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says
+ * whether the planes are the same to the bit. */
 #include "sensor/framefile/frame_command.h"
 
 #include "sensor/commands/next_option.h"
@@ -18,9 +18,10 @@ enum { path_size = 4096, most_octets = 1 << 29 };
 static const char help[] =
     "usage: pitviper frame FILE [options]\n"
     "\n"
-    "Renders one frame again from FILE, which `pitviper replay LOG --save-frame N` wrote, and says whether every plane is\n"
-    "the same to the bit: 0 yes, 1 no. Needs neither the log nor files of elevation; tables and models of this\n"
-    "installation must be those of the frame, which are known by their SHA-256. etc/FRAME_FILE.md describes the format.\n"
+    "Renders one frame again from FILE, which `pitviper replay LOG --save-frame N` wrote, and says whether every\n"
+    "plane is the same to the bit: it ends with 0, else with 1. Needs neither the log nor files of elevation. Tables\n"
+    "and models of this installation must be those of the frame, which are known by their SHA-256.\n"
+    "etc/FRAME_FILE.md describes the format.\n"
     "\n"
     "  --out DIR            its pictures and its line of truth.jsonl, as replay writes them\n"
     "  --overwrite          let go what an earlier run left in DIR; otherwise it is kept and nothing is done\n"
@@ -83,9 +84,11 @@ static void describe_ground(const LandscapeParts *g)
                 g->said.line_count, g->said.place_count);
         return;
     }
-    for (int n = 0, at = 0; n < g->elevation.level_count; n++)
-        at += snprintf(size + at, sizeof size - (size_t)at, "%s%d x %d at %.4g m", n ? ", " : "", g->elevation.level[n].nx,
-                       g->elevation.level[n].ny, g->elevation.level[n].spacing_m);
+    for (int n = 0, at = 0; n < g->elevation.level_count; n++) {
+        const ElevationLevel *l = &g->elevation.level[n];
+        at += snprintf(size + at, sizeof size - (size_t)at, "%s%d x %d at %.4g m", n ? ", " : "", l->nx, l->ny,
+                       l->spacing_m);
+    }
     log_say("ground: of files, %s%s%s\n", size, g->cover[0].nx ? ", cover" : "", g->photo.mips ? ", photograph" : "");
 }
 
@@ -97,13 +100,14 @@ static void describe(const FrameFile *file)
     char                 utc[32] = "?", bands[64] = "", host[128], version[128];
     if (!gmtime_r(&whole, &date) || strftime(utc, sizeof utc, "%Y-%m-%dT%H:%M:%SZ", &date) == 0) strcpy(utc, "?");
     for (int b = 0, at = 0; b < BAND_COUNT; b++)
-        if (r->bands >> b & 1) at += snprintf(bands + at, sizeof bands - (size_t)at, "%s%s", at ? "," : "", band_name((Band)b));
+        if (r->bands >> b & 1)
+            at += snprintf(bands + at, sizeof bands - (size_t)at, "%s%s", at ? "," : "", band_name((Band)b));
     text_escape(host, sizeof host, file->host, strlen(file->host));
     text_escape(version, sizeof version, file->version, strlen(file->version));
     log_say("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc, version,
             strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
-    log_say("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width, r->view.height,
-            bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
+    log_say("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
+            r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
     describe_ground(&file->ground);
     log_say("tables: %d of etc/ and models, by SHA-256\n", file->tables.count);
     for (int i = 0; i < file->tables.count; i++)
@@ -130,7 +134,8 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     memcpy(record.v_eye_mps, file->eye.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, file->r_ecef_from_body, sizeof record.r_ecef_from_body);
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
-    record.target_count = truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
+    record.target_count =
+        truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
     if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
                     s->config.models.sag_m, file->all_on_ground))
         record.error = &error;
@@ -183,8 +188,10 @@ static Status show(int *differ, const FrameOptions *o, const FrameFile *file, Fr
     if (status != STATUS_OK) return status;
     log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     *differ = frame_differences(file, &again->made, true);
-    if (*differ == 0) log_say("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
-    else log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
+    if (*differ == 0)
+        log_say("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
+    else
+        log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
                    again->made.sha256, file->frame_sha256,
                    strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
     return o->out ? write_products(o, file, s, again, pool, arena) : STATUS_OK;

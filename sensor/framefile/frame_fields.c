@@ -21,7 +21,10 @@ void frame_fields_about(Fields *f, FrameFile *file)
     field_real(f, "unix_s", &file->unix_s, -long_s, long_s);
 }
 
-void frame_fields_settings(Fields *f, FrameFile *file) { field_text(f, "settings", &file->settings, settings_file_octets); }
+void frame_fields_settings(Fields *f, FrameFile *file)
+{
+    field_text(f, "settings", &file->settings, settings_file_octets);
+}
 
 void frame_fields_tables(Fields *f, FrameFile *file)
 {
@@ -34,7 +37,8 @@ void frame_fields_tables(Fields *f, FrameFile *file)
 
 void frame_fields_models(Fields *f, FrameFile *file)
 {
-    if (!field_array(f, "models", &file->model_count, (void **)&file->model, sizeof *file->model, 169, frame_models_max))
+    if (!field_array(f, "models", &file->model_count, (void **)&file->model, sizeof *file->model, 169,
+                     frame_models_max))
         return;
     for (int i = 0; i < file->model_count && fields_good(f); i++) {
         FrameModel *m = &file->model[i];
@@ -55,7 +59,8 @@ static void entity_fields(Fields *f, SnapshotEntity *e)
     for (int k = 0; k < 3; k++) field_u32(f, &id[k]);
     field_bytes(f, type, sizeof type);
     e->id    = (DisEntityId){(uint16_t)id[0], (uint16_t)id[1], (uint16_t)id[2]};
-    e->type  = (DisEntityType){type[0], type[1], (uint16_t)(type[2] << 8 | type[3]), type[4], type[5], type[6], type[7]};
+    e->type  = (DisEntityType){type[0], type[1], (uint16_t)(type[2] << 8 | type[3]), type[4], type[5], type[6],
+                               type[7]};
     e->force = type[8];
     field_chars(f, "marking", e->marking, sizeof e->marking);
     field_u32(f, &appearance);
@@ -110,14 +115,16 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
     field_int(f, "entities left out", &s->left_out, 0, INT32_MAX - 1);
     field_bytes(f, &left, sizeof left);
     s->puffs_left_out = left;
-    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 300, frame_file_entities_max)) return;
+    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 300, frame_file_entities_max))
+        return;
     for (int e = 0; e < s->count && fields_good(f); e++) entity_fields(f, &s->entity[e]);
     if (!field_array(f, "nodes", &s->node_count, (void **)&s->node, sizeof *s->node, 96, INT32_MAX - 1)) return;
     for (int n = 0; n < s->node_count && fields_good(f); n++) {
         field_reals(f, "place of a node", s->node[n].p_body, 3, local_m);
         field_rotation(f, "attitude of a node", s->node[n].r_body_from_node);
     }
-    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity)) return;
+    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity))
+        return;
     for (int p = 0; p < s->puff_count && fields_good(f); p++) puff_fields(f, &s->puff[p]);
     if (f->from) check_order(f, s);
 }
@@ -184,17 +191,20 @@ static void evidence_fields(Fields *f, LandscapeEvidence *said)
     ClearLine  *line  = (ClearLine *)said->line;
     CoastPlace *place = (CoastPlace *)said->place;
     field_real(f, "height of the sea", &said->sea_h_m, -local_m, local_m);
-    if (!field_array(f, "places of the ground", &said->fix_count, (void **)&fix, sizeof *fix, 28, landscape_parts_rows)) return;
+    if (!field_array(f, "places of the ground", &said->fix_count, (void **)&fix, sizeof *fix, 28, landscape_parts_rows))
+        return;
     for (int i = 0; i < said->fix_count && fields_good(f); i++) {
         field_reals(f, "place of the ground", fix[i].p_enu, 3, local_m);
         field_int(f, "voter", &fix[i].voter, 0, INT32_MAX - 1);
     }
-    if (!field_array(f, "clear lines", &said->line_count, (void **)&line, sizeof *line, 48, landscape_parts_rows)) return;
+    if (!field_array(f, "clear lines", &said->line_count, (void **)&line, sizeof *line, 48, landscape_parts_rows))
+        return;
     for (int i = 0; i < said->line_count && fields_good(f); i++) {
         field_reals(f, "clear line", line[i].a_enu, 3, local_m);
         field_reals(f, "clear line", line[i].b_enu, 3, local_m);
     }
-    if (!field_array(f, "places of sea and land", &said->place_count, (void **)&place, sizeof *place, 20, landscape_parts_rows))
+    if (!field_array(f, "places of sea and land", &said->place_count, (void **)&place, sizeof *place, 20,
+                     landscape_parts_rows))
         return;
     for (int i = 0; i < said->place_count && fields_good(f); i++) {
         field_real(f, "place of sea or land", &place[i].x_m, -local_m, local_m);
@@ -279,9 +289,8 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
     field_real(f, "latitude of the origin", &g->frame.origin.lat_rad, -pi_rad / 2, pi_rad / 2);
     field_real(f, "longitude of the origin", &g->frame.origin.lon_rad, -4, 4);
     field_real(f, "height of the origin", &g->frame.origin.h_m, -earth_m, earth_m);
-    if (f->from && fields_good(f) && local_frame_at(&g->frame, &(Geodetic){g->frame.origin.lat_rad, g->frame.origin.lon_rad,
-                                                                           g->frame.origin.h_m}) != STATUS_OK)
-        f->fault = "origin";
+    const Geodetic origin = g->frame.origin;
+    if (f->from && fields_good(f) && local_frame_at(&g->frame, &origin) != STATUS_OK) f->fault = "origin";
     field_u64(f, &g->config.seed);
     field_real(f, "relief", &g->config.relief_m, 0, 200);
     field_real(f, "spacing of the ground", &g->config.spacing_m, 0, 1e5);
@@ -308,7 +317,9 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
 void frame_fields_planes(Fields *f, FrameFile *file)
 {
     field_chars(f, "frame sha256", file->frame_sha256, sizeof file->frame_sha256);
-    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 129, frame_planes_most)) return;
+    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 129,
+                     frame_planes_most))
+        return;
     for (int i = 0; i < file->plane_count && fields_good(f); i++) {
         FramePlane *p = &file->plane[i];
         field_chars(f, "plane name", p->name, sizeof p->name);

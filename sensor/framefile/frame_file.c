@@ -46,7 +46,8 @@ static const FrameModel *model_of(const FrameFile *file, int model)
 static const char *disagreement(const FrameFile *file)
 {
     const Snapshot *s = &file->snapshot;
-    if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) return "the host is not in the snapshot";
+    if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count)
+        return "the host is not in the snapshot";
     for (int e = 0; e < s->count; e++) {
         const FrameModel *model = s->entity[e].model < 0 ? NULL : model_of(file, s->entity[e].model);
         if (s->entity[e].model >= 0 && !model) return "an entity's model is not listed";
@@ -57,7 +58,8 @@ static const char *disagreement(const FrameFile *file)
     return NULL;
 }
 
-static Status parse(FrameFile *out, ChunkSource *source, unsigned *met)
+/* field: the one that is out of its range; NULL: something else is wrong. */
+static Status parse(FrameFile *out, ChunkSource *source, unsigned *met, const char **field)
 {
     char       name[chunk_name_size + 1];
     ByteSource content;
@@ -68,15 +70,15 @@ static Status parse(FrameFile *out, ChunkSource *source, unsigned *met)
         while (c < chunk_kinds && strcmp(chunks[c].name, name) != 0) c++;
         if (c == chunk_kinds) continue; /* of a later program, which adds what this one need not know */
         Fields f = {.from = &content, .arena = source->arena};
-        if (*met >> c & 1) f.fault = "a chunk that is there twice";
+        if (*met >> c & 1) source->fault = "a chunk is there twice";
         else if (chunks[c].fields) chunks[c].fields(&f, out);
         else frame_fields_ground(&f, out, NULL);
         *met |= 1u << c;
+        *field = f.fault;
         if (f.no_memory) return STATUS_NO_MEMORY;
-        if (!f.fault && content.truncated) f.fault = "a chunk that ends too early";
-        if (!f.fault && content.at != content.end) f.fault = "a chunk that is too long";
-        source->fault = f.fault;
-        if (f.fault) return STATUS_BAD_VALUE;
+        if (!f.fault && content.truncated) source->fault = "a chunk ends too early";
+        if (!f.fault && !source->fault && content.at != content.end) source->fault = "a chunk is too long";
+        if (f.fault || source->fault) return STATUS_BAD_VALUE;
     }
 }
 
@@ -84,9 +86,10 @@ Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, cons
 {
     ChunkSource source;
     unsigned    met = 0;
+    const char *field = NULL;
     *out          = (FrameFile){0};
     Status status = chunks_open(&source, bytes, count, arena);
-    if (status == STATUS_OK) status = parse(out, &source, &met);
+    if (status == STATUS_OK) status = parse(out, &source, &met, &field);
     if (status == STATUS_OK && met != (1u << chunk_kinds) - 1) {
         int c = 0;
         while (met >> c & 1) c++;
@@ -96,8 +99,8 @@ Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, cons
     if (status == STATUS_OK && (source.fault = disagreement(out))) status = STATUS_BAD_VALUE;
     if (status == STATUS_NO_MEMORY) log_error("frame: %s: out of memory", path);
     else if (status != STATUS_OK)
-        log_error("frame: %s cannot be read: %s; save it again with `pitviper replay LOG --save-frame N`", path,
-                  source.fault ? source.fault : status_name(status));
+        log_error("frame: %s cannot be read: %s%s; save it again with `pitviper replay LOG --save-frame N`", path,
+                  field ? "out of range: " : "", field ? field : source.fault ? source.fault : status_name(status));
     return status;
 }
 

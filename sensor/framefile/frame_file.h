@@ -53,8 +53,8 @@ typedef struct FrameFile {
 /* The file's octets. kept: of a ground of files, the part that is stored (ground_cutout.h); NULL: all of it. */
 struct GroundCutout;
 Status frame_file_pack(ByteSink *out, const FrameFile *file, const struct GroundCutout *kept);
-/* From octets that may be hostile: every count bounded, every figure within its range, so that world and render() can be
- * given it once its models are known to agree. All in the arena. Logs what is wrong as the path's. */
+/* From octets that may be hostile: every count bounded, every figure within its range, so that world and render() can
+ * be given it once its models are known to agree. All in the arena. Logs what is wrong as the path's. */
 Status frame_file_parse(FrameFile *out, const uint8_t *bytes, size_t count, const char *path, Arena *arena);
 
 /* SHA-256 of a model's nodes, parts and facets. */

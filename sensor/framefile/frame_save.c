@@ -58,8 +58,8 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
     *file = (FrameFile){.version = PITVIPER_VERSION, .host = files->host, .config_sha256 = files->config_sha256,
                         .frame = files->frame, .time_s = files->time_s, .unix_s = save->unix_s,
                         .snapshot = *files->snapshot, .request = *files->request, .eye = *save->eye,
-                        .rate_px_s = {files->rate_px_s[0], files->rate_px_s[1]}, .at_limit = save->record->gimbal_at_limit,
-                        .all_on_ground = save->all_on_ground};
+                        .rate_px_s = {files->rate_px_s[0], files->rate_px_s[1]},
+                        .at_limit = save->record->gimbal_at_limit, .all_on_ground = save->all_on_ground};
     memcpy(file->r_ecef_from_body, save->record->r_ecef_from_body, sizeof file->r_ecef_from_body);
     landscape_parts(&file->ground, files->world->landscape);
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
@@ -75,7 +75,7 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
     return STATUS_OK;
 }
 
-/* Where the frame's rays meet the ground, or what stands on it; the eye, the origin, and smoke that lies on the ground. */
+/* Where the frame's rays meet the ground, or what stands on it; the eye, the origin, and smoke on the ground. */
 static Status gather_places(GroundCutout *out, const FrameFiles *files, Arena *arena)
 {
     const Picture    *picture = files->picture;
@@ -134,26 +134,29 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
     return status;
 }
 
-/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. */
+/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. What is seen directly is in the first;
+ * glossy surfaces mirror hills that are farther away than what the picture shows. */
 static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *file, const FrameSave *save, Arena *gathered)
 {
-    static const double reaches_m[] = {0, 200, 1000, 5000, 20000, INFINITY};
-    GroundCutout        kept = {.reach_m = INFINITY};
+    static const double reaches_m[][2] = {
+        {100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
+    GroundCutout        kept = {0};
     Arena              *arena = arena_create();
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK && !file->ground.invented) status = gather_places(&kept, save->files, gathered);
     for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
-        if (file->ground.invented && isfinite(reaches_m[r])) continue;
-        *reach_m = kept.reach_m = reaches_m[r];
+        if (file->ground.invented && isfinite(reaches_m[r][0])) continue;
+        *reach_m = kept.reach_m = reaches_m[r][0];
+        kept.looks_reach_m = reaches_m[r][1];
         sink_free(bytes);
         arena_reset(arena);
         status = frame_file_pack(bytes, file, &kept);
         if (status == STATUS_OK) status = prove(&same, bytes, save, arena);
     }
     if (status == STATUS_OK && !same) {
-        log_error("frame: frame %d, rendered again from its file, is another picture; nothing is written. Please report "
-                  "this", file->frame);
+        log_error("frame: frame %d, rendered again from its file, is another picture; nothing is written. Please "
+                  "report this", file->frame);
         status = STATUS_BAD_VALUE;
     }
     arena_destroy(arena);
@@ -189,8 +192,8 @@ Status frame_save(const FrameSave *save)
     if (status == STATUS_OK) status = pack_proved(&bytes, &reach_m, file, save, arena);
     if (status == STATUS_OK) status = write_file(path, &bytes);
     if (status == STATUS_OK && !file->ground.invented && isfinite(reach_m))
-        log_say("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path, 1e-3 * (double)bytes.count,
-                reach_m);
+        log_say("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path,
+                1e-3 * (double)bytes.count, reach_m);
     else if (status == STATUS_OK)
         log_say("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
     free(settings);

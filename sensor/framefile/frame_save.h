@@ -14,8 +14,8 @@ typedef struct FrameSave {
     Pool              *pool;
 } FrameSave;
 
-/* Writes it only after rendering it again from its own octets to the same bits; with ground of files it takes more of the
- * ground until that is so. Takes the time of a few frames. Logs failures. */
+/* Writes it only after rendering it again from its own octets to the same bits; with ground of files it takes more of
+ * the ground until that is so. Takes the time of a few frames. Logs failures. */
 Status frame_save(const FrameSave *save);
 
 #endif

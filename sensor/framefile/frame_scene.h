@@ -1,5 +1,5 @@
-/* sensor/framefile/frame_scene.h: everything that a frame file needs of this installation, opened and compared with what
- * the frame was made with: settings, tables, models, sensors; and its own ground. */
+/* sensor/framefile/frame_scene.h: everything that a frame file needs of this installation, opened and compared with
+ * what the frame was made with: settings, tables, models, sensors; and its own ground. */
 #ifndef SENSOR_FRAMEFILE_FRAME_SCENE_H
 #define SENSOR_FRAMEFILE_FRAME_SCENE_H
 

@@ -49,7 +49,8 @@ static void grow(uint8_t *mark, int n, size_t stride, int more)
 static bool keep_tiles(Tiles *t, const CutoutGrid *grid, const GroundCutout *kept)
 {
     const size_t tiles = (size_t)t->nx * (size_t)t->ny;
-    if (!kept || !isfinite(kept->reach_m)) {
+    const double reach_m = !kept ? INFINITY : grid->octets == 2 ? kept->reach_m : kept->looks_reach_m;
+    if (!isfinite(reach_m)) {
         memset(t->kept, 0xff, t->octets);
         return true;
     }
@@ -63,7 +64,7 @@ static bool keep_tiles(Tiles *t, const CutoutGrid *grid, const GroundCutout *kep
         for (int j = y[0]; j <= y[1]; j++)
             for (int i = x[0]; i <= x[1]; i++) mark[(size_t)j * (size_t)t->nx + (size_t)i] = 1;
     }
-    const int more = (int)fmin(ceil(kept->reach_m / (cutout_tile * grid->spacing_m)), t->nx + t->ny);
+    const int more = (int)fmin(ceil(reach_m / (cutout_tile * grid->spacing_m)), t->nx + t->ny);
     for (int j = 0; j < t->ny; j++) grow(mark + (size_t)j * (size_t)t->nx, t->nx, 1, more);
     for (int i = 0; i < t->nx; i++) grow(mark + i, t->ny, (size_t)t->nx, more);
     for (size_t tile = 0; tile < tiles; tile++)
@@ -108,11 +109,31 @@ static void unpack_u16(uint16_t *value, const uint8_t *in, size_t count)
     }
 }
 
+/* Colours: a channel after the other, as differences. */
+static void pack_rgba(uint8_t *out, const uint8_t *value, size_t count)
+{
+    for (size_t c = 0; c < 4; c++) {
+        uint8_t before = 0;
+        for (size_t n = 0; n < count; n++) {
+            out[c * count + n] = (uint8_t)(value[4 * n + c] - before);
+            before             = value[4 * n + c];
+        }
+    }
+}
+
+static void unpack_rgba(uint8_t *value, const uint8_t *in, size_t count)
+{
+    for (size_t c = 0; c < 4; c++) {
+        uint8_t before = 0;
+        for (size_t n = 0; n < count; n++) value[4 * n + c] = before = (uint8_t)(before + in[c * count + n]);
+    }
+}
+
 enum { tile_values = cutout_tile * cutout_tile, most_octets = 4 };
 
 void cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, const GroundCutout *kept)
 {
-    uint8_t  tile_bytes[tile_values * most_octets], packed[tile_values * 2];
+    uint8_t  tile_bytes[tile_values * most_octets], packed[tile_values * most_octets];
     uint16_t words[tile_values];
     Tiles    t = tiles_of(grid);
     t.kept     = calloc(t.octets, 1);
@@ -133,7 +154,8 @@ void cutout_put(ByteSink *sink, const CutoutGrid *grid, const void *values, cons
             memcpy(words, tile_bytes, 2 * b.values);
             pack_u16(packed, words, b.values);
         }
-        sink_bytes(sink, grid->octets == 2 ? packed : tile_bytes, b.values * (size_t)grid->octets);
+        if (grid->octets == 4) pack_rgba(packed, tile_bytes, b.values);
+        sink_bytes(sink, grid->octets == 1 ? tile_bytes : packed, b.values * (size_t)grid->octets);
     }
 done:
     free(t.kept);
@@ -142,6 +164,7 @@ done:
 void cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
 {
     uint16_t       words[tile_values];
+    uint8_t        colours[tile_values * most_octets];
     const Tiles    t    = tiles_of(grid);
     const uint8_t *kept = source_bytes(source, t.octets);
     for (size_t tile = 0; kept && tile < (size_t)t.nx * (size_t)t.ny; tile++) {
@@ -153,6 +176,10 @@ void cutout_get(ByteSource *source, const CutoutGrid *grid, void *values)
         if (grid->octets == 2) {
             unpack_u16(words, bytes, b.values);
             bytes = (const uint8_t *)words;
+        }
+        if (grid->octets == 4) {
+            unpack_rgba(colours, bytes, b.values);
+            bytes = colours;
         }
         for (int j = 0; j < b.ny; j++)
             memcpy((uint8_t *)values +

@@ -13,8 +13,8 @@ typedef struct FrameEye {
     unsigned    bands;
 } FrameEye;
 
-/* Sun at the eye's own place, its direction turned into the world's frame. r_host_from_enu: from the world's ENU to that
- * of the eye's place. */
+/* Sun at the eye's own place, its direction turned into the world's frame. r_host_from_enu: from the world's ENU to
+ * that of the eye's place. */
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
                    const FrameEye *eye, Pool *pool, Arena *arena);
 /* Products give normals in the host's own ENU. */

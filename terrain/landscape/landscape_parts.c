@@ -25,9 +25,10 @@ static bool is_place(double x_m) { return fabs(x_m) <= farthest_m; /* false for 
 
 static const char *evidence_fault(const LandscapeEvidence *said)
 {
-    if (said->fix_count < 0 || said->line_count < 0 || said->place_count < 0 || said->fix_count > landscape_parts_rows ||
-        said->line_count > landscape_parts_rows || said->place_count > landscape_parts_rows)
-        return "too many places that the ground was fitted to";
+    const int count[3] = {said->fix_count, said->line_count, said->place_count};
+    for (int k = 0; k < 3; k++)
+        if (count[k] < 0 || count[k] > landscape_parts_rows)
+            return "too many places that the ground was fitted to";
     if (!is_place(said->sea_h_m)) return "the height of the sea";
     for (int i = 0; i < said->fix_count; i++) {
         const GroundFix *fix = &said->fix[i];
@@ -85,7 +86,8 @@ static const char *cover_fault(const CoverGrid *g)
     const size_t cells = (size_t)(g->nx > 0 ? g->nx : 0) * (size_t)(g->ny > 0 ? g->ny : 0);
     if (g->nx == 0 && g->ny == 0) return NULL;
     if (g->nx < 1 || g->ny < 1 || cells > landscape_parts_cells || !g->surface) return "the size of the cover";
-    if (!(g->cell_m > 0 && g->cell_m <= 1e6) || !is_place(g->x0_m) || !is_place(g->y0_m)) return "the place of the cover";
+    if (!(g->cell_m > 0 && g->cell_m <= 1e6) || !is_place(g->x0_m) || !is_place(g->y0_m))
+        return "the place of the cover";
     for (size_t i = 0; i < cells; i++)
         if (g->surface[i] >= SURFACE_COUNT) return "a class of the cover";
     return NULL;
@@ -172,7 +174,8 @@ static const char *arrays_fault(const LandscapeParts *parts)
     const char *fault = levels_fault(&parts->elevation);
     for (int w = 0; w < cover_windows && !fault; w++) fault = cover_fault(&parts->cover[w]);
     if (!fault) fault = photo_fault(&parts->photo);
-    if (!fault && !(is_place(parts->geoid_m) && is_place(parts->treeline_m))) fault = "the height of the sea or the trees";
+    if (!fault && !(is_place(parts->geoid_m) && is_place(parts->treeline_m)))
+        fault = "the height of the sea or the trees";
     return fault;
 }
 

@@ -11,7 +11,7 @@ enum { line_max = 40 };
 static const char *const samples[][2] = {
     {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"},
     {"from", "+12"}, {"to", "4"}, {"planes", "range,entity"},
-    {"only", "3,7,12"}, {"only", "9"}, {"host", "1:2:3"}, {"host", "observer"}, {"samples", "2"}, {"config", "FILE"},
+    {"only", "3,7,12"}, {"only", "9"}, {"save-frame", "9,2"}, {"host", "1:2:3"}, {"host", "observer"}, {"samples", "2"}, {"config", "FILE"},
     {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"}, {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
     {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},
 };
@@ -42,6 +42,7 @@ static const char *difference(const Options *a, const Options *b)
     if (a->speed != b->speed) return "speed";
     if (a->no_skip != b->no_skip) return "no_skip";
     if (a->only_count != b->only_count || memcmp(a->only, b->only, sizeof a->only) != 0) return "only";
+    if (a->save_count != b->save_count || memcmp(a->save, b->save, sizeof a->save) != 0) return "save-frame";
     if (a->host_count != b->host_count) return "host";
     if (a->given_count != b->given_count) return "given";
     for (int i = 0; i < a->given_count; i++)

@@ -1,0 +1,75 @@
+#!/usr/bin/env bash
+# A frame saved by replay is rendered again by itself, elsewhere, by any number of threads, to the same bits; what is spoilt
+# is refused, and a table that differs is named. labels: small
+. "$(dirname "$0")/common.sh"
+
+pitviper=$(realpath "$pitviper")
+exercise demo "$tmp/demo.pcap"
+exercise guns "$tmp/guns.pcap"
+mkdir "$tmp/elsewhere"
+
+# saved NAME LOG FRAME options: a replay that saves a frame
+saved() {
+    local name=$1 log=$2 frame=$3; shift 3
+    run replay "$log" --out "$tmp/$name" --size 64x48 --only "$frame" --save-frame "$frame" --overwrite "$@"
+    check "$name: is saved" [ "$code" = 0 ]
+    [ "$code" = 0 ] || cat "$tmp/stderr"
+    mv "$tmp/$name"/frame_*.pvf "$tmp/elsewhere/$name.pvf"
+}
+# again NAME options: rendered in another folder, without data
+again() {
+    local name=$1 made; shift
+    (cd "$tmp/elsewhere" && env -u PITVIPER_DATA "$pitviper" frame "$name.pvf" --threads 3 "$@") >"$tmp/stdout" 2>"$tmp/stderr"
+    check "$name: rendered again" [ $? = 0 ]
+    made=$(grep -oE 'frame [0-9a-f]{64}' "$tmp/stdout")
+    check "$name: the frame of the replay" grep -q "${made:-none}" <<<"frame $(grep -oE '[0-9a-f]{64}' <"$tmp/$name/truth.jsonl" | tail -1)"
+    check "$name: $(stat -c %s "$tmp/elsewhere/$name.pvf") octets" [ "$(stat -c %s "$tmp/elsewhere/$name.pvf")" -lt 100000 ]
+}
+# a sensor's lens and detector, smoke, a range profile; and its products file by file
+saved demo "$tmp/demo.pcap" 12 --set sensor.preset=staring_lwir --set sensor.lens_k1=-0.1
+again demo --out "$tmp/again" --no-skip
+check "products: truth.jsonl is the replay's" cmp "$tmp/demo/truth.jsonl" "$tmp/again/truth.jsonl"
+for band in optical mwir lwir radar truth; do
+    check "products: $band.png is the replay's" cmp "$tmp/demo/frames/$band/000012.png" "$tmp/again/frames/$band/000012.png"
+done
+run frame "$tmp/elsewhere/demo.pvf" --out "$tmp/again"
+check "products: kept without --overwrite" [ "$code" != 0 ]
+check "products: it is said" complained 'overwrite'
+
+# another exercise, eye, weather and seed; an earlier run's frame file goes with its other products
+touch "$tmp/demo/frame_000012.pvf"
+mv "$tmp/demo" "$tmp/guns"
+saved guns "$tmp/guns.pcap" 2 --host observer --set weather.visibility_m=6000 --set weather.air_temp_k=275 --seed 7 --no-files
+check "guns: one frame file was there" [ -s "$tmp/elsewhere/guns.pvf" ]
+again guns
+
+# spoilt
+file=$tmp/elsewhere/demo.pvf
+size=$(stat -c %s "$file")
+refused() { # refused WHAT WORDS
+    run frame "$tmp/spoilt.pvf"
+    check "$1: refused" [ "$code" = 1 ]
+    check "$1: it says $2" complained "$2"
+}
+head -c $((size / 2)) "$file" >"$tmp/spoilt.pvf"; refused "cut" 'ends too early'
+head -c 0 "$file" >"$tmp/spoilt.pvf"; refused "empty" 'does not begin as a frame file'
+cp "$tmp/demo.pcap" "$tmp/spoilt.pvf"; refused "a log" 'does not begin as a frame file'
+cp "$file" "$tmp/spoilt.pvf"
+printf '\377\377\377\377' | dd of="$tmp/spoilt.pvf" bs=1 seek=$((size / 2)) conv=notrunc status=none
+refused "octets turned" 'spoilt'
+printf '\002' | dd of="$tmp/spoilt.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
+rm "$tmp/spoilt.pvf"; refused "none" 'cannot'
+
+# another table, named; forced: the planes that it changes, named
+cp -r etc "$tmp/etc"
+sed '/^[a-z]/s/,0\.0\([0-9]\)/,0.1\1/g' etc/materials.csv >"$tmp/etc/materials.csv"
+check "the table is another" not cmp -s etc/materials.csv "$tmp/etc/materials.csv"
+export PITVIPER_ETC=$tmp/etc
+run frame "$file"
+check "another table: refused" [ "$code" = 1 ]
+check "another table: named" complained 'materials\.csv is not the table'
+run frame "$file" --force
+check "another table: other bits" [ "$code" = 1 ]
+check "another table: planes named" complained 'optical/[RGBY] differs: mean'
+check "another table: range stays" not complained 'truth/range_m differs'
+finish
