@@ -3,6 +3,7 @@
 #include "sensor/framefile/frame_save.h"
 
 #include "sensor/framefile/frame_again.h"
+#include "sensor/framefile/frame_tables.h"
 #include "sensor/framefile/ground_cutout.h"
 #include "sensor/node/frame_world.h"
 
@@ -63,7 +64,7 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
     memcpy(file->r_ecef_from_body, save->record->r_ecef_from_body, sizeof file->r_ecef_from_body);
     landscape_parts(&file->ground, files->world->landscape);
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = tables_used(&file->tables, files->config, catalog);
+    Status status = frame_tables(&file->tables, files->config, catalog);
     if (status == STATUS_OK) status = write_settings(settings, files->config);
     if (status == STATUS_OK) status = list_models(file, files->world->catalog, arena);
     if (status == STATUS_OK) status = frame_made(made, files);

@@ -1,6 +1,7 @@
 /* sensor/framefile/frame_scene.c: the world of a frame file, from its own ground and this installation's tables. */
 #include "sensor/framefile/frame_scene.h"
 
+#include "sensor/framefile/frame_tables.h"
 #include "sensor/node/frame_world.h"
 
 #include <stdlib.h>
@@ -122,7 +123,7 @@ Status frame_scene_open(FrameScene *s, const FrameFile *file, bool forced, const
     if (status == STATUS_OK) status = choose_sensors(s, file);
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(effects, sizeof effects, "effects.csv"))
         return STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = tables_used(&here, &s->config, catalog);
+    if (status == STATUS_OK) status = frame_tables(&here, &s->config, catalog);
     if (status == STATUS_OK) s->tables_differ = compare_tables(&file->tables, &here, forced);
     if (status == STATUS_OK && s->tables_differ > 0 && !forced) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = catalog_open(&s->catalog, catalog, s->config.models.sag_m);

@@ -39,9 +39,14 @@ check "products: it is said" complained 'overwrite'
 # another exercise, eye, weather and seed; an earlier run's frame file goes with its other products
 touch "$tmp/demo/frame_000012.pvf"
 mv "$tmp/demo" "$tmp/guns"
-saved guns "$tmp/guns.pcap" 2 --host observer --set weather.visibility_m=6000 --set weather.air_temp_k=275 --seed 7 --no-files
+grep -E '^(name|grass_green),' etc/materials.csv >"$tmp/own.csv"
+saved guns "$tmp/guns.pcap" 2 --host observer --set weather.visibility_m=6000 --set weather.air_temp_k=275 --seed 7 --no-files \
+    --set models.materials="$tmp/own.csv"
 check "guns: one frame file was there" [ -s "$tmp/elsewhere/guns.pvf" ]
 again guns
+sed -i 's/0\.0413/0.2413/' "$tmp/own.csv"
+run frame "$tmp/elsewhere/guns.pvf"
+check "the user's own materials: named" complained 'models\.materials is not the table'
 
 # spoilt
 file=$tmp/elsewhere/demo.pvf
