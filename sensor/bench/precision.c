@@ -3,7 +3,7 @@
 
 #include "sensor/settings/config.h"
 #include "sensor/node/seeker.h"
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 
 const char *const precision_shot_name[SHOT_COUNT] =
     {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
@@ -16,7 +16,7 @@ static View view_of(const Precision *p, PrecisionShot shot)
 {
     static const double back_m[SHOT_COUNT] = {600, 110, 1500, 3000}, above_m[SHOT_COUNT] = {60, 30, 300, 40};
     const int w = p->shot_px[0], h = p->shot_px[1];
-    View      view = bench_view(&p->scene, back_m[shot], above_m[shot], 2 * atan(0.5 * w / focal_px), w, h);
+    View      view = trial_view(&p->scene, back_m[shot], above_m[shot], 2 * atan(0.5 * w / focal_px), w, h);
     /* away from the vehicles, down a slope; and level, ground below and sky above */
     static const double away_enu[3] = {0.2, -0.97, -0.12}, level_enu[3] = {0, 1, 0};
     double              d_enu[3];
@@ -54,7 +54,7 @@ double precision_go_round(View *view, const Precision *p, int turn)
 
 Status precision_render(Picture *out, Precision *p, PrecisionShot shot, const RenderRequest *request, Arena *arena)
 {
-    const BenchFrame *frame = &p->shot[shot];
+    const TrialFrame *frame = &p->shot[shot];
     return render(out, &p->scene.world, &frame->snapshot, request, &frame->air, p->pool, arena);
 }
 
@@ -103,16 +103,16 @@ Status precision_open(Precision *out, Bench *bench)
     Status status = out->arena && out->other ? pool_create(&out->pool, bench_threads(bench)) : STATUS_NO_MEMORY;
     bench_progress(bench, "ground and vehicles");
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&out->landscape, times_s, &frame, 2000, 8000, out->pool);
+    if (status == STATUS_OK) status = quick_landscape_create(&out->landscape, times_s, &frame, 2000, 8000, out->pool);
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     if (status == STATUS_OK)
-        status = bench_scene_open(&out->scene, &out->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
+        status = trial_scene_open(&out->scene, &out->landscape, catalog, types, sizeof types / sizeof *types, vehicles);
     for (int k = 0; k < SHOT_COUNT && status == STATUS_OK; k++) {
         if (!(out->keep[k] = arena_create())) return STATUS_NO_MEMORY;
-        out->shot[k] = (BenchFrame){.scene = &out->scene, .pool = out->pool, .arena = out->keep[k],
+        out->shot[k] = (TrialFrame){.scene = &out->scene, .pool = out->pool, .arena = out->keep[k],
                                     .request = precision_request(out, (PrecisionShot)k, out->shot_px[0],
                                                                  out->shot_px[1])};
-        bench_frame(&out->shot[k]);
+        trial_frame(&out->shot[k]);
         status = out->shot[k].status;
     }
     return status;
@@ -120,7 +120,7 @@ Status precision_open(Precision *out, Bench *bench)
 
 void precision_close(Precision *p)
 {
-    bench_scene_close(&p->scene);
+    trial_scene_close(&p->scene);
     landscape_destroy(&p->landscape);
     for (int k = 0; k < SHOT_COUNT; k++) arena_destroy(p->keep[k]);
     arena_destroy(p->arena);

@@ -3,7 +3,7 @@
 #ifndef SENSOR_BENCH_PRECISION_H
 #define SENSOR_BENCH_PRECISION_H
 
-#include "sensor/bench/scene.h"
+#include "sensor/quality/trial.h"
 #include "sensor/bench/turn.h"
 
 /* What errors are measured in: several pictures, so that none is that of a lucky one. */
@@ -13,10 +13,10 @@ extern const char *const precision_shot_name[SHOT_COUNT];
 typedef struct Precision {
     Bench     *bench;
     Landscape  landscape;
-    BenchScene scene;
+    TrialScene scene;
     Pool      *pool;
     Arena     *keep[SHOT_COUNT], *arena, *other; /* of shots; of pictures */
-    BenchFrame shot[SHOT_COUNT];   /* poses and air, made once; views of shot_px */
+    TrialFrame shot[SHOT_COUNT];   /* poses and air, made once; views of shot_px */
     int        shot_px[2];
     Status     status;             /* of what is timed */
 } Precision;

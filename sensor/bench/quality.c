@@ -1,82 +1,20 @@
-/* sensor/bench/quality.c: each row of settings in each scene against 16 x 16 rays in every pixel. A row's error is that
- * of its worst scene. Its time is of two of the scenes in larger pictures (small targets cost the same in any), on one
- * thread, rows in turn, the best of the rounds: the thread's own, which another program on the machine does not
- * lengthen. */
+/* sensor/bench/quality.c: `pitviper bench quality`: each row of settings in each scene against 16 x 16 rays in every
+ * pixel. A row's error is that of its worst scene. Its time is of two of the scenes in larger pictures, on one thread,
+ * rows in turn, the best of the rounds. */
 #include "sensor/bench/quality.h"
 
-#include "sensor/bench/scene.h"
-#include "sensor/settings/quality.h"
-#include "sensor/bench/quick_landscape.h"
+#include "sensor/quality/lab.h"
+#include "sensor/quality/quality.h"
 
-#include <time.h>
+enum { rounds_most = 2 };
 
-enum { vehicles = 20, rounds_most = 2, timed_width = 360, timed_height = 240 };
+static const QualitySettings reference = {16, 0, 0};
 
-static const struct {
-    double back_m, above_m, hfov_deg;
-} views[] = {{60, 12, 40}, {150, 30, 40}, {300, 40, 20}, {300, 8, 30}, {600, 100, 40}, {900, 60, 8}, {1500, 300, 20}};
-enum { view_count = sizeof views / sizeof *views };
-static const int timed[] = {2, 6};
-enum { timed_count = sizeof timed / sizeof *timed };
-
-/* samples, edge_samples, target_samples; the first is the quickest, by which machines are compared. */
-static const int grid[][3] = {{1, 0, 0},   {1, 2, 8},    {1, 2, 24}, {1, 4, 24},  {1, 4, 48}, {1, 8, 64},
-                              {2, 0, 0},   {2, 4, 48},   {2, 8, 64}, {3, 6, 64},  {3, 9, 96}, {4, 8, 96},
-                              {5, 10, 96}, {6, 12, 128}, {8, 0, 0},  {8, 16, 128}};
+/* the first is the quickest, by which machines are compared */
+static const QualitySettings grid[] = {
+    {1, 0, 0}, {1, 2, 8},  {1, 2, 24}, {1, 4, 24}, {1, 4, 48},  {1, 8, 64},   {2, 0, 0}, {2, 4, 48},
+    {2, 8, 64}, {3, 6, 64}, {3, 9, 96}, {4, 8, 96}, {5, 10, 96}, {6, 12, 128}, {8, 0, 0}, {8, 16, 128}};
 enum { grid_count = sizeof grid / sizeof *grid };
-
-typedef struct Lab {
-    Landscape  ground;
-    BenchScene scene;
-    Pool      *pool, *many;
-    Arena     *arena, *reference_arena;
-    int        width, height;
-    bool       quick;
-} Lab;
-
-static Status open_lab(Lab *lab, int threads, bool quick)
-{
-    static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}};
-    const Geodetic origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
-    LocalFrame     frame;
-    double         times_s[2];
-    char           catalog[512];
-    *lab = (Lab){.width = quick ? 32 : 120, .height = quick ? 24 : 80, .quick = quick};
-    Status status = pool_create(&lab->pool, threads);
-    if (status == STATUS_OK) status = pool_create(&lab->many, thread_processors());
-    if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&lab->ground, times_s, &frame, 2000, 4000, lab->many);
-    if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
-    if (status == STATUS_OK) status = bench_scene_open(&lab->scene, &lab->ground, catalog, types, 3, vehicles);
-    lab->arena           = arena_create();
-    lab->reference_arena = arena_create();
-    return status == STATUS_OK && !(lab->arena && lab->reference_arena) ? STATUS_NO_MEMORY : status;
-}
-
-static void close_lab(Lab *lab)
-{
-    bench_scene_close(&lab->scene);
-    landscape_destroy(&lab->ground);
-    arena_destroy(lab->arena);
-    arena_destroy(lab->reference_arena);
-    pool_destroy(lab->many);
-    pool_destroy(lab->pool);
-}
-
-static BenchFrame frame_of(const Lab *lab, int view, int samples, int edge_samples, int target_samples)
-{
-    BenchFrame f = {.scene = &lab->scene, .pool = lab->pool, .arena = lab->arena};
-    f.request = (RenderRequest){.bands = 7,
-                                .truth = true,
-                                .optical = OPTICAL_RGB,
-                                .samples = samples,
-                                .edge_samples = edge_samples,
-                                .target_samples = target_samples, .sky_visibility = true,
-                                .hidden_entity = -1};
-    f.request.view = bench_view(&lab->scene, views[view].back_m, views[view].above_m,
-                                views[view].hfov_deg * rad_per_deg, lab->width, lab->height);
-    return f;
-}
 
 /* Of one picture, percent and kelvin a band. */
 static void errors_of(double percent[quality_bands], double kelvin[quality_bands], const Picture *p,
@@ -103,22 +41,22 @@ static void errors_of(double percent[quality_bands], double kelvin[quality_bands
     for (int b = 0; b < quality_bands; b++) percent[b] = 100 * sqrt(shares[b]);
 }
 
-static Status measure_errors(QualityTable *table, Lab *lab, Bench *bench)
+static Status measure_errors(QualityTable *table, QualityLab *lab, Bench *bench)
 {
-    for (int v = 0; v < view_count; v += lab->quick ? 3 : 1) {
+    for (int v = 0; v < quality_lab_views; v += lab->quick ? 3 : 1) {
         char what[64];
-        snprintf(what, sizeof what, "errors, view %d of %d", v + 1, view_count);
+        snprintf(what, sizeof what, "errors, view %d of %d", v + 1, quality_lab_views);
         bench_progress(bench, what);
-        BenchFrame fine = frame_of(lab, v, 16, 0, 0);
+        TrialFrame fine = quality_lab_frame(lab, v, reference);
         fine.pool  = lab->many;
         fine.arena = lab->reference_arena;
-        bench_frame(&fine);
+        trial_frame(&fine);
         for (int k = 0; k < grid_count && fine.status == STATUS_OK; k++) {
-            BenchFrame  f = frame_of(lab, v, grid[k][0], grid[k][1], grid[k][2]);
+            TrialFrame  f = quality_lab_frame(lab, v, grid[k]);
             double      percent[quality_bands], kelvin[quality_bands];
             QualityRow *r = &table->row[k];
             f.pool = lab->many;
-            bench_frame(&f);
+            trial_frame(&f);
             if (f.status != STATUS_OK) return f.status;
             errors_of(percent, kelvin, &f.picture, &fine.picture, &lab->scene.world);
             for (int b = 0; b < quality_bands; b++) {
@@ -129,33 +67,6 @@ static Status measure_errors(QualityTable *table, Lab *lab, Bench *bench)
         if (fine.status != STATUS_OK) return fine.status;
     }
     return STATUS_OK;
-}
-
-static double thread_clock_s(void)
-{
-    struct timespec now;
-    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
-}
-
-/* One row over the views that are timed, once, by the thread's own clock or the wall's: s. NaN: a frame failed. */
-static double time_row(const Lab *lab, int k, bool wall)
-{
-    double s = 0;
-    for (int v = 0; v < timed_count; v++) {
-        BenchFrame   f = frame_of(lab, timed[v], grid[k][0], grid[k][1], grid[k][2]);
-        const double start_s = wall ? wall_clock_s() : thread_clock_s();
-        bench_frame(&f);
-        s += f.status == STATUS_OK ? (wall ? wall_clock_s() : thread_clock_s()) - start_s : NAN;
-    }
-    return s;
-}
-
-static double megapixels(const Lab *lab) { return 1e-6 * timed_count * lab->width * lab->height; }
-
-static void time_larger(Lab *lab)
-{
-    if (!lab->quick) lab->width = timed_width, lab->height = timed_height;
 }
 
 /* Those that some target picks are marked, as a front is. */
@@ -184,23 +95,24 @@ static void list_row(Bench *bench, const QualityTable *table, int k, const Bench
 
 Status bench_quality(Bench *bench)
 {
-    Lab          lab;
+    QualityLab   lab;
     QualityTable table = {.count = grid_count};
     BenchTime    time[grid_count] = {0};
     const char  *path = bench_option(bench, "table");
     bench_progress(bench, "ground and vehicles");
-    Status status = open_lab(&lab, 1, bench_quick(bench));
+    Status status = quality_lab_open(&lab, 1, bench_quick(bench));
     for (int k = 0; k < grid_count; k++)
-        table.row[k] = (QualityRow){.samples = grid[k][0], .edge_samples = grid[k][1], .target_samples = grid[k][2]};
+        table.row[k] = (QualityRow){.samples = grid[k].samples, .edge_samples = grid[k].edge_samples,
+                                      .target_samples = grid[k].target_samples};
     if (status == STATUS_OK) status = measure_errors(&table, &lab, bench);
     const int rounds = lab.quick ? 1 : rounds_most;
-    time_larger(&lab);
+    quality_lab_enlarge(&lab);
     for (int n = 0; n < rounds && status == STATUS_OK; n++)
         for (int k = 0; k < grid_count; k++) {
             char what[64];
             snprintf(what, sizeof what, "times, round %d of %d", n + 1, rounds);
             bench_progress(bench, what);
-            time[k].item_s[n] = time_row(&lab, k, false) / megapixels(&lab);
+            time[k].item_s[n] = quality_lab_time(&lab, grid[k], false);
             time[k].rounds    = n + 1;
             if (isnan(time[k].item_s[n])) status = STATUS_NO_MEMORY;
         }
@@ -217,39 +129,6 @@ Status bench_quality(Bench *bench)
         status = quality_write(path, &written,
                                "rms error at most, and time on one thread of the machine it was measured on, by "
                                "`pitviper bench quality --table FILE`");
-    close_lab(&lab);
-    return status;
-}
-
-Status bench_machine_factor(double *factor, const char *table_path, int threads)
-{
-    Lab          lab;
-    QualityTable table;
-    char         text[32];
-    Status       status = quality_open(&table, table_path);
-    if (status != STATUS_OK) return status;
-    const QualityRow *first = &table.row[0];
-    if (first->samples != grid[0][0] || first->edge_samples != grid[0][1] || first->target_samples != grid[0][2]) {
-        log_error(
-            "quality: %s: its first row is not samples 1 without edge_samples, by which machines are compared; give "
-            "quality.machine_factor",
-            table_path);
-        return STATUS_BAD_VALUE;
-    }
-    status = open_lab(&lab, threads, false);
-    time_larger(&lab);
-    double best_s = INFINITY;
-    for (int n = 0; n < 5 && status == STATUS_OK; n++) {
-        const double s = time_row(&lab, 0, true);
-        if (isnan(s)) status = STATUS_NO_MEMORY;
-        best_s = fmin(best_s, s);
-    }
-    if (status == STATUS_OK) {
-        /* as it is written, so that who gives it again has the same */
-        snprintf(text, sizeof text, "%.2g", 1e3 * best_s / megapixels(&lab) / first->ms_megapixel);
-        if (!text_to_double(factor, text)) status = STATUS_BAD_VALUE;
-        *factor = clamp(*factor, 0.001, 1000);
-    }
-    close_lab(&lab);
+    quality_lab_close(&lab);
     return status;
 }

@@ -6,8 +6,4 @@
 
 Status bench_quality(Bench *bench);
 
-/* This machine's time of the table's first row over the table's: on so many threads, to two digits. About two seconds,
- * mostly for the scenes. */
-Status bench_machine_factor(double *factor, const char *table_path, int threads);
-
 #endif

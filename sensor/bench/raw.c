@@ -31,7 +31,7 @@ struct RawRays {
     int             *near_ray;   /* of the block */
 };
 
-static Status pose_all(RawRays *raw, const BenchFrame *f)
+static Status pose_all(RawRays *raw, const TrialFrame *f)
 {
     const World *world = &f->scene->world;
     raw->entities      = f->snapshot.count;
@@ -71,7 +71,7 @@ static void in_squares(int order[side_px * side_px], int columns, int rows)
                 for (int x = x0; x < x0 + square_px && x < columns; x++) order[at++] = y * columns + x;
 }
 
-static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const BenchFrame *f, const Visibility *v, int x0, int y0,
+static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const TrialFrame *f, const Visibility *v, int x0, int y0,
                      int *list)
 {
     static const double offset_m = 1e-3;
@@ -167,7 +167,7 @@ static Status pair_up(RawRays *raw, const View *view)
     return STATUS_OK;
 }
 
-Status raw_rays_create(RawRays **out, const BenchFrame *f)
+Status raw_rays_create(RawRays **out, const TrialFrame *f)
 {
     const View *view = &f->request.view;
     const int   columns = (view->width + side_px - 1) / side_px, rows = (view->height + side_px - 1) / side_px;

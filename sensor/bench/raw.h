@@ -2,13 +2,13 @@
 #ifndef SENSOR_BENCH_RAW_H
 #define SENSOR_BENCH_RAW_H
 
-#include "sensor/bench/scene.h"
+#include "sensor/quality/trial.h"
 
 typedef struct RawRays RawRays;
 
 /* Eye rays in the frame's tiles and, where it has a band that shows shadows, the sun rays of their hits; which of them
  * come near which vehicle is found here, too. frame: one that was made; its arena is used, not reset. */
-Status raw_rays_create(RawRays **out, const BenchFrame *frame);
+Status raw_rays_create(RawRays **out, const TrialFrame *frame);
 void   raw_rays_destroy(RawRays *raw);
 int    raw_rays_count(const RawRays *raw);
 /* A frame's own tracers, the ground's of tiles and the parts' of packets, with its tiles, order and limits: of eye rays the

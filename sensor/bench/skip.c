@@ -3,9 +3,9 @@
  * it would take without; the planes must be the same. */
 #include "sensor/bench/skip.h"
 
-#include "sensor/bench/scene.h"
+#include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 
 #include <stdlib.h>
 
@@ -44,35 +44,35 @@ typedef struct SkipBench {
     bool       differs[variants]; /* in any scene */
 } SkipBench;
 
-static Status open_scene(BenchScene *scene, const SkipBench *s, const struct SkipScene *setting)
+static Status open_scene(TrialScene *scene, const SkipBench *s, const struct SkipScene *setting)
 {
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0},
                                           {1, 1, 222, 7, 1, 0, 0}};
     const uint32_t smokes = 3u << 5, burns = 1u << 15;
     char           catalog[512];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = bench_scene_open(scene, &s->landscape, catalog, types, sizeof types / sizeof *types, setting->vehicles);
+    Status status = trial_scene_open(scene, &s->landscape, catalog, types, sizeof types / sizeof *types, setting->vehicles);
     if (status != STATUS_OK) return status;
     scene->unix_s += 3600 * setting->sun_later_h;
     for (int later = 0; later < 2 && setting->smoking > 0; later++) {
         for (int k = 0; k < setting->smoking && status == STATUS_OK; k++) {
-            const BenchPlace place = {.type = types[k % 4], .number = 1001 + k, .east_m = 30.0 * (k - 0.5 * setting->smoking),
+            const TrialPlace place = {.type = types[k % 4], .number = 1001 + k, .east_m = 30.0 * (k - 0.5 * setting->smoking),
                                       .north_m = 60, .appearance = smokes | burns};
-            status = bench_scene_place(scene, &place);
+            status = trial_scene_place(scene, &place);
         }
         if (!later) scene->sun_now_s += 20; /* for the smoke to rise */
     }
-    if (status != STATUS_OK) bench_scene_close(scene);
+    if (status != STATUS_OK) trial_scene_close(scene);
     return status;
 }
 
 static unsigned off_of(int variant) { return variant < whole ? 1u << variant : variant == none_left ? skips_all_off : 0; }
 
-static RenderRequest request_of(const SkipBench *s, const BenchScene *scene, const struct SkipScene *setting, unsigned off)
+static RenderRequest request_of(const SkipBench *s, const TrialScene *scene, const struct SkipScene *setting, unsigned off)
 {
     const bool   quick = bench_quick(s->bench);
     const Config config = config_default();
-    const View   view = bench_view(scene, setting->back_m, setting->above_m, setting->hfov_deg * rad_per_deg,
+    const View   view = trial_view(scene, setting->back_m, setting->above_m, setting->hfov_deg * rad_per_deg,
                                    quick ? 48 : 320, quick ? 32 : 216);
     return (RenderRequest){.view = view, .bands = three_bands, .truth = true, .optical = OPTICAL_RGB, .samples = 1,
                            .edge_samples = config.sensor.edge_samples, .target_samples = config.sensor.target_samples,
@@ -99,8 +99,8 @@ static Status time_scene(SkipBench *s, int at)
 {
     const struct SkipScene *setting = &settings[at];
     const bool  quick = bench_quick(s->bench);
-    BenchScene  scene;
-    BenchFrame  frame[variants];
+    TrialScene  scene;
+    TrialFrame  frame[variants];
     BenchWork   work[variants];
     BenchTime   time[variants];
     uint64_t    skipped[SKIP_COUNT] = {0};
@@ -113,15 +113,15 @@ static Status time_scene(SkipBench *s, int at)
 
     bench_progress(s->bench, setting->name);
     for (int k = 0; k < variants; k++) {
-        frame[k] = (BenchFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[0],
+        frame[k] = (TrialFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[0],
                                 .request = request_of(s, &scene, setting, off_of(k))};
-        work[k]  = (BenchWork){bench_frame, &frame[k], 1};
+        work[k]  = (BenchWork){trial_frame, &frame[k], 1};
     }
     for (int n = 0; n < variants && status == STATUS_OK; n++) {
         const int k = (whole + n) % variants; /* all on first */
-        bench_frame(&frame[k]);
+        trial_frame(&frame[k]);
         status = frame[k].status;
-        if (status == STATUS_OK) status = bench_frame_hash(k == whole ? hash : other, &frame[k]);
+        if (status == STATUS_OK) status = trial_frame_hash(k == whole ? hash : other, &frame[k]);
         if (k == whole) memcpy(skipped, frame[k].picture.counters.visibility.skipped, sizeof skipped);
         else if (status == STATUS_OK) s->differs[k] |= strcmp(hash, other) != 0;
     }
@@ -133,7 +133,7 @@ static Status time_scene(SkipBench *s, int at)
         if (k != whole && ratio > s->best[k].ratio && (k == none_left || skipped[k] > 0))
             s->best[k] = (Saving){ratio, time[whole].median_s, k < whole ? skipped[k] : 0, at};
     }
-    bench_scene_close(&scene);
+    trial_scene_close(&scene);
     return status;
 }
 
@@ -145,19 +145,19 @@ static Status time_asked(SkipBench *s)
         {"planes nobody asked for: no truth, three bands", three_bands, false},
     };
     enum { requests = 1 + sizeof asked / sizeof *asked };
-    BenchScene scene;
-    BenchFrame frame[requests];
+    TrialScene scene;
+    TrialFrame frame[requests];
     BenchWork  work[requests];
     BenchTime  time[requests];
     bool       differs[requests] = {false};
     Status     status = open_scene(&scene, s, &settings[usual]);
     if (status != STATUS_OK) return status;
     for (int k = 0; k < requests && status == STATUS_OK; k++) {
-        frame[k] = (BenchFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[k],
+        frame[k] = (TrialFrame){.scene = &scene, .pool = s->pool, .arena = s->arena[k],
                                 .request = request_of(s, &scene, &settings[usual], 0)};
         if (k > 0) frame[k].request.bands = asked[k - 1].bands, frame[k].request.truth = asked[k - 1].truth;
-        work[k] = (BenchWork){bench_frame, &frame[k], 1};
-        bench_frame(&frame[k]);
+        work[k] = (BenchWork){trial_frame, &frame[k], 1};
+        trial_frame(&frame[k]);
         status = frame[k].status;
         const size_t bytes = (size_t)frame[k].picture.width * (size_t)frame[k].picture.height * sizeof(float);
         for (int p = 0; p < picture_plane_count && status == STATUS_OK; p++) {
@@ -178,7 +178,7 @@ static Status time_asked(SkipBench *s)
         row.against     = "the same planes of the whole";
         bench_add(s->bench, &row);
     }
-    bench_scene_close(&scene);
+    trial_scene_close(&scene);
     return status;
 }
 
@@ -213,7 +213,7 @@ Status bench_skip(Bench *bench)
     for (int k = 0; k < 3 && status == STATUS_OK; k++)
         if (!(s.arena[k] = arena_create())) status = STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&s.frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&s.landscape, times_s, &s.frame, side_m, side_m, s.pool);
+    if (status == STATUS_OK) status = quick_landscape_create(&s.landscape, times_s, &s.frame, side_m, side_m, s.pool);
     for (int k = 0; k < scene_count && status == STATUS_OK; k++) status = time_scene(&s, k);
     for (int k = 0; k < variants && status == STATUS_OK; k++)
         if (k != whole) say(&s, k);

@@ -8,7 +8,7 @@
 #include "sensor/bench/raw.h"
 #include "sensor/bench/speed_private.h"
 #include "sensor/settings/config.h"
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -41,27 +41,27 @@ static RenderRequest one_ray(const RenderRequest *request)
     return plain;
 }
 
-BenchFrame speed_frame(const Speed *s, const BenchScene *scene, const RenderRequest *request, bool many)
+TrialFrame speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many)
 {
-    return (BenchFrame){.scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
+    return (TrialFrame){.scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
 }
 
 /* 0 when these planes are those of one thread that skips nothing, else 1; NaN: it could not be found out. */
-static double differs(const Speed *s, const BenchFrame *frame)
+static double differs(const Speed *s, const TrialFrame *frame)
 {
-    BenchFrame plain = *frame;
+    TrialFrame plain = *frame;
     char       hash[sha256_text_size], plain_hash[sha256_text_size];
     plain.pool            = s->one;
     plain.arena           = s->arena[2];
     plain.request.skips_off = skips_all_off;
-    bench_frame(&plain);
-    if (plain.status != STATUS_OK || bench_frame_hash(hash, frame) != STATUS_OK ||
-        bench_frame_hash(plain_hash, &plain) != STATUS_OK)
+    trial_frame(&plain);
+    if (plain.status != STATUS_OK || trial_frame_hash(hash, frame) != STATUS_OK ||
+        trial_frame_hash(plain_hash, &plain) != STATUS_OK)
         return NAN;
     return strcmp(hash, plain_hash) != 0;
 }
 
-static void judge_bits(BenchRow *row, const Speed *s, const BenchFrame *frame)
+static void judge_bits(BenchRow *row, const Speed *s, const TrialFrame *frame)
 {
     row->error       = differs(s, frame);
     row->error_limit = 0;
@@ -69,7 +69,7 @@ static void judge_bits(BenchRow *row, const Speed *s, const BenchFrame *frame)
     row->against     = "planes of one thread, nothing skipped";
 }
 
-static void judge_frame(BenchRow *row, const BenchFrame *frame)
+static void judge_frame(BenchRow *row, const TrialFrame *frame)
 {
     if (frame->status != STATUS_OK) row->error = NAN, row->error_limit = 0, row->against = status_name(frame->status);
 }
@@ -83,7 +83,7 @@ static Status make_ground(Speed *s)
     char           what[what_size];
     bench_progress(s->bench, "ground");
     Status status = local_frame_at(&s->frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
+    if (status == STATUS_OK) status = quick_landscape_create(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
     if (status != STATUS_OK) return status;
 
     const ElevationLevel *level = &s->landscape.elevation.level[0];
@@ -139,18 +139,18 @@ static double rms_of(const Picture *a, const Picture *b)
 /* A piece of the middle, 96 x 64 px or less: adaptive and plain against 16 x 16 rays in every pixel. */
 static double antialias_error(const Speed *s, const RenderRequest *request, double *plain)
 {
-    BenchFrame fine = {.scene = &s->scene, .request = *request, .pool = s->many, .arena = s->arena[2]};
+    TrialFrame fine = {.scene = &s->scene, .request = *request, .pool = s->many, .arena = s->arena[2]};
     fine.request.view.width  = bench_quick(s->bench) ? 32 : 96;
     fine.request.view.height = bench_quick(s->bench) ? 24 : 64;
-    BenchFrame adaptive = fine, single = fine;
+    TrialFrame adaptive = fine, single = fine;
     fine.request.samples = 16;
     fine.request.edge_samples = fine.request.target_samples = 0;
     single.request = one_ray(&single.request);
     adaptive.arena = s->arena[0];
     single.arena   = s->arena[1];
-    bench_frame(&fine);
-    bench_frame(&adaptive);
-    bench_frame(&single);
+    trial_frame(&fine);
+    trial_frame(&adaptive);
+    trial_frame(&single);
     if (fine.status != STATUS_OK || adaptive.status != STATUS_OK || single.status != STATUS_OK) return NAN;
     *plain = rms_of(&single.picture, &fine.picture);
     return rms_of(&adaptive.picture, &fine.picture);
@@ -159,27 +159,27 @@ static double antialias_error(const Speed *s, const RenderRequest *request, doub
 static Status time_view(Speed *s, int v)
 {
     enum { MANY, ONE, SIMPLE, SIMPLE_ONE, RAW, RAW_ONE, WORKS };
-    const View    view = bench_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
+    const View    view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
     const RenderRequest request = speed_request(&view, three_bands, true), simple_request = one_ray(&request);
     char          what[what_size];
     BenchTime     time[WORKS];
     RawRays      *raw = NULL, *raw_one = NULL;
     BenchRow      row;
-    BenchFrame    many = speed_frame(s, &s->scene, &request, true), one = speed_frame(s, &s->scene, &request, false);
-    BenchFrame    simple = speed_frame(s, &s->scene, &simple_request, true);
-    BenchFrame    simple_one = speed_frame(s, &s->scene, &simple_request, false), shown = simple;
+    TrialFrame    many = speed_frame(s, &s->scene, &request, true), one = speed_frame(s, &s->scene, &request, false);
+    TrialFrame    simple = speed_frame(s, &s->scene, &simple_request, true);
+    TrialFrame    simple_one = speed_frame(s, &s->scene, &simple_request, false), shown = simple;
 
     bench_progress(s->bench, places[v].name);
     shown.arena = s->arena[2];
-    bench_frame(&shown);
+    trial_frame(&shown);
     Status status = shown.status;
     if (status == STATUS_OK) status = raw_rays_create(&raw, &shown);
     if (status == STATUS_OK) status = raw_rays_create(&raw_one, &shown);
     if (status != STATUS_OK) goto done;
     const double rays = raw_rays_count(raw);
     raw_use_pool(raw_one, s->one);
-    const BenchWork work[WORKS] = {{bench_frame, &many, 1}, {bench_frame, &one, 1}, {bench_frame, &simple, 1},
-                                   {bench_frame, &simple_one, 1}, {raw_trace, raw, 1}, {raw_trace, raw_one, 1}};
+    const BenchWork work[WORKS] = {{trial_frame, &many, 1}, {trial_frame, &one, 1}, {trial_frame, &simple, 1},
+                                   {trial_frame, &simple_one, 1}, {raw_trace, raw, 1}, {raw_trace, raw_one, 1}};
     bench_time(time, s->bench, work, WORKS);
 
     /* frames share arenas, so each is made once more before its planes are compared */
@@ -187,7 +187,7 @@ static Status time_view(Speed *s, int v)
     row       = bench_row_of(what, &time[MANY], "frames/s", 1);
     row.ratio = bench_ratio(&time[MANY], &time[RAW]);
     row.to    = "rays alone";
-    bench_frame(&many);
+    trial_frame(&many);
     judge_bits(&row, s, &many);
     judge_frame(&row, &many);
     bench_add(s->bench, &row);
@@ -238,7 +238,7 @@ done:
 /* ---- stages ----------------------------------------------------------------------------------- */
 
 static const struct {
-    BenchStage  stage;
+    TrialStage  stage;
     const char *name;
 } stage_names[] = {
     {STAGE_FRAME, "frame"}, {STAGE_SNAPSHOT, "snapshot"}, {STAGE_AIR, "air"}, {STAGE_PREPARE, "prepare: planes, poses, boxes"},
@@ -248,32 +248,32 @@ static const struct {
     {STAGE_EDGES, "of all this: pass over edges"}};
 
 /* The stages of these frames, in turn, on one thread; a frame's mean. */
-static Status time_stages(Speed *s, const char *name, BenchFrame *frame, int count)
+static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int count)
 {
-    BenchTime      time[BENCH_STAGE_COUNT] = {0}, hash_time = {0};
+    BenchTime      time[TRIAL_STAGE_COUNT] = {0}, hash_time = {0};
     RenderCounters counters = {0};
     const int      rounds = bench_quick(s->bench) ? 3 : 9;
     char           what[what_size], hash[sha256_text_size];
     for (int r = -1; r < rounds; r++)
         for (int k = 0; k < count; k++) {
-            bench_frame(&frame[k]);
+            trial_frame(&frame[k]);
             if (frame[k].status != STATUS_OK) return frame[k].status;
             if (r < 0) render_counters_add(&counters, &frame[k].picture.counters);
             const double start_s = wall_clock_s();
-            const Status status = bench_frame_hash(hash, &frame[k]);
+            const Status status = trial_frame_hash(hash, &frame[k]);
             if (status != STATUS_OK) return status;
-            for (int stage = 0; r >= 0 && stage < BENCH_STAGE_COUNT; stage++)
+            for (int stage = 0; r >= 0 && stage < TRIAL_STAGE_COUNT; stage++)
                 time[stage].item_s[r] += frame[k].stage_s[stage] / count;
             if (r >= 0) hash_time.item_s[r] += (wall_clock_s() - start_s) / count;
         }
-    for (int stage = 0; stage < BENCH_STAGE_COUNT; stage++) {
+    for (int stage = 0; stage < TRIAL_STAGE_COUNT; stage++) {
         time[stage].rounds = rounds;
         bench_time_finish(&time[stage]);
     }
     hash_time.rounds = rounds;
     bench_time_finish(&hash_time);
     for (size_t k = 0; k < sizeof stage_names / sizeof *stage_names; k++) {
-        const BenchStage stage = stage_names[k].stage;
+        const TrialStage stage = stage_names[k].stage;
         const double     rays = stage == STAGE_VISIBILITY ? (double)counters.rays_primary / count
                               : stage == STAGE_SUN ? (double)counters.visibility.rays_sun_ground / count : NAN;
         if (!(time[stage].best_s > 0)) continue;
@@ -293,13 +293,13 @@ static Status time_stages(Speed *s, const char *name, BenchFrame *frame, int cou
 
 /* ---- single pictures -------------------------------------------------------------------------- */
 
-static Status time_picture(Speed *s, const char *name, const BenchScene *scene, const RenderRequest *request)
+static Status time_picture(Speed *s, const char *name, const TrialScene *scene, const RenderRequest *request)
 {
-    BenchFrame many = speed_frame(s, scene, request, true), one = speed_frame(s, scene, request, false);
+    TrialFrame many = speed_frame(s, scene, request, true), one = speed_frame(s, scene, request, false);
     char       what[what_size];
     BenchTime  time[2];
     bench_progress(s->bench, name);
-    const BenchWork work[2] = {{bench_frame, &many, 1}, {bench_frame, &one, 1}};
+    const BenchWork work[2] = {{trial_frame, &many, 1}, {trial_frame, &one, 1}};
     bench_time(time, s->bench, work, 2);
     snprintf(what, sizeof what, "%s, %s", name, all_threads);
     BenchRow row = bench_row_of(what, &time[0], "frames/s", 1);
@@ -312,7 +312,7 @@ static Status time_picture(Speed *s, const char *name, const BenchScene *scene, 
 }
 
 /* With one ray a pixel, and with the antialiasing of the default. */
-static Status time_pair(Speed *s, const char *name, const BenchScene *scene, const RenderRequest *request)
+static Status time_pair(Speed *s, const char *name, const TrialScene *scene, const RenderRequest *request)
 {
     const RenderRequest plain = one_ray(request);
     char                what[what_size];
@@ -350,7 +350,7 @@ static Status open_close_scene(Speed *s)
     ok = ok && write_text(folder, "ktank.yaml", "file: %s\naxes: +x +z\norigin: auto\n", absolute ? absolute : "none");
     ok = ok && write_text(folder, "catalog.csv", "type,model,origin\n1,%s,base\n", ktank ? "ktank.yaml" : absolute ? absolute : "tank");
     snprintf(name, sizeof name, "%s/catalog.csv", folder);
-    const Status status = ok ? bench_scene_open(&s->close, &s->landscape, name, &tank, 1, 1) : STATUS_IO;
+    const Status status = ok ? trial_scene_open(&s->close, &s->landscape, name, &tank, 1, 1) : STATUS_IO;
     for (int k = 0; k < 2; k++) {
         snprintf(name, sizeof name, "%s/%s", folder, files[k]);
         remove(name);
@@ -368,17 +368,17 @@ static Status time_close(Speed *s)
     Status status = open_close_scene(s);
     if (status != STATUS_OK) return status;
     char          name[what_size];
-    BenchFrame    first = {.scene = &s->close, .pool = s->many, .arena = s->arena[2]};
+    TrialFrame    first = {.scene = &s->close, .pool = s->many, .arena = s->arena[2]};
     RenderRequest request;
-    View view = bench_view(&s->close, 30, 6, 20 * rad_per_deg, s->width, s->height);
+    View view = trial_view(&s->close, 30, 6, 20 * rad_per_deg, s->width, s->height);
     request   = speed_request(&view, three_bands, true);
     first.request = request;
-    bench_frame(&first);
+    trial_frame(&first);
     if (first.status != STATUS_OK) return first.status;
     /* its own area to the picture's, but for corners that it leaves */
     request.view.focal_px *= sqrt(1.5 * s->width * s->height / first.picture.target[0].visible);
     first.request = request;
-    bench_frame(&first);
+    trial_frame(&first);
     if (first.status != STATUS_OK) return first.status;
     const RenderRequest plain = one_ray(&request);
     RenderRequest optical = plain;
@@ -393,7 +393,7 @@ static Status time_close(Speed *s)
     status = time_pair(s, name, &s->close, &request);
     snprintf(name, sizeof name, "close target: optical alone, one ray a pixel");
     if (status == STATUS_OK) status = time_picture(s, name, &s->close, &optical);
-    BenchFrame simple = speed_frame(s, &s->close, &plain, false), one = speed_frame(s, &s->close, &request, false);
+    TrialFrame simple = speed_frame(s, &s->close, &plain, false), one = speed_frame(s, &s->close, &request, false);
     if (status == STATUS_OK) status = time_stages(s, "close target, one ray a pixel, 1 thread", &simple, 1);
     return status == STATUS_OK ? time_stages(s, "close target, 1 thread", &one, 1) : status;
 }
@@ -443,7 +443,7 @@ static Status time_all(Speed *s)
     if (status == STATUS_OK && !etc_path(catalog, sizeof catalog, "catalog.csv")) status = STATUS_BAD_VALUE;
     const double start_s = wall_clock_s();
     if (status == STATUS_OK)
-        status = bench_scene_open(&s->scene, &s->landscape, catalog, types, sizeof types / sizeof *types,
+        status = trial_scene_open(&s->scene, &s->landscape, catalog, types, sizeof types / sizeof *types,
                                   bench_quick(s->bench) ? vehicles_quick : vehicles);
     if (status != STATUS_OK) return status;
     BenchRow row = bench_row("start: catalog, tracer, materials, air");
@@ -451,24 +451,24 @@ static Status time_all(Speed *s)
     row.unit     = "s";
     bench_add(s->bench, &row);
 
-    BenchFrame frame[views];
+    TrialFrame frame[views];
     for (int v = 0; v < views && status == STATUS_OK; v++) {
-        const View          view = bench_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
+        const View          view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
         const RenderRequest request = speed_request(&view, three_bands, true);
         frame[v] = speed_frame(s, &s->scene, &request, false);
         status   = time_view(s, v);
     }
     if (status == STATUS_OK) status = time_stages(s, "mean of the views, 1 thread", frame, views);
 
-    const View    small = bench_view(&s->scene, places[1].back_m, places[1].above_m, 20 * rad_per_deg, 256, 256);
+    const View    small = trial_view(&s->scene, places[1].back_m, places[1].above_m, 20 * rad_per_deg, 256, 256);
     RenderRequest lwir = speed_request(&small, 1u << BAND_LWIR, false);
     if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR alone", &s->scene, &lwir);
-    BenchFrame lwir_frame = speed_frame(s, &s->scene, &lwir, false);
+    TrialFrame lwir_frame = speed_frame(s, &s->scene, &lwir, false);
     if (status == STATUS_OK) status = time_stages(s, "LWIR alone, 1 thread", &lwir_frame, 1);
     lwir.truth = true;
     if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR and truth", &s->scene, &lwir);
     if (status == STATUS_OK) status = time_close(s);
-    const View          wide = bench_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
+    const View          wide = trial_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
     const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
     if (status == STATUS_OK) status = speed_files(s);
@@ -481,8 +481,8 @@ Status bench_speed(Bench *bench)
     Speed        s = {.bench = bench};
     const Status status = time_all(&s);
     if (status != STATUS_OK) log_error("bench: speed: %s", status_name(status));
-    bench_scene_close(&s.close);
-    bench_scene_close(&s.scene);
+    trial_scene_close(&s.close);
+    trial_scene_close(&s.scene);
     landscape_destroy(&s.landscape);
     for (int k = 0; k < 3; k++) arena_destroy(s.arena[k]);
     pool_destroy(s.many);

@@ -3,7 +3,7 @@
 
 #include "sensor/node/frame_files.h"
 #include "sensor/publish/image_file.h"
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -54,15 +54,15 @@ static void remove_folder(const char *out)
 Status speed_files(Speed *s)
 {
     const Config config = config_default();
-    const View   view = bench_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
+    const View   view = trial_view(&s->scene, 600, 100, 40 * rad_per_deg, s->width, s->height);
     const RenderRequest request = speed_request(&view, three_bands, true);
-    BenchFrame   frame = speed_frame(s, &s->scene, &request, true);
+    TrialFrame   frame = speed_frame(s, &s->scene, &request, true);
     Chain       *chain[BAND_COUNT] = {NULL};
     FrameLevel   level[BAND_COUNT] = {{0}};
     char         out[temp_path_size], what[what_size];
     BenchTime    time[2];
     bench_progress(s->bench, "files");
-    bench_frame(&frame);
+    trial_frame(&frame);
     Status status = frame.status;
     if (status == STATUS_OK && !temp_folder(out)) status = STATUS_IO;
     if (status != STATUS_OK) return status;
@@ -104,7 +104,7 @@ static double status_mb(const char *key)
 void speed_memory(Speed *s)
 {
     size_t posts, pyramids;
-    bench_ground_bytes(&posts, &pyramids, &s->landscape.elevation);
+    quick_landscape_bytes(&posts, &pyramids, &s->landscape.elevation);
     const struct { const char *what; double mb; } rows[] = {
         {"memory: posts", 1e-6 * (double)posts}, {"memory: their pyramid", 1e-6 * (double)pyramids},
         {"memory: arena of a frame", 1e-6 * (double)arena_bytes(s->arena[0])},

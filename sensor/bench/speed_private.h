@@ -4,7 +4,7 @@
 
 #include "sensor/bench/speed.h"
 
-#include "sensor/bench/scene.h"
+#include "sensor/quality/trial.h"
 
 enum { what_size = 160 };
 
@@ -17,14 +17,14 @@ typedef struct Speed {
     double     east_m, north_m;
     LocalFrame frame;
     Landscape  landscape;
-    BenchScene scene, close;   /* twenty vehicles; one */
+    TrialScene scene, close;   /* twenty vehicles; one */
     Pool      *one, *many;
     Arena     *arena[3];       /* of frames on many threads, on one, and others */
     char       target[96];     /* what fills the picture, and where from */
 } Speed;
 
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);
-BenchFrame    speed_frame(const Speed *s, const BenchScene *scene, const RenderRequest *request, bool many);
+TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
 /* The rows of a frame's files; of memory. */
 Status        speed_files(Speed *s);
 void          speed_memory(Speed *s);

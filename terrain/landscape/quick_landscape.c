@@ -1,8 +1,8 @@
-/* sensor/bench/quick_landscape.c: octaves of a cubic B-spline through random lattices, read off row by row.
+/* terrain/landscape/quick_landscape.c: octaves of a cubic B-spline through random lattices, read off row by row.
  *
  * A lattice cell is a whole number of posts, so the spline's four weights are a table by the post's place in its cell
  * and the inner loop is four products: 192 M posts of ten octaves in a few seconds of one core. */
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 
 #include "terrain/landscape/landscape_private.h"
 
@@ -93,7 +93,7 @@ static void make_rows(void *user, int worker, int task)
     }
 }
 
-Status bench_ground_create(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
+Status quick_landscape_create(Landscape *out, double times_s[2], const LocalFrame *frame, double east_m, double north_m,
                            Pool *pool)
 {
     static const uint64_t seed = 1;
@@ -109,7 +109,7 @@ Status bench_ground_create(Landscape *out, double times_s[2], const LocalFrame *
     const int nx = (int)east_m + 1, ny = (int)north_m + 1;
     cover->seed = landscape_hash(seed, 2, 0);
     status      = elevation_level_create(&landscape.elevation, 0, nx, ny, -floor(0.5 * east_m), -floor(0.5 * north_m),
-                                         1, -512, bench_ground_step_m);
+                                         1, -512, quick_landscape_step_m);
     for (int o = 0; o < octaves && status == STATUS_OK; o++)
         status = make_octave(&maker.octave[o], o, nx, ny, landscape_hash(seed, 3, 0));
     if (status != STATUS_OK) goto done;
@@ -138,7 +138,7 @@ done:
     return status;
 }
 
-void bench_ground_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation)
+void quick_landscape_bytes(size_t *posts, size_t *pyramids, const Elevation *elevation)
 {
     *posts = *pyramids = 0;
     for (int n = 0; n < elevation->level_count; n++) {

@@ -1,4 +1,5 @@
-#include "sensor/bench/scene.h"
+/* sensor/quality/trial.c: a scene made to be measured in, and one frame of it with the time of each stage. */
+#include "sensor/quality/trial.h"
 
 #include "entities/table/dead_reckoning.h"
 #include "sensor/node/seeker.h"
@@ -7,7 +8,7 @@
 
 enum { a_row = 5 };
 
-Status bench_scene_place(const BenchScene *scene, const BenchPlace *place)
+Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
 {
     const LocalFrame *frame = &scene->landscape->frame;
     const double      turn = place->turn_rad;
@@ -30,19 +31,19 @@ Status bench_scene_place(const BenchScene *scene, const BenchPlace *place)
     return entity_table_entity_state(scene->table, &pdu, scene->sun_now_s);
 }
 
-static BenchPlace vehicle_place(DisEntityType type, int index, int vehicles)
+static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
 {
     const int rows = (vehicles + a_row - 1) / a_row;
-    return (BenchPlace){.type = type, .number = index + 1, .appearance = 1u << 22,
+    return (TrialPlace){.type = type, .number = index + 1, .appearance = 1u << 22,
                         .east_m = 40.0 * (index % a_row) - 20.0 * (vehicles < a_row ? vehicles - 1 : a_row - 1),
                         .north_m = 40.0 * (index / a_row) - 20.0 * (rows - 1),
                         .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
 }
 
-Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
+Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
                         int type_count, int vehicles)
 {
-    BenchScene        scene = {.landscape = landscape, .sun_now_s = 60};
+    TrialScene        scene = {.landscape = landscape, .sun_now_s = 60};
     EntityTableConfig config = entity_table_default_config();
     char              heat[512];
     config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
@@ -53,23 +54,23 @@ Status bench_scene_open(BenchScene *out, const Landscape *landscape, const char 
     if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
     if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
-        const BenchPlace place = vehicle_place(types[k % type_count], k, vehicles);
-        status = bench_scene_place(&scene, &place);
+        const TrialPlace place = vehicle_place(types[k % type_count], k, vehicles);
+        status = trial_scene_place(&scene, &place);
     }
     if (status == STATUS_OK) *out = scene;
-    else bench_scene_close(&scene);
+    else trial_scene_close(&scene);
     return status;
 }
 
-void bench_scene_close(BenchScene *scene)
+void trial_scene_close(TrialScene *scene)
 {
     entity_table_destroy(scene->table);
     world_close(&scene->world);
     catalog_close(scene->catalog);
-    *scene = (BenchScene){0};
+    *scene = (TrialScene){0};
 }
 
-View bench_view(const BenchScene *scene, double back_m, double above_m, double hfov_rad, int width, int height)
+View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height)
 {
     const Elevation *e = &scene->landscape->elevation;
     const double     aim[3] = {0, 0, elevation_height(e, 0, 0, NULL) + 1};
@@ -84,9 +85,9 @@ View bench_view(const BenchScene *scene, double back_m, double above_m, double h
 
 /* ---- one frame -------------------------------------------------------------------------------- */
 
-static Status light(BenchFrame *f)
+static Status light(TrialFrame *f)
 {
-    const BenchScene *scene = f->scene;
+    const TrialScene *scene = f->scene;
     const World      *world = &scene->world;
     Weather           weather = weather_default();
     weather.air_temp_k        = atmosphere_temp_k(world->atmosphere, 0);
@@ -100,7 +101,7 @@ static Status light(BenchFrame *f)
     return air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);
 }
 
-static Status targets(BenchFrame *f)
+static Status targets(TrialFrame *f)
 {
     const World     *world = &f->scene->world;
     Target          *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
@@ -113,9 +114,9 @@ static Status targets(BenchFrame *f)
     return STATUS_OK;
 }
 
-void bench_frame(void *user)
+void trial_frame(void *user)
 {
-    BenchFrame  *f = user;
+    TrialFrame  *f = user;
     const double t0 = wall_clock_s();
     arena_reset(f->arena);
     f->status = entity_table_snapshot(&f->snapshot, f->scene->table, f->scene->sun_now_s + 0.5, f->arena);
@@ -146,7 +147,7 @@ void bench_frame(void *user)
     f->stage_s[STAGE_EDGES]      = 1e-3 * r->edges_ms;
 }
 
-Status bench_frame_hash(char out[sha256_text_size], const BenchFrame *f)
+Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *f)
 {
     static const char *const radiance[picture_plane_count] = {"R", "G", "B", "mwir", "lwir", "radar"};
     static const char *const normal[3] = {"nx", "ny", "nz"};

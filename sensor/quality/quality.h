@@ -1,10 +1,10 @@
-/* sensor/settings/quality.h: settings off a measured front, for who says how good or how quick and not how.
+/* sensor/quality/quality.h: settings picked off a measured front, where error or time is configured and not settings.
  *
  * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to
  * have over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table
  * and configuration alone: times are the table's times quality.machine_factor, never a clock's. */
-#ifndef SENSOR_SETTINGS_QUALITY_H
-#define SENSOR_SETTINGS_QUALITY_H
+#ifndef SENSOR_QUALITY_QUALITY_H
+#define SENSOR_QUALITY_QUALITY_H
 
 #include "sensor/node/choices.h"
 

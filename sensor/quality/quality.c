@@ -1,4 +1,5 @@
-#include "sensor/settings/quality.h"
+/* sensor/quality/quality.c: the table of settings, the pick from it, and what is set in the configuration. */
+#include "sensor/quality/quality.h"
 
 #include <errno.h>
 
