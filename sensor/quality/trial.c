@@ -1,7 +1,7 @@
 /* sensor/quality/trial.c: a scene made to be measured in, and one frame of it with the time of each stage. */
 #include "sensor/quality/trial.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "sensor/node/seeker.h"
 
 /* ---- who is there ----------------------------------------------------------------------------- */

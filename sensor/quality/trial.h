@@ -1,4 +1,5 @@
-/* sensor/quality/trial.h: what frames are measured on: a bare ground, vehicles on it, the sun of a summer noon, a view. */
+/* sensor/quality/trial.h: what frames are measured on: a bare ground, vehicles on it, the sun of a summer noon, a
+ * view. */
 #ifndef SENSOR_QUALITY_TRIAL_H
 #define SENSOR_QUALITY_TRIAL_H
 

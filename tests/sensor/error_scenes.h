@@ -3,7 +3,7 @@
 #ifndef TESTS_SENSOR_ERROR_SCENES_H
 #define TESTS_SENSOR_ERROR_SCENES_H
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "sensor/quality/trial.h"
 #include "sensor/truth/frame_error.h"
 #include "tests/check.h"
