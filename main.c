@@ -2,7 +2,7 @@
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/commands/check.h"
-#include "sensor/bench/suites.h"
+#include "sensor/bench/sensor/suites.h"
 #include "sensor/commands/exercise.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"

@@ -1,6 +1,7 @@
+/* entities/probe.c: the probes of entities: dead reckoning, articulation and models, one row at a time. */
 #include "entities/probe.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 
 static void three(double out[3], const ProbeValue *in)
 {

@@ -1,3 +1,4 @@
+/* terrain/probe.c: the probes of terrain: geodesy, geoid, sun, elevation and cover, one row at a time. */
 #include "terrain/probe.h"
 
 #include "terrain/earth/geoid.h"

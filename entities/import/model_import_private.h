@@ -6,7 +6,7 @@
 #define ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 
 #include "entities/import/model_import.h"
-#include "entities/models/sidecar.h"
+#include "entities/import/sidecar.h"
 
 enum {
     import_max_octets = 1 << 28, /* of a file, unpacked */

@@ -2,7 +2,7 @@
 #include "entities/survey/survey.h"
 #include "dis/enumerations.h"
 #include "dis/simulation_management.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_index.h"
 #include "entities/survey/survey_shots.h"
 

@@ -8,8 +8,8 @@
 #include "dis/entity_state.h"
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
-#include "entities/models/catalog.h"
-#include "entities/models/contact.h"
+#include "entities/catalog/catalog.h"
+#include "entities/table/contact.h"
 #include "entities/effects/effects_history.h"
 #include "entities/table/snapshot.h"
 

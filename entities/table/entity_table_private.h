@@ -4,7 +4,7 @@
 
 #include "dis/enumerations.h"
 #include "entities/models/articulation.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "entities/table/entity_index.h"
 #include "entities/table/entity_ranks.h"

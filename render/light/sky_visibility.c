@@ -3,7 +3,7 @@
 
 #include "render/light/optical.h"
 #include "render/parts/parts.h"
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
 #include <stdatomic.h>
 
@@ -354,7 +354,7 @@ static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibi
 static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell,
                 const double weight[4])
 {
-    Eight  mean = eight_all(0);
+    F32x8  mean = f32x8_set(0);
     double sum = 1;
     float  factor[8];
     if (cell->any_inside) {
@@ -365,8 +365,8 @@ static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, co
     const bool outside = cell->any_inside && sum > 1e-3;
     for (int k = 0; k < 4; k++)
         if (!outside || cell->corner[k]->place.inside <= 0.5f)
-            mean += eight_all(outside ? weight[k] / sum : weight[k]) * eight_load(cell->corner[k]->place.factor);
-    eight_store(factor, eight_all(1) + eight_all((double)h->weight) * (mean - eight_all(1)));
+            mean += f32x8_set(outside ? weight[k] / sum : weight[k]) * f32x8_load(cell->corner[k]->place.factor);
+    f32x8_store(factor, f32x8_set(1) + f32x8_set((double)h->weight) * (mean - f32x8_set(1)));
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
@@ -529,35 +529,35 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
 
 /* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
  * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
-static float add_spots(Eight *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
+static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
                        const float n_enu[3], uint16_t part)
 {
     static const float    other_part = 0.05f;
     const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
     const float *const   *value = (const float *const *)e->spot.value;
-    const Eight           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
-    const Eight           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
+    const F32x8           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
+    const F32x8           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
     float                 all = 0, each[8];
-    Eight                 p[3], n[3];
+    F32x8                 p[3], n[3];
     for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
     for (int row = span[1]; row < span[3]; row += step)
         for (int column = span[0]; column < span[2]; column += 8) {
             const int   at = row * e->columns + column;
             const int   lanes = span[2] - column < 8 ? span[2] - column : 8;
-            const Eight along = n[0] * eight_load(value[SPOT_NORMAL_X] + at) +
-                                n[1] * eight_load(value[SPOT_NORMAL_Y] + at) +
-                                n[2] * eight_load(value[SPOT_NORMAL_Z] + at);
-            const Eight x = eight_load(value[SPOT_X] + at) - p[0], y = eight_load(value[SPOT_Y] + at) - p[1];
-            const Eight z = eight_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
-            const Eight facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
-            const Eight same = _mm256_cmp_ps(eight_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
-            const Eight share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
-            eight_store(each, share * a4 * a4 * square_m2 * square_m2 /
+            const F32x8 along = n[0] * f32x8_load(value[SPOT_NORMAL_X] + at) +
+                                n[1] * f32x8_load(value[SPOT_NORMAL_Y] + at) +
+                                n[2] * f32x8_load(value[SPOT_NORMAL_Z] + at);
+            const F32x8 x = f32x8_load(value[SPOT_X] + at) - p[0], y = f32x8_load(value[SPOT_Y] + at) - p[1];
+            const F32x8 z = f32x8_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
+            const F32x8 facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
+            const F32x8 same = _mm256_cmp_ps(f32x8_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
+            const F32x8 share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
+            f32x8_store(each, share * a4 * a4 * square_m2 * square_m2 /
                                   ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
             for (int k = 0; k < lanes; k++) {
                 if (!(each[k] > 0)) continue; /* faces away, or is not there */
                 all += each[k];
-                *sum += _mm256_set1_ps(each[k]) * eight_load(e->spot.factor[at + k]);
+                *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
             }
         }
     return all;
@@ -590,20 +590,20 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
     view_project(image_px, view, p_cam);
     const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
     const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
-    Eight        sum = eight_all(0);
+    F32x8        sum = f32x8_set(0);
     float        all = 0;
     for (int more = 1; more <= 4 && !(all > enough); more += 3) {
         span_about(span, e, column, row, more);
-        sum = eight_all(0);
+        sum = f32x8_set(0);
         all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
     }
     if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
         span_about(span, e, 0, 0, grid_most);
-        sum = eight_all(0);
+        sum = f32x8_set(0);
         all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
     }
     if (!(all > 1e-12f)) return;
-    eight_store(factor, sum * eight_all(1 / (double)all));
+    f32x8_store(factor, sum * f32x8_set(1 / (double)all));
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }

@@ -9,7 +9,7 @@
 #ifndef RENDER_SCENE_VISIBILITY_H
 #define RENDER_SCENE_VISIBILITY_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/table/snapshot.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"

@@ -1,9 +1,10 @@
 /* sensor/bench/compare.c: two runs side by side, row by row.
  *
- * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians differ
- * by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no quartiles, its
- * best must say so, too; and a time that was measured once must differ by half. When most rows moved alike it was the
- * machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a change. */
+ * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians
+ * differ by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no
+ * quartiles, its best must say so, too; and a time that was measured once must differ by half. When most rows moved
+ * alike it was the machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a
+ * change. */
 #include "sensor/bench/bench_private.h"
 
 #include <stdlib.h>

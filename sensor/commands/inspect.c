@@ -9,7 +9,7 @@
 #include "dis/log.h"
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "terrain/earth/geodesy.h"
 
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "sensor/commands/model.h"
 
-#include "entities/models/model_info.h"
-#include "entities/models/sidecar.h"
+#include "entities/catalog/model_info.h"
+#include "entities/import/sidecar.h"
 #include "sensor/settings/config.h"
 
 static const char help[] =

@@ -1,7 +1,7 @@
 #include "sensor/node/host_run.h"
 
 #include "sensor/node/frame_files.h"
-#include "sensor/settings/quality.h"
+#include "sensor/quality/quality.h"
 #include "sensor/node/shape_choice.h"
 
 #include <stdlib.h>

@@ -3,14 +3,14 @@
 
 #include "dis/exercise_clock.h"
 #include "dis/udp.h"
-#include "sensor/bench/quality.h"
 #include "sensor/node/frame_files.h"
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/settings/quality.h"
+#include "sensor/quality/machine_factor.h"
+#include "sensor/quality/quality.h"
 #include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
@@ -342,7 +342,7 @@ static Status measure_machine(Live *l)
     if (!quality_wants_factor(config)) return STATUS_OK;
     if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
     else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
-    Status status = bench_machine_factor(&factor, path, l->run.options.threads);
+    Status status = machine_factor(&factor, path, l->run.options.threads);
     if (status != STATUS_OK) return status;
     snprintf(text, sizeof text, "%g", factor);
     choice_add(&l->run.choices, "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);

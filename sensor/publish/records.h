@@ -6,7 +6,7 @@
 #ifndef SENSOR_PUBLISH_RECORDS_H
 #define SENSOR_PUBLISH_RECORDS_H
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "sensor/truth/frame_error.h"
 #include "sensor/truth/truth.h"

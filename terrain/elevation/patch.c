@@ -1,3 +1,4 @@
+/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and halved into levels. */
 #include "terrain/elevation/patch.h"
 
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what to do. */
+/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what
+ * to do. */
 #include "terrain/elevation/raster.h"
 
 #include <strings.h>

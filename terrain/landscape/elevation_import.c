@@ -1,5 +1,5 @@
-/* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every grid, find
- * its posts, bend and join; at the end measure what came of it against the files. */
+/* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every
+ * grid, find its posts, bend and join; at the end measure what came of it against the files. */
 #include "terrain/landscape/elevation_import.h"
 
 #include "terrain/earth/geoid.h"

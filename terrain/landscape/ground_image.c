@@ -1,3 +1,5 @@
+/* terrain/landscape/ground_image.c: rasters of cover classes and of a photograph, resampled into ENU, and read at
+ * points. */
 #include "terrain/landscape/ground_image.h"
 
 #include "terrain/elevation/raster.h"

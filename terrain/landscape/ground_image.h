@@ -1,4 +1,5 @@
-/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a photograph. */
+/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a
+ * photograph. */
 #ifndef TERRAIN_LANDSCAPE_GROUND_IMAGE_H
 #define TERRAIN_LANDSCAPE_GROUND_IMAGE_H
 

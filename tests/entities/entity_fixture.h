@@ -3,7 +3,7 @@
 #define TESTS_ENTITIES_ENTITY_FIXTURE_H
 
 #include "tests/check.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 
 typedef struct Fixture {

@@ -4,7 +4,7 @@
 #include "dis/entity_state.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 
 /* ---- the reference ------------------------------------------------------------------------ */
 

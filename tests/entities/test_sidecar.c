@@ -1,7 +1,7 @@
 /* The sidecar: what is wrong is refused with file, line, key, value and what is accepted. */
 #include "tests/check.h"
 
-#include "entities/models/sidecar.h"
+#include "entities/import/sidecar.h"
 
 static Status parse(Sidecar *s, const char *text)
 {

@@ -1,9 +1,10 @@
-/* sensor/bench/dis/network.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they are
- * recorded.
+/* sensor/bench/dis/network.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they
+ * are recorded.
  *
- * A thread sends so many in each millisecond; what is received is compared octet by octet with what its number says. It
- * stops after the time that was set, whatever the network does. Sender and receiver share the machine: beyond some rate
- * it is the sender that is measured. On quick rounds, which run beside other work, loss is shown and not judged. */
+ * A thread sends so many in each millisecond; what is received is compared octet by octet with what its number says.
+ * It stops after the time that was set, whatever the network does. Sender and receiver share the machine: beyond
+ * some rate it is the sender that is measured. On quick rounds, which run beside other work, loss is shown and not
+ * judged. */
 #include "sensor/bench/dis/network.h"
 
 #include "dis/log.h"

@@ -1,5 +1,5 @@
-/* sensor/bench/dis/rows.c: octets to PDUs and back, bundles, and a capture from the disk. The PDUs are random octets under true
- * headers, from a counter; each row's error is octets that do not come back. */
+/* sensor/bench/dis/rows.c: octets to PDUs and back, bundles, and a capture from the disk. The PDUs are random octets
+ * under true headers, from a counter; each row's error is octets that do not come back. */
 #include "sensor/bench/dis/rows.h"
 
 #include "sensor/bench/dis/network.h"

@@ -1,5 +1,5 @@
-/* sensor/bench/dis/stability.c: time stamps about the hour's wrap, clocks over days, and fields at the edges of a float. The
- * judges are whole numbers of ticks, 64 bits wide, and the octets themselves. */
+/* sensor/bench/dis/stability.c: time stamps about the hour's wrap, clocks over days, and fields at the edges of a
+ * float. The judges are whole numbers of ticks, 64 bits wide, and the octets themselves. */
 #include "sensor/bench/dis/stability.h"
 
 #include "dis/exercise_clock.h"

@@ -1,7 +1,7 @@
 /* sensor/bench/entities/precision.c: where a body is after its report, and how warm. */
 #include "sensor/bench/entities/rows.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/heat.h"
 #include "sensor/bench/turn.h"
 
@@ -119,7 +119,7 @@ static void knob_reckoning(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == 4;
     }
-    bench_turn(bench, &(BenchKnob){"dead reckoning", "entities/table/dead_reckoning.c", "a turning body, 5 s later", "m",
+    bench_turn(bench, &(BenchKnob){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
                                    "largest, about the body; long double", 1e-11}, work, point, settings);
 }
 

@@ -1,9 +1,9 @@
-/* sensor/bench/entities/rows.c: the entity table under load: reports in, snapshots out. Its error is that of places, against the
- * motion of each algorithm integrated step by step. */
+/* sensor/bench/entities/rows.c: the entity table under load: reports in, snapshots out. Its error is that of places,
+ * against the motion of each algorithm integrated step by step. */
 #include "sensor/bench/entities/rows.h"
 
 #include "sensor/bench/entities/stability.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 
 #include <stdlib.h>

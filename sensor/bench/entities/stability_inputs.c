@@ -1,9 +1,9 @@
-/* sensor/bench/entities/stability_inputs.c: every number of a PDU at the ends of floating point. Each must be refused and
- * counted, or every snapshot that follows must be finite. */
+/* sensor/bench/entities/stability_inputs.c: every number of a PDU at the ends of floating point. Each must be
+ * refused and counted, or every snapshot that follows must be finite. */
 #include "sensor/bench/entities/stability.h"
 
 #include "dis/reader.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 #include "entities/effects/heat.h"
 

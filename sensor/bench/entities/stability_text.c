@@ -1,5 +1,6 @@
-/* sensor/bench/entities/stability_text.c: every number that somebody writes down, at the ends of floating point and beyond:
- * keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be finite. */
+/* sensor/bench/entities/stability_text.c: every number that somebody writes down, at the ends of floating point and
+ * beyond: keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be
+ * finite. */
 #include "sensor/bench/entities/stability.h"
 
 #include "dis/entity_state.h"

@@ -1,4 +1,5 @@
-/* sensor/bench/render/precision_air.c: the tables that a frame makes of the atmosphere's, against the atmosphere itself. */
+/* sensor/bench/render/precision_air.c: the tables that a frame makes of the atmosphere's, against the atmosphere
+ * itself. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/air/air_private.h"

@@ -1,4 +1,5 @@
-/* sensor/bench/render/precision_light.c: black bodies by table, light on surfaces eight at a time, smoke along a ray. */
+/* sensor/bench/render/precision_light.c: black bodies by table, light on surfaces eight at a time, smoke along a
+ * ray. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/light/optical.h"

@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should be, and a
- * radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
+/* sensor/bench/render/stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should
+ * be, and a radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
 #include "sensor/bench/render/stability_world.h"
 
 static void level_attitude(double r[9], double turn_rad)

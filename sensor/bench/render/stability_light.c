@@ -1,6 +1,6 @@
-/* sensor/bench/render/stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as thick as a
- * wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy, and the cavity
- * in which everything looks alike. */
+/* sensor/bench/render/stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as
+ * thick as a wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy,
+ * and the cavity in which everything looks alike. */
 #include "sensor/bench/render/stability.h"
 #include "render/light/planck.h"
 #include "render/light/surface_light.h"

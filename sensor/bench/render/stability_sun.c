@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. What it lights must change
- * evenly with its height: a jump from frame to frame would be seen, and there is none in nature. */
+/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. What it lights
+ * must change evenly with its height: a jump from frame to frame would be seen, and there is none in nature. */
 #include "sensor/bench/render/stability.h"
 #include "render/light/surface_light.h"
 

@@ -1,7 +1,7 @@
 /* sensor/bench/terrain/precision_land.c: the ground as posts, and its texture under a pixel. */
 #include "sensor/bench/terrain/rows.h"
 
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 #include "sensor/bench/turn.h"
 
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static double rms_m(const Elevation *got, const Elevation *want, double from_m, 
 static double bytes_of(const Elevation *e)
 {
     size_t posts, pyramids;
-    bench_ground_bytes(&posts, &pyramids, e);
+    quick_landscape_bytes(&posts, &pyramids, e);
     return (double)(posts + pyramids);
 }
 
