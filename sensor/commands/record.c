@@ -20,17 +20,17 @@ typedef struct Options {
 static const char help[] =
     "usage: pitviper record -o LOG [options]\n"
     "\n"
-    "Records the DIS exercise it hears, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap where the\n"
-    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
+    "Records the DIS datagrams received, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap if the\n"
+    "name ends in .pcap) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
     "\n"
-    "  -o, --out LOG      where to\n"
-    "  --overwrite        replace a LOG that is there already; otherwise it is kept and nothing is done\n"
-    "  --address A        hear what is sent to this address: a multicast group (joined, IPv4 or IPv6) or one of this\n"
-    "                     machine's; default: all that comes by IPv4, broadcast too\n"
-    "  --interface NAME   hear this network interface alone, such as eth0; default: all\n"
+    "  -o, --out LOG      the recording\n"
+    "  --overwrite        replace an existing LOG; without it that is an error\n"
+    "  --address A        receive on this address: a multicast group (joined, IPv4 or IPv6) or an address of this\n"
+    "                     machine; default: all IPv4 addresses, and broadcast\n"
+    "  --interface NAME   receive on this network interface only, such as eth0; default: all\n"
     "  --port N           default: 3000\n"
-    "  --for S            end after so many seconds\n"
-    "  --count N          end after so many datagrams\n";
+    "  --for S            stop after S seconds\n"
+    "  --count N          stop after N datagrams\n";
 
 /* ---- command line ----------------------------------------------------------------------------------- */
 

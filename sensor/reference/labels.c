@@ -38,7 +38,7 @@ const Reference reference_pairs = {
         "for line in open('pairs.jsonl'):\n"
         "    pair = json.loads(line)\n"
         "    file = {(m['target'], m['noise']): m['bands']['lwir'] for m in pair['members']}\n"
-        "    print('noisy picture', file[True, True]['display'])\n"
+        "    print('noisy image', file[True, True]['display'])\n"
         "    print('label: radiance of the target alone =', file[True, False]['radiance'], '-',\n"
         "          file[False, False]['radiance'], 'of', pair['removed'])\n",
 };

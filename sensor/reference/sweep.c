@@ -61,7 +61,7 @@ const Reference reference_sheet = {
         "class Sheet(html.parser.HTMLParser):\n"
         "    def handle_starttag(self, tag, attributes):\n"
         "        if tag == 'img':\n"
-        "            picture = dict(attributes)\n"
-        "            print(picture['alt'], picture['src'][:22], len(picture['src']))\n"
+        "            image = dict(attributes)\n"
+        "            print(image['alt'], image['src'][:22], len(image['src']))\n"
         "Sheet().feed(open('manifest.html').read())\n",
 };

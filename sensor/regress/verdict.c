@@ -49,7 +49,7 @@ void channel_value(char out[64], Channel channel, double value, int digits)
     const char *unit    = rows[channel].unit, *space = *unit ? " " : "";
     const bool  thermal = channel == CHANNEL_MWIR || channel == CHANNEL_LWIR;
     if (isnan(value)) snprintf(out, 64, "not a number");
-    else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "infinite");
+    else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "out of range");
     else if (thermal && value <= apparent_floor_k) snprintf(out, 64, "below %.0f K", apparent_floor_k);
     else snprintf(out, 64, "%.*g%s%s", digits, value, space, unit);
 }

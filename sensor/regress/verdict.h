@@ -50,7 +50,8 @@ typedef struct Verdict {
 
 const char *channel_name(Channel channel);
 const char *channel_about(Channel channel); /* a short description */
-/* A value of a plane as text with its unit, or "below 100 K", "no surface", "not a number". digits: 1 .. 9. */
+/* A value of a plane as text with its unit, or "below 100 K", "no surface", "not a number", "out of range". digits:
+ * 1 .. 9. */
 void        channel_value(char out[64], Channel channel, double value, int digits);
 
 /* A plane of baseline and run in the channel's unit, for the report. Freed by the caller with free. */

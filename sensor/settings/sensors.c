@@ -55,7 +55,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
         return STATUS_BAD_VALUE;
     }
     if (!(bands >> p.band & 1)) {
-        log_error("replay: %s: %s is for %s, which is not in sensor.bands", key, p.name, band_name(p.band));
+        log_error("replay: %s: %s is for %s, which sensor.bands does not name", key, p.name, band_name(p.band));
         return STATUS_BAD_VALUE;
     }
     s->has[p.band]    = true;
