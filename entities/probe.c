@@ -1,4 +1,3 @@
-/* entities/probe.c: the probes of this folder: dead reckoning for rows of CSV. */
 #include "entities/probe.h"
 
 #include "entities/table/dead_reckoning.h"

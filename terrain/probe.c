@@ -1,4 +1,3 @@
-/* terrain/probe.c: the probes of this folder: sun, geoid and geodesy for rows of CSV. */
 #include "terrain/probe.h"
 
 #include "terrain/earth/geoid.h"

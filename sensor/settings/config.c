@@ -209,7 +209,7 @@ static const Setting keys[] = {
     {"entities.capacity", SETTING_INT, AT(entities.capacity), 1, 1000000, NULL, "",
      "most entities in the table; beyond, the sender with the most entities loses its farthest and stalest"},
     {"entities.shown", SETTING_INT, AT(entities.shown), 1, 1000000, NULL, "",
-     "most entities rendered in a frame: those with the reported positions nearest the host"},
+     "most entities in a frame: those whose reports lie nearest the host's"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no image"},
     {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
