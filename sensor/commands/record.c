@@ -11,7 +11,7 @@
 
 typedef struct Options {
     const char  *out;
-    double       for_s; /* INFINITY: until told to stop */
+    double       for_s; /* INFINITY: until stopped */
     long long    count; /* -1: any number */
     bool         overwrite;
     DisUdpConfig udp;
@@ -52,7 +52,7 @@ static int parse(Options *o, int argc, char **argv)
         {"out", 1, NULL, OUT},   {"address", 1, NULL, ADDRESS}, {"interface", 1, NULL, INTERFACE},
         {"port", 1, NULL, PORT}, {"for", 1, NULL, FOR},         {"count", 1, NULL, COUNT},
         {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    optind = 0; /* start anew */
+    optind = 0; /* restart getopt */
     for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         long long number;
         bool      ok = true;
@@ -133,7 +133,7 @@ static void show_progress(Recording *r, double now_s)
     r->shown_s = now_s;
 }
 
-/* Until somebody or something says stop; then what had arrived by that moment, and no more. */
+/* Records until a stop by signal or by an option; then what had arrived by that moment, and no more. */
 static Status record(Recording *r, double for_s)
 {
     const int64_t look_ns = 100000000; /* a signal does not end a wait */

@@ -19,7 +19,7 @@ typedef struct Chain Chain;
 double chain_wavelength_m(const SensorPreset *preset, int channel);
 
 /* places: along a row of a pixel, which the picture has averaged (MtfChain, render_places). Of the optical band there
- * are three channels, R G B, or one, as preset->optical says; else one. */
+ * are three channels, R G B, or one, by preset->optical; else one. */
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed);
 void   chain_destroy(Chain *chain);
 

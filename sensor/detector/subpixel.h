@@ -1,7 +1,7 @@
 /* sensor/detector/subpixel.h: small targets through the optics and the footprint from where they lie within a pixel.
  *
  * A picture's pixel holds a target's light, but not where in the pixel it lies, and no blur afterwards knows: a target
- * of 0.44 px would stand in the middle of a pixel, whatever the optics (centroid wrong by 0.17 px rms). So small
+ * of 0.44 px would be placed at the centre of a pixel, whatever the optics (centroid wrong by 0.17 px rms). So small
  * targets come with their cells (SmallTarget), and each adds what the plane's own way - whole pixels, then blur.h -
  * gets wrong:
  *
