@@ -44,7 +44,7 @@ Status quality_open(QualityTable *out, const char *path)
     QualityTable *made = out;
     for (int c = 0; c < column_count && status == STATUS_OK; c++)
         if ((at[c] = table_column(&table, columns[c])) < 0) {
-            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a whole table", path,
+            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a complete table", path,
                       columns[c]);
             status = STATUS_BAD_VALUE;
         }
@@ -93,8 +93,7 @@ static double worst(const double *value, unsigned bands, int first)
     return most;
 }
 
-/* By how much the errors are too large, as a factor, at least 1; without a target the error itself, so that less is
- * better. */
+/* Ratio of errors to their targets, at least 1; without a target the error itself, so that smaller is better. */
 static double excess(const QualityRow *r, const QualityTarget *t)
 {
     const double percent = worst(r->percent, t->bands, BAND_OPTICAL), kelvin = worst(r->kelvin, t->bands, BAND_MWIR);
@@ -116,7 +115,7 @@ int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *
         bool              better = !b || (in_time && !best_in_time);
         if (b && in_time == best_in_time) {
             const double mine = excess(r, target), others = excess(b, target);
-            better = !in_time ? frame_ms(r, target) < frame_ms(b, target) /* none in time: the quickest */
+            better = !in_time ? frame_ms(r, target) < frame_ms(b, target) /* none within frame_ms: the fastest */
                               : mine < others || (mine == others && frame_ms(r, target) < frame_ms(b, target));
         }
         if (better) best = k, best_in_time = in_time;
@@ -129,7 +128,7 @@ bool quality_wanted(const QualityTable *table, int row)
 {
     const QualityRow *r = &table->row[row];
     for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
-        /* the tightest that it keeps: who is quicker and keeps that keeps whatever this row keeps */
+        /* the tightest targets of this row: a faster row that meets them dominates it */
         const QualityTarget target = {
             worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands};
         bool                quicker = false;
@@ -201,11 +200,11 @@ Status quality_choose(Config *config, Choices *choices, unsigned bands)
     char grids[64] = "";
     if (r->edge_samples > 0)
         snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
-    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the quickest)%s", r->samples,
-               grids, wants, reached ? "" : ": NOT reached, the nearest", worst(r->percent, bands, BAND_OPTICAL),
+    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s", r->samples,
+               grids, wants, reached ? "" : ": NOT reached, the closest", worst(r->percent, bands, BAND_OPTICAL),
                k_text, frame_ms(r, &target), r->ms_megapixel / table.row[0].ms_megapixel, kept);
     if (!reached)
-        log_warn("quality: no setting of the table keeps%s; the nearest is taken (`pitviper bench quality` lists them)",
+        log_warn("quality: no row of the table meets%s; the closest is used (`pitviper bench quality` lists them)",
                  wants);
     return STATUS_OK;
 }

@@ -8,7 +8,7 @@
 
 #include "sensor/node/choices.h"
 
-/* The bands of which errors are kept; no radar: its picture has few rays' worth of meaning. */
+/* The bands with an error in the table; not the radar. */
 enum { quality_bands = BAND_LWIR + 1, quality_rows_max = 256 };
 
 typedef struct QualityRow {
@@ -28,24 +28,24 @@ Status quality_open(QualityTable *out, const char *path);
 /* `# ` and comment, then the rows. STATUS_IO, logged. */
 Status quality_write(const char *path, const QualityTable *table, const char *comment);
 
-/* What is asked for: NaN where nothing is. */
+/* Targets; NaN: none. */
 typedef struct QualityTarget {
     double   percent, kelvin, frame_ms;
     double   megapixels, machine_factor;
-    unsigned bands;             /* 1 << Band: those that must keep it */
+    unsigned bands;             /* 1 << Band: bands to which the targets apply */
 } QualityTarget;
 
-/* The row that keeps every target in the least time, or, of those that no row keeps, comes nearest: first within
- * frame_ms, where any row is, then with the smallest excess of error over target. Equal ones: the first. With frame_ms
- * alone: the smallest error within it. reached: whether all are kept. */
+/* The fastest row that meets every target; if there is none, the closest: within frame_ms if any row is, then with the
+ * smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error within it. reached: all
+ * targets are met. */
 int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
 
-/* Whether there is any target, of any bands, that this row is picked for; else a quicker one is as good in all. */
+/* Whether any targets select this row; else a faster row is at least as good in all. */
 bool quality_wanted(const QualityTable *table, int row);
 
-/* Sets what quality.* asks for, and says so; keys that were given stay. Nothing asked for: nothing is done. */
+/* Applies quality.* to the settings and reports it; keys that were given stay. No target: no change. */
 Status quality_choose(Config *config, Choices *choices, unsigned bands);
-/* Whether the machine's own time would change the pick: frame_ms is asked for, and no factor given. */
+/* Whether the selection depends on the speed of this machine: frame_ms is set, and no factor given. */
 bool   quality_wants_factor(const Config *config);
 
 #endif
