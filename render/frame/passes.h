@@ -56,7 +56,7 @@ typedef struct Job {
     double               footprint_law[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
     uint8_t             *refine;    /* a pixel: RefineFlag */
-    uint8_t             *shadow;    /* a pixel: of the sample that truth is of */
+    float               *sun;       /* a pixel: Samples.sun of the sample that truth is of */
     double             (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
 } Job;
 

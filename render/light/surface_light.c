@@ -232,7 +232,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     const Three d = {eight_of_doubles(rays->d_enu[0] + i), eight_of_doubles(rays->d_enu[1] + i),
                      eight_of_doubles(rays->d_enu[2] + i)};
     const Three eye = {zero() - d.x, zero() - d.y, zero() - d.z};
-    const Eight lit = _mm256_castsi256_ps(_mm256_cmpeq_epi32(eight_of_bytes(b->shadow + i), eight_int(0)));
+    const Eight arrives = eight_load(b->sun + i), lit = eight_more(arrives, zero());
     const Eight n_eye = eight_max(dot(n, eye), zero()), n_sun = eight_and(eight_max(dot(n, sun), zero()), lit);
     const Eight below = eight_all(0.5 * pi_rad) * (one() - n.z), per_pi = eight_all(1 / pi_rad);
     light_on_plane(plane, light, n, sun);
@@ -271,7 +271,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
                 flash = fresnel(gloss_rho, of[gloss_smooth2], eight_min(half, one()), water_half) * glint;
         }
         const Eight reflected = eight_fma(diffuse * per_pi, around, mirrored);
-        const Eight sunlit = eight_fma(diffuse * per_pi, n_sun, flash) * sun_w_m2;
+        const Eight sunlit = eight_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
         Eight seen = eight_fma(reflected, eight_load(veil->air_transmittance + i), eight_load(veil->added_w_m2_sr + i));
         seen = eight_fma(sunlit, eight_load(veil->sun_transmittance + i), seen);
         if (band >= AIR_MWIR) {
