@@ -136,6 +136,17 @@ static void a_hit_says_what_it_is(void **state)
         if (block.hits.kind[i] != hit_part || (block.hits.entity[i] - 1) % 2 == 0) continue;
         visibility_place_on_part(p_node, scene.visibility, &block.hits, i);
         CHECK_NEAR(v3_length(p_node), hand_sphere_m, 0.01 * hand_sphere_m);
+        /* and on the plane of its own facet, which no other shares */
+        const Model    *model = catalog_model(hand.catalog, hand.entity[block.hits.entity[i] - 1].model);
+        const uint32_t *corner = model->triangle[block.hits.facet[i]];
+        double          origin[3], ab[3], ac[3], n[3];
+        v3_scale(origin, 1, model->vertex[corner[0]]);
+        v3_sub(ab, model->vertex[corner[1]], origin);
+        v3_sub(ac, model->vertex[corner[2]], origin);
+        v3_cross(n, ab, ac);
+        CHECK(v3_normalize(n, n));
+        v3_sub(p_node, p_node, origin);
+        CHECK_NEAR(v3_dot(p_node, n), 0, 1e-9);
         spheres++;
     }
     CHECK(spheres > 20);
