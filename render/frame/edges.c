@@ -127,7 +127,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
                           p->normal[2][a] * p->normal[2][b];
     const double near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
-    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px : step_ground * near_m;
+    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px
+                                                             : step_ground * near_m;
     if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
@@ -179,7 +180,8 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 flag |= edge_between(job, x, y, xb, yb);
             }
             const size_t px = pixel_index(job, x, y);
-            if (grounds && !(flag & refine_all) && !job->picture->entity[px] && job->picture->range_m[px] < INFINITY &&
+            if (grounds && !(flag & refine_all) && !job->picture->entity[px] &&
+                job->picture->range_m[px] < INFINITY &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */

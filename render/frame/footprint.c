@@ -418,7 +418,8 @@ static double hidden_ground(const Footprint *f, const Job *job, const float *val
         for (int x = f->x0; x < f->x1; x++) {
             const size_t px = pixel_index(job, x, y);
             const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
-            if (job->coverer[px] == f->entity && share > 0) sum += share * share * plane_contrast(job->picture, value, x, y);
+            if (job->coverer[px] == f->entity && share > 0)
+                sum += share * share * plane_contrast(job->picture, value, x, y);
         }
     return sum;
 }

@@ -38,8 +38,8 @@ typedef struct SurfaceBlock {
     const Veils   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
-/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rays that met nothing get nonsense: whoever
- * knows the sky comes after. */
+/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
+ * optical_beyond and thermal_beyond give those. */
 void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block);
 
 #endif
