@@ -18,11 +18,11 @@ static void write_truth(const Worker *w, const Job *job)
         for (int k = 0; k < run; k++) range_m[k] = (float)hits->range_m[first + k * samples];
         for (int k = 0; k < run; k++) entity[k] = hits->entity[first + k * samples];
         for (int k = 0; k < run; k++) part[k] = hits->part[first + k * samples];
-        for (int k = 0; k < run; k++) material[k] = s->material[first + k * samples];
+        for (int k = 0; k < run; k++) material[k] = s->hits.material[first + k * samples];
         for (int k = 0; k < run; k++) picture->temp_k[px + (size_t)k] = s->temp_k[first + k * samples];
         for (int c = 0; c < 3; c++)
             for (int k = 0; k < run; k++) picture->normal[c][px + (size_t)k] = hits->n_enu[c][first + k * samples];
-        for (int k = 0; job->shadow && k < run; k++) job->shadow[px + (size_t)k] = s->shadow[first + k * samples];
+        for (int k = 0; job->sun && k < run; k++) job->sun[px + (size_t)k] = s->sun[first + k * samples];
     }
 }
 

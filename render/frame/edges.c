@@ -127,11 +127,12 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
                           p->normal[2][a] * p->normal[2][b];
     const double near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
-    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px : step_ground * near_m;
+    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px
+                                                             : step_ground * near_m;
     if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
-    return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
+    return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
 /* 1 where `count` pixels from a on and those from b on are plainly of one kind, as most are: in arrays, and never where
@@ -145,7 +146,7 @@ static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_
     for (int i = 0; i < count; i++) {
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
-                               (uint32_t)(job->shadow[k] ^ job->shadow[l]);
+                               (uint32_t)(job->sun[k] != job->sun[l]);
         const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
         const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
         const float    deep_m = fabsf(range_m[k] - range_m[l]);
@@ -179,7 +180,8 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 flag |= edge_between(job, x, y, xb, yb);
             }
             const size_t px = pixel_index(job, x, y);
-            if (grounds && !(flag & refine_all) && !job->picture->entity[px] && job->picture->range_m[px] < INFINITY &&
+            if (grounds && !(flag & refine_all) && !job->picture->entity[px] &&
+                job->picture->range_m[px] < INFINITY &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
@@ -206,6 +208,7 @@ void recall_ground(Worker *w, const Job *job)
         double       d_enu[3];
         view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
         hits->range_m[i] = p->range_m[px];
+        hits->kind[i]    = hit_ground;
         hits->entity[i]  = 0;
         hits->part[i] = hits->model[i] = 0;
         hits->inside[i] = 0;
@@ -216,7 +219,10 @@ void recall_ground(Worker *w, const Job *job)
             hits->p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
             hits->n_geo[k][i] = hits->n_enu[k][i] = p->normal[k][px];
         }
-        w->samples.shadow[i] = job->shadow[px];
+        w->samples.sun[i] = job->sun[px];
     }
     landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
+    for (int i = 0; i < hits->count; i++)
+        hits->material[i] =
+            (uint16_t)(hits->surface[i] ? job->scene.world->materials.surface[hits->surface[i]] : 0);
 }

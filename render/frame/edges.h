@@ -16,9 +16,9 @@ typedef enum RefineFlag {
 /* Marks what must be refined whatever its neighbours are: boxes of targets of middling size, and where a target's
  * shadow falls. */
 void mark_boxes(Job *job);
-/* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the shadow plane. */
+/* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the plane of sunlight. */
 void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
-/* The block's pixels as their planes say what their hits were, which are of ground: rays, hits and shadow; n is 1. */
+/* The block's pixels as their planes say what their hits were, which are of ground: rays, hits and sun; n is 1. */
 void recall_ground(Worker *w, const Job *job);
 
 #endif

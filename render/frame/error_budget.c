@@ -1,6 +1,6 @@
-/* render/frame/error_budget.c: pixels looked at again. First some candidates, one in each of many equal fields, tell how much
- * they differ from their neighbours; of these the probes are drawn, the likelier the more; then blocks of probes are
- * traced, each to sums of its own. */
+/* render/frame/error_budget.c: the error estimate of a frame: some pixels are sampled again. Candidates, one in each of
+ * many equal fields, say how much they differ from their neighbours; from them the pixels to sample are drawn, the
+ * likelier the more they differ; blocks of those are then shaded, each into sums of its own. */
 #include "render/frame/error_budget.h"
 
 #include "render/frame/error_estimate.h"
@@ -188,8 +188,8 @@ bool error_budget_coarser(double turn_enu[3], double *rise_m, const Elevation *e
 
 static const Candidate *candidate_of(const ProbeTask *t, int p) { return &t->candidate[t->probe[p].candidate]; }
 
-/* What the pixels' values of a plane would change with more rays: sampling error, by their own variance where they are as
- * many as the picture's. */
+/* What the pixels' values of a plane would change with more rays: sampling error, by their own variance where they have
+ * as many as the picture. */
 static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, int plane)
 {
     const int  samples = n * n;
@@ -216,7 +216,8 @@ static void take_coarse(ProbeTask *t, const float *value, int plane)
         const Candidate *c = candidate_of(t, p);
         if (!(c->planes >> plane & 1)) continue;
         const double moved = t->image_px[p] * t->image_px[p], turned = (double)(value[p] - t->base[plane][p]);
-        t->detail[plane] += t->probe[p].stands_for * (turned * turned + (double)c->contrast[plane] * moved / (1 + moved));
+        const double square = turned * turned + (double)c->contrast[plane] * moved / (1 + moved);
+        t->detail[plane] += t->probe[p].stands_for * square;
     }
 }
 

@@ -1,4 +1,5 @@
-/* render/frame/error_budget.h: how wrong a frame is, from the frame itself. What each figure holds, and what it does not:
+/* render/frame/error_budget.h: how wrong a frame is, from the frame itself. What each figure holds, and what it does
+ * not:
  *
  *   sampling         Pixels of edge_samples x edge_samples rays: from the differences among their own samples, by
  *                    mean_law. Small targets: the same of their cells, and what the pixel behind them differs by. All

@@ -209,7 +209,7 @@ static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y,
     if (!(square_px < to->square_px)) return;
     *to = (FootprintTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
                            .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
-                           .material = s->material[t->sample]};
+                           .material = s->hits.material[t->sample]};
     for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
 }
 
@@ -261,7 +261,7 @@ static void count_hidden(Footprint *f, Worker *w, const Job *job, const int *cel
         if (hits->entity[i] == id) continue;
         if (hits->entity[i]) {
             f->hidden_entity += area;
-            occlusion_add(&w->sums.hidden, job->rules.memory, f->entity, (int)hits->entity[i] - 1, 0, area);
+            occlusion_add(&w->sums.hidden, job->rules.arena, f->entity, (int)hits->entity[i] - 1, 0, area);
         } else {
             f->hidden_ground += area;
         }
@@ -277,21 +277,8 @@ static int keep_target(const Footprint *f, Samples *s, int *cell)
     int            kept = 0;
     for (int i = 0; i < hits->count; i++) {
         if (hits->entity[i] != id) continue;
-        cell[kept]          = cell[i];
-        hits->range_m[kept] = hits->range_m[i];
-        hits->entity[kept]  = hits->entity[i];
-        hits->part[kept]    = hits->part[i];
-        hits->model[kept]   = hits->model[i];
-        hits->inside[kept]  = hits->inside[i];
-        hits->surface[kept] = hits->surface[i];
-        for (int k = 0; k < 3; k++) {
-            hits->p_enu[k][kept] = hits->p_enu[k][i];
-            hits->n_geo[k][kept] = hits->n_geo[k][i];
-            hits->n_enu[k][kept] = hits->n_enu[k][i];
-            rays->o_enu[k][kept] = rays->o_enu[k][i];
-            rays->d_enu[k][kept] = rays->d_enu[k][i];
-        }
-        rays->far_m[kept++] = rays->far_m[i];
+        cell[kept] = cell[i];
+        hits_copy(hits, rays, kept++, hits, rays, i);
     }
     hits->count   = rays->count = kept;
     hits->columns = rays->columns = 0;
@@ -431,7 +418,8 @@ static double hidden_ground(const Footprint *f, const Job *job, const float *val
         for (int x = f->x0; x < f->x1; x++) {
             const size_t px = pixel_index(job, x, y);
             const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
-            if (job->coverer[px] == f->entity && share > 0) sum += share * share * plane_contrast(job->picture, value, x, y);
+            if (job->coverer[px] == f->entity && share > 0)
+                sum += share * share * plane_contrast(job->picture, value, x, y);
         }
     return sum;
 }

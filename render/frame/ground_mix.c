@@ -113,25 +113,6 @@ static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job
     return count;
 }
 
-/* Sample `to` of the split block is sample `from` of the one before. */
-static void copy_sample(Hits *hits, Rays *rays, int to, const Hits *from_hits, const Rays *from_rays, int from)
-{
-    hits->range_m[to] = from_hits->range_m[from];
-    hits->entity[to]  = from_hits->entity[from];
-    hits->part[to]    = from_hits->part[from];
-    hits->model[to]   = from_hits->model[from];
-    hits->inside[to]  = from_hits->inside[from];
-    hits->surface[to] = from_hits->surface[from];
-    rays->far_m[to]   = from_rays->far_m[from];
-    for (int k = 0; k < 3; k++) {
-        hits->p_enu[k][to] = from_hits->p_enu[k][from];
-        hits->n_geo[k][to] = from_hits->n_geo[k][from];
-        hits->n_enu[k][to] = from_hits->n_enu[k][from];
-        rays->o_enu[k][to] = from_rays->o_enu[k][from];
-        rays->d_enu[k][to] = from_rays->d_enu[k][from];
-    }
-}
-
 /* Moves a ground sample to another place of the picture on the plane of its hit. */
 static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const double at_px[2])
 {
@@ -153,7 +134,7 @@ void split_ground(Worker *w, const Job *job, int side, int most)
     const int samples = block->n * block->n, before = s->hits.count;
     Hits     *hits = &w->hits;
     Rays     *rays = &w->rays;
-    uint8_t   shadow[hits_capacity];
+    float     sun[hits_capacity];
     int       count = 0;
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
     for (int i = 0; i < before; i++) {
@@ -165,17 +146,18 @@ void split_ground(Worker *w, const Job *job, int side, int most)
         centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
         const int patches = ground ? find_patches(patch, w, job, i, centre_px, side, most) : 0;
         for (int k = 0; k < (patches > 1 ? patches : 1); k++, count++) {
-            copy_sample(hits, rays, count, &s->hits, &s->rays, i);
-            shadow[count]       = s->shadow[i];
+            hits_copy(hits, rays, count, &s->hits, &s->rays, i);
+            sun[count]          = s->sun[i];
             hits->ray[count]    = (uint16_t)i;
             hits->weight[count] = 1;
             if (patches == 0) continue;
             hits->weight[count]  = (float)patch[k].count / (float)(side * side);
             hits->surface[count] = patch[k].surface;
+            hits->material[count] = (uint16_t)job->scene.world->materials.surface[patch[k].surface];
             if (patches > 1) move_sample(hits, rays, count, &job->request->view, patch[k].place);
         }
     }
-    for (int i = 0; i < count; i++) s->shadow[i] = shadow[i];
+    for (int i = 0; i < count; i++) s->sun[i] = sun[i];
     hits->count = rays->count = count;
     hits->columns = rays->columns = 0;
     hits->several = true;

@@ -11,13 +11,14 @@ enum {
     material_unknown  = 0xffff,
 };
 
-/* Materials of the ground at the corners of the pixels x0 .. x1 - 1, y0 .. y1 - 1, (x1 - x0 + 1) a row; material_unknown
- * where the pixel right and below shows no ground. Reads the truth planes. */
+/* Materials of the ground at the corners of the pixels x0 .. x1 - 1, y0 .. y1 - 1, (x1 - x0 + 1) a row;
+ * material_unknown where the pixel right and below shows no ground. Reads the truth planes. */
 void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int y0, int x1, int y1);
 /* Whether one of the four corners from `corner` on is of another material than that. columns: corners a row. */
 bool corners_differ(const uint16_t *corner, int columns, uint32_t material);
 /* Splits the block's samples of ground by the surface classes within their squares of 1 / n px, several returns each:
- * side x side places are asked, at most `most` classes kept. hits.count x most <= hits_capacity; side <= 16, most <= ground_mix_most. */
+ * side x side places are asked, at most `most` classes kept. hits.count x most <= hits_capacity; side <= 16,
+ * most <= ground_mix_most. */
 void split_ground(Worker *w, const Job *job, int side, int most);
 
 #endif

@@ -65,9 +65,10 @@ void block_light(Worker *w, const Job *job)
 float *block_values(const Worker *w, const Job *job, int plane)
 {
     if (plane == picture_radar) return w->samples.radar ? w->samples.radar_power : NULL;
-    for (int k = 0; k < job->channels; k++)
-        if (job->channel[k].plane == plane)
-            return w->samples.channels >> job->channel[k].channel & 1 ? w->samples.radiance[job->channel[k].channel] : NULL;
+    for (int k = 0; k < job->channels; k++) {
+        const AirBand channel = job->channel[k].channel;
+        if (job->channel[k].plane == plane && w->samples.channels >> channel & 1) return w->samples.radiance[channel];
+    }
     return NULL;
 }
 

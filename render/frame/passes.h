@@ -56,7 +56,7 @@ typedef struct Job {
     double               footprint_law[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
     uint8_t             *refine;    /* a pixel: RefineFlag */
-    uint8_t             *shadow;    /* a pixel: of the sample that truth is of */
+    float               *sun;       /* a pixel: Samples.sun of the sample that truth is of */
     double             (*law)[picture_plane_count]; /* [tiles]: squared errors, summed; NULL: no error estimate */
 } Job;
 
@@ -68,8 +68,8 @@ typedef struct Tile {
 Tile tile_of(const Job *job, int task);
 static inline size_t pixel_index(const Job *job, int x, int y) { return picture_index(job->picture, x, y); }
 
-/* Entities that samples within a box of the image may see, into worker->list; without `small_ones` small targets are left
- * to their footprints. Returns how many. */
+/* Entities that samples within a box of the image may see, into worker->list; without `small_ones` small targets are
+ * left to their footprints. Returns how many. */
 int  list_entities(Worker *w, const Job *job, const double box_px[4], bool small_ones);
 /* Which channels the samples are asked for: those of `bands`. */
 void ask_bands(Worker *w, const Job *job, unsigned bands);

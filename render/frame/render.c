@@ -39,8 +39,8 @@ static Status create_job(Job *job, int workers, Arena *arena)
     if (looks_for_edges(job->request)) {
         const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
         job->refine     = arena_alloc(arena, px, sizeof *job->refine);
-        job->shadow     = arena_alloc(arena, px, sizeof *job->shadow);
-        if (!job->refine || !job->shadow) return STATUS_NO_MEMORY;
+        job->sun        = arena_alloc(arena, px, sizeof *job->sun);
+        if (!job->refine || !job->sun) return STATUS_NO_MEMORY;
         if (job->request->budget && !(job->law = arena_alloc(arena, tiles, sizeof *job->law))) return STATUS_NO_MEMORY;
     }
     Status status = STATUS_OK;
@@ -104,7 +104,6 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     const RenderRequest *request = job->request;
     ShadeScene          *scene = &job->scene;
     const World         *world = scene->world;
-    Visibility          *posed = NULL;
     job->side_px  = tile_side_samples / request->samples;
     job->tiles_x  = (request->view.width + job->side_px - 1) / job->side_px;
     job->tiles_y  = (request->view.height + job->side_px - 1) / job->side_px;
@@ -113,19 +112,11 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     Status status = picture_create(job->picture, request, scene->snapshot->count, arena);
     if (status == STATUS_OK && job->picture->optical[1]) optical_white(job->picture->white_w_m2_sr, scene->air);
     if (status == STATUS_OK)
-        status = effects_scene(&scene->effects, scene->snapshot, request->hidden_entity, &world->frame, &request->view,
-                               scene->air, world->materials.ground_rho,
-                               render_air_bands(request->bands, request->optical), arena);
+        status = shade_scene_create(scene, world, scene->snapshot, scene->air, request,
+                                    render_air_bands(request->bands, request->optical), arena);
     if (status == STATUS_OK) status = create_job(job, pool_threads(pool), arena);
-    if (status == STATUS_OK)
-        status = visibility_create(&posed, world->tracer, world->landscape, &world->frame, scene->snapshot,
-                                   request->skips_off, arena);
-    if (status == STATUS_OK) status = visibility_look(posed, &request->view, arena);
     if (status != STATUS_OK) return status;
-    scene->visibility = posed;
     choose_rules(job);
-    status = surface_light_prepare(&scene->surface_light, scene->air, &world->materials, arena);
-    if (status != STATUS_OK) return status;
     if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility)
         pool_run(pool, scene->snapshot->count, project_target, job);
     status = prepare_sky(job, pool, arena);
@@ -187,10 +178,8 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
 {
     const double start_s = wall_clock_s();
     Picture      picture = {0};
-    SharedArena  memory = {.mutex = PTHREAD_MUTEX_INITIALIZER, .arena = arena};
-    Job          job = {.request = request, .picture = &picture, .rules = {.memory = &memory},
-                        .scene = {.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
-                                  .hidden_entity = request->hidden_entity}};
+    Job          job = {.request = request, .picture = &picture, .rules = {.arena = arena},
+                        .scene = {.world = world, .snapshot = snapshot, .air = air}};
     Status       status = prepare(&job, pool, arena);
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
     if (status == STATUS_OK) status = run_passes(&job, pool, arena);

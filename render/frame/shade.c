@@ -5,14 +5,34 @@
 #include "render/light/optical.h"
 #include "render/light/thermal.h"
 
+Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
+                          const RenderRequest *request, unsigned channels, Arena *arena)
+{
+    Visibility *posed = NULL;
+    *out = (ShadeScene){.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
+                        .hidden_entity = request->hidden_entity};
+    Status status = effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
+                                  world->materials.ground_rho, channels, arena);
+    if (status != STATUS_OK) return status;
+    int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
+    if (!volume) return STATUS_NO_MEMORY;
+    for (int n = 0; n < out->effects.count; n++) volume[n] = n;
+    out->all_volumes = volume;
+    status = visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
+    if (status == STATUS_OK) status = visibility_look(posed, &request->view, arena);
+    if (status != STATUS_OK) return status;
+    visibility_materials(posed, &world->materials);
+    out->visibility = posed;
+    return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
+}
+
 Status samples_create(Samples *out, int capacity, Arena *arena)
 {
     const size_t n = (size_t)capacity;
     bool         ok = capacity >= 1 && capacity <= hits_capacity;
     *out = (Samples){.capacity = capacity};
     for (int b = 0; b < AIR_BAND_COUNT; b++) ok = ok && (out->radiance[b] = arena_alloc(arena, n, sizeof(float)));
-    ok = ok && (out->material = arena_alloc(arena, n, sizeof *out->material));
-    ok = ok && (out->shadow = arena_alloc(arena, n, sizeof *out->shadow));
+    ok = ok && (out->sun = arena_alloc(arena, n, sizeof *out->sun));
     ok = ok && (out->temp_k = arena_alloc(arena, n, sizeof *out->temp_k));
     ok = ok && (out->radar_power = arena_alloc(arena, n, sizeof *out->radar_power));
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
@@ -29,10 +49,12 @@ void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const in
 void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double t0 = wall_clock_s();
+    uint8_t      dark[hits_capacity];
     if (s->channels & ~(1u << AIR_LWIR))
-        visibility_shadow(s->shadow, scene->visibility, &s->hits, scene->air->sun_d_enu, &shader->counters);
+        visibility_shadow(dark, scene->visibility, &s->hits, scene->air->sun_d_enu, &shader->counters);
     else
-        memset(s->shadow, 0, (size_t)s->hits.count * sizeof *s->shadow);
+        memset(dark, 0, (size_t)s->hits.count);
+    for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
     shader->shadow_s += wall_clock_s() - t0;
 }
 
@@ -48,20 +70,6 @@ static int albedo_of_channel(int channel)
 {
     return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
          : channel == optical_channel_b ? albedo_blue : albedo_all;
-}
-
-/* What each hit is made of. */
-static void resolve_materials(const ShadeScene *scene, Samples *s)
-{
-    const Materials *materials = &scene->world->materials;
-    uint16_t         of_class[256] = {0};
-    for (int c = SURFACE_NONE + 1; c < SURFACE_COUNT; c++) of_class[c] = (uint16_t)materials->surface[c];
-    for (int i = 0; i < s->hits.count; i++) s->material[i] = of_class[s->hits.surface[i]];
-    for (int i = 0; i < s->hits.count; i++)
-        if (s->hits.entity[i])
-            s->material[i] =
-                (uint16_t)material_of_part(materials, s->hits.model[i], s->hits.part[i] - 1,
-                                           visibility_damage(scene->visibility, (int)s->hits.entity[i] - 1));
 }
 
 /* How bright the ground's own pattern is at each hit, in the optical channels that are asked for and in that by which
@@ -120,12 +128,12 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     const World *world = scene->world;
     if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
         thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
-                            s->material, shader->texture[optical_channel_pan]);
+                            s->hits.material, shader->texture[optical_channel_pan]);
     if (!s->channels) return;
     air_veils_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
-    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->material, .temp_k = s->temp_k,
-                          .shadow = s->shadow, .veils = shader->air};
+    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->hits.material, .temp_k = s->temp_k,
+                          .sun = s->sun, .veils = shader->air};
     float       *out[AIR_BAND_COUNT] = {NULL};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(s->channels >> b & 1)) continue;
@@ -143,7 +151,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
 static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     radar_shade(&s->returns, &scene->world->radar, scene->visibility, &scene->world->materials, &s->hits, &s->rays,
-                s->material, scene->hidden_entity, &shader->counters);
+                scene->hidden_entity, &shader->counters);
     for (int i = 0; i < s->hits.count; i++) {
         double sum = 0;
         for (int b = 0; b < radar_bounces; b++) sum += s->returns.power[b][i];
@@ -156,7 +164,6 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
     const double      t0 = wall_clock_s();
     const GatherScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
                                 scene->snapshot};
-    resolve_materials(scene, s);
     resolve_textures(shader, scene, s);
     samples_smoke(scene, s);
     if (scene->sky_samples > 0)
@@ -206,9 +213,9 @@ void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s,
         const float *around = light_around(room, shader, scene, s, (AirBand)b);
         if (b >= AIR_MWIR)
             thermal_shade(out, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, scene->air, materials, &s->hits, &s->rays,
-                          s->material, s->temp_k, s->shadow, around, &direct[b], NULL);
+                          s->hits.material, s->temp_k, s->sun, around, &direct[b], NULL);
         else
-            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, s->material, shader->texture[b], s->shadow,
+            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, s->hits.material, shader->texture[b], s->sun,
                           around, &direct[b], NULL);
         veil_apply(out, &s->smoke, b, s->hits.count);
     }

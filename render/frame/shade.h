@@ -22,8 +22,14 @@ typedef struct ShadeScene {
     SurfaceLight      surface_light;
     SkyVisibility    *sky;           /* NULL: what a surface sees of the sky follows from its tilt alone */
     int               sky_samples;   /* directions a hit that are gathered; 0: the quick form */
+    const int        *all_volumes;   /* 0, 1, 2 ...: all of the effects */
     int               hidden_entity; /* snapshot index whose parts these rays do not meet; -1: none */
 } ShadeScene;
+
+/* Poses the snapshot and prepares its light and smoke, seen from the eye of this view; sky: left NULL. channels:
+ * 1 << AirBand, those that will be asked for. All else must outlive it; the arena owns what it needs. */
+Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
+                          const RenderRequest *request, unsigned channels, Arena *arena);
 
 /* A list of samples: what is asked of each, and what was found. Arrays of `capacity`, of the arena they came from. */
 typedef struct Samples {
@@ -39,8 +45,7 @@ typedef struct Samples {
     int      volumes;
     /* found */
     Hits      hits;
-    uint16_t *material;                 /* row in the table of materials; 0 for sky */
-    uint8_t  *shadow;                   /* 1: no direct sun */
+    float    *sun;                      /* share of the direct sun that arrives, 0 .. 1; the same in all channels */
     float    *temp_k;                   /* NaN: sky */
     float    *radiance[AIR_BAND_COUNT]; /* at the eye, W/(m2 sr); of the channels asked for */
     float    *radar_power;              /* sum over the bounces, relative */
@@ -70,7 +75,7 @@ void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const in
 void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s);
 /* Smoke and dust before the hits; samples_light does it, too. */
 void samples_smoke(const ShadeScene *scene, Samples *s);
-/* Materials, temperatures, and the light of every channel, of hits that are there with their sun. */
+/* Temperatures, and the light of every channel, of hits that are there with their sun. */
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s);
 /* All of them: from the rays to their light. */
 void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);

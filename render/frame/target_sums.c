@@ -42,12 +42,10 @@ static Occlusion *find_pair(const Occlusions *table, int target, int occluder)
     }
 }
 
-static bool grow_table(Occlusions *table, SharedArena *memory)
+static bool grow_table(Occlusions *table, Arena *arena)
 {
     Occlusions larger = {.capacity = table->capacity ? 2 * table->capacity : 64, .used = table->used};
-    pthread_mutex_lock(&memory->mutex);
-    larger.pair = arena_alloc(memory->arena, larger.capacity, sizeof *larger.pair);
-    pthread_mutex_unlock(&memory->mutex);
+    larger.pair = arena_alloc(arena, larger.capacity, sizeof *larger.pair);
     if (!larger.pair) return false;
     for (size_t i = 0; i < table->capacity; i++)
         if (table->pair[i].used) *find_pair(&larger, table->pair[i].target, table->pair[i].occluder) = table->pair[i];
@@ -55,9 +53,9 @@ static bool grow_table(Occlusions *table, SharedArena *memory)
     return true;
 }
 
-void occlusion_add(Occlusions *table, SharedArena *memory, int target, int occluder, int64_t steps, double area_px)
+void occlusion_add(Occlusions *table, Arena *arena, int target, int occluder, int64_t steps, double area_px)
 {
-    if (2 * (table->used + 1) > table->capacity && !grow_table(table, memory)) {
+    if (2 * (table->used + 1) > table->capacity && !grow_table(table, arena)) {
         table->lost = true;
         return;
     }
@@ -157,7 +155,7 @@ static void count_seen(TargetSums *sums, int index, const SumRules *rules, const
     grow_box(count->amodal_box, x, y);
     if (seen == whole) return;
     count->hidden_entity += whole - seen;
-    occlusion_add(&sums->hidden, rules->memory, index, rules->coverer[px], whole - seen, 0);
+    occlusion_add(&sums->hidden, rules->arena, index, rules->coverer[px], whole - seen, 0);
 }
 
 void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s, const PixelBlock *block, int sign,
@@ -204,7 +202,7 @@ void target_sums_areas(TargetSums *sums, const SumRules *rules, const Samples *s
             grow_box(count->amodal_box, x, y);
             if (s->hits.entity[i]) {
                 count->hidden_entity += whole;
-                occlusion_add(&sums->hidden, rules->memory, index, (int)s->hits.entity[i] - 1, whole, 0);
+                occlusion_add(&sums->hidden, rules->arena, index, (int)s->hits.entity[i] - 1, whole, 0);
             } else {
                 count->hidden_ground += whole;
             }

@@ -6,8 +6,6 @@
 #ifndef RENDER_FRAME_TARGET_SUMS_H
 #define RENDER_FRAME_TARGET_SUMS_H
 
-#include <pthread.h>
-
 #include "render/frame/pixels.h"
 #include "render/frame/shade.h"
 
@@ -34,14 +32,8 @@ typedef struct Occlusions {
     bool       lost; /* memory is out: the sums are incomplete */
 } Occlusions;
 
-/* The frame's arena, for tables that grow while threads run. */
-typedef struct SharedArena {
-    pthread_mutex_t mutex;
-    Arena          *arena;
-} SharedArena;
-
 /* Adds to a pair. */
-void occlusion_add(Occlusions *table, SharedArena *memory, int target, int occluder, int64_t steps, double area_px);
+void occlusion_add(Occlusions *table, Arena *arena, int target, int occluder, int64_t steps, double area_px);
 
 /* What holds for all sums of a frame. */
 typedef struct SumRules {
@@ -49,7 +41,7 @@ typedef struct SumRules {
     const Visibility *visibility;
     const int32_t    *coverer; /* a pixel: snapshot index of the small target that covers most; where any does */
     int               smoke_channel[BAND_COUNT]; /* by which smoke before a band is told; -1: none */
-    SharedArena      *memory;
+    Arena            *arena; /* where tables of pairs grow while threads run */
     int64_t           steps_per_px;
     /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
      * limit stay below 2^62 quanta */

@@ -13,7 +13,7 @@ typedef struct World {
     Tracer          *tracer;
     Materials        materials;
     PlanckTable     *planck_mwir, *planck_lwir;
-    Atmosphere      *atmosphere;     /* NULL after world_open; whoever opens one here, world_close closes it */
+    Atmosphere      *atmosphere;     /* NULL after world_open; the caller may open one here; world_close closes it */
     RadarConfig      radar;
 } World;
 

@@ -57,7 +57,7 @@ static inline F32x8 zero(void) { return _mm256_setzero_ps(); }
 static inline F32x8 one(void) { return f32x8_set(1); }
 static inline F32x8 square(F32x8 a) { return a * a; }
 
-/* Eight places in steps of a table: lower nodes and shares of the upper ones. */
+/* F32x8 places in steps of a table: lower nodes and shares of the upper ones. */
 typedef struct Steps {
     I32x8 at;
     F32x8    share;
@@ -200,7 +200,7 @@ static inline F32x8 lobe(F32x8 slope2, Three n, Three eye, Three sun, F32x8 n_ey
 
 /* ---- eight hits ------------------------------------------------------------------------------ */
 
-/* Eight rows of a table by material, turned: of one material as a rule. */
+/* F32x8 rows of a table by material, turned: of one material as a rule. */
 static inline void material_rows(F32x8 out[8], float (*table)[surface_light_bands], const uint16_t material[8],
                                  bool same)
 {
@@ -232,7 +232,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     const Three d = {f32x8_of_doubles(rays->d_enu[0] + i), f32x8_of_doubles(rays->d_enu[1] + i),
                      f32x8_of_doubles(rays->d_enu[2] + i)};
     const Three eye = {zero() - d.x, zero() - d.y, zero() - d.z};
-    const F32x8 lit = _mm256_castsi256_ps(_mm256_cmpeq_epi32(i32x8_of_bytes(b->shadow + i), i32x8_set(0)));
+    const F32x8 arrives = f32x8_load(b->sun + i), lit = f32x8_greater(arrives, zero());
     const F32x8 n_eye = f32x8_max(dot(n, eye), zero()), n_sun = f32x8_and(f32x8_max(dot(n, sun), zero()), lit);
     const F32x8 below = f32x8_set(0.5 * pi_rad) * (one() - n.z), per_pi = f32x8_set(1 / pi_rad);
     light_on_plane(plane, light, n, sun);
@@ -271,7 +271,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
                 flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
         }
         const F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
-        const F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * sun_w_m2;
+        const F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
         F32x8 seen = f32x8_fma(reflected, f32x8_load(veil->air_transmittance + i), f32x8_load(veil->added_w_m2_sr + i));
         seen = f32x8_fma(sunlit, f32x8_load(veil->sun_transmittance + i), seen);
         if (band >= AIR_MWIR) {

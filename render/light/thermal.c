@@ -125,7 +125,7 @@ float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Vei
 }
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
-                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
                    const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const bool mwir = band == BAND_MWIR;
@@ -170,7 +170,8 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
             reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
         }
         double sunlit = 0;
-        if (sun_w_m2 > 0 && !shadow[i]) {
+        const double lit = sun ? (double)sun[i] : 1;
+        if (sun_w_m2 > 0 && lit > 0) {
             const double n_sun = v3_dot(n_enu, air->sun_d_enu);
             if (n_sun > 0) {
                 sunlit = diffuse * n_sun / pi_rad;
@@ -180,7 +181,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                     sunlit += material_fresnel((mwir ? m->rho_mwir : m->rho_lwir) * m->gloss, m->roughness, cosine) *
                               material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
                 }
-                sunlit *= sun_w_m2;
+                sunlit *= sun_w_m2 * lit;
             }
         }
         out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +

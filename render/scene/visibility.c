@@ -6,6 +6,7 @@
 struct Visibility {
     const Tracer    *tracer;
     const Landscape *landscape;
+    const Materials *materials; /* NULL: hits do not say theirs */
     Ground           ground;
     unsigned         skips_off;
     int              count, drawable;
@@ -48,6 +49,15 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
 
 int visibility_count(const Visibility *v) { return v->count; }
 const PosedEntity *visibility_posed(const Visibility *v, int index) { return &v->entity[index]; }
+
+void visibility_materials(Visibility *v, const Materials *materials) { v->materials = materials; }
+
+void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i)
+{
+    const PosedEntity *posed = visibility_posed(v, (int)hits->entity[i] - 1);
+    const double       p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
+    parts_place_on_part(p_node, tracer_model(v->tracer, posed->model), posed, hits->facet[i], p_enu);
+}
 
 int visibility_damage(const Visibility *v, int index) { return v->entity[index].damage; }
 
@@ -170,6 +180,9 @@ static void clear_hit(Hits *hits, int i)
         hits->p_enu[c][i] = 0;
         hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
     }
+    hits->kind[i]     = hit_sky;
+    hits->material[i] = 0;
+    hits->facet[i]    = 0;
     hits->entity[i]  = 0;
     hits->part[i]    = 0;
     hits->model[i]   = 0;
@@ -202,18 +215,25 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     hits->model[i]  = (uint16_t)posed->model;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+    hits->kind[i]   = hit_part;
+    hits->facet[i]  = hit->triangle;
+    if (v->materials)
+        hits->material[i] = (uint16_t)material_of_part(v->materials, posed->model, hits->part[i] - 1, posed->damage);
 }
 
 /* What the ground is where it was met. */
-static void classify_ground(Hits *hits, const Landscape *landscape)
+static void classify_ground(Hits *hits, const Landscape *landscape, const Materials *materials)
 {
     double x_m[hits_capacity], y_m[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
         const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0;
+        if (ground) hits->kind[i] = hit_ground;
         x_m[i] = ground ? hits->p_enu[0][i] : NAN;
         y_m[i] = ground ? hits->p_enu[1][i] : NAN;
     }
     landscape_surfaces(hits->surface, landscape, hits->count, x_m, y_m);
+    for (int i = 0; i < hits->count && materials; i++)
+        if (hits->surface[i]) hits->material[i] = (uint16_t)materials->surface[hits->surface[i]];
 }
 
 static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
@@ -337,7 +357,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
-    if (v->landscape) classify_ground(hits, v->landscape);
+    if (v->landscape) classify_ground(hits, v->landscape, v->materials);
 }
 
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,

@@ -11,6 +11,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "entities/table/snapshot.h"
+#include "render/light/materials.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"
 #include "render/scene/view.h"
@@ -43,6 +44,12 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
 struct PosedEntity;
 int visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
+
+/* Whose rows Hits.material names: before anything is traced. Without: all 0. They must outlive it. */
+void visibility_materials(Visibility *v, const Materials *materials);
+
+/* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
+void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);
 
 /* How damaged an entity is shown: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
