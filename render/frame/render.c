@@ -620,7 +620,6 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     if (status == STATUS_OK)
         status = visibility_create(&visibility, world->tracer, world->landscape, &world->frame, snapshot,
                                    request->skips_off, arena);
-    if (status == STATUS_OK) status = visibility_look(visibility, &request->view, arena);
     if (status != STATUS_OK) return status;
     job.visibility = visibility;
     status = surface_light_prepare(&job.surface_light, air, &world->materials, arena);
