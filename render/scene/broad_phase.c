@@ -323,8 +323,9 @@ static double entry_m(const Slabs *s, const BroadRays *rays, const double low[3]
         for (int c = 0; c < 3; c++) {
             const Four a = (_mm256_set1_pd(low[c]) - s->o[c][f]) * s->per[c][f];
             const Four b = (_mm256_set1_pd(high[c]) - s->o[c][f]) * s->per[c][f];
-            in  = _mm256_max_pd(in, _mm256_min_pd(a, b));
-            out = _mm256_min_pd(out, _mm256_max_pd(a, b));
+            /* the second operand stays where the first is no number */
+            in  = _mm256_max_pd(_mm256_min_pd(a, b), in);
+            out = _mm256_min_pd(_mm256_max_pd(a, b), out);
         }
         /* a rounding of the products: nothing is missed by it */
         in = in * _mm256_set1_pd(1 - 1e-11);
