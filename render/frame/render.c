@@ -649,6 +649,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     if (request->budget) footprints_error(&job);
     footprints_put_on(&job);
     if (request->budget) status = error_budget(&job, pool, arena);
+    if (status == STATUS_OK) status = visibility_status(visibility);
     if (status != STATUS_OK) return status;
     if (!request->truth) forget_truth(&picture);
     *out = picture;

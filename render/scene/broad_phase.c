@@ -277,7 +277,8 @@ int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double 
             const double *s = tree->sphere[k];
             double        m[3], across[3];
             v3_sub(m, s, centre);
-            const double reach_m = (radius_m + s[3]) * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+            const double room_m = 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
+            const double reach_m = (radius_m + s[3]) * (1 + 1e-9) + room_m;
             const double along = v3_dot(m, d);
             v3_add_scaled(across, m, -along, d);
             if (!(along > -reach_m && v3_dot(across, across) < reach_m * reach_m)) continue;
@@ -346,7 +347,8 @@ static double largest_limit(const BroadRays *rays)
 }
 
 /* Those of a leaf that may be met, nearest first. */
-static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, BroadRays *rays, BroadVisit *visit, void *user)
+static void visit_leaf(const BroadPhase *tree, int leaf, const Slabs *slabs, BroadRays *rays, BroadVisit *visit,
+                       void *user)
 {
     struct { double entry_m; int item; } met[leaf_items];
     int       count = 0;
@@ -381,7 +383,10 @@ void broad_phase_rays(const BroadPhase *tree, BroadRays *rays, BroadVisit *visit
             continue;
         }
         double side_m[2];
-        for (int k = 0; k < 2; k++) side_m[k] = entry_m(&slabs, rays, tree->node[2 * n + k].low, tree->node[2 * n + k].high);
+        for (int k = 0; k < 2; k++) {
+            const Box *box = &tree->node[2 * n + k];
+            side_m[k] = entry_m(&slabs, rays, box->low, box->high);
+        }
         const int first = side_m[1] < side_m[0];
         for (int k = 0; k < 2; k++) { /* the nearer is taken from the stack first */
             const int side = k == 0 ? !first : first;

@@ -1,5 +1,5 @@
-/* render/scene/broad_phase.h: a bounding-volume tree over spheres: which of many things may be met by a ray, or lie in a
- * volume. It only filters candidates: what it leaves out cannot be met, and what it lists must still be tested.
+/* render/scene/broad_phase.h: a bounding-volume tree over spheres: which of many things may be met by a ray, or lie in
+ * a volume. It only filters candidates: what it leaves out cannot be met, and what it lists must still be tested.
  *
  * Built anew each frame, O(n): the spheres are sorted along a Morton curve, four to a leaf, and the leaves are the last
  * row of a complete binary tree, so that node n has the children 2 n and 2 n + 1. Immutable once built, any number of
@@ -19,8 +19,8 @@ typedef struct BroadPhase BroadPhase;
 Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphere)[4], int count, Arena *arena);
 int    broad_phase_count(const BroadPhase *tree); /* of those that may be listed */
 
-/* Items of which some point of the sphere may lie within all planes (n, d): dot(n, p) >= d, n unit; ascending. list: room
- * for all. Returns how many. */
+/* Items of which some point of the sphere may lie within all planes (n, d): dot(n, p) >= d, n unit; ascending. list:
+ * room for all. Returns how many. */
 int broad_phase_in_planes(int *list, const BroadPhase *tree, const double (*plane)[4], int planes);
 /* Items whose spheres, grown by more_m, may touch a box; ascending. */
 int broad_phase_near_box(int *list, const BroadPhase *tree, const double low[3], const double high[3], double more_m);
@@ -29,8 +29,8 @@ int broad_phase_near_box(int *list, const BroadPhase *tree, const double low[3],
 int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double centre[3], double radius_m,
                       const double d[3]);
 
-/* Rays that go through the tree together; limit_m: what begins beyond is not asked for; may become smaller meanwhile, -1
- * asks for nothing more. Filled up to broad_packet by the caller with limits of -1. */
+/* Rays that go through the tree together; limit_m: what begins beyond is not asked for; may become smaller meanwhile,
+ * -1 asks for nothing more. Filled up to broad_packet by the caller with limits of -1. */
 typedef struct BroadRays {
     double o[3][broad_packet], d[3][broad_packet], limit_m[broad_packet];
 } __attribute__((aligned(64))) BroadRays;

@@ -36,8 +36,8 @@ typedef struct VisibilityCounters {
     uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
 } VisibilityCounters;
 
-/* ground may be NULL (none). The arena owns what the frame needs, and is used while the frame is traced: by nobody else
- * then. frame and snapshot must outlive it. skips_off: 1 << Skip. */
+/* ground may be NULL (none). The arena owns what the frame needs, and is used while the frame is traced: by no other
+ * thread then. frame and snapshot must outlive it. skips_off: 1 << Skip. */
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
