@@ -5,6 +5,7 @@
 #include "entities/table/entity_table_private.h"
 
 #include <limits.h>
+#include <stddef.h>
 
 static const double timeout_per_heartbeat = 2.4; /* IEEE 1278.1 */
 
@@ -209,6 +210,15 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
     }
 }
 
+/* Slots lie far apart, in no order of ids: a chunk's come into the cache together, not one after the other. */
+static void fetch_slots(const EntityTable *table, const Ordered *order, int first, int end)
+{
+    for (int e = first; e < end; e++) {
+        const char *slot = (const char *)(table->slot + order[e].slot);
+        for (size_t at = 0; at < offsetof(EntitySlot, articulation) + 64; at += 64) __builtin_prefetch(slot + at);
+    }
+}
+
 /* Entities first .. end - 1, by algorithm. */
 static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int first, int end,
                          double t_s)
@@ -234,24 +244,49 @@ static void place_origin(SnapshotEntity *e, const EntityTable *table, const Enti
     contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
-/* Nodes of an entity whose place is still as it was reported. */
-static void pose_nodes(NodePose *pose, double *joint_value, const EntityTable *table, const EntitySlot *slot,
-                       const SnapshotEntity *e, double t_s)
+/* Of an entity whose place is still as it was reported. The way that it has gone is asked for by what rolls alone. */
+static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, double t_s)
 {
-    const Model *model = catalog_model(table->catalog, slot->model);
-    const bool stands = entity_slot_frozen(slot) || slot->stopped;
+    const bool   stands = entity_slot_frozen(slot) || slot->stopped;
     const double forward_m =
         entity_slot_dt(slot, t_s) != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
-    const JointDrive drive = {.spin_s = entity_slot_spin(slot, t_s),
-                              .distance_m = slot->distance_m + forward_m,
-                              .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
-    articulation_joint_values(joint_value, model, &slot->articulation, &drive, entity_slot_time(slot, t_s),
-                              slot->hold_s);
-    entity_effects_wreck_joints(joint_value, model, slot);
+    return (JointDrive){.spin_s = entity_slot_spin(slot, t_s), .distance_m = slot->distance_m + forward_m,
+                        .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
+}
+
+static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Articulation *articulation,
+                       const JointDrive *drive, double time_s, double hold_s, const SnapshotEntity *e)
+{
+    articulation_joint_values(joint_value, model, articulation, drive, time_s, hold_s);
+    entity_effects_wreck_joints(joint_value, model, e, articulation->count);
     model_pose(pose, model, joint_value);
 }
 
-static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value, const EntityTable *table,
+void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot, int index, const Model *model)
+{
+    const SnapshotEntity *e = &snapshot->entity[index];
+    if (snapshot->node) {
+        memcpy(pose, snapshot->node + e->first_node, (size_t)model->node_count * sizeof *pose);
+        return;
+    }
+    const SnapshotJoints *joints = &snapshot->joints[index];
+    Articulation          articulation;
+    articulation.t_s   = joints->report_s;
+    articulation.count = joints->count;
+    memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
+    pose_nodes(pose, joint_value, model, &articulation, &joints->drive, joints->time_s, joints->hold_s, e);
+}
+
+static void keep_joints(SnapshotJoints *to, JointReport *report, const EntitySlot *slot, const SnapshotEntity *e, double t_s)
+{
+    to->report_s = slot->articulation.t_s;
+    to->hold_s   = slot->hold_s;
+    to->time_s   = entity_slot_time(slot, t_s);
+    to->drive    = drive_joints(slot, e, t_s);
+    memcpy(report + to->first, slot->articulation.joint, (size_t)to->count * sizeof *report);
+}
+
+static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport *report, const EntityTable *table,
                           const EntitySlot *slot, double t_s)
 {
     const bool stands = entity_slot_frozen(slot) || slot->stopped;
@@ -270,7 +305,7 @@ static void finish_entity(SnapshotEntity *e, NodePose *pose, double *joint_value
     if (stands) e->drift_m = e->drift_rad = 0;
     heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
 
-    pose_nodes(pose, joint_value, table, slot, e, t_s);
+    keep_joints(joints, report, slot, e, t_s);
 
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
 }
@@ -280,22 +315,20 @@ typedef struct Chunks {
     Snapshot          *snapshot;
     const EntityTable *table;
     const Ordered     *order;
-    double            *joint_value; /* [workers][most_nodes] */
-    int                most_nodes;
 } Chunks;
 
 static void finish_chunk(void *user, int worker, int chunk)
 {
+    (void)worker;
     const Chunks *all = user;
     Snapshot     *snapshot = all->snapshot;
     const int     first = chunk * block_count;
     const int     end = snapshot->count - first < block_count ? snapshot->count : first + block_count;
+    fetch_slots(all->table, all->order, first, end);
     reckon_chunk(snapshot->entity, all->table, all->order, first, end, snapshot->t_s);
-    for (int e = first; e < end; e++) {
-        SnapshotEntity *entity = snapshot->entity + e;
-        finish_entity(entity, snapshot->node + entity->first_node, all->joint_value + (size_t)worker * (size_t)all->most_nodes,
-                      all->table, all->table->slot + all->order[e].slot, snapshot->t_s);
-    }
+    for (int e = first; e < end; e++)
+        finish_entity(snapshot->entity + e, snapshot->joints + e, snapshot->joint_report, all->table,
+                      all->table->slot + all->order[e].slot, snapshot->t_s);
 }
 
 /* What entities carry first, then what they and the shots have let go. */
@@ -320,8 +353,8 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
 
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
 {
+    enum { ahead = 12 }; /* slots that are fetched before they are read */
     Snapshot snapshot = {.t_s = t_s};
-    int most_nodes = 1;
 
     if (!isfinite(t_s)) return STATUS_BAD_VALUE;
     const size_t capacity = (size_t)table->count + 1;
@@ -331,6 +364,10 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
+        if (s + ahead < table->slot_end) { /* what is read of a slot lies within its first two lines */
+            __builtin_prefetch(slot + ahead);
+            __builtin_prefetch((const char *)(slot + ahead) + 64);
+        }
         if (!entity_slot_lives(slot) || entity_slot_silent(slot, t_s)) continue;
         if (!catalog_shows(table->catalog, slot->model)) continue;
         order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
@@ -343,20 +380,30 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
     snapshot.entity   = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.entity);
     if (!snapshot.entity) return STATUS_NO_MEMORY;
 
+    snapshot.joints = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.joints);
+    if (!snapshot.joints) return STATUS_NO_MEMORY;
+    int reports = 0;
     for (int e = 0; e < snapshot.count; e++) {
-        const int nodes = catalog_model(table->catalog, table->slot[order[e].slot].model)->node_count;
-        if (nodes > INT_MAX - snapshot.node_count) return STATUS_NO_MEMORY;
+        const EntitySlot *slot = table->slot + order[e].slot;
+        if (e + ahead < snapshot.count) {
+            const EntitySlot *next = table->slot + order[e + ahead].slot;
+            __builtin_prefetch(&next->model);
+            __builtin_prefetch(&next->articulation.count);
+        }
+        const int nodes = catalog_model(table->catalog, slot->model)->node_count;
+        if (nodes > INT_MAX - snapshot.node_count || slot->articulation.count > INT_MAX - reports) return STATUS_NO_MEMORY;
         snapshot.entity[e].first_node = snapshot.node_count;
         snapshot.node_count += nodes;
-        if (nodes > most_nodes) most_nodes = nodes;
+        snapshot.joints[e].first = reports;
+        snapshot.joints[e].count = slot->articulation.count;
+        reports += slot->articulation.count;
     }
-    snapshot.node = arena_alloc(arena, (size_t)snapshot.node_count + 1, sizeof *snapshot.node);
-    Pool     *pool    = table->config.pool;
-    const int workers = pool ? pool_threads(pool) : 1, chunks = (snapshot.count + block_count - 1) / block_count;
-    double   *joint_value = arena_alloc(arena, (size_t)workers, (size_t)most_nodes * sizeof *joint_value);
-    if (!snapshot.node || !joint_value) return STATUS_NO_MEMORY;
+    snapshot.joint_report = arena_alloc(arena, (size_t)reports + 1, sizeof *snapshot.joint_report);
+    if (!snapshot.joint_report) return STATUS_NO_MEMORY;
+    Pool     *pool   = table->config.pool;
+    const int chunks = (snapshot.count + block_count - 1) / block_count;
 
-    Chunks all = {&snapshot, table, order, joint_value, most_nodes};
+    Chunks all = {&snapshot, table, order};
     if (pool) pool_run(pool, chunks, finish_chunk, &all);
     else
         for (int chunk = 0; chunk < chunks; chunk++) finish_chunk(&all, 0, chunk);
@@ -377,7 +424,11 @@ bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_
     const Ordered order = {entity_key(slot->id), (int)handle.slot};
     const int     only = 0;
     reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
-    if (node) pose_nodes(node, joint_value, table, slot, &e, t_s);
+    if (node) {
+        const JointDrive drive = drive_joints(slot, &e, t_s);
+        pose_nodes(node, joint_value, catalog_model(table->catalog, slot->model), &slot->articulation, &drive,
+                   entity_slot_time(slot, t_s), slot->hold_s, &e);
+    }
     place_origin(&e, table, slot);
     *out = e;
     return true;

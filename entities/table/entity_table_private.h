@@ -119,6 +119,7 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
                             const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);
-void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot);
+/* reports: of joints, by the sender. */
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports);
 
 #endif

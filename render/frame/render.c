@@ -183,6 +183,7 @@ static Status render_once(Picture *out, const World *world, const Snapshot *snap
     Status       status = prepare(&job, pool, arena);
     picture.times.prepare_ms = 1e3 * (wall_clock_s() - start_s);
     if (status == STATUS_OK) status = run_passes(&job, pool, arena);
+    if (status == STATUS_OK) status = visibility_status(job.scene.visibility);
     if (status != STATUS_OK) return status;
     if (!request->truth) picture_forget_truth(&picture);
     *out = picture;

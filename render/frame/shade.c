@@ -19,7 +19,6 @@ Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *s
     for (int n = 0; n < out->effects.count; n++) volume[n] = n;
     out->all_volumes = volume;
     status = visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
-    if (status == STATUS_OK) status = visibility_look(posed, &request->view, arena);
     if (status != STATUS_OK) return status;
     visibility_materials(posed, &world->materials);
     out->visibility = posed;

@@ -380,12 +380,12 @@ enum { close_most = 64 };
 
 /* Of the listed entities those within whose reach a place lies. */
 static int list_close(int close[close_most], const GatherScene *scene, const Hits *hits, int i,
-                      const double *entity_reach_m, const int *list, int listed)
+                      const double *list_reach_m, const int *list, int listed)
 {
     int count = 0;
     for (int k = 0; k < listed && count < close_most; k++) {
         const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
-        const double       far_m = e->radius_m + entity_reach_m[list[k]];
+        const double       far_m = e->radius_m + list_reach_m[k];
         double             square = 0;
         for (int c = 0; c < 3; c++) {
             const double off_m = e->centre_enu[c] - hits->p_enu[c][i];
@@ -431,7 +431,7 @@ static void v2_turn(double turn[2], const double by[2])
 }
 
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
-                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters)
 {
     Paths  paths;
@@ -444,7 +444,7 @@ void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits
     for (int i = 0; i < hits->count; i++) {
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
         int          close[close_most];
-        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, entity_reach_m, list, listed);
+        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, list_reach_m, list, listed);
         double       turn[2] = {cos(2 * pi_rad * v0), sin(2 * pi_rad * v0)};
         Base         base;
         base_at(&base, hits, i);

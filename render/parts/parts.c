@@ -271,6 +271,13 @@ int          tracer_model_count(const Tracer *tracer) { return tracer->count; }
 const Model *tracer_model(const Tracer *tracer, int model) { return tracer->model[model].model; }
 int          parts_node_count(const Tracer *tracer, int model) { return tracer->model[model].count; }
 
+double parts_largest_node_m(const Tracer *tracer, int model)
+{
+    double largest_m = 0;
+    for (int k = 0; k < tracer->model[model].count; k++) largest_m = fmax(largest_m, tracer->model[model].mesh[k].radius_m);
+    return largest_m;
+}
+
 const double (*parts_node_corners(const PosedNode *node, int *count))[3]
 {
     *count = node->mesh->corner_count;

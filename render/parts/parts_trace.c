@@ -184,6 +184,7 @@ typedef struct Packet {
     double   tie_m[lanes][ties_kept];
     uint32_t lowest[lanes];
     double   lowest_m[lanes];
+    uint32_t nearest[lanes];      /* the triangle at nearest_m; of equals any */
     int      ray[lanes];          /* of the chunk */
 } __attribute__((aligned(64))) Packet;
 
@@ -233,10 +234,11 @@ static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
     p->tie_m[lane][k] = at_m;
 }
 
-static void bring_nearer(Packet *p, int lane, double at_m)
+static void bring_nearer(Packet *p, int lane, uint32_t triangle, double at_m)
 {
     int kept = 0;
     p->nearest_m[lane] = at_m;
+    p->nearest[lane]   = triangle;
     for (int k = 0; k < p->ties[lane]; k++)
         if (p->tie_m[lane][k] <= at_m + same_range_m) {
             p->tie[lane][kept]     = p->tie[lane][k];
@@ -273,7 +275,7 @@ void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
         }
         if (!(at_m <= p->nearest_m[lane] + same_range_m)) continue;
         if (v.through[four] >> bit & 1 && at_m < p->nearest_m[lane]) {
-            bring_nearer(p, lane, at_m);
+            bring_nearer(p, lane, a->primID, at_m);
             const float stop_m = (float)(at_m + slack_m);
             if (stop_m < p->end_m[lane]) end_m[k] = p->end_m[lane] = stop_m;
         }
@@ -367,9 +369,10 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
         p->lowest_only = true;
         rtcIntersect1(p->mesh->scene, &p->base, &ray);
         p->lowest_only = false;
-    } else {
-        for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
     }
+    for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
+    /* it is among those above, were it not for a second look that found less than the first: then it is the answer */
+    offer_lowest(p, l, p->nearest[l], nearest_m);
     *triangle = p->mesh->triangle[p->lowest[l]];
     return p->lowest_m[l];
 }

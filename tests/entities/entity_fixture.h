@@ -63,6 +63,18 @@ static inline const SnapshotEntity *seen_at(Fixture *f, int entity, double t_s)
     return at < 0 ? NULL : f->snapshot.entity + at;
 }
 
+/* One node of an entity of the snapshot. */
+static inline NodePose node_of(const Fixture *f, const SnapshotEntity *e, int node)
+{
+    enum { most_nodes = 64 };
+    const Model *model = catalog_model(f->catalog, e->model);
+    NodePose     pose[most_nodes];
+    double       joint_value[most_nodes];
+    CHECK(node < model->node_count && model->node_count <= most_nodes);
+    snapshot_pose(pose, joint_value, &f->snapshot, (int)(e - f->snapshot.entity), model);
+    return pose[node];
+}
+
 static inline void hear(Fixture *f, const DisEntityState *pdu, double t_s)
 {
     CHECK(entity_table_entity_state(f->table, pdu, t_s) == STATUS_OK);

@@ -283,10 +283,10 @@ static void frozen_stands_still(void **state)
     const SnapshotEntity *e = seen_at(&f, 1, 5);
     CHECK(e->p_ecef[1] == 0 && v3_length(e->v_ecef_mps) == 0 && v3_length(e->w_body_rps) == 0 &&
           e->position_error_m == 0);
-    Snapshot at_5 = f.snapshot;
-    NodePose turret = f.snapshot.node[at_5.entity[0].first_node + 1];
+    const NodePose turret = node_of(&f, e, 1);
     e = seen_at(&f, 1, 9);
-    CHECK(memcmp(&turret, &f.snapshot.node[e->first_node + 1], sizeof turret) == 0);
+    const NodePose later = node_of(&f, e, 1);
+    CHECK(memcmp(&turret, &later, sizeof turret) == 0);
     pdu.appearance = 0;
     hear(&f, &pdu, 10);
     CHECK_NEAR(seen_at(&f, 1, 11)->p_ecef[1], 10, 1e-12);
@@ -392,11 +392,20 @@ static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
     Snapshot again;
     CHECK(entity_table_snapshot(&again, f.table, 3, other_arena) == STATUS_OK);
     CHECK(memcmp(again.entity, f.snapshot.entity, sizeof *again.entity * many) == 0);
-    CHECK(memcmp(again.node, f.snapshot.node, sizeof *again.node * (size_t)nodes) == 0);
     CHECK(entity_table_snapshot(&again, f.table, NAN, other_arena) == STATUS_BAD_VALUE && again.count == many);
     *poses = malloc((size_t)nodes * sizeof **poses);
     CHECK(*poses);
-    memcpy(*poses, f.snapshot.node, (size_t)nodes * sizeof **poses);
+    for (int e = 0; e < many; e++) {
+        const SnapshotEntity *one = again.entity + e;
+        const Model          *model = catalog_model(f.catalog, one->model);
+        NodePose             *pose = *poses + one->first_node;
+        double                joint_value[64];
+        snapshot_pose(pose, joint_value, &again, e, model);
+        for (int n = 0; e % 16 == 0 && n < model->node_count; n++) {
+            const NodePose same = node_of(&f, f.snapshot.entity + e, n);
+            CHECK(memcmp(&same, pose + n, sizeof same) == 0);
+        }
+    }
     arena_destroy(other_arena);
     fixture_close(&f);
     return (size_t)nodes;
@@ -445,7 +454,7 @@ static NodePose node_at(Fixture *f, int entity, bool rolls, double t_s)
 {
     const SnapshotEntity *e = seen_at(f, entity, t_s);
     CHECK(e != NULL);
-    return f->snapshot.node[e->first_node + node_with(catalog_model(f->catalog, e->model), rolls)];
+    return node_of(f, e, node_with(catalog_model(f->catalog, e->model), rolls));
 }
 
 /* Wheels turn by way over radius, backwards too, and a report that corrects the place by a metre jerks nothing. */
@@ -512,7 +521,7 @@ static void landing_gear_needs_no_report(void **state)
         int wheels = 0;
         for (int n = 0; n < model->node_count; n++) {
             if (!(model->node[n].roll_radius_m > 0)) continue;
-            const double hub_m = -f.snapshot.node[e->first_node + n].p_body[2];
+            const double hub_m = -node_of(&f, e, n).p_body[2];
             CHECK(fast ? hub_m > 1.2 : fabs(hub_m - model->node[n].roll_radius_m) < 1e-9);
             wheels++;
         }
@@ -539,8 +548,8 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     const Model *tank = catalog_model(f.catalog, e->model);
     for (int n = 0; n < tank->node_count; n++)
         if (tank->node[n].dis_class == 4096)
-            CHECK_NEAR(atan2(f.snapshot.node[e->first_node + n].r_body_from_node[3],
-                             f.snapshot.node[e->first_node + n].r_body_from_node[0]), 0.4, 1e-7);
+            CHECK_NEAR(atan2(node_of(&f, e, n).r_body_from_node[3],
+                             node_of(&f, e, n).r_body_from_node[0]), 0.4, 1e-7);
     entity_table_fire(f.table, &(DisFire){.firing = entity_id(1), .munition = entity_id(50)}, 3);
     CHECK(seen_at(&f, 1, 5)->heat[HEAT_GUN] > 2);
     /* another type under the same id: another model, its joints at rest */
@@ -656,10 +665,12 @@ static void mutated_octets_do_no_harm(void **state)
             m3_tmul(product, s->r_ecef_from_body, s->r_ecef_from_body);
             for (int i = 0; i < 9; i++) CHECK_NEAR(product[i], i % 4 == 0, 1e-14);
             for (int role = 0; role < HEAT_ROLE_COUNT; role++) CHECK(s->heat[role] >= 0 && s->heat[role] < 2000);
+            for (int p = 0; p < catalog_model(f.catalog, s->model)->node_count; p++) {
+                const NodePose pose = node_of(&f, s, p);
+                CHECK(v3_is_finite(pose.p_body) && isfinite(pose.r_body_from_node[0]));
+            }
             seen++;
         }
-        for (int p = 0; p < f.snapshot.node_count; p++)
-            CHECK(v3_is_finite(f.snapshot.node[p].p_body) && isfinite(f.snapshot.node[p].r_body_from_node[0]));
     }
     CHECK(seen > 4000);
     fixture_close(&f);

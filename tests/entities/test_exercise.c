@@ -176,7 +176,8 @@ static void keeps_its_promise(const char *set)
             for (int n = 0; n < model->node_count; n++) {
                 double turn[9];
                 if (model->node[n].dis_class != 4096 && model->node[n].dis_class != 4416) continue;
-                m3_tmul(turn, f.snapshot.node[seen->first_node + n].r_body_from_node, want[n].r_body_from_node);
+                const NodePose seen_node = node_of(&f, seen, n);
+                m3_tmul(turn, seen_node.r_body_from_node, want[n].r_body_from_node);
                 const double angle_rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
                 worst_joint_rad = fmax(worst_joint_rad, angle_rad);
                 /* 0.6 rad/s2 in a tick, as above; a gun turns with its turret and has both errors */

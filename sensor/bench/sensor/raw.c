@@ -40,13 +40,18 @@ static Status pose_all(RawRays *raw, const TrialFrame *f)
     if (!raw->entity) return STATUS_NO_MEMORY;
     for (int k = 0; k < raw->entities; k++) {
         const SnapshotEntity *e = &f->snapshot.entity[k];
+        const Model          *model = catalog_model(world->catalog, e->model);
+        NodePose             *pose = arena_alloc(f->arena, (size_t)model->node_count, sizeof *pose);
+        double               *joint_value = arena_alloc(f->arena, (size_t)model->node_count, sizeof *joint_value);
         double                p_enu[3], r_enu_from_body[9];
+        if (!pose || !joint_value) return STATUS_NO_MEMORY;
+        snapshot_pose(pose, joint_value, &f->snapshot, k, model);
         raw->entity[k].node = arena_alloc(f->arena, (size_t)parts_node_count(world->tracer, e->model) + 1,
                                           sizeof *raw->entity[k].node);
         if (!raw->entity[k].node) return STATUS_NO_MEMORY;
         enu_from_ecef(p_enu, &world->frame, e->p_ecef);
         m3_tmul(r_enu_from_body, world->frame.r_ecef_from_enu, e->r_ecef_from_body);
-        parts_pose(&raw->entity[k], world->tracer, e->model, &f->snapshot.node[e->first_node], p_enu, r_enu_from_body,
+        parts_pose(&raw->entity[k], world->tracer, e->model, pose, p_enu, r_enu_from_body,
                    snapshot_damage(e));
     }
     return STATUS_OK;
