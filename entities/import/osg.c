@@ -203,7 +203,8 @@ static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
 {
     const OsgText *x = w->x;
     const char *kind = osg_word(x, set, 0);
-    const int mode = osg_find(x, set, "Mode"), first_element = osg_find(x, set, "First"), count_element = osg_find(x, set, "Count");
+    const int mode = osg_find(x, set, "Mode"), first_element = osg_find(x, set, "First"),
+              count_element = osg_find(x, set, "Count");
     long long first = 0, count = 0;
     if (mode < 0) return STATUS_OK;
     if (first_element >= 0 &&
@@ -224,7 +225,8 @@ static Status add_primitives(Walk *w, ImportMesh *mesh, int set)
     Status status = value ? STATUS_OK : STATUS_NO_MEMORY;
     for (int line = x->element[list].child; line >= 0 && status == STATUS_OK; line = x->element[line].next)
         for (int i = 0; i < x->element[line].words && status == STATUS_OK; i++, at++)
-            if (!text_to_double(value + at, osg_word(x, line, i)) || !(value[at] >= 0 && value[at] <= import_max_vertices))
+            if (!text_to_double(value + at, osg_word(x, line, i)) ||
+                !(value[at] >= 0 && value[at] <= import_max_vertices))
                 status = refuse(w, "an index or a length is out of range");
     if (status == STATUS_OK && strcmp(kind, "osg::DrawArrayLengths") == 0) {
         for (int i = 0; i < total && status == STATUS_OK; first += (long long)value[i++])

@@ -160,7 +160,8 @@ static Status joint_own(const char **complaint, void *out, const Setting *row, S
     bool          fine = false;
     switch (row->offset) {
     case offsetof(SidecarJoint, pattern):
-        fine = j->pattern_count < sidecar_max_patterns && copy_text(j->pattern[j->pattern_count], model_name_size, text);
+        fine =
+            j->pattern_count < sidecar_max_patterns && copy_text(j->pattern[j->pattern_count], model_name_size, text);
         j->pattern_count += fine;
         break;
     case offsetof(SidecarJoint, pivot): fine = read_pivot(j, text); break;
@@ -364,7 +365,8 @@ Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t oc
     snprintf(filled.path, sizeof filled.path, "%s", path);
     Status status = settings_parse(&filled, NULL, &table, path, text, octets);
     filled.crease_rad *= rad_per_deg;
-    for (int j = 0; j < filled.joint_count && status == STATUS_OK; j++) status = finish_joint(&filled, &filled.joint[j]);
+    for (int j = 0; j < filled.joint_count && status == STATUS_OK; j++)
+        status = finish_joint(&filled, &filled.joint[j]);
     if (status == STATUS_OK) *out = filled;
     else sidecar_close(&filled);
     return status;

@@ -1,4 +1,4 @@
-/* render/scene/view.c: cameras: rays of pixels, focal lengths and sub-pixel grids. */
+/* render/scene/view.c: the names of bands. */
 #include "render/scene/view.h"
 
 const char *band_name(Band band)

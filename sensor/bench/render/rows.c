@@ -7,6 +7,8 @@ const BenchSuite render_benches[] = {
     {.name = "precision", .help = "black bodies, light on surfaces, smoke", .run = bench_precision_light},
     {.name = "precision", .help = "a frame's tables of the air and the sky", .run = bench_precision_air},
     {.name = "precision", .help = "rays against ground and parts", .run = bench_precision_trace},
-    {.name = "stability", .help = "rays, light and pictures under stress: needles, far origins, 1 K, 200 km, 8192 px", .run = bench_stability},
+    {.name = "stability",
+     .help = "rays, light and pictures under stress: needles, far origins, 1 K, 200 km, 8192 px",
+     .run = bench_stability},
 };
 const int render_bench_count = sizeof render_benches / sizeof *render_benches;
