@@ -277,7 +277,8 @@ static Status find_columns(int column[catalog_columns], const Table *table)
     for (int c = 0; c < catalog_columns; c++) {
         column[c] = table_column(table, column_name[c]);
         if (column[c] >= 0 || c >= 3) continue;
-        log_error("catalog: a column is missing: file=%s line=%d column=%s", table->path, table->line[0], column_name[c]);
+        log_error("catalog: a column is missing: file=%s line=%d column=%s", table->path, table->line[0],
+                  column_name[c]);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;

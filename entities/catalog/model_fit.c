@@ -54,11 +54,11 @@ static void advise(ModelFit *fit, const ModelImport *import, const char *unit)
     char       axes[160] = "", scale[120] = "";
     const bool turned = fit->axis[0] != 0 || fit->axis[2] != 2;
     if (turned)
-        snprintf(axes, sizeof axes, "`axes: '+%c +%c'` (forward, up; a - turns one about)", letter(import, fit->axis[0]),
-                 letter(import, fit->axis[2]));
+        snprintf(axes, sizeof axes, "`axes: '+%c +%c'` (forward, up; a - turns one about)",
+                 letter(import, fit->axis[0]), letter(import, fit->axis[2]));
     if (fabs(fit->factor - 1) > 1e-9)
-        snprintf(scale, sizeof scale, "`scale: %.4g`%s%s%s", import->scale_m * fit->factor, unit ? " (the file is in " : "",
-                 unit ? unit : "", unit ? ")" : "");
+        snprintf(scale, sizeof scale, "`scale: %.4g`%s%s%s", import->scale_m * fit->factor,
+                 unit ? " (the file is in " : "", unit ? unit : "", unit ? ")" : "");
     snprintf(fit->advice, sizeof fit->advice, "%s%s%s in its sidecar would give that size; look at it with `pitviper "
              "model show`", axes, *axes && *scale ? " and " : "", scale);
 }

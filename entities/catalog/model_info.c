@@ -24,21 +24,26 @@ static void print_import(const ModelImport *r)
            r->axes_assumed ? "the format's habit; `axes` in a sidecar says otherwise" : "from the sidecar");
     text_print(stdout, "scale: %g m a unit\n", r->scale_m);
     text_print(stdout, "origin in the file: %g %g %g\n", r->p_origin_file[0], r->p_origin_file[1], r->p_origin_file[2]);
-    text_print(stdout, "in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes, r->source_materials);
+    text_print(stdout, "in the file: %d nodes, %d meshes, %d materials\n", r->source_nodes, r->source_meshes,
+               r->source_materials);
     if (r->unnamed_nodes || r->shared_names)
-        text_print(stdout, "names: %d nodes have none, %d share theirs with another: a sidecar tells nodes apart by name and path\n",
-               r->unnamed_nodes, r->shared_names);
-    text_print(stdout, "left out: %d meshes by the sidecar, %d without triangles, %d triangles without area\n", r->dropped_meshes,
-           r->empty_meshes, r->degenerate_triangles);
+        text_print(
+            stdout,
+            "names: %d nodes have none, %d share theirs with another: a sidecar tells nodes apart by name and path\n",
+            r->unnamed_nodes, r->shared_names);
+    text_print(stdout, "left out: %d meshes by the sidecar, %d without triangles, %d triangles without area\n",
+               r->dropped_meshes, r->empty_meshes, r->degenerate_triangles);
     text_print(stdout, "lost:");
     int kinds = 0;
     for (int i = 0; i < IMPORT_LOST_COUNT; i++)
-        if (r->lost[i] > 0) text_print(stdout, "%s %d %s", kinds++ ? "," : "", r->lost[i], import_lost_name((ImportLost)i));
+        if (r->lost[i] > 0)
+            text_print(stdout, "%s %d %s", kinds++ ? "," : "", r->lost[i], import_lost_name((ImportLost)i));
     text_print(stdout, "%s\n", kinds ? "" : " nothing");
     text_print(stdout, "joints from the file: %d\n", r->joints_from_file);
     text_print(stdout, "normals: of %d parts by crease angle, of the others from the file\n", r->smoothed_parts);
     for (int i = 0; i < MATERIAL_SOURCE_COUNT; i++)
-        if (r->material_parts[i] > 0) text_print(stdout, "materials of %d parts by %s\n", r->material_parts[i], source[i]);
+        if (r->material_parts[i] > 0)
+            text_print(stdout, "materials of %d parts by %s\n", r->material_parts[i], source[i]);
 }
 
 static void print_limits(const ModelNode *node)
@@ -61,16 +66,17 @@ static void print_nodes(const Model *m)
         const char *named = sidecar_class_text(text, node->dis_class), *metric = sidecar_metric_text(node->dis_metric);
         text_print(stdout, "  %3d %s", i, node->name);
         if (node->parent >= 0)
-            text_print(stdout, " on %s at %.3f %.3f %.3f", m->node[node->parent].name, node->p_parent[0], node->p_parent[1],
-                   node->p_parent[2]);
+            text_print(stdout, " on %s at %.3f %.3f %.3f", m->node[node->parent].name, node->p_parent[0],
+                       node->p_parent[1], node->p_parent[2]);
         if (node->joint != JOINT_FIXED) {
-            text_print(stdout, ", %s %.3f %.3f %.3f", node->joint == JOINT_ROTATION ? "turns about" : "slides along", node->axis[0],
-                   node->axis[1], node->axis[2]);
+            text_print(stdout, ", %s %.3f %.3f %.3f", node->joint == JOINT_ROTATION ? "turns about" : "slides along",
+                       node->axis[0], node->axis[1], node->axis[2]);
             print_limits(node);
             if (node->dis_class)
-                text_print(stdout, ", DIS class %u%s%s metric %u %s", node->dis_class, named ? " " : "", named ? named : "",
-                       node->dis_metric, metric ? metric : "?");
-            if (node->spin_rps_moving != 0) text_print(stdout, ", spins at %g rpm", node->spin_rps_moving * 60 / (2 * pi_rad));
+                text_print(stdout, ", DIS class %u%s%s metric %u %s", node->dis_class, named ? " " : "",
+                           named ? named : "", node->dis_metric, metric ? metric : "?");
+            if (node->spin_rps_moving != 0)
+                text_print(stdout, ", spins at %g rpm", node->spin_rps_moving * 60 / (2 * pi_rad));
             if (node->roll_radius_m > 0) text_print(stdout, ", rolls on %.3f m", node->roll_radius_m);
         }
         putchar('\n');
@@ -82,8 +88,8 @@ static void print_parts(const Model *m)
     text_print(stdout, "\nparts: %d\n", m->part_count);
     for (int i = 0; i < m->part_count; i++) {
         const ModelPart *part = &m->part[i];
-        text_print(stdout, "  %3d %s on %s, %s, heat %s, %d triangles", i, part->name, m->node[part->node].name, part->material,
-               heat_role_name(part->role), part->triangle_count);
+        text_print(stdout, "  %3d %s on %s, %s, heat %s, %d triangles", i, part->name, m->node[part->node].name,
+                   part->material, heat_role_name(part->role), part->triangle_count);
         for (int state = 1; state < model_damage_states; state++) {
             if (part->damage_hidden >> state & 1)
                 text_print(stdout, ", damage %d: hidden", state);
@@ -119,18 +125,20 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
         print_import(&report);
     else
         text_print(stdout, "built in, facets within %g m of their surfaces\n", model.sag_m);
-    text_print(stdout, "size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m, model.height_m);
+    text_print(stdout, "size: %.3f x %.3f x %.3f m (length, width, height)\n", model.length_m, model.width_m,
+               model.height_m);
     if (imported && sized) {
         ModelFit fit;
         model_fit(&fit, &model, &report, size, 1.1);
         text_print(stdout, "size asked for: %s%s\n", fit.fits ? "as it is" : "not so: ", fit.advice);
     }
-    text_print(stdout, "box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n", model.box_low[0],
-           model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1], model.box_high[2]);
+    text_print(stdout, "box: %.3f %.3f %.3f .. %.3f %.3f %.3f m (forward, right, down of the base's centre)\n",
+               model.box_low[0], model.box_low[1], model.box_low[2], model.box_high[0], model.box_high[1],
+               model.box_high[2]);
     text_print(stdout, "radius: %.3f m, of every pose\n", model.radius_m);
     text_print(stdout, "triangles: %d, vertices: %d\n", model.triangle_count, model.vertex_count);
-    text_print(stdout, "edges: %lld open, in %d parts; %lld shared by more than two triangles; %d parts inside out\n", edges.open,
-           edges.open_parts, edges.crowded, edges.inside_out_parts);
+    text_print(stdout, "edges: %lld open, in %d parts; %lld shared by more than two triangles; %d parts inside out\n",
+               edges.open, edges.open_parts, edges.crowded, edges.inside_out_parts);
     print_nodes(&model);
     print_parts(&model);
     model_destroy(&model);

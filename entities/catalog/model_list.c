@@ -72,8 +72,8 @@ Status model_list(FILE *to, const char *catalog_path)
         catalog_size(m, catalog, row.model);
         if (catalog_shows(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);
         const char *slash = strrchr(row.path, '/');
-        text_print(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source, size,
-                slash ? slash + 1 : row.path, row.line, row.note);
+        text_print(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source,
+                   size, slash ? slash + 1 : row.path, row.line, row.note);
         if (model_is_path(row.source)) { /* of the others it stands above */
             parts_of(parts, sizeof parts, catalog_model(catalog, row.model));
             text_print(to, "; articulated: %s", parts);

@@ -1,6 +1,6 @@
-/* Eight rays walk the pyramid side by side, each at its own node; a lane that is done takes the next ray of
- * the list. A step is the same for every lane, in two vectors of four; looking up posts, the triangles of a
- * cell and changes of ray are done a lane at a time.
+/* render/ground/ground8.c: eight rays walk the pyramid side by side, each at its own node; a lane that is done takes
+ * the next ray of the list. A step is the same for every lane, in two vectors of four; looking up posts, the
+ * triangles of a cell and changes of ray are done a lane at a time.
  *
  * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
 #include "render/ground/ground_lanes.h"

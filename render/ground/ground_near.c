@@ -1,7 +1,8 @@
-/* Rays that begin close to what they meet, or that all go one way: sixteen walk side by side, all on one level of the
- * pyramid, which spares them most of what a step costs where each is on its own; the triangles of a cell are four
- * rays' at a time. They wait for each other a little; who is not decided then is handed on with the place to go on
- * from. Which cells a ray is asked about, and what it finds there, is as in ground.c, to the bit. */
+/* render/ground/ground_near.c: rays that begin close to what they meet, or that all go one way: sixteen walk side by
+ * side, all on one level of the pyramid, which spares them most of what a step costs where each is on its own; the
+ * triangles of a cell are four rays' at a time. They wait for each other a little; who is not decided then is handed
+ * on with the place to go on from. Which cells a ray is asked about, and what it finds there, is as in ground.c, to
+ * the bit. */
 #include "render/ground/ground_lanes.h"
 
 /* Quarters of a group: fewer, and one waits for its posts; more, and all wait for the slowest. The rest are from trials

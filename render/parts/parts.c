@@ -1,3 +1,4 @@
+/* render/parts/parts.c: models made ready to be traced: facets in double, and an Embree scene for each node. */
 #include "render/parts/parts_private.h"
 
 #include <stdatomic.h>

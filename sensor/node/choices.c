@@ -1,3 +1,4 @@
+/* sensor/node/choices.c: host, aim, rate, time of day and frame, where the configuration leaves them open. */
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
 

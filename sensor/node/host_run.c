@@ -1,3 +1,4 @@
+/* sensor/node/host_run.c: from what was heard to choices, a world, a session and run.json. */
 #include "sensor/node/host_run.h"
 
 #include "sensor/node/frame_files.h"

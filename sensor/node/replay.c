@@ -1,3 +1,4 @@
+/* sensor/node/replay.c: a recorded exercise played to pictures and truth. */
 #include "sensor/node/replay.h"
 
 #include "sensor/node/frame_files.h"

@@ -1,3 +1,4 @@
+/* sensor/publish/plane_hash.c: the hash of a frame: names, sizes and values of its planes. */
 #include "sensor/publish/plane_hash.h"
 
 #include <errno.h>

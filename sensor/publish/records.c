@@ -1,3 +1,4 @@
+/* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
 
 #include "sensor/publish/target_class.h"

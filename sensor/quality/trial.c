@@ -13,11 +13,16 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
     const LocalFrame *frame = &scene->landscape->frame;
     const double      turn = place->turn_rad;
     const double      r_enu_from_body[9] = {sin(turn), cos(turn), 0, cos(turn), -sin(turn), 0, 0, 0, -1};
-    const double      p_enu[3] = {place->east_m, place->north_m,
-                                  elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) + place->above_m};
+    const double p_enu[3] = {place->east_m, place->north_m,
+                             elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) +
+                                 place->above_m};
     double            r_ecef_from_body[9], euler[3];
-    DisEntityState    pdu = {.header = {.version = 7, .type = dis_pdu_entity_state}, .force = 1, .type = place->type,
-                             .id = {1, 1, (uint16_t)place->number}, .appearance = place->appearance, .dead_reckoning = 2};
+    DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
+                          .force = 1,
+                          .type = place->type,
+                          .id = {1, 1, (uint16_t)place->number},
+                          .appearance = place->appearance,
+                          .dead_reckoning = 2};
     ecef_from_enu(pdu.p_ecef, frame, p_enu);
     m3_mul(r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
     euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r_ecef_from_body);
@@ -40,8 +45,8 @@ static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
                         .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
 }
 
-Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
-                        int type_count, int vehicles)
+Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
+                        const DisEntityType *types, int type_count, int vehicles)
 {
     TrialScene        scene = {.landscape = landscape, .sun_now_s = 60};
     EntityTableConfig config = entity_table_default_config();
@@ -91,8 +96,8 @@ static Status light(TrialFrame *f)
     const World      *world = &scene->world;
     Weather           weather = weather_default();
     weather.air_temp_k        = atmosphere_temp_k(world->atmosphere, 0);
-    Status status = sun_at(&f->sun, scene->unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15,
-                           NAN);
+    Status status =
+        sun_at(&f->sun, scene->unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
     if (status != STATUS_OK) return status;
     const double    ground_m = elevation_height(&scene->landscape->elevation, 0, 0, NULL);
     const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir};

@@ -17,8 +17,8 @@ typedef struct TrialScene {
 } TrialScene;
 
 /* vehicles: so many in rows of five, 40 m apart, about the origin, turrets and guns turned; types: theirs, in turn. */
-Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path, const DisEntityType *types,
-                        int type_count, int vehicles);
+Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
+                        const DisEntityType *types, int type_count, int vehicles);
 void   trial_scene_close(TrialScene *scene);
 
 /* One more report at the scene's time: so far east and north of the origin, this high above the ground. */

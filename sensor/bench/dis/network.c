@@ -253,7 +253,8 @@ static void record(void *user)
     r->status = dis_recorder_open(&recorder, r->path, NULL);
     for (int i = 0; i < r->count && r->status == STATUS_OK; i++) {
         fill(octet, pdu_octets, (uint64_t)i);
-        r->status = dis_recorder_add(recorder, 1000000000000000000 + 1000 * (int64_t)i, NULL, dis_port, octet, pdu_octets);
+        r->status =
+            dis_recorder_add(recorder, 1000000000000000000 + 1000 * (int64_t)i, NULL, dis_port, octet, pdu_octets);
     }
     const Status closed = dis_recorder_close(recorder);
     if (r->status == STATUS_OK) r->status = closed;

@@ -294,15 +294,20 @@ static Status bench_dis(Bench *bench)
 }
 
 const BenchSuite dis_benches[] = {
-    {.name = "dis", .help = "PDUs: decode, encode, bundles, a capture",
+    {.name = "dis",
+     .help = "PDUs: decode, encode, bundles, a capture",
      .run = bench_dis,
-     .reads = "Times are of one PDU, datagram or entity on one core; the errors are octets that do not come back, and places "
-     "against a motion integrated step by step: both are 0 but for rounding."},
-    {.name = "network", .help = "loopback: datagrams at stated rates, how late they are taken, the recorder; then a live node",
+     .reads = "Times are of one PDU, datagram or entity on one core; the errors are octets that do not come back, and "
+              "places "
+              "against a motion integrated step by step: both are 0 but for rounding."},
+    {.name = "network",
+     .help = "loopback: datagrams at stated rates, how late they are taken, the recorder; then a live node",
      .run = bench_network,
-     .reads = "Rates are what was received beside the share that was lost on the way, sender and receiver on the same machine; "
-     "latencies run from the kernel's stamp of a datagram."},
-    {.name = "stability", .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
+     .reads = "Rates are what was received beside the share that was lost on the way, sender and receiver on the same "
+              "machine; "
+              "latencies run from the kernel's stamp of a datagram."},
+    {.name = "stability",
+     .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
      .run = dis_bench_stability},
 };
 const int dis_bench_count = sizeof dis_benches / sizeof *dis_benches;

@@ -119,8 +119,10 @@ static void knob_reckoning(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == 4;
     }
-    bench_turn(bench, &(BenchKnob){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
-                                   "largest, about the body; long double", 1e-11}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
+                            "largest, about the body; long double", 1e-11},
+               work, point, settings);
 }
 
 /* ---- heat ----------------------------------------------------------------------------------------- */
@@ -210,8 +212,10 @@ static Status knob_heat(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
-                                   "largest, the exponential in long double", 1e-4}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
+                            "largest, the exponential in long double", 1e-4},
+               work, point, settings);
     return STATUS_OK;
 }
 

@@ -236,7 +236,8 @@ static Status bench_table(Bench *bench)
 
 const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
-    {.name = "stability", .help = "motion and attitude at their edges, every number from outside, models nobody would build",
+    {.name = "stability",
+     .help = "motion and attitude at their edges, every number from outside, models nobody would build",
      .run = entities_bench_stability},
     {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
 };

@@ -107,8 +107,10 @@ static Status knob_planck(Bench *bench)
                                          : set[k].way == PLANCK_TABLE   ? planck_table_cells * 4.0 * sizeof(double)
                                          : set[k].way == PLANCK_EIGHT   ? planck_table_cells * 4.0 * sizeof(float) : 1};
     }
-    bench_turn(bench, &(BenchKnob){"radiance of a black body", "render/light/planck.c", "a temperature, 3.4-4.8 um", "K",
-                                   "largest, closed form, 180 .. 1500 K", 5e-4}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"radiance of a black body", "render/light/planck.c", "a temperature, 3.4-4.8 um", "K",
+                            "largest, closed form, 180 .. 1500 K", 5e-4},
+               work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;
 }

@@ -4,7 +4,7 @@
 
 #include "sensor/bench/bench.h"
 #include "terrain/landscape/quick_landscape.h"
-#include "sensor/bench/scene.h"
+#include "sensor/quality/trial.h"
 #include "sensor/settings/config.h"
 
 #include <time.h>
@@ -12,8 +12,8 @@
 enum { in_view = 20, world_entities = 100000, id_numbers = 60000 };
 
 typedef struct CrowdFrame {
-    BenchScene scene;
-    BenchFrame frame;
+    TrialScene scene;
+    TrialFrame frame;
 } CrowdFrame;
 
 static const DisEntityType tank_type = {1, 1, 222, 1, 1, 1, 0};
@@ -36,7 +36,7 @@ static void in_a_square(double p_enu[2], int k)
     p_enu[1] = 60 * (crowd_dice(5, k) - 0.5);
 }
 
-static Status add_tank(BenchScene *scene, int k, CrowdPlace *place)
+static Status add_tank(TrialScene *scene, int k, CrowdPlace *place)
 {
     const LocalFrame *frame = &scene->landscape->frame;
     const double      turn = 2 * pi_rad * crowd_dice(1, k);
@@ -63,7 +63,7 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
     char              catalog[512], heat[512];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(heat, sizeof heat, "heat.csv"))
         return STATUS_BAD_VALUE;
-    Status status = bench_scene_open(&c->scene, landscape, catalog, &tank_type, 1, 0);
+    Status status = trial_scene_open(&c->scene, landscape, catalog, &tank_type, 1, 0);
     if (status != STATUS_OK) return status;
     config.ground   = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
     config.capacity = vehicles + more + 1;
@@ -71,9 +71,9 @@ static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles
     c->scene.table = NULL;
     status = entity_table_create(&c->scene.table, &config, c->scene.catalog, heat);
     for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
-        const BenchPlace at = {.type = tank_type, .number = k + 1, .appearance = 1u << 22, .east_m = 40.0 * (k % 5) - 80,
+        const TrialPlace at = {.type = tank_type, .number = k + 1, .appearance = 1u << 22, .east_m = 40.0 * (k % 5) - 80,
                                .north_m = 40.0 * (k / 5) - 60, .turn_rad = 2 * pi_rad * crowd_dice(6, k)};
-        status = bench_scene_place(&c->scene, &at);
+        status = trial_scene_place(&c->scene, &at);
     }
     for (int k = 0; k < more && status == STATUS_OK; k++) status = add_tank(&c->scene, k, place);
     return status;
@@ -102,7 +102,7 @@ static double thread_s(void)
 }
 
 /* A thread's own time: of the snapshot of a world, and of the tree over it. */
-static Status time_tree(Crowds *all, const BenchScene *scene)
+static Status time_tree(Crowds *all, const TrialScene *scene)
 {
     enum { rounds = 15 };
     BenchTime   snapshot = {.rounds = rounds}, tree = {.rounds = rounds};
@@ -139,14 +139,14 @@ static Status time_world(Crowds *all)
     BenchTime time[2] = {{.rounds = rounds}, {.rounds = rounds}};
     BenchTime prepare = {.rounds = rounds};
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-        const View view = bench_view(&both[k]->scene, 300, 40, 0.7, 320, 216);
-        both[k]->frame = (BenchFrame){.scene = &both[k]->scene, .request = crowd_request(&view), .pool = all->pool,
+        const View view = trial_view(&both[k]->scene, 300, 40, 0.7, 320, 216);
+        both[k]->frame = (TrialFrame){.scene = &both[k]->scene, .request = crowd_request(&view), .pool = all->pool,
                                       .arena = all->arena};
     }
     for (int r = -1; r < rounds && status == STATUS_OK; r++)
         for (int k = 0; k < 2 && status == STATUS_OK; k++) {
-            BenchFrame *f = &both[k]->frame;
-            bench_frame(f);
+            TrialFrame *f = &both[k]->frame;
+            trial_frame(f);
             status = f->status;
             if (r < 0) continue;
             time[k].item_s[r]     = f->stage_s[STAGE_FRAME] - f->stage_s[STAGE_SNAPSHOT];
@@ -164,8 +164,8 @@ static Status time_world(Crowds *all)
         bench_add(all->bench, &row);
         status = time_tree(all, &many.scene);
     }
-    bench_scene_close(&few.scene);
-    bench_scene_close(&many.scene);
+    trial_scene_close(&few.scene);
+    trial_scene_close(&many.scene);
     return status;
 }
 
@@ -176,11 +176,11 @@ static Status time_stack(Crowds *all, int count, double back_m, double hfov_rad,
     Status     status = crowd_open(&stack, &all->landscape, 0, count, in_a_square);
     BenchTime  time = {.rounds = 3};
     if (status == STATUS_OK) {
-        const View view = bench_view(&stack.scene, back_m, 0.1 * back_m, hfov_rad, 160, 108);
-        stack.frame = (BenchFrame){.scene = &stack.scene, .request = crowd_request(&view), .pool = all->pool, .arena = all->arena};
+        const View view = trial_view(&stack.scene, back_m, 0.1 * back_m, hfov_rad, 160, 108);
+        stack.frame = (TrialFrame){.scene = &stack.scene, .request = crowd_request(&view), .pool = all->pool, .arena = all->arena};
     }
     for (int r = 0; r < time.rounds && status == STATUS_OK; r++) {
-        bench_frame(&stack.frame);
+        trial_frame(&stack.frame);
         status = stack.frame.status;
         time.item_s[r] = stack.frame.stage_s[STAGE_FRAME] - stack.frame.stage_s[STAGE_SNAPSHOT];
         if (time.item_s[r] > 5) time.rounds = r + 1;
@@ -190,7 +190,7 @@ static Status time_stack(Crowds *all, int count, double back_m, double hfov_rad,
         BenchRow row = bench_row_of(what, &time, "frames/s", 1);
         bench_add(all->bench, &row);
     }
-    bench_scene_close(&stack.scene);
+    trial_scene_close(&stack.scene);
     return status;
 }
 
@@ -202,7 +202,7 @@ Status bench_speed_crowd(Bench *bench)
     double         times_s[2];
     Status         status = all.arena ? pool_create(&all.pool, bench_threads(bench)) : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&all.landscape, times_s, &frame, 2000, 2000, all.pool);
+    if (status == STATUS_OK) status = quick_landscape_create(&all.landscape, times_s, &frame, 2000, 2000, all.pool);
     if (status == STATUS_OK) status = time_world(&all);
     if (status == STATUS_OK) status = time_stack(&all, 200, 150, 0.5, "crowd: 200 tanks in 60 m, from 150 m, 160 x 108");
     if (status == STATUS_OK && !bench_quick(bench))

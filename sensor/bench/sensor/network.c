@@ -47,7 +47,8 @@ static pid_t start(const char *const *argument, int out, int err)
     if (posix_spawn_file_actions_init(&actions) != 0) return -1;
     posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
     posix_spawn_file_actions_adddup2(&actions, err, STDERR_FILENO);
-    if (posix_spawn(&child, "/proc/self/exe", &actions, NULL, (char *const *)(uintptr_t)argument, environ) != 0) child = -1;
+    if (posix_spawn(&child, "/proc/self/exe", &actions, NULL, (char *const *)(uintptr_t)argument, environ) != 0)
+        child = -1;
     posix_spawn_file_actions_destroy(&actions);
     return child;
 }
@@ -97,10 +98,34 @@ static Status run_both(Live *l)
     snprintf(length, sizeof length, "%.0f", 3 * patience_s); /* if all else fails */
     snprintf(threads, sizeof threads, "%d", bench_threads(l->bench));
     snprintf(rate, sizeof rate, "%d", rate_hz);
-    const char *const node[] = {"pitviper", "run", "--address", "127.0.0.1", "--port", port, "--size", quick ? "96x64" : "320x216",
-                                "--bands", "lwir", "--rate", rate, "--no-files", "--for", length, "--out", l->folder, "--record",
-                                l->recording, "--threads", threads, "--set", "exercise.listen_s=0.5", "--set", "entities.shown=10000", "--set",
-                                "publish.dis=sensor", NULL};
+    const char *const node[] = {"pitviper",
+                                "run",
+                                "--address",
+                                "127.0.0.1",
+                                "--port",
+                                port,
+                                "--size",
+                                quick ? "96x64" : "320x216",
+                                "--bands",
+                                "lwir",
+                                "--rate",
+                                rate,
+                                "--no-files",
+                                "--for",
+                                length,
+                                "--out",
+                                l->folder,
+                                "--record",
+                                l->recording,
+                                "--threads",
+                                threads,
+                                "--set",
+                                "exercise.listen_s=0.5",
+                                "--set",
+                                "entities.shown=10000",
+                                "--set",
+                                "publish.dis=sensor",
+                                NULL};
     const char *const exercise[] = {"pitviper", "exercise", quick ? "demo" : "crowd", "--send", to, NULL};
     if (pipe2(ears, O_CLOEXEC) != 0) return STATUS_IO;
     const int     out = open(l->said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
@@ -144,7 +169,8 @@ static double number_at(const char *text, const char *const *key, int keys)
     }
     return text ? strtod(text, NULL) : NAN;
 }
-#define NUMBER_AT(text, ...) number_at(text, (const char *const[]){__VA_ARGS__}, sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *))
+#define NUMBER_AT(text, ...)                                                                                           \
+    number_at(text, (const char *const[]){__VA_ARGS__}, sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *))
 
 static Status read_result(Live *l)
 {
@@ -184,8 +210,11 @@ static double frame_of(const DisDatagram *d, const Config *config)
     DisHeader      header;
     const uint8_t *pdu, *at = d->bytes;
     uint16_t       sender[2];
-    if (!dis_next_pdu(&header, &pdu, &at, d->bytes + d->octets, &counters) || !dis_pdu_sender(sender, &header, pdu)) return NAN;
-    return sender[0] == config->node.site && sender[1] == config->node.application ? dis_timestamp_seconds(header.timestamp) : NAN;
+    if (!dis_next_pdu(&header, &pdu, &at, d->bytes + d->octets, &counters) || !dis_pdu_sender(sender, &header, pdu))
+        return NAN;
+    return sender[0] == config->node.site && sender[1] == config->node.application
+               ? dis_timestamp_seconds(header.timestamp)
+               : NAN;
 }
 
 /* Of each report between the first frame and the last: how much later the first frame after it stands. */

@@ -281,7 +281,8 @@ static Status knob_sky(Precision *p)
     }
     if (status != STATUS_OK) return status;
     for (int k = 0; k < sky_settings; k++) {
-        if (sky_samples[k] == 0) snprintf(name[k], sizeof name[k], k == sky_near ? "slope and what is near" : "by slope");
+        if (sky_samples[k] == 0)
+            snprintf(name[k], sizeof name[k], k == sky_near ? "slope and what is near" : "by slope");
         else snprintf(name[k], sizeof name[k], "%d directions", sky_samples[k]);
         work[k] = (BenchWork){render_sky, &r[k], 1};
         point[k].setting    = name[k];

@@ -186,8 +186,8 @@ Status raw_rays_create(RawRays **out, const TrialFrame *f)
     Status      status = raw && rays && hits && list ? STATUS_OK : STATUS_NO_MEMORY;
     if (status == STATUS_OK) status = make_room(raw, 2 * pixels, 2 * columns * rows);
     if (status == STATUS_OK)
-        status = visibility_create(&v, f->scene->world.tracer, f->scene->landscape, &f->scene->world.frame, &f->snapshot,
-                                   false, f->arena);
+        status = visibility_create(&v, f->scene->world.tracer, f->scene->landscape, &f->scene->world.frame,
+                                   &f->snapshot, false, f->arena);
     if (status == STATUS_OK) status = pose_all(raw, f);
     if (status != STATUS_OK) goto done;
 
@@ -252,8 +252,8 @@ static void trace_eyes(RawRays *raw, int b)
     memcpy(limit_m, p.far_m, (size_t)p.count * sizeof *limit_m);
     for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
         const Near *near = &raw->near[k];
-        parts_first_hits(limit_m, hit, &raw->entity[near->entity], p.o, p.d, limit_m, raw->near_ray + near->first, near->count,
-                         false);
+        parts_first_hits(limit_m, hit, &raw->entity[near->entity], p.o, p.d, limit_m, raw->near_ray + near->first,
+                         near->count, false);
     }
     ground_first_hits_together(p.range_m, ground_hit, &raw->ground, p.count, p.o, p.d, limit_m);
     for (int i = 0; i < p.count; i++) dark[i] = limit_m[i] < INFINITY;
@@ -271,7 +271,8 @@ static void trace_sun(RawRays *raw, int b)
     memset(dark, 0, (size_t)p.count);
     for (int k = raw->first_near[b]; k < raw->first_near[b + 1]; k++) {
         const Near *near = &raw->near[k];
-        parts_any_hits(dark, &raw->entity[near->entity], p.o, p.d, p.far_m, raw->near_ray + near->first, near->count, false);
+        parts_any_hits(dark, &raw->entity[near->entity], p.o, p.d, p.far_m, raw->near_ray + near->first, near->count,
+                       false);
     }
     for (int i = 0; i < p.count; i++) {
         p.range_m[i] = NAN;
@@ -326,7 +327,8 @@ static double walk(const Elevation *e, const double o[3], const double d[3])
         const double u = next_line(u0, du, t), v = next_line(v0, dv, t), w = next_line(u0 - v0, du - dv, t);
         const double next = fmin(u, fmin(v, w));
         if (now <= 0) return t;
-        above = next < INFINITY ? o[2] + next * d[2] - elevation_height(e, o[0] + next * d[0], o[1] + next * d[1], NULL) : -1;
+        above = next < INFINITY ? o[2] + next * d[2] - elevation_height(e, o[0] + next * d[0], o[1] + next * d[1], NULL)
+                                : -1;
         if (isnan(above)) return INFINITY;
         if (above <= 0 && next < INFINITY) return t + (next - t) * now / (now - above);
         if (!(next < INFINITY)) return now / -d[2];
@@ -338,7 +340,8 @@ double raw_worst_m(const RawRays *raw, int every)
 {
     double worst = 0;
     for (int i = 0; i < raw->count; i += every) {
-        const double o[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]}, d[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
+        const double o[3] = {raw->o[0][i], raw->o[1][i], raw->o[2][i]},
+                     d[3] = {raw->d[0][i], raw->d[1][i], raw->d[2][i]};
         if (raw->dark[i]) continue;
         const double plain = walk(raw->elevation, o, d);
         if (isinf(plain) != isinf(raw->range_m[i])) return INFINITY;

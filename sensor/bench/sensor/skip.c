@@ -51,13 +51,17 @@ static Status open_scene(TrialScene *scene, const SkipBench *s, const struct Ski
     const uint32_t smokes = 3u << 5, burns = 1u << 15;
     char           catalog[512];
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = trial_scene_open(scene, &s->landscape, catalog, types, sizeof types / sizeof *types, setting->vehicles);
+    Status status =
+        trial_scene_open(scene, &s->landscape, catalog, types, sizeof types / sizeof *types, setting->vehicles);
     if (status != STATUS_OK) return status;
     scene->unix_s += 3600 * setting->sun_later_h;
     for (int later = 0; later < 2 && setting->smoking > 0; later++) {
         for (int k = 0; k < setting->smoking && status == STATUS_OK; k++) {
-            const TrialPlace place = {.type = types[k % 4], .number = 1001 + k, .east_m = 30.0 * (k - 0.5 * setting->smoking),
-                                      .north_m = 60, .appearance = smokes | burns};
+            const TrialPlace place = {.type = types[k % 4],
+                                      .number = 1001 + k,
+                                      .east_m = 30.0 * (k - 0.5 * setting->smoking),
+                                      .north_m = 60,
+                                      .appearance = smokes | burns};
             status = trial_scene_place(scene, &place);
         }
         if (!later) scene->sun_now_s += 20; /* for the smoke to rise */
@@ -66,9 +70,13 @@ static Status open_scene(TrialScene *scene, const SkipBench *s, const struct Ski
     return status;
 }
 
-static unsigned off_of(int variant) { return variant < whole ? 1u << variant : variant == none_left ? skips_all_off : 0; }
+static unsigned off_of(int variant)
+{
+    return variant < whole ? 1u << variant : variant == none_left ? skips_all_off : 0;
+}
 
-static RenderRequest request_of(const SkipBench *s, const TrialScene *scene, const struct SkipScene *setting, unsigned off)
+static RenderRequest request_of(const SkipBench *s, const TrialScene *scene, const struct SkipScene *setting,
+                                unsigned off)
 {
     const bool   quick = bench_quick(s->bench);
     const Config config = config_default();

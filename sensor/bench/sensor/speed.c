@@ -43,7 +43,8 @@ static RenderRequest one_ray(const RenderRequest *request)
 
 TrialFrame speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many)
 {
-    return (TrialFrame){.scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
+    return (TrialFrame){
+        .scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
 }
 
 /* 0 when these planes are those of one thread that skips nothing, else 1; NaN: it could not be found out. */
@@ -83,7 +84,8 @@ static Status make_ground(Speed *s)
     char           what[what_size];
     bench_progress(s->bench, "ground");
     Status status = local_frame_at(&s->frame, &origin);
-    if (status == STATUS_OK) status = quick_landscape_create(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
+    if (status == STATUS_OK)
+        status = quick_landscape_create(&s->landscape, times_s, &s->frame, s->east_m, s->north_m, s->many);
     if (status != STATUS_OK) return status;
 
     const ElevationLevel *level = &s->landscape.elevation.level[0];
@@ -93,7 +95,8 @@ static Status make_ground(Speed *s)
         low  = level->post[i] < low ? level->post[i] : low;
         high = level->post[i] > high ? level->post[i] : high;
     }
-    snprintf(what, sizeof what, "%.0f M posts, heights %.0f m apart", 1e-6 * (double)posts, (high - low) * level->step_m);
+    snprintf(what, sizeof what, "%.0f M posts, heights %.0f m apart", 1e-6 * (double)posts,
+             (high - low) * level->step_m);
     BenchRow row  = bench_row("ground: posts");
     row.against   = what;
     row.median    = times_s[0];
@@ -240,12 +243,19 @@ done:
 static const struct {
     TrialStage  stage;
     const char *name;
-} stage_names[] = {
-    {STAGE_FRAME, "frame"}, {STAGE_SNAPSHOT, "snapshot"}, {STAGE_AIR, "air"}, {STAGE_PREPARE, "prepare: planes, poses, boxes"},
-    {STAGE_VISIBILITY, "visibility"}, {STAGE_SUN, "sun rays"}, {STAGE_SHADE, "shading"}, {STAGE_RADAR, "radar"},
-    {STAGE_REST, "rest: truth planes, areas, edges found"}, {STAGE_TRUTH, "truth of targets"},
-    {STAGE_FOOTPRINTS, "of all this: pass over small targets"}, {STAGE_BASE, "of all this: pass over every pixel"},
-    {STAGE_EDGES, "of all this: pass over edges"}};
+} stage_names[] = {{STAGE_FRAME, "frame"},
+                   {STAGE_SNAPSHOT, "snapshot"},
+                   {STAGE_AIR, "air"},
+                   {STAGE_PREPARE, "prepare: planes, poses, boxes"},
+                   {STAGE_VISIBILITY, "visibility"},
+                   {STAGE_SUN, "sun rays"},
+                   {STAGE_SHADE, "shading"},
+                   {STAGE_RADAR, "radar"},
+                   {STAGE_REST, "rest: truth planes, areas, edges found"},
+                   {STAGE_TRUTH, "truth of targets"},
+                   {STAGE_FOOTPRINTS, "of all this: pass over small targets"},
+                   {STAGE_BASE, "of all this: pass over every pixel"},
+                   {STAGE_EDGES, "of all this: pass over edges"}};
 
 /* The stages of these frames, in turn, on one thread; a frame's mean. */
 static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int count)
@@ -348,7 +358,10 @@ static Status open_close_scene(Speed *s)
     }
     bool ok = temp_folder(folder);
     ok = ok && write_text(folder, "ktank.yaml", "file: %s\naxes: +x +z\norigin: auto\n", absolute ? absolute : "none");
-    ok = ok && write_text(folder, "catalog.csv", "type,model,origin\n1,%s,base\n", ktank ? "ktank.yaml" : absolute ? absolute : "tank");
+    ok = ok && write_text(folder, "catalog.csv", "type,model,origin\n1,%s,base\n",
+                          ktank      ? "ktank.yaml"
+                          : absolute ? absolute
+                                     : "tank");
     snprintf(name, sizeof name, "%s/catalog.csv", folder);
     const Status status = ok ? trial_scene_open(&s->close, &s->landscape, name, &tank, 1, 1) : STATUS_IO;
     for (int k = 0; k < 2; k++) {
@@ -421,7 +434,8 @@ static Status open_speed(Speed *s)
 {
     const bool quick = bench_quick(s->bench);
     double     size[2] = {quick ? 96 : 720, quick ? 64 : 486}, ground_km[2] = {quick ? 2 : 12, quick ? 8 : 16};
-    if (!pair_of(size, s->bench, "size", 16, 8192) || !pair_of(ground_km, s->bench, "ground", 1, 32)) return STATUS_BAD_VALUE;
+    if (!pair_of(size, s->bench, "size", 16, 8192) || !pair_of(ground_km, s->bench, "ground", 1, 32))
+        return STATUS_BAD_VALUE;
     s->width   = (int)size[0];
     s->height  = (int)size[1];
     s->east_m  = floor(1000 * ground_km[0]);
@@ -453,7 +467,7 @@ static Status time_all(Speed *s)
 
     TrialFrame frame[views];
     for (int v = 0; v < views && status == STATUS_OK; v++) {
-        const View          view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
+        const View view = trial_view(&s->scene, places[v].back_m, places[v].above_m, hfov_rad, s->width, s->height);
         const RenderRequest request = speed_request(&view, three_bands, true);
         frame[v] = speed_frame(s, &s->scene, &request, false);
         status   = time_view(s, v);
@@ -468,7 +482,7 @@ static Status time_all(Speed *s)
     lwir.truth = true;
     if (status == STATUS_OK) status = time_pair(s, "256 x 256, LWIR and truth", &s->scene, &lwir);
     if (status == STATUS_OK) status = time_close(s);
-    const View          wide = trial_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
+    const View wide = trial_view(&s->scene, places[1].back_m, places[1].above_m, hfov_rad, s->width, s->height);
     const RenderRequest radar = speed_request(&wide, 1u << BAND_RADAR, true);
     if (status == STATUS_OK) status = time_picture(s, "100 m up: radar alone, truth", &s->scene, &radar);
     if (status == STATUS_OK) status = speed_files(s);

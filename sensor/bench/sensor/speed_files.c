@@ -43,7 +43,10 @@ static void remove_folder(const char *out)
     char path[temp_name_size];
     for (int k = 0; k < 4; k++)
         for (int e = 0; e < 3; e++) {
-            snprintf(path, sizeof path, "%s/frames/%s%s", out, parts[k], e == 0 ? "/000000.exr" : e == 1 ? "/000000.png" : "");
+            snprintf(path, sizeof path, "%s/frames/%s%s", out, parts[k],
+                     e == 0   ? "/000000.exr"
+                     : e == 1 ? "/000000.png"
+                              : "");
             remove(path);
         }
     snprintf(path, sizeof path, "%s/frames", out);
@@ -67,9 +70,19 @@ Status speed_files(Speed *s)
     if (status == STATUS_OK && !temp_folder(out)) status = STATUS_IO;
     if (status != STATUS_OK) return status;
     status = frame_files_prepare(out, three_bands | frame_truth, 0);
-    Encode with = {.pool = s->many, .files = {.out = out, .config = &config, .world = &s->scene.world, .picture = &frame.picture,
-                   .snapshot = &frame.snapshot, .request = &frame.request, .host = "observer", .config_sha256 = "",
-                   .unix_s = s->scene.unix_s, .png = true, .chain = chain, .level = level}};
+    Encode with = {.pool = s->many,
+                   .files = {.out = out,
+                             .config = &config,
+                             .world = &s->scene.world,
+                             .picture = &frame.picture,
+                             .snapshot = &frame.snapshot,
+                             .request = &frame.request,
+                             .host = "observer",
+                             .config_sha256 = "",
+                             .unix_s = s->scene.unix_s,
+                             .png = true,
+                             .chain = chain,
+                             .level = level}};
     Encode without = with;
     without.files.png = false;
     const BenchWork work[2] = {{encode, &with, 1}, {encode, &without, 1}};

@@ -147,9 +147,10 @@ static void knob_geodetic(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
-                                   "m",
-                                   "largest, back again in long double", 1e-8}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
+                            "m", "largest, back again in long double", 1e-8},
+               work, point, settings);
 }
 
 /* ---- geoid ---------------------------------------------------------------------------------------- */

@@ -121,10 +121,12 @@ static Status knob_reach(Bench *bench, const LocalFrame *frame)
         landscape_destroy(&land);
     }
     if (status == STATUS_OK)
-        bench_turn(bench, &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground", "px",
-                                       quick ? "rms just outside it, the finest level; posts of 16 m"
-                                             : "rms just outside it, the finest level; 720 px across 40 degrees",
-                                                 quick ? 0.5 : 0.05},
+        bench_turn(bench,
+                   &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground",
+                                "px",
+                                quick ? "rms just outside it, the finest level; posts of 16 m"
+                                      : "rms just outside it, the finest level; 720 px across 40 degrees",
+                                quick ? 0.5 : 0.05},
                    work, point, settings);
     landscape_destroy(&fine);
     return status;
