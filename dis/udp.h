@@ -1,7 +1,8 @@
 /* dis/udp.h: DIS datagrams over UDP: unicast, broadcast or multicast, IPv4 or IPv6, on a chosen interface.
  *
  * A thread of its own takes datagrams off the socket as they come, so that nobody who is busy loses any; what it took
- * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds. Memory is taken at
+ * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds; when the system's clock
+ * is set they go on as if it had not been. Memory is taken at
  * dis_udp_open and never grows, whatever the network sends. Linux only.
  *
  * A network that goes away - its interface deleted or set down, its address taken, the way to the group lost - is said
@@ -78,8 +79,10 @@ bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
 /* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
 Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
-/* Unix time in the nanoseconds that arrivals are stamped in. */
+/* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is set. */
 int64_t dis_udp_now_ns(void);
+/* Until it is that, or a signal comes. */
+void    dis_udp_sleep_until(int64_t until_ns);
 /* Where dis_udp_send sends: as DisArrival's from. */
 void    dis_udp_destination(uint8_t to[16], const DisUdp *udp);
 
