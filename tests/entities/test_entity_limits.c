@@ -1,7 +1,11 @@
-/* tests/entities/test_entity_limits.c: ends that are remembered, against a list of all; and how many entities a sender may add. */
+/* tests/entities/test_entity_limits.c: ends that are remembered, against a list of all; how many entities a sender may
+ * add; and shots found among many. */
 #include "tests/entities/entity_fixture.h"
+#include "entities/survey/survey_shots.h"
 #include "entities/table/entity_rate.h"
 #include "entities/table/tombstones.h"
+
+#include <stdlib.h>
 
 /* ---- tombstones --------------------------------------------------------------------------- */
 
@@ -146,6 +150,26 @@ static void the_table_counts_what_is_over_the_rate(void **state)
     fixture_close(&f);
 }
 
+/* ---- shots by munition ---------------------------------------------------------------------- */
+
+/* The first shot of a munition, as a search from end to end finds it; in far fewer looks, which is what the order is for. */
+static void shots_are_found_by_munition(void **state)
+{
+    (void)state;
+    enum { count = 3000 };
+    static Shot shot[count];
+    Survey      by_hand = {.shot_count = count, .shot = shot}, survey = by_hand;
+    for (int i = 0; i < count; i++) shot[i].munition = entity_id(1 + dice((uint64_t)i, 6, 1500));
+    CHECK(survey_order_shots(&survey.shot_by_munition, shot, count) == STATUS_OK);
+    for (int e = 0; e <= 1501; e++) CHECK(survey_shot(&survey, entity_id(e)) == survey_shot(&by_hand, entity_id(e)));
+    for (int i = 1; i < count; i++) {
+        const int a = survey.shot_by_munition[i - 1], b = survey.shot_by_munition[i];
+        const int order = dis_entity_id_compare(shot[a].munition, shot[b].munition);
+        CHECK(order < 0 || (order == 0 && a < b));
+    }
+    free(survey.shot_by_munition);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -155,6 +179,7 @@ int main(void)
         cmocka_unit_test(a_sender_adds_so_many_a_second),
         cmocka_unit_test(many_senders_do_not_touch_each_other),
         cmocka_unit_test(the_table_counts_what_is_over_the_rate),
+        cmocka_unit_test(shots_are_found_by_munition),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
