@@ -234,6 +234,7 @@ static Status open_session(Session *s)
     table.pool                  = shared->pool;
     table.capacity              = shared->config->entities.capacity;
     table.shown                 = shared->config->entities.shown;
+    table.new_per_s             = shared->config->entities.new_per_s;
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
@@ -382,6 +383,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
 
 const SessionResult *session_result(const Session *s) { return &s->result; }
 int                  session_entities(const Session *s) { return entity_table_count(s->table); }
+uint64_t             session_over_rate(const Session *s) { return entity_table_counters(s->table)->over_rate; }
 const char          *session_host(const Session *s) { return s->host_text; }
 
 Status session_close(Session *s, SessionResult *result)
@@ -390,6 +392,7 @@ Status session_close(Session *s, SessionResult *result)
     const FrameWriterCounters written = frame_writer_destroy(s->writer);
     s->result.files_failed   = written.failed + s->truth_patience.lacking;
     s->result.files_left_out = written.left_out;
+    player_forgotten(&s->result.shots_forgotten, &s->result.munitions_forgotten, s->player);
     if (s->table) s->result.entities = *entity_table_counters(s->table);
     if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
     if (s->truth && fclose(s->truth) != 0) {

@@ -210,6 +210,8 @@ static const Setting keys[] = {
      "most entities in the table; beyond, the sender with the most entities loses its farthest and stalest"},
     {"entities.shown", SETTING_INT, AT(entities.shown), 1, 1000000, NULL, "",
      "most entities in a frame: those whose reports lie nearest the host's"},
+    {"entities.new_per_s", SETTING_INT, AT(entities.new_per_s), 1, 1000000, NULL, "1/s",
+     "most entities that one sender may add, in a second and at once; what is over is counted"},
     {"quality.budget", SETTING_TEXT, AT(quality.budget), 0, 0, "off|on", "",
      "each frame's estimate of its own error, in truth.jsonl; changes no image"},
     {"quality.radiance_rmse_percent", SETTING_DOUBLE, AT(quality.radiance_rmse_percent), 0.01, 1000, NULL, "%",
@@ -303,6 +305,7 @@ Config config_default(void)
     c.entities.extrapolation_limit_s = 12;
     c.entities.capacity             = 100000;
     c.entities.shown                = 2000;
+    c.entities.new_per_s            = 65536; /* as many as a sender has ids */
     strcpy(c.quality.budget, "on");
     c.quality.radiance_rmse_percent = c.quality.temperature_rms_k = c.quality.frame_ms = NAN;
     c.quality.machine_factor        = 1;

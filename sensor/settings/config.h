@@ -99,7 +99,7 @@ typedef struct Config {
     } models;
     struct {
         double timeout_s, timeout_land_v7_s, extrapolation_limit_s;
-        int    capacity, shown;
+        int    capacity, shown, new_per_s;
     } entities;
     struct {
         char   budget[8];          /* off or on */

@@ -136,9 +136,9 @@ static void a_full_table_refuses_and_recovers(void **state)
     entity_table_focus(f.table, entity_id(1), entity_id(0));
     fourth.p_ecef[0] += 1e6;
     CHECK(entity_table_entity_state(f.table, &fourth, 1) == STATUS_UNSUPPORTED && entity_table_count(f.table) == 3);
-    uint8_t octets[256];
-    fourth.header.length = (uint16_t)dis_encode_entity_state(octets, sizeof octets, &fourth);
-    entity_table_pdu(f.table, &fourth.header, octets, 1, &f.counters);
+    static DisPdu decoded = {.type = dis_pdu_entity_state};
+    decoded.entity_state = fourth;
+    entity_table_pdu(f.table, &decoded, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_TABLE_FULL] == 1);
     DisEntityState gone = report(2, tank_type);
     gone.appearance = deactivated_bit;
@@ -582,41 +582,37 @@ static void what_has_no_shape_is_not_in_the_scene(void **state)
     fixture_close(&f);
 }
 
-/* ---- octets ------------------------------------------------------------------------------- */
+/* ---- any PDU ------------------------------------------------------------------------------ */
 
-static void octets_are_checked_and_counted(void **state)
+static void pdus_are_checked_and_counted(void **state)
 {
     (void)state;
     Fixture f = fixture_open(NULL);
-    uint8_t octets[512];
-    DisEntityState pdu = report(1, tank_type);
+    static DisPdu pdu;
+    DisEntityState *report_1 = &pdu.entity_state;
+    pdu.type = dis_pdu_entity_state;
+    *report_1 = report(1, tank_type);
 
-    pdu.header.length = (uint16_t)dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 0, &f.counters);
+    entity_table_pdu(f.table, &pdu, NAN, &f.counters); /* no instant: as if it had not come */
+    CHECK(entity_table_count(f.table) == 0);
+    entity_table_pdu(f.table, &pdu, 0, &f.counters);
     CHECK(entity_table_count(f.table) == 1);
-    octets[19] = 9; /* records that are not there */
-    entity_table_pdu(f.table, &pdu.header, octets, 0, &f.counters);
-    CHECK(f.counters.dropped[DIS_DROP_BAD_COUNT] == 1);
-
-    pdu.p_ecef[0] = NAN;
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->p_ecef[0] = NAN;
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_NOT_FINITE] == 1);
-    pdu.p_ecef[0] = 1;
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->p_ecef[0] = 1;
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_BAD_POSITION] == 1);
-    pdu.id = (DisEntityId){0};
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->id = (DisEntityId){0};
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_NO_IDENTITY] == 1);
-    pdu.header.type = 23; /* not for the table */
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    pdu.type = dis_pdu_data; /* not for the table */
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(entity_table_count(f.table) == 1 && seen_at(&f, 1, 1)->p_ecef[0] == earth_radius_m);
 
-    DisRemoveEntity remove = {.header = {.version = 5, .type = dis_pdu_remove_entity}, .receiving = entity_id(1)};
-    remove.header.length = (uint16_t)dis_encode_remove_entity(octets, sizeof octets, &remove);
-    entity_table_pdu(f.table, &remove.header, octets, 2, &f.counters);
+    pdu.type = dis_pdu_remove_entity;
+    pdu.remove = (DisRemoveEntity){.header = {.version = 5, .type = dis_pdu_remove_entity}, .receiving = entity_id(1)};
+    entity_table_pdu(f.table, &pdu, 2, &f.counters);
     CHECK(entity_table_count(f.table) == 0);
     fixture_close(&f);
 }
@@ -650,10 +646,11 @@ static void mutated_octets_do_no_harm(void **state)
             const uint32_t at = 12 + dice(&index, (uint32_t)length - 12); /* the header is dis_next_pdu's to check */
             octets[at] = dice(&index, 2) ? nasty[dice(&index, sizeof nasty)] : (uint8_t)dice(&index, 256);
         }
-        const DisHeader header = {.version = (uint8_t)(5 + n % 3), .type = n % 7 ? 1 : (uint8_t)(dice(&index, 68)),
-                                  .length = (uint16_t)length};
+        octets[0] = (uint8_t)(5 + n % 3);
+        octets[2] = n % 7 ? 1 : (uint8_t)(dice(&index, 68));
         const double t_s = 0.01 * n;
-        entity_table_pdu(f.table, &header, octets, t_s, &f.counters);
+        static DisPdu decoded;
+        if (dis_decode(&decoded, octets, length) == STATUS_OK) entity_table_pdu(f.table, &decoded, t_s, &f.counters);
         if (n % 50) continue;
         entity_table_expire(f.table, t_s);
         seen_at(&f, 1, t_s + dice(&index, 20));
@@ -687,12 +684,14 @@ static void a_recorded_exercise(void **state)
     Fixture f = fixture_open(NULL);
     int most = 0;
     double t_s = 0;
+    static DisPdu decoded;
     for (int d = 0; d < log.count; d++) {
         const uint8_t *at = log.datagram[d].bytes, *octets;
         DisHeader header;
         t_s = log.datagram[d].capture_s;
         while (dis_next_pdu(&header, &octets, &at, log.datagram[d].bytes + log.datagram[d].octets, &f.counters))
-            entity_table_pdu(f.table, &header, octets, t_s, &f.counters);
+            if (dis_decode(&decoded, octets, header.length) == STATUS_OK)
+                entity_table_pdu(f.table, &decoded, t_s, &f.counters);
         if (entity_table_count(f.table) > most) most = entity_table_count(f.table);
     }
     for (int drop = 0; drop < DIS_DROP_COUNT; drop++) CHECK(f.counters.dropped[drop] == 0);
@@ -735,7 +734,7 @@ int main(void)
         cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
         cmocka_unit_test(what_has_no_shape_is_not_in_the_scene),
         cmocka_unit_test(landing_gear_needs_no_report),
-        cmocka_unit_test(octets_are_checked_and_counted),
+        cmocka_unit_test(pdus_are_checked_and_counted),
         cmocka_unit_test(mutated_octets_do_no_harm),
         cmocka_unit_test(a_recorded_exercise),
     };

@@ -35,13 +35,15 @@ static bool hear_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
         pdus++;
         h->updates += update;
         if (state || update) {
-            const int entity = pdu[16] << 8 | pdu[17];
+            const int entity = dis_pdu_entity(&header, pdu);
             if (entity < 64) {
                 if (h->reports[entity]++) h->longest_s[entity] = fmax(h->longest_s[entity], t_s - h->last_s[entity]);
                 h->last_s[entity] = t_s;
             }
         }
-        if (h->fixture) entity_table_pdu(h->fixture->table, &header, pdu, t_s, &counters);
+        static DisPdu decoded;
+        if (h->fixture && dis_decode(&decoded, pdu, header.length) == STATUS_OK)
+            entity_table_pdu(h->fixture->table, &decoded, t_s, &counters);
     }
     h->bundles += pdus > 1;
     return true;

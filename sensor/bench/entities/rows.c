@@ -94,10 +94,12 @@ static void update_all(void *user)
     Crowd         *c = user;
     DisHeader      header;
     const uint8_t *pdu;
+    static DisPdu  decoded;
     c->t_s += 0.01;
     for (int k = 0; k < c->count; k++)
         for (const uint8_t *at = c->pdu[k]; dis_next_pdu(&header, &pdu, &at, c->pdu[k] + c->octets[k], &c->counters);)
-            entity_table_pdu(c->table, &header, pdu, c->t_s, &c->counters);
+            if (dis_decode(&decoded, pdu, header.length) == STATUS_OK)
+                entity_table_pdu(c->table, &decoded, c->t_s, &c->counters);
     bench_keep(c->table);
 }
 

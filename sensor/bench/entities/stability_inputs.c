@@ -148,10 +148,12 @@ static size_t good_other(uint8_t *out, size_t room, const World *w, uint8_t type
 
 static void tell(World *w, const uint8_t *pdu, size_t octets)
 {
+    static DisPdu  decoded;
     DisHeader      header;
     const uint8_t *found, *at = pdu;
     while (dis_next_pdu(&header, &found, &at, pdu + octets, &w->counters))
-        entity_table_pdu(w->table, &header, found, w->t_s, &w->counters);
+        if (dis_decode(&decoded, found, header.length) == STATUS_OK)
+            entity_table_pdu(w->table, &decoded, w->t_s, &w->counters);
 }
 
 static uint64_t all_refusals(const World *w)
