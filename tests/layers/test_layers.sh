@@ -47,6 +47,7 @@ wrapped() {
         pcap*) echo 'dis/*' ;;
         assimp/*) echo 'entities/import/assimp.c' ;;
         fftw3.h) echo 'sensor/detector/transform.c' ;;
+        libdeflate.h) echo 'sensor/publish/*' ;;
         jansson.h) echo 'sensor/publish/*' ;;
         *) echo '*' ;;
     esac
