@@ -1,7 +1,7 @@
 /* sensor/commands/overwrite.c: what is there already, before anything is written. */
 #include "sensor/commands/overwrite.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 
 #include <sys/stat.h>
 

@@ -1,6 +1,6 @@
 #include "sensor/node/host_run.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/settings/quality.h"
 #include "sensor/node/shape_choice.h"
 

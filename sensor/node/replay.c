@@ -1,6 +1,6 @@
 #include "sensor/node/replay.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/commands/overwrite.h"

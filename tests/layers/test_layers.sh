@@ -20,6 +20,8 @@ allowed() {
         pitviper.h) return 0 ;;
         # the workshop is no part of the product
         sensor/bench/*) case $3 in sensor/bench/*|tests/*|main.c) return 0 ;; *) return 1 ;; esac ;;
+        # consumers of frames know what they are given, never the node that gives it
+        sensor/node/*) case $3 in sensor/publish/*) return 1 ;; esac ;;
         tests/*) return 0 ;; # only tests have reason to, see below
     esac
     case $1:$2 in
@@ -100,6 +102,8 @@ good sensor/bench/run.c "sensor/bench/bench_private.h"
 good sensor/bench/render/precision_air.c "render/air/air_private.h"
 bad sensor/node/live.c "sensor/bench/quality.h"
 bad sensor/publish/html.c "sensor/bench/bench.h"
+bad sensor/publish/pairs.c "sensor/node/session.h"
+good sensor/node/session_consumers.c "sensor/publish/pairs.h"
 bad dis/pdu.c "terrain/earth/geodesy.h"
 bad dis/pdu.c "entities/models/model.h"
 bad terrain/earth/sun.c "dis/pdu.h"

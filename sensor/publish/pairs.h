@@ -1,4 +1,4 @@
-/* sensor/node/pairs.h: each frame four times - with and without what is looked at, with and without noise - from one
+/* sensor/publish/pairs.h: each frame four times - with and without what is looked at, with and without noise - from one
  * run, one seed and one noise field.
  *
  *     OUT/frames, raw                 with, noisy: as ever
@@ -15,21 +15,27 @@
  *
  * A frame costs a second rendering, the files of a second frame, and three more runs of each band's detector
  * (tests/system/test_pairs.sh). */
-#ifndef SENSOR_NODE_PAIRS_H
-#define SENSOR_NODE_PAIRS_H
+#ifndef SENSOR_PUBLISH_PAIRS_H
+#define SENSOR_PUBLISH_PAIRS_H
 
-#include "sensor/node/session.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/consumers.h"
 
-typedef struct Pairs Pairs;
+/* What the members are made of. */
+typedef struct PairsOf {
+    const char       *out;    /* the run's folder; those below are made */
+    const Config     *config; /* publish.pairs: target or all */
+    const char       *config_sha256;
+    Pool             *pool;
+    unsigned          bands, raw;
+    const FrameLevel *level;  /* [BAND_COUNT] of the run's own displays */
+    Chains            clean, background, background_clean; /* taken over, also on failure; clean: without noise */
+} PairsOf;
 
-/* As publish.pairs says. Makes the folders below out, which are clear; shared must outlive it. raw: bands. */
-Status pairs_open(Pairs **out, const SessionShared *shared, const char *folder, unsigned raw);
-/* The other members of a frame that has been written. sha256: of its planes; aim: what is taken away, unless all are;
- * host: snapshot index, stays; -1. */
-Status pairs_frame(Pairs *pairs, const FrameFiles *files, const char *sha256, const Air *air,
-                   const double r_host_from_enu[9], DisEntityId aim, int host, Arena *arena);
-/* STATUS_IO, logged, when pairs.jsonl could not be finished. NULL is fine. */
-Status pairs_close(Pairs *pairs);
+/* Wants each frame without its target too (Frame.without). */
+Status consume_pairs(Consumer **out, const PairsOf *made_of);
+/* The same snapshot, indices and all, less what is taken away, whose ids are listed: aim, or all. host: snapshot index,
+ * stays; -1. */
+Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
+                       DisEntityId aim, int host, Arena *arena);
 
 #endif
