@@ -9,9 +9,6 @@
 
 #include <stdlib.h>
 
-/* Bands whose pictures come from a detector. */
-static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-
 /* The planes that a band's detector looks at; how many. */
 static int band_radiance(const float *plane[3], const Picture *p, int band)
 {

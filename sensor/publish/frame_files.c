@@ -11,9 +11,6 @@
 
 enum { max_jobs = 16 };
 
-/* Bands whose pictures come from a detector. */
-static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-
 /* ---- one frame ------------------------------------------------------------------------------ */
 
 typedef struct FileJob {

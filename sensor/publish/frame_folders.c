@@ -163,9 +163,6 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
     return status;
 }
 
-/* Bands whose pictures come from a detector. */
-static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw)
 {
     char   path[path_size];
