@@ -15,8 +15,8 @@ typedef struct Chains {
 } Chains;
 void chains_destroy(Chains *chains);
 
-/* OUT/frames, raw and profiles (frame_files.h). level: of its displays, [BAND_COUNT], the caller's, so that others in the
- * same thread may read what they last showed. spare: NULL, or detectors for frames that are left out: the memory of
+/* OUT/frames, raw and profiles (frame_files.h). level: of its displays, [BAND_COUNT], the caller's, so that others in
+ * the same thread may read what they last showed. spare: NULL, or detectors for frames that are left out: the memory of
  * an automatic level takes part of those too, so that what is shown later does not depend on what was left out; with
  * them a frame that cannot be written is left out, told, and tried again now and then (patience.h). */
 typedef struct PictureFiles {
@@ -29,7 +29,8 @@ typedef struct PictureFiles {
 } PictureFiles;
 Status consume_pictures(Consumer **out, const PictureFiles *made_of);
 
-/* OUT/truth.jsonl, a line a frame. patient: a line that cannot be written is left out; failed: how many, when closed. */
+/* OUT/truth.jsonl, a line a frame. patient: a line that cannot be written is left out; failed: how many, when
+ * closed. */
 Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int *failed);
 
 /* OUT/coco.json. */

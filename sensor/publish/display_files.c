@@ -1,4 +1,5 @@
-/* sensor/publish/display_files.c: what a display behind a band's detector shows, its raw counts, and the preview of truth. */
+/* sensor/publish/display_files.c: what a display behind a band's detector shows, its raw counts, and the preview of
+ * truth. */
 #include "sensor/publish/frame_files.h"
 
 #include "sensor/detector/colour.h"

@@ -5,7 +5,8 @@
  * Compression ZIP: the bytes of a chunk, the even ones before the odd ones, as differences, deflated. A chunk that does
  * not shrink is stored as it is, which every reader knows by its size.
  *
- * Radiance of a noisy ground does not shrink by more than a quarter and takes most of the time, so a chunk is only tried
+ * Radiance of a noisy ground does not shrink by more than a quarter and takes most of the time, so a chunk is only
+ * tried
  * where the last one tried was worth it, and one of every eight.
  * Measured, 720 x 486, a frame of the demonstration, one core, ms and kB: truth, 8 planes; a thermal plane; colour, 3:
  *

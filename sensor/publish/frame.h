@@ -1,8 +1,8 @@
 /* sensor/publish/frame.h: a finished frame, as consumers get it (sensor/publish/consumer.h).
  *
- * Immutable once it is finished, and counted: a consumer that keeps one beyond its put holds it and releases it. All that
- * it points to lies in its arena or outlives the run. A pool holds a fixed number of frames, so memory is bounded: taking
- * one waits until one is free. */
+ * Immutable once it is finished, and counted: a consumer that keeps one beyond its put holds it and releases it. All
+ * that it points to lies in its arena or outlives the run. A pool holds a fixed number of frames, so memory is bounded:
+ * taking one waits until one is free. */
 #ifndef SENSOR_PUBLISH_FRAME_H
 #define SENSOR_PUBLISH_FRAME_H
 

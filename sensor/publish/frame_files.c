@@ -30,7 +30,8 @@ typedef struct FileJobs {
 bool frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
                 const char *ending)
 {
-    const int size = snprintf(path, frame_path_size, "%s/%s/%s/%06d.%s", frame->out, folder, name, frame->frame, ending);
+    const int size =
+        snprintf(path, frame_path_size, "%s/%s/%s/%06d.%s", frame->out, folder, name, frame->frame, ending);
     if (size >= 0 && size < frame_path_size) return true;
     log_error("out: a path of %d characters is too long; choose another place with --out", size);
     return false;
@@ -231,7 +232,8 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
         if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
     for (int b = 0; b <= BAND_COUNT; b++) {
         const bool raw = b < BAND_COUNT && frame->chain[b] && frame->config->detector.raw;
-        if ((frame->png || raw) && (b == BAND_COUNT ? truth : frame->request->bands >> b & 1)) add_job(&jobs, display_write, b);
+        if ((frame->png || raw) && (b == BAND_COUNT ? truth : frame->request->bands >> b & 1))
+            add_job(&jobs, display_write, b);
     }
     if (frame->picture->profile) add_job(&jobs, write_profile, BAND_RADAR);
     return run_jobs(&jobs, pool);

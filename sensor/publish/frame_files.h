@@ -36,6 +36,9 @@ typedef struct FrameFiles {
     double          rate_px_s[2];   /* how the scene moves over the picture: column, row */
 } FrameFiles;
 
+/* Bands whose pictures come from a detector: all but radar. */
+enum { detector_bands = ((1 << BAND_COUNT) - 1) & ~(1 << BAND_RADAR) };
+
 /* OUT may be as long as leaves frame_path_room characters for what goes below it; a longer one is refused, logged.
  * folder: makes OUT, or says why not; what is in it stays.
  * earlier: whether OUT holds something of an earlier run that would be lost, and the path of such a thing.
@@ -44,8 +47,6 @@ typedef struct FrameFiles {
  * raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with frame_truth, truth too.
  * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
 enum { frame_path_size = 4096, frame_path_room = 64, frame_truth = 1 << BAND_COUNT };
-/* Bands whose pictures come from a detector: all but radar. */
-enum { detector_bands = ((1 << BAND_COUNT) - 1) & ~(1 << BAND_RADAR) };
 Status frame_files_folder(const char *out);
 bool   frame_files_earlier(char found[frame_path_size], const char *out);
 void   frame_files_clear(const char *out);

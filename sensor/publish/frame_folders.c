@@ -1,4 +1,5 @@
-/* sensor/publish/frame_folders.c: the folders of OUT: made, looked into for what an earlier run left, and cleared of it. */
+/* sensor/publish/frame_folders.c: the folders of OUT: made, looked into for what an earlier run left, and cleared of
+ * it. */
 #include "sensor/publish/frame_files.h"
 
 #include <dirent.h>

@@ -1,4 +1,5 @@
-/* sensor/publish/frame_planes.c: a picture as a list of named planes: the one place that knows a Picture's fields for all
+/* sensor/publish/frame_planes.c: a picture as a list of named planes: the one place that knows a Picture's fields for
+ * all
  * that goes through planes. */
 #include "sensor/publish/frame.h"
 

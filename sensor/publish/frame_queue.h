@@ -1,9 +1,9 @@
-/* sensor/publish/frame_queue.h: a consumer whose consumers work in a thread of their own, so that the next frame is made
- * meanwhile. It is put frames in order and hands them on in order; at most one waits.
+/* sensor/publish/frame_queue.h: a consumer whose consumers work in a thread of their own, so that the next frame is
+ * made meanwhile. It is put frames in order and hands them on in order; at most one waits.
  *
  *     QUEUE_WAIT       every frame is handed on; putting waits while another frame waits. The first failure is the
  *                      result of the next put and of the close; no frame behind it is handed on
- *     QUEUE_LEAVE_OUT  putting never waits: the frame that waits is left out for the newer one, which is counted, and its
+ *     QUEUE_LEAVE_OUT  putting never waits: the frame that waits is left out for the newer one; that is counted, its
  *                      consumers are told; a failure is counted and ends nothing
  *
  * With the frame that is being made, that which waits and that which is handed on it takes three frames of a pool. */

@@ -1,5 +1,5 @@
-/* sensor/publish/image_file.h: pictures as files. Frames are written by exr_file.c and png_file.c, chunk by chunk; read, and
- * written in any other compression, through OpenImageIO (image_file.cpp, the only file that knows it).
+/* sensor/publish/image_file.h: pictures as files. Frames are written by exr_file.c and png_file.c, chunk by chunk;
+ * read, and written in any other compression, through OpenImageIO (image_file.cpp, the only file that knows it).
  *
  * A file appears whole or not at all: it is written as `PATH.part` and renamed. Every failure is one log line with path
  * and reason, and a Status; nothing of a failed file is left behind.

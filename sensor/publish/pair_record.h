@@ -1,4 +1,5 @@
-/* sensor/publish/pair_record.h: pairs.jsonl (sensor/publish/pairs.h): a line a frame, all its members and their files. */
+/* sensor/publish/pair_record.h: pairs.jsonl (sensor/publish/pairs.h): a line a frame, all its members and their
+ * files. */
 #ifndef SENSOR_PUBLISH_PAIR_RECORD_H
 #define SENSOR_PUBLISH_PAIR_RECORD_H
 

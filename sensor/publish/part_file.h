@@ -1,5 +1,5 @@
-/* sensor/publish/part_file.h: a file that appears whole or not at all: written as PATH.part, renamed at the end. Private
- * to the folder.
+/* sensor/publish/part_file.h: a file that appears whole or not at all: written as PATH.part, renamed at the end.
+ * Private to the folder.
  *
  * The first failure is one log line with path and reason; later writes then do nothing. */
 #ifndef SENSOR_PUBLISH_PART_FILE_H

@@ -1,12 +1,13 @@
-/* sensor/publish/png_file.c: a PNG file (W3C, Portable Network Graphics, second edition) of 8 or 16 bits, grey or RGB. */
+/* sensor/publish/png_file.c: a PNG file (W3C, Portable Network Graphics, second edition) of 8 or 16 bits, grey or
+ * RGB. */
 #include "sensor/publish/image_file.h"
 #include "sensor/publish/part_file.h"
 
 #include <libdeflate.h>
 #include <stdlib.h>
 
-/* Measured, 720 x 486, colour, a thermal band, truth; kB and ms: filter none 429, 171, 9; 16, 5, 9; sub 357, 144, 9; 13, 5,
- * 9; up 464, 188, 14; 9, 6, 9; level 2 gains 3 % for twice the time. zlib 1 through libpng: 397, 157, 17. */
+/* Measured, 720 x 486, colour, a thermal band, truth; kB and ms: filter none 429, 171, 9; 16, 5, 9; sub 357, 144, 9;
+ * 13, 5, 9; up 464, 188, 14; 9, 6, 9; level 2 gains 3 % for twice the time. zlib 1 through libpng: 397, 157, 17. */
 enum { deflate_level = 1, filter_sub = 1 };
 
 static void put_u32(uint8_t out[4], uint32_t value)
@@ -40,7 +41,8 @@ static void row_bytes(uint8_t *out, const void *values, size_t first, size_t sam
 }
 
 /* Each row behind its filter's number, less the pixel to its left. */
-static void filter_rows(uint8_t *out, uint8_t *row, const void *values, int height, size_t samples, int channels, int bits)
+static void filter_rows(uint8_t *out, uint8_t *row, const void *values, int height, size_t samples, int channels,
+                        int bits)
 {
     const size_t pixel = (size_t)(channels * bits / 8), row_size = samples * (size_t)(bits / 8);
     for (int y = 0; y < height; y++, out += 1 + row_size) {

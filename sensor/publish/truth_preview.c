@@ -49,7 +49,8 @@ void truth_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, c
         const double up = normal_up && isfinite(normal_up[i]) ? 0.7 + 0.3 * normal_up[i] : 1;
         if (entity[i] != 0) {
             const uint32_t index = entity[i] - 1;
-            const Rgb      c = index < (uint32_t)snapshot->count ? id_colour(snapshot->entity[index].id) : (Rgb){1, 1, 1};
+            const bool     known = index < (uint32_t)snapshot->count;
+            const Rgb      c = known ? id_colour(snapshot->entity[index].id) : (Rgb){1, 1, 1};
             const double   shade = 0.45 + 0.55 * up; /* hues stay apart: range does not darken them */
             put(rgb + 3 * i, (Rgb){c.r * shade, c.g * shade, c.b * shade});
         } else if (sky) {
