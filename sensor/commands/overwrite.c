@@ -1,7 +1,7 @@
 /* sensor/commands/overwrite.c: refuses to replace existing products unless --overwrite is given. */
 #include "sensor/commands/overwrite.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 
 #include <sys/stat.h>
 

@@ -3,7 +3,7 @@
 #include "sensor/commands/sweep.h"
 
 #include "sensor/commands/contact_sheet.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/stop.h"
 #include "sensor/commands/sweep_file.h"

@@ -3,7 +3,7 @@
 
 #include "dis/exercise_clock.h"
 #include "dis/udp.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"

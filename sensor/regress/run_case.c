@@ -2,7 +2,7 @@
 #include "sensor/regress/run_case.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/child.h"
 #include "sensor/regress/update.h"

@@ -7,7 +7,7 @@
 #include "sensor/detector/chain.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
 
 /* ---- colorimetry, which the program has none of --------------------------------------------------- */

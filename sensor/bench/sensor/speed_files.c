@@ -1,7 +1,7 @@
 /* sensor/bench/sensor/speed_files.c: what comes behind a frame: its files; and the memory that it all took. */
 #include "sensor/bench/sensor/speed_private.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
 #include "terrain/landscape/quick_landscape.h"
 

@@ -1,5 +1,6 @@
-/* sensor/node/frame_folders.c: the folders of OUT: made, looked into for what an earlier run left, and cleared of it. */
-#include "sensor/node/frame_files.h"
+/* sensor/publish/frame_folders.c: the folders of OUT: made, looked into for what an earlier run left, and cleared of
+ * it. */
+#include "sensor/publish/frame_files.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -7,7 +8,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { path_size = 4096 };
+enum { path_size = frame_path_size };
+
+static bool too_long(const char *out) { return strlen(out) + frame_path_room >= path_size; }
 
 Status frame_files_folder(const char *path)
 {
@@ -16,7 +19,12 @@ Status frame_files_folder(const char *path)
         log_error("out: the folder for the products has no name; choose one with --out");
         return STATUS_BAD_VALUE;
     }
-    if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return STATUS_BAD_VALUE;
+    if (too_long(path)) {
+        log_error("out: the folder's name has %zu characters, %d are possible; choose another place with --out",
+                  strlen(path), path_size - frame_path_room - 1);
+        return STATUS_BAD_VALUE;
+    }
+    strcpy(part, path);
     for (char *at = part + 1;; at++) {
         if (*at != '/' && *at) continue;
         const char kept = *at;
@@ -104,6 +112,7 @@ bool frame_files_earlier(char found[frame_path_size], const char *out)
 {
     char        path[path_size], truth[path_size];
     struct stat about;
+    if (too_long(out)) return false; /* none was ever made there */
     snprintf(truth, sizeof truth, "%s/truth.jsonl", out);
     const bool begun = stat(truth, &about) == 0; /* one without a line never came to its first frame */
     if (begun && about.st_size > 0) return snprintf(found, frame_path_size, "%s", truth) > 0;
@@ -122,6 +131,7 @@ void frame_files_clear(const char *out)
     static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {"pairs", "pairs.jsonl", "coco.json"};
     char path[path_size];
     bool earlier = false;
+    if (too_long(out)) return;
     for (int i = 0; i < 2; i++) {
         snprintf(path, sizeof path, "%s/%s", out, marks[i]);
         earlier = unlink(path) == 0 || earlier;
@@ -153,9 +163,6 @@ Status frame_files_prepare(const char *out, unsigned bands, unsigned raw)
     }
     return status;
 }
-
-/* Bands whose pictures come from a detector. */
-static const unsigned detector_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
 
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw)
 {

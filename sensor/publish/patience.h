@@ -1,4 +1,4 @@
-/* sensor/node/patience.h: a place that takes no files while a live node goes on: said once, tried again now and
+/* sensor/publish/patience.h: a place that takes no files while a live node goes on: said once, tried again now and
  * then. */
 #ifndef SENSOR_NODE_PATIENCE_H
 #define SENSOR_NODE_PATIENCE_H
