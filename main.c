@@ -1,8 +1,8 @@
-/* main.c: the commands, as one table; and the probes, as the rooms list them. */
+/* main.c: the table of commands, their common options, and `probe` and `help`. */
 #include "entities/probe.h"
 #include "render/probe.h"
 #include "sensor/commands/check.h"
-#include "sensor/bench/suites.h"
+#include "sensor/bench/sensor/suites.h"
 #include "sensor/commands/exercise.h"
 #include "sensor/framefile/frame_command.h"
 #include "sensor/commands/inspect.h"
@@ -23,7 +23,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* ---- what the rooms list ---------------------------------------------------------------------- */
+/* ---- the probes of all folders ---------------------------------------------------------------------- */
 
 typedef struct RoomList {
     const void *first;
@@ -58,8 +58,10 @@ static void probe_usage(FILE *to)
 {
     size_t state[2] = {0};
     fputs("usage: pitviper probe WHAT [ARGUMENT ...] < rows.csv > results.csv\n\n"
-          "Reads CSV with a header; writes each row again with the results behind it. Other columns pass through;\n"
-          "a row that cannot be computed says why in the column `error`. Columns marked $ are text, ? may be missing.\n", to);
+          "Evaluates one model for rows of CSV with a header: writes each row with the results appended. Other "
+          "columns pass\n"
+          "through; a row that cannot be computed has the reason in column `error`. $: text column, ?: optional "
+          "column.\n", to);
     for (const Probe *probe; (probe = next_probe(state));)
         fprintf(to, "\n  %s%s%s\n      %s\n      in:  %s\n      out: %s\n", probe->name, probe->arguments ? " " : "",
                 probe->arguments ? probe->arguments : "", probe->help, probe->in, probe->out);
@@ -75,7 +77,8 @@ static int probe_command(int argc, char **argv)
     for (const Probe *probe; (probe = next_probe(state));) {
         if (strcmp(argv[1], probe->name) != 0) continue;
         if (!probe->arguments && argc > 2) {
-            text_print(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows come from standard input\n",
+            text_print(stderr, "pitviper probe: %s takes no argument, but `%s` was given; rows are read from standard "
+                               "input\n",
                     probe->name, argv[2]);
             return 2;
         }
@@ -93,41 +96,41 @@ static const struct Command {
     const char *name;
     int (*run)(int argc, char **argv);
     const char *help;
-    bool        reads_tables; /* of etc/, all of them but for a few of its options */
+    bool        reads_tables; /* of etc/, except with --default and --keys */
 } commands[] = {
-    {"run", run_command, "listen to an exercise on the network and show it live", true},
-    {"replay", replay_command, "show what the missile's seeker in a recorded exercise saw", true},
-    {"frame", frame_command, "render one saved frame again, without its log, and say whether it is the same", true},
-    {"regress", regress_command, "show recorded exercises again and compare with what they showed", true},
-    {"inspect", inspect_command, "say who was in a recorded exercise, what they did, what was malformed", true},
-    {"check", check_command, "say whether a file of settings is good; or print one to begin with", true},
-    {"exercise", exercise_command, "write or send an exercise from a scenario", true},
-    {"record", record_command, "record the exercise on the network", false},
-    {"model", model_command, "list models; say what one is made of, built in or from a file; draw it", true},
-    {"probe", probe_command, "compute one model for rows of CSV: Planck, sun, geoid, air, rays ...", false},
-    {"bench", run_bench, "measure this build on this machine: times, and the errors beside them", true},
+    {"run", run_command, "render a live exercise on the network", true},
+    {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true},
+    {"frame", frame_command, "re-render one saved frame without its log and verify that it is the same to the bit", true},
+    {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true},
+    {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true},
+    {"check", check_command, "validate a configuration file; or print one to start from", true},
+    {"exercise", exercise_command, "generate an exercise from a scenario: record it or send it", true},
+    {"record", record_command, "record an exercise from the network", false},
+    {"model", model_command, "list models; describe or draw one, built in or from a file", true},
+    {"probe", probe_command, "evaluate one model for rows of CSV: Planck, sun, geoid, atmosphere, rays ...", false},
+    {"bench", run_bench, "benchmark this build on this machine: times with their errors", true},
 };
 enum { command_count = sizeof commands / sizeof commands[0] };
 
 static const char common_help[] =
-    "  -q, --quiet        no choices, progress, notices or summary: warnings, errors and what was asked for alone\n"
-    "  -v, --verbose      also which tables, settings and models are read, and where the time goes\n";
+    "  -q, --quiet        only errors, warnings and requested output: no choices, progress, notices or summary\n"
+    "  -v, --verbose      also the tables, settings and models read, and where the time goes\n";
 
 static void usage(FILE *to)
 {
     fputs("pitviper " PITVIPER_VERSION ": multispectral sensor simulation on DIS networks\n\n"
-          "usage: pitviper COMMAND ...; `pitviper COMMAND --help` says more\n\n", to);
+          "usage: pitviper COMMAND ...; `pitviper COMMAND --help` lists its options\n\n", to);
     for (int i = 0; i < command_count; i++) fprintf(to, "  %-10s %s\n", commands[i].name, commands[i].help);
     fprintf(to, "\nEvery command takes, before or after its name:\n\n%s", common_help);
-    fputs("\nevery field of every product, with lines of Python: `pitviper help TOPIC`, of the topics\n", to);
+    fputs("\nevery field of every product, with Python to read it: `pitviper help TOPIC`; topics:\n", to);
     reference_list(to);
-    fputs("\nall of them as Markdown: `pitviper help --markdown`\n", to);
+    fputs("\nall topics as Markdown: `pitviper help --markdown`\n", to);
 }
 
-/* ---- what the shell hands over ---------------------------------------------------------------- */
+/* ---- streams, environment, command line ---------------------------------------------------------------- */
 
-/* Standard input, output and error that were closed (`>&-`) would be the next files opened, and messages written into
- * recordings. Read-only: what is printed there fails, and is said to. */
+/* If standard input, output or error is closed (`>&-`), the next file opened would get its descriptor and messages
+ * would be written into recordings. /dev/null takes their place; read-only, so that printing fails and is reported. */
 static void fill_closed(void)
 {
     int fd;
@@ -146,7 +149,7 @@ static bool environment_good(const struct Command *command, int argc, char **arg
     return false;
 }
 
-/* What could not be printed was not done. */
+/* Exit code 1 when the output could not be written. */
 static int printed(int code)
 {
     if (fflush(stdout) == 0 && !ferror(stdout)) return code;
@@ -154,7 +157,7 @@ static int printed(int code)
     return code ? code : 1;
 }
 
-/* -q and -v, wherever they stand before a `--`, are taken away. False: both, and it is said. */
+/* Removes -q and -v before any `--` from the command line. False, logged, when both are given. */
 static bool take_verbosity(int *argc, char **argv)
 {
     bool quiet = false, verbose = false, open = true;
@@ -167,7 +170,7 @@ static bool take_verbosity(int *argc, char **argv)
         if (!q && !v) argv[kept++] = argv[i];
     }
     argv[*argc = kept] = NULL;
-    if (quiet && verbose) fputs("pitviper: --quiet and --verbose are both given; leave one out\n", stderr);
+    if (quiet && verbose) fputs("pitviper: --quiet and --verbose exclude each other\n", stderr);
     else if (quiet) log_set_level(LOG_WARN);
     else if (verbose) log_set_level(LOG_DETAIL);
     return !(quiet && verbose);
@@ -188,7 +191,7 @@ static int run_named(int argc, char **argv)
         const bool help = asks_for_help(argc, argv);
         if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
-        argv[0] = called; /* as getopt names it */
+        argv[0] = called; /* the name in getopt's messages */
         const int code = commands[i].run(argc, argv);
         if (help && code == 0) printf("\n%s", common_help);
         return code;
@@ -202,7 +205,7 @@ static int help_command(int argc, char **argv)
 {
     static char help[] = "--help";
     if (argc > 1) {
-        text_print(stderr, "pitviper help: one word, a command or a topic, not also `%s`\n", argv[1]);
+        text_print(stderr, "pitviper help: takes one command or topic, not also `%s`\n", argv[1]);
         return 2;
     }
     for (int i = 0; i < command_count; i++)
@@ -212,14 +215,14 @@ static int help_command(int argc, char **argv)
         return 0;
     }
     if (reference_write(stdout, argv[0])) return 0;
-    text_print(stderr, "pitviper help: no command and no topic: %s; `pitviper --help` lists them\n", argv[0]);
+    text_print(stderr, "pitviper help: no such command or topic: %s; `pitviper --help` lists them\n", argv[0]);
     return 2;
 }
 
 int main(int argc, char **argv)
 {
     fill_closed();
-    thread_flush_denormals(); /* a probe says what a frame computes */
+    thread_flush_denormals(); /* so that a probe computes what a frame computes */
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         usage(stderr);

@@ -61,7 +61,7 @@ void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 /* ---- arena: memory that lives one frame --------------------------------------------------- */
 
 /* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at
- * first. Not thread-safe: one arena, one thread. */
+ * first. arena_alloc may be called by several threads at once; nothing else may be called meanwhile. */
 typedef struct Arena Arena;
 
 Arena *arena_create(void);
@@ -167,6 +167,10 @@ typedef enum SettingType {
     SETTING_PATH,
     SETTING_PATHS,        /* several, separated by commas */
     SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is left alone */
+    /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
+    SETTING_OWN,          /* one text; a list is its words with blanks between */
+    SETTING_EACH,         /* one text, or a list of them: one call each */
+    SETTING_MAP,          /* `key: text` with free keys: one call each */
 } SettingType;
 
 enum { number_list_capacity = 256 };
@@ -181,9 +185,16 @@ typedef struct Setting {
     SettingType type;
     size_t      offset, size;
     double      low, high;     /* of each number; low NaN: any finite one */
-    const char *choices;       /* of text: one of these, separated by `|`; NULL: any */
+    const char *choices;       /* of text: one of these, separated by `|`; NULL: any. Of SETTING_OWN: see there */
     const char *unit, *help;
 } Setting;
+typedef struct SettingValue {
+    const char *key, *text;    /* key: of a map; else NULL */
+    int         line;
+    bool        wrong_key;     /* set by the reader: it is the key that is wrong, not the text */
+} SettingValue;
+/* STATUS_BAD_VALUE: logged as "'text' is not <choices>", or with a complaint as "'text' is <complaint>". */
+typedef Status SettingOwn(const char **complaint, void *out, const Setting *row, SettingValue *value);
 #define SETTING_AT(type, member) offsetof(type, member), sizeof(((type *)0)->member)
 
 /* A section that is a list of mappings, `vehicles: [{...}, {...}]`: each fills one item. */
@@ -202,6 +213,8 @@ struct SettingTable {
     int                list_count;
     size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
     const char        *all_keys; /* what prints them: `pitviper check --default`; NULL: nothing */
+    const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
+    SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
 };
 
 enum { settings_file_octets = 1 << 20 };
@@ -214,7 +227,10 @@ Status yaml_check(const char *module, const char *path, const char *text, size_t
  * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
  * is set for each key met at the top. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
-/* The same; what is named in it is relative to the folder of another file, which need not be there. */
+/* The same from memory; path is for the messages. */
+Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
+                      size_t octets);
+/* As settings_read; what is named in it is relative to the folder of another file, which need not be there. */
 Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file);
 /* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
@@ -233,6 +249,8 @@ void   settings_text(char *out, size_t out_size, const SettingTable *table, cons
 /* A file that reads back as *from: sections, each key with its help, unit and range as a comment. Keys for which
  * shown (may be NULL) is false, and those that are unset (NaN), are commented out. */
 void   settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
+/* Every key with what it accepts and its help. */
+void   settings_write_keys(FILE *to, const SettingTable *table);
 
 /* ---- probes: one model at a time, held against anybody else's numbers --------------------------- */
 

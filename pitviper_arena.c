@@ -1,6 +1,7 @@
 /* pitviper_arena.c: memory that lives one frame, in blocks that outlive it. */
 #include "pitviper.h"
 
+#include <pthread.h>
 #include <stdlib.h>
 
 enum { arena_alignment = 64, arena_block_octets = 1 << 20 };
@@ -12,10 +13,18 @@ typedef struct ArenaBlock {
 } ArenaBlock;
 
 struct Arena {
-    ArenaBlock *first, *current;
+    ArenaBlock     *first, *current;
+    pthread_mutex_t mutex; /* of arena_alloc */
 };
 
-Arena *arena_create(void) { return calloc(1, sizeof(Arena)); }
+Arena *arena_create(void)
+{
+    Arena *arena = calloc(1, sizeof *arena);
+    if (!arena) return NULL;
+    if (pthread_mutex_init(&arena->mutex, NULL) == 0) return arena;
+    free(arena);
+    return NULL;
+}
 
 void arena_destroy(Arena *arena)
 {
@@ -25,6 +34,7 @@ void arena_destroy(Arena *arena)
         free(block->data);
         free(block);
     }
+    pthread_mutex_destroy(&arena->mutex);
     free(arena);
 }
 
@@ -54,13 +64,8 @@ static ArenaBlock *add_block(Arena *arena, size_t octets)
     return block;
 }
 
-void *arena_alloc(Arena *arena, size_t count, size_t size)
+static void *take(Arena *arena, size_t octets)
 {
-    size_t octets;
-    if (__builtin_mul_overflow(count, size, &octets) || octets > SIZE_MAX - arena_alignment) return NULL;
-    octets = (octets + arena_alignment - 1) & ~(size_t)(arena_alignment - 1);
-    if (octets == 0) octets = arena_alignment;
-
     while (arena->current && arena->current->size - arena->current->used < octets && arena->current->next)
         arena->current = arena->current->next;
     if (!arena->current || arena->current->size - arena->current->used < octets) {
@@ -70,7 +75,20 @@ void *arena_alloc(Arena *arena, size_t count, size_t size)
     }
     void *memory = arena->current->data + arena->current->used;
     arena->current->used += octets;
-    memset(memory, 0, octets);
+    return memory;
+}
+
+void *arena_alloc(Arena *arena, size_t count, size_t size)
+{
+    size_t octets;
+    if (__builtin_mul_overflow(count, size, &octets) || octets > SIZE_MAX - arena_alignment) return NULL;
+    octets = (octets + arena_alignment - 1) & ~(size_t)(arena_alignment - 1);
+    if (octets == 0) octets = arena_alignment;
+
+    pthread_mutex_lock(&arena->mutex);
+    void *memory = take(arena, octets);
+    pthread_mutex_unlock(&arena->mutex);
+    if (memory) memset(memory, 0, octets);
     return memory;
 }
 

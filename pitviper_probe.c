@@ -108,7 +108,8 @@ Status probe_run(const Probe *probe, int argc, char **argv, FILE *in, FILE *out)
 {
     Column      column[probe_max_columns], result[probe_max_columns];
     const int   columns = read_columns(column, probe->in), results = read_columns(result, probe->out);
-    ProbeValue *value = calloc(2 * probe_max_columns, sizeof *value), *answer = value ? value + probe_max_columns : NULL;
+    ProbeValue *value = calloc(2 * probe_max_columns, sizeof *value),
+               *answer = value ? value + probe_max_columns : NULL;
     char       *line = malloc(row_max_octets), *copy = malloc(row_max_octets);
     char       *cell[row_max_cells];
     void       *state = NULL;

@@ -1,10 +1,10 @@
-/* dis/data.h: Data (type 20): fixed and variable datums to whoever asked, or to all. IEEE 1278.1-1995 5.4.6.10. */
+/* dis/data.h: Data (type 20) and Set Data (19): fixed and variable datums, to one entity or to all. IEEE 1278.1-1995 5.4.6.10. */
 #ifndef DIS_DATA_H
 #define DIS_DATA_H
 
 #include "dis/pdu.h"
 
-enum { dis_pdu_data = 20, dis_smallest_mtu = 1400 };
+enum { dis_pdu_set_data = 19, dis_pdu_data = 20, dis_smallest_mtu = 1400 };
 
 typedef struct DisFixedDatum {
     uint32_t id, value;
@@ -28,12 +28,7 @@ typedef struct DisData {
     DisVariableDatum variable[dis_data_variable_max];
 } DisData;
 
-/* As the other decoders (entity_state.h): `out` untouched unless STATUS_OK, and then only the datums counted are
- * written; octets behind the last one are left alone. STATUS_BAD_VALUE: a count, or a number of bits, that the length
- * cannot hold. STATUS_UNSUPPORTED: more datums than there is room for. Reads Set Data (19) too: it is laid
- * out alike. */
-Status dis_decode_data(DisData *out, const uint8_t *pdu, size_t octets);
-/* 0 where it does not fit: into capacity, or into 65535 octets. */
+/* Set Data is laid out alike. 0 where it does not fit: into capacity, or into 65535 octets. */
 size_t dis_encode_data(uint8_t *out, size_t capacity, const DisData *pdu);
 
 #endif

@@ -48,12 +48,7 @@ typedef struct DisEntityStateUpdate {
     DisVariableParameter variable[dis_max_variable_parameters];
 } DisEntityStateUpdate;
 
-/* pdu: header.length octets from dis_next_pdu. Outputs untouched on failure.
- * STATUS_TRUNCATED, or STATUS_BAD_VALUE when variable_count does not fit. Values are not judged here:
- * see dis_kinematics_drop. */
-Status dis_decode_entity_state(DisEntityState *out, const uint8_t *pdu, size_t octets);
-Status dis_decode_entity_state_update(DisEntityStateUpdate *out, const uint8_t *pdu, size_t octets);
-/* Writes header.length as computed; returns the octets written, or 0 when capacity is too small. */
+/* Decoding: decode.h. These write header.length as computed and return the octets written; 0: capacity is too small. */
 size_t dis_encode_entity_state(uint8_t *out, size_t capacity, const DisEntityState *pdu);
 size_t dis_encode_entity_state_update(uint8_t *out, size_t capacity, const DisEntityStateUpdate *pdu);
 
@@ -61,5 +56,15 @@ size_t dis_encode_entity_state_update(uint8_t *out, size_t capacity, const DisEn
  * Near the Earth: 1e5 m .. 1e8 m from its centre. Velocity, acceleration, rates: finite. */
 bool dis_entity_is_usable(DisDrop *why, DisEntityId id, const double p_ecef[3], const float velocity_mps[3],
                           const float euler_rad[3]);
+static inline bool dis_entity_state_is_usable(DisDrop *why, const DisEntityState *pdu)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    return dis_entity_is_usable(why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad);
+}
+static inline bool dis_entity_state_update_is_usable(DisDrop *why, const DisEntityStateUpdate *pdu)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    return dis_entity_is_usable(why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad);
+}
 
 #endif

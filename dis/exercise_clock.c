@@ -278,6 +278,14 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     return ruler_s;
 }
 
+double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s)
+{
+    uint16_t sender[2];
+    if (!dis_pdu_sender(sender, header, pdu)) return NAN;
+    return exercise_clock_report_time(clock, sender[0], sender[1], dis_pdu_entity(header, pdu), header->timestamp,
+                                      capture_s);
+}
+
 /* ---- saying --------------------------------------------------------------------------------------- */
 
 /* Whether something counted at about a rate; whole counts at both ends. */

@@ -37,18 +37,7 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
 }
 
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
-static inline double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu,
-                                             double capture_s)
-{
-    enum { entity_octet = 16, entity_state = 1, entity_state_update = 67 };
-    const bool reports = (header->type == entity_state || header->type == entity_state_update) &&
-                         header->length >= entity_octet + 2;
-    uint16_t   sender[2];
-    if (!dis_pdu_sender(sender, header, pdu)) return NAN;
-    return exercise_clock_report_time(clock, sender[0], sender[1],
-                                      reports ? pdu[entity_octet] << 8 | pdu[entity_octet + 1] : -1, header->timestamp,
-                                      capture_s);
-}
+double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);
 
 /* ---- senders whose stamps were doubted ------------------------------------------------------------- */
 

@@ -6,7 +6,7 @@
  * the seconds that passed by the right clock. */
 #include "dis/log.h"
 
-#include "dis/entity_state.h"
+#include "dis/decode.h"
 #include "dis/exercise_clock.h"
 
 #include <stdlib.h>
@@ -102,17 +102,18 @@ static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2]
     for (int i = 0; seen && i < log->count; i++) {
         DisCounters    ignored = {0};
         DisHeader      header;
-        DisEntityState state;
+        DisPdu         decoded;
         uint16_t       who[2];
         const uint8_t *at = log->datagram[i].bytes, *pdu, *end = at + log->datagram[i].octets;
         while (dis_next_pdu(&header, &pdu, &at, end, &ignored)) {
             if (header.type != dis_pdu_entity_state || !dis_pdu_sender(who, &header, pdu) || who[0] != sender[0] ||
-                who[1] != sender[1] || dis_decode_entity_state(&state, pdu, header.length) != STATUS_OK)
+                who[1] != sender[1] || dis_decode(&decoded, pdu, header.length) != STATUS_OK)
                 continue;
-            const double *p = state.p_ecef, capture_s = log->datagram[i].capture_s;
-            Seen         *s = &seen[state.id.entity % entity_slots], now = {true, state.id.entity, header.timestamp,
+            const DisEntityState *state = &decoded.entity_state;
+            const double *p = state->p_ecef, capture_s = log->datagram[i].capture_s;
+            Seen         *s = &seen[state->id.entity % entity_slots], now = {true, state->id.entity, header.timestamp,
                                                                             capture_s, {p[0], p[1], p[2]}, 0};
-            const double  v[3] = {state.velocity_mps[0], state.velocity_mps[1], state.velocity_mps[2]};
+            const double  v[3] = {state->velocity_mps[0], state->velocity_mps[1], state->velocity_mps[2]};
             const double  stamps_s = dis_timestamp_step_s(s->stamp, now.stamp), packets_s = capture_s - s->capture_s;
             double        moved[3];
             now.speed_mps = v3_length(v);

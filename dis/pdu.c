@@ -1,4 +1,5 @@
 /* dis/pdu.c: identifiers as text, names, and the walk through a datagram. */
+#include "dis/decode_private.h"
 #include "dis/reader.h"
 
 #include <stdio.h>
@@ -69,103 +70,6 @@ const char *dis_drop_name(DisDrop drop)
     return (unsigned)drop < DIS_DROP_COUNT ? name[drop] : "unknown";
 }
 
-/* Types of IEEE 1278.1-2012, table of PDU types. */
-const char *dis_pdu_type_name(uint8_t type)
-{
-    static const char *const name[256] = {
-        [0] = "Other",
-        [1] = "Entity State",
-        [2] = "Fire",
-        [3] = "Detonation",
-        [4] = "Collision",
-        [5] = "Service Request",
-        [6] = "Resupply Offer",
-        [7] = "Resupply Received",
-        [8] = "Resupply Cancel",
-        [9] = "Repair Complete",
-        [10] = "Repair Response",
-        [11] = "Create Entity",
-        [12] = "Remove Entity",
-        [13] = "Start/Resume",
-        [14] = "Stop/Freeze",
-        [15] = "Acknowledge",
-        [16] = "Action Request",
-        [17] = "Action Response",
-        [18] = "Data Query",
-        [19] = "Set Data",
-        [20] = "Data",
-        [21] = "Event Report",
-        [22] = "Comment",
-        [23] = "Electromagnetic Emission",
-        [24] = "Designator",
-        [25] = "Transmitter",
-        [26] = "Signal",
-        [27] = "Receiver",
-        [28] = "IFF",
-        [29] = "Underwater Acoustic",
-        [30] = "Supplemental Emission/Entity State",
-        [31] = "Intercom Signal",
-        [32] = "Intercom Control",
-        [33] = "Aggregate State",
-        [34] = "IsGroupOf",
-        [35] = "Transfer Ownership",
-        [36] = "IsPartOf",
-        [37] = "Minefield State",
-        [38] = "Minefield Query",
-        [39] = "Minefield Data",
-        [40] = "Minefield Response NACK",
-        [41] = "Environmental Process",
-        [42] = "Gridded Data",
-        [43] = "Point Object State",
-        [44] = "Linear Object State",
-        [45] = "Areal Object State",
-        [46] = "TSPI",
-        [47] = "Appearance",
-        [48] = "Articulated Parts",
-        [49] = "LE Fire",
-        [50] = "LE Detonation",
-        [51] = "Create Entity-R",
-        [52] = "Remove Entity-R",
-        [53] = "Start/Resume-R",
-        [54] = "Stop/Freeze-R",
-        [55] = "Acknowledge-R",
-        [56] = "Action Request-R",
-        [57] = "Action Response-R",
-        [58] = "Data Query-R",
-        [59] = "Set Data-R",
-        [60] = "Data-R",
-        [61] = "Event Report-R",
-        [62] = "Comment-R",
-        [63] = "Record-R",
-        [64] = "Set Record-R",
-        [65] = "Record Query-R",
-        [66] = "Collision-Elastic",
-        [67] = "Entity State Update",
-        [68] = "Directed Energy Fire",
-        [69] = "Entity Damage Status",
-        [70] = "Information Operations Action",
-        [71] = "Information Operations Report",
-        [72] = "Attribute",
-    };
-    return name[type] ? name[type] : "unknown type";
-}
-
-/* What a type needs before its variable records. Only for what this node decodes: of the others it has no
- * business judging the length. */
-static unsigned least_length(uint8_t type)
-{
-    switch (type) {
-    case dis_pdu_entity_state: return 144;
-    case dis_pdu_fire: return 96;
-    case dis_pdu_detonation: return 104;
-    case dis_pdu_remove_entity: return 28;
-    case dis_pdu_start_resume: return 44;
-    case dis_pdu_stop_freeze: return 40;
-    case dis_pdu_entity_state_update: return 72;
-    default: return dis_header_octets;
-    }
-}
-
 bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
                   DisCounters *counters)
 {
@@ -180,7 +84,7 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
          * has its next PDU somewhere else than it says. */
         if (next.version < 5 || next.version > 7) {
             why = DIS_DROP_BAD_VERSION;
-        } else if (next.length < least_length(next.type)) {
+        } else if (next.length < dis_least_octets(next.type)) {
             why = DIS_DROP_LENGTH_TOO_SHORT;
         } else if (next.length > left) {
             why = DIS_DROP_LENGTH_TOO_LONG;
@@ -195,6 +99,21 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
     counters->dropped[why]++;
     *at = end; /* so that asking again does not count again */
     return false;
+}
+
+bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu)
+{
+    enum { last_type = 72 };
+    if (header->type < 1 || header->type > last_type || header->length < dis_header_octets + 4) return false;
+    site_application[0] = dis_load_u16(pdu + dis_header_octets);
+    site_application[1] = dis_load_u16(pdu + dis_header_octets + 2);
+    return true;
+}
+
+int dis_pdu_entity(const DisHeader *header, const uint8_t *pdu)
+{
+    const bool reports = header->type == dis_pdu_entity_state || header->type == dis_pdu_entity_state_update;
+    return reports && header->length >= dis_header_octets + 6 ? dis_load_u16(pdu + dis_header_octets + 4) : -1;
 }
 
 int64_t dis_unix_ns_until(double unix_s)

@@ -91,16 +91,11 @@ typedef struct DisWriter DisWriter;
 bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
                   DisCounters *counters);
 
-/* Who sent a PDU: every type of the standard names its sender's site and application right after the header.
+/* The sender of a PDU: every type of the standard names its site and application right after the header.
  * False, and out untouched, for a type outside it or one too short. */
-static inline bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu)
-{
-    enum { last_type = 72 };
-    if (header->type < 1 || header->type > last_type || header->length < dis_header_octets + 4) return false;
-    site_application[0] = (uint16_t)(pdu[12] << 8 | pdu[13]);
-    site_application[1] = (uint16_t)(pdu[14] << 8 | pdu[15]);
-    return true;
-}
+bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu);
+/* Of which of its sender's entities it is a report (Entity State, Entity State Update); -1: of none. */
+int  dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
 
 /* ---- arrival times ------------------------------------------------------------------------------- */
 

@@ -31,9 +31,6 @@ typedef struct DisStopFreeze {
     uint32_t     request;
 } DisStopFreeze;
 
-Status dis_decode_remove_entity(DisRemoveEntity *out, const uint8_t *pdu, size_t octets);
-Status dis_decode_start_resume(DisStartResume *out, const uint8_t *pdu, size_t octets);
-Status dis_decode_stop_freeze(DisStopFreeze *out, const uint8_t *pdu, size_t octets);
 size_t dis_encode_remove_entity(uint8_t *out, size_t capacity, const DisRemoveEntity *pdu);
 size_t dis_encode_start_resume(uint8_t *out, size_t capacity, const DisStartResume *pdu);
 size_t dis_encode_stop_freeze(uint8_t *out, size_t capacity, const DisStopFreeze *pdu);

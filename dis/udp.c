@@ -4,7 +4,9 @@
  * moment the one that closes a tick). sending: the socket itself, which a network that went and came back replaces. queue:
  * the ring and the counters, held for as long as some copies take. */
 #include "dis/udp.h"
+#include "dis/steady_clock.h"
 #include "dis/udp_link.h"
+#include "dis/udp_ring.h"
 #include "dis/udp_socket.h"
 
 #include <assert.h>
@@ -20,21 +22,9 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, unit = 32,
-       pause_ms = 100, look_ms = 1000 };
+enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, pause_ms = 100, look_ms = 1000 };
 
 static const int64_t ns_per_s = 1000000000;
-
-/* What lies in the ring before each datagram; both in whole units, so that a gap at the end holds at least this. */
-typedef struct Record {
-    int64_t  capture_ns;
-    uint32_t octets; /* skip: nothing more before the end of the ring */
-    uint16_t from_port;
-    uint8_t  from[16];
-} Record;
-
-_Static_assert(sizeof(Record) == unit, "a record is one unit");
-static const uint32_t skip = UINT32_MAX;
 
 struct DisUdp {
     int              socket, wake; /* wake: an eventfd that ends the thread; -1 in a sender */
@@ -50,6 +40,7 @@ struct DisUdp {
     pthread_mutex_t  receive;
     pthread_cond_t   turn;         /* the tick is closed, the thread may go on */
     int64_t          last_ns;      /* no arrival time is below this */
+    SteadyClock      clock;
     bool             complained;
     DisUdpTap        tap;          /* NULL: none */
     void            *tap_user;
@@ -59,12 +50,11 @@ struct DisUdp {
     uint8_t         *buffer;       /* [batch][buffer_octets] */
     _Alignas(struct cmsghdr) uint8_t control[batch][control_octets];
 
-    /* under queue. Positions count octets since the beginning: held <= next <= end <= held + ring_octets */
+    /* under queue */
     pthread_mutex_t  queue;
     pthread_cond_t   arrived;
-    bool             somebody_waits;
-    uint8_t         *ring;
-    uint64_t         ring_octets, held, next, end; /* held .. next: the taker's */
+    bool             taker_waits;
+    DisRing          ring;
     uint32_t         kernel_drops;                 /* its counter, modulo 2^32 */
     DisUdpCounters   counters;
 
@@ -88,9 +78,13 @@ void dis_udp_where(char out[dis_udp_where_size], const DisUdpConfig *config)
 
 int64_t dis_udp_now_ns(void)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    return (int64_t)now.tv_sec * ns_per_s + now.tv_nsec;
+    return steady_clock_now_ns();
+}
+
+void dis_udp_sleep_until(int64_t until_ns)
+{
+    const struct timespec until = steady_clock_monotonic(until_ns);
+    clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, NULL);
 }
 
 void dis_udp_destination(uint8_t to[16], const DisUdp *udp)
@@ -103,31 +97,11 @@ void dis_udp_destination(uint8_t to[16], const DisUdp *udp)
 
 /* ---- the queue: all under its lock ----------------------------------------------------------------- */
 
-static Record *record_at(const DisUdp *u, uint64_t position)
+static void put_arrival(DisUdp *u, const DisRingRecord *head, const uint8_t *bytes)
 {
-    return (Record *)(void *)(u->ring + position % u->ring_octets); /* whole units: aligned */
-}
-
-static uint64_t units(uint64_t octets) { return (octets + unit - 1) / unit * unit; }
-
-static void put_arrival(DisUdp *u, const Record *head, const uint8_t *bytes)
-{
-    /* empty: from the beginning again, so that of a large ring no more is touched than was ever needed */
-    if (u->held == u->end) u->held = u->next = u->end = (u->end + u->ring_octets - 1) / u->ring_octets * u->ring_octets;
-    const uint64_t octets = units(sizeof *head + head->octets), to_end = u->ring_octets - u->end % u->ring_octets;
-    const uint64_t gap = octets > to_end ? to_end : 0;
     u->counters.datagrams++;
     u->counters.octets += head->octets;
-    if (u->end - u->held + gap + octets > u->ring_octets) {
-        u->counters.lost_queue++;
-        return;
-    }
-    if (gap) record_at(u, u->end)->octets = skip;
-    u->end += gap;
-    Record *record = record_at(u, u->end);
-    *record = *head;
-    if (head->octets) memcpy(record + 1, bytes, head->octets);
-    u->end += octets;
+    if (!dis_ring_put(&u->ring, head, bytes)) u->counters.lost_queue++;
 }
 
 /* The kernel's count comes with datagrams and by asking, so an older one may come after a newer. */
@@ -141,41 +115,29 @@ static void note_drops(DisUdp *u, uint32_t drops)
 
 bool dis_udp_take(DisArrival *out, DisUdp *u, int64_t until_ns)
 {
-    bool taken = false;
     pthread_mutex_lock(&u->queue);
-    u->held = u->next;
-    if (u->next != u->end) {
-        const Record *record = record_at(u, u->next);
-        if (record->octets == skip) {
-            u->next += u->ring_octets - u->next % u->ring_octets;
-            u->held = u->next;
-            record = record_at(u, u->next);
-        }
-        taken = record->capture_ns <= until_ns;
-        if (taken) {
-            *out = (DisArrival){.capture_ns = record->capture_ns,
-                                .octets = record->octets,
-                                .bytes = (const uint8_t *)(record + 1),
-                                .from_port = record->from_port};
-            memcpy(out->from, record->from, sizeof out->from);
-            u->next += units(sizeof *record + record->octets);
-        }
+    const DisRingRecord *record = dis_ring_take(&u->ring, until_ns);
+    if (record) {
+        *out = (DisArrival){.capture_ns = record->capture_ns,
+                            .octets = record->octets,
+                            .bytes = (const uint8_t *)(record + 1),
+                            .from_port = record->from_port};
+        memcpy(out->from, record->from, sizeof out->from);
     }
     pthread_mutex_unlock(&u->queue);
-    return taken;
+    return record;
 }
 
 bool dis_udp_wait(DisUdp *u, int64_t until_ns)
 {
-    const int64_t         end_ns = until_ns < 0 ? 0 : until_ns;
-    const struct timespec until = {(time_t)(end_ns / ns_per_s), (long)(end_ns % ns_per_s)};
+    const struct timespec until = steady_clock_monotonic(until_ns);
     pthread_mutex_lock(&u->queue);
-    while (u->next == u->end) {
-        u->somebody_waits = true;
+    while (!dis_ring_waits(&u->ring)) {
+        u->taker_waits = true;
         if (pthread_cond_timedwait(&u->arrived, &u->queue, &until) != 0) break;
     }
-    u->somebody_waits = false;
-    const bool waits = u->next != u->end;
+    u->taker_waits = false;
+    const bool waits = dis_ring_waits(&u->ring);
     pthread_mutex_unlock(&u->queue);
     return waits;
 }
@@ -218,6 +180,17 @@ static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, str
     }
 }
 
+/* By how much the system's clock, the kernel's stamps with it, was set; said of more than a second. */
+static ClockReading look_at_clock(DisUdp *u)
+{
+    const ClockReading now   = clock_reading();
+    const double       set_s = 1e-9 * (double)steady_clock_look(&u->clock, now);
+    if (fabs(set_s) >= 1)
+        log_warn("udp: the system's clock was set %s by %.0f s; arrival times go on without that step",
+                 set_s > 0 ? "forward" : "back", fabs(set_s));
+    return now;
+}
+
 /* Takes what is there, up to a batch, and never waits. Returns how many came, -1 after a failure; *newest_ns: latest
  * time of the kernel's among them. */
 static int receive_batch(DisUdp *u, int64_t *newest_ns)
@@ -234,18 +207,19 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     const int came = recvmmsg(u->socket, u->message, batch, MSG_DONTWAIT, NULL);
     if (came < 0) return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR ? 0 : -1;
 
+    const ClockReading now = look_at_clock(u);
     *newest_ns = 0;
-    Record   record[batch];
+    DisRingRecord record[batch];
     uint32_t drops = 0;
     bool     dropped = false;
     for (int i = 0; i < came; i++) {
         struct msghdr *header = &u->message[i].msg_hdr;
         int64_t        kernel_ns = 0;
         read_control(&kernel_ns, &drops, &dropped, header);
-        if (!kernel_ns) kernel_ns = dis_udp_now_ns();
+        kernel_ns = kernel_ns ? steady_clock_of_stamp(&u->clock, kernel_ns, now) : dis_udp_now_ns();
         if (kernel_ns > *newest_ns) *newest_ns = kernel_ns;
         if (kernel_ns > u->last_ns) u->last_ns = kernel_ns;
-        record[i] = (Record){.capture_ns = u->last_ns, .octets = u->message[i].msg_len};
+        record[i] = (DisRingRecord){.capture_ns = u->last_ns, .octets = u->message[i].msg_len};
         if (header->msg_namelen >= sizeof u->from[i].v4) {
             const bool v6 = u->from[i].any.sa_family == AF_INET6;
             dis_socket_address_octets16(record[i].from, &u->from[i]);
@@ -263,7 +237,7 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     pthread_mutex_lock(&u->queue);
     if (dropped) note_drops(u, drops); /* the last is the newest */
     for (int i = 0; i < came; i++) put_arrival(u, &record[i], u->vector[i].iov_base);
-    if (u->somebody_waits && u->next != u->end) pthread_cond_signal(&u->arrived);
+    if (u->taker_waits && dis_ring_waits(&u->ring)) pthread_cond_signal(&u->arrived);
     pthread_mutex_unlock(&u->queue);
     return came;
 }
@@ -441,7 +415,12 @@ static DisUdp *make(const DisUdpConfig *config)
     pthread_mutex_init(&u->receive, NULL);
     pthread_mutex_init(&u->queue, NULL);
     pthread_cond_init(&u->turn, NULL);
-    pthread_cond_init(&u->arrived, NULL);
+    pthread_condattr_t monotonic;
+    pthread_condattr_init(&monotonic);
+    pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+    pthread_cond_init(&u->arrived, &monotonic);
+    pthread_condattr_destroy(&monotonic);
+    u->clock = steady_clock();
     return u;
 }
 
@@ -469,10 +448,9 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     if (status != STATUS_OK) goto fail;
     look_after_link(u);
 
-    u->ring_octets = (uint64_t)config->queue_octets / unit * unit;
-    u->ring = aligned_alloc(unit, u->ring_octets);
+    const bool ring = dis_ring_create(&u->ring, (uint64_t)config->queue_octets) == STATUS_OK;
     u->buffer = malloc((size_t)batch * buffer_octets);
-    if (!u->ring || !u->buffer) {
+    if (!ring || !u->buffer) {
         log_error("udp: no memory for a queue of %d octets; ask for less", config->queue_octets);
         status = STATUS_NO_MEMORY;
         goto fail;
@@ -509,6 +487,6 @@ void dis_udp_close(DisUdp *u)
     pthread_mutex_destroy(&u->queue);
     pthread_mutex_destroy(&u->receive);
     free(u->buffer);
-    free(u->ring);
+    dis_ring_destroy(&u->ring);
     free(u);
 }

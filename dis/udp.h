@@ -1,7 +1,8 @@
 /* dis/udp.h: DIS datagrams over UDP: unicast, broadcast or multicast, IPv4 or IPv6, on a chosen interface.
  *
- * A thread of its own takes datagrams off the socket as they come, so that nobody who is busy loses any; what it took
- * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds. Memory is taken at
+ * A thread of its own takes datagrams off the socket as they come, so that a busy caller loses none; what it took
+ * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds; when the system's clock
+ * is set they go on as if it had not been. Memory is taken at
  * dis_udp_open and never grows, whatever the network sends. Linux only.
  *
  * A network that goes away - its interface deleted or set down, its address taken, the way to the group lost - is said
@@ -17,9 +18,9 @@ enum { dis_udp_address_size = 64, dis_max_datagram = 65535 };
 typedef struct DisUdpConfig {
     char address[dis_udp_address_size]; /* IPv4 or IPv6 in numbers, where to send. What is heard on the port:
                                          * a multicast group: it is joined, nothing else is heard
-                                         * an address of this machine: what comes to it, and nobody else may listen
+                                         * an address of this machine: what comes to it, and no other program may listen
                                          * a broadcast, or empty for 255.255.255.255: whatever comes by IPv4
-                                         * another machine's: whatever comes, and nobody else may listen */
+                                         * another machine's: whatever comes, and no other program may listen */
     char interface[32];                 /* name, `eth0`: nothing comes or leaves elsewhere (an address of this machine
                                          * is that already); empty: all, and the system chooses where to send */
     int  port;                          /* 1 .. 65535 */
@@ -38,7 +39,7 @@ DisUdpConfig dis_udp_default_config(void);
 typedef struct DisUdpCounters {
     uint64_t datagrams, octets; /* off the socket: taken + waiting + lost_queue */
     uint64_t lost_kernel;       /* came and found the socket full: the kernel's own count */
-    uint64_t lost_queue;        /* nobody took them in time */
+    uint64_t lost_queue;        /* not taken in time */
     uint64_t sent, send_failed;
     int      send_error;        /* errno of the latest that failed */
     bool     away;              /* the interface, its address or the way to the group is not there, which was said */
@@ -58,7 +59,7 @@ typedef struct DisArrival {
 /* STATUS_BAD_VALUE or STATUS_IO with one logged line: which address, port or interface, why, and what to do next. */
 Status dis_udp_open(DisUdp **out, const DisUdpConfig *config);   /* listens, and may send */
 Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends only: no port is bound */
-/* NULL is fine. Nobody may be inside another function by then. */
+/* NULL is fine. No thread may be inside another function by then. */
 void   dis_udp_close(DisUdp *udp);
 
 /* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue has
@@ -78,8 +79,10 @@ bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
 /* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
 Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
-/* Unix time in the nanoseconds that arrivals are stamped in. */
+/* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is set. */
 int64_t dis_udp_now_ns(void);
+/* Until it is that, or a signal comes. */
+void    dis_udp_sleep_until(int64_t until_ns);
 /* Where dis_udp_send sends: as DisArrival's from. */
 void    dis_udp_destination(uint8_t to[16], const DisUdp *udp);
 

@@ -37,8 +37,6 @@ typedef struct DisDetonation {
     DisVariableParameter variable[dis_max_variable_parameters];
 } DisDetonation;
 
-Status dis_decode_fire(DisFire *out, const uint8_t *pdu, size_t octets);
-Status dis_decode_detonation(DisDetonation *out, const uint8_t *pdu, size_t octets);
 size_t dis_encode_fire(uint8_t *out, size_t capacity, const DisFire *pdu);
 size_t dis_encode_detonation(uint8_t *out, size_t capacity, const DisDetonation *pdu);
 

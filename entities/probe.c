@@ -1,6 +1,7 @@
+/* entities/probe.c: the probes of entities: dead reckoning, articulation and models, one row at a time. */
 #include "entities/probe.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 
 static void three(double out[3], const ProbeValue *in)
 {
@@ -27,7 +28,7 @@ static const char *dead_reckon_row(void *state, const ProbeValue *in, ProbeValue
     dead_reckon(&moved, &k, in[16].number);
     for (int i = 0; i < 9; i++)
         if (!isfinite(moved.p_ecef[i % 3]) || !isfinite(moved.r_ecef_from_body[i]))
-            return "the way, or a turn or its square, is beyond 1e308";
+            return "distance, rotation or its square exceeds 1e308";
     for (int i = 0; i < 3; i++) out[i].number = moved.p_ecef[i];
     euler_from_r_ecef_from_body(&out[3].number, &out[4].number, &out[5].number, moved.r_ecef_from_body);
     return NULL;
@@ -35,7 +36,8 @@ static const char *dead_reckon_row(void *state, const ProbeValue *in, ProbeValue
 
 const Probe entities_probes[] = {
     {.name = "deadreckon",
-     .help = "where an Entity State's own words put it dt_s later (IEEE 1278.1 Annex E): ECEF metres, Euler angles in "
+     .help = "position and attitude of an Entity State extrapolated by dt_s (IEEE 1278.1 Annex E): ECEF metres, Euler "
+             "angles in "
              "radians, velocity and acceleration in world axes for algorithms 1-5, body axes for 6-9",
      .in = "algorithm,x_m,y_m,z_m,psi_rad,theta_rad,phi_rad,vx_mps,vy_mps,vz_mps,ax_mps2?,ay_mps2?,az_mps2?,wx_rps?,wy_rps?,"
            "wz_rps?,dt_s",

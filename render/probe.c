@@ -1,3 +1,4 @@
+/* render/probe.c: the probes of this folder: Planck, ray intersection and atmosphere for rows of CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"
@@ -43,7 +44,7 @@ static Status rays_open(void **state, int argc, char **argv)
     ModelImport report = {0};
     bool        imported = false;
     if (argc < 2 || argc > 3 || (argc == 3 && strcmp(argv[2], "file") != 0 && strcmp(argv[2], "body") != 0)) {
-        log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and whose axes the rows are "
+        log_error("rays: usage: probe rays MODEL [file|body]: a built-in name or a file; and the axes of the rows "
                   "in");
         return STATUS_BAD_VALUE;
     }
@@ -139,7 +140,7 @@ static const char *find_model(Atmosphere **out, AtmosphereProbe *probe, const ch
         probe->count++;
     }
     *out = probe->model[i];
-    return *out ? NULL : "no such model, or its tables are spoilt (see the log)";
+    return *out ? NULL : "no such model, or its tables are invalid (see the log)";
 }
 
 static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue *out)
@@ -158,7 +159,7 @@ static const char *atmosphere_row(void *state, const ProbeValue *in, ProbeValue 
     if (!(path.observer_m >= 0 && path.target_m >= 0)) return "heights must be at or above the ground";
     /* a range rounded to print may fall short of a vertical path by its last digit */
     if (!(path.range_m > 0 && path.range_m >= 0.9999 * fabs(path.observer_m - path.target_m)))
-        return "range_km must be above 0 and no less than the heights are apart";
+        return "range_km must be above 0 and at least the difference of the heights";
     if (!(temp_k > 0)) return "temp_k must be above 0";
     PathAir air;
     atmosphere_path(&air, model, visibility_m, band, &path, temp_k);
@@ -173,7 +174,8 @@ const Probe render_probes[] = {
     {.name = "planck", .help = "in-band radiance of a black body and its derivative in temperature",
      .in = "lo_um,hi_um,temp_k", .out = "radiance_w_m2_sr,dldt", .row = planck_row},
     {.name = "rays", .arguments = "MODEL [file|body]",
-     .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it has no "
+     .help = "first hit on a model, its joints at 0; in the file's own axes, origin and units (distances in m) if it "
+             "has no "
              "sidecar, else in body axes",
      .in = "ox_m,oy_m,oz_m,dx,dy,dz", .out = "hit,dist_m,nx,ny,nz,part$",
      .open = rays_open, .row = rays_row, .close = rays_close},

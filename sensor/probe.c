@@ -1,3 +1,4 @@
+/* sensor/probe.c: the probes of this folder: MTF, NETD, three-dimensional noise and MRTD for rows of CSV. */
 #include "sensor/probe.h"
 
 #include "sensor/detector/mrtd.h"
@@ -114,7 +115,8 @@ static const char *noise3d_row(void *state, const ProbeValue *in, ProbeValue *ou
 static Status mrtd_open(void **state, int argc, char **argv)
 {
     if (argc > 2) {
-        log_error("mrtd: usage: probe mrtd [SHEET]: a sensor's sheet (sensor.table) in place of the rows' presets");
+        log_error("mrtd: usage: probe mrtd [SHEET]: a sensor's data sheet (sensor.table) in place of the presets of "
+                  "the rows");
         return STATUS_BAD_VALUE;
     }
     if (argc < 2) return STATUS_OK;
@@ -136,8 +138,8 @@ static const char *mrtd_row(void *state, const ProbeValue *in, ProbeValue *out)
         .snr = or_else(&in[4], 2.5), .frames = rate_hz * eye_s, .temp_k = or_else(&in[5], 300)};
     if (state) p = *(const SensorPreset *)state;
     else if (!etc_path(path, sizeof path, "sensors.csv") || preset_read(&p, path, in[0].text) != STATUS_OK)
-        return "preset is no sensor of etc/sensors.csv";
-    if (p.band == BAND_OPTICAL) return "the sensor sees no warmth";
+        return "preset is not a sensor of etc/sensors.csv";
+    if (p.band == BAND_OPTICAL) return "the sensor is not thermal";
     if (!(f > 0 && f <= 0.5)) return "f_cyc_px must be above 0 and at most 0.5";
     if (!(rate_hz > 0 && rate_hz <= 1e5 && eye_s > 0 && eye_s <= 1e3))
         return "frame_hz and eye_s must be in 0 .. 100000 and 0 .. 1000";
@@ -168,18 +170,18 @@ const Probe sensor_probes[] = {
      .out = "electrons,electrons_per_k,netd_mk",
      .row = netd_row},
     {.name = "noise",
-     .help = "three-dimensional noise (D'Agostino & Webb) at one place of one frame",
+     .help = "three-dimensional noise (D'Agostino & Webb) at one pixel of one frame",
      .in = "frame,row,column," SIGMAS,
      .out = "noise",
      .row = noise_row},
     {.name = "noise3d",
-     .help = "makes frames of three-dimensional noise and estimates what is in them, unbiased",
+     .help = "generates frames of three-dimensional noise and estimates their components, unbiased",
      .in = "frames,rows,columns," SIGMAS,
      .out = "est_tvh,est_tv,est_th,est_vh,est_t,est_v,est_h",
      .row = noise3d_row},
     {.name = "mrtd",
      .help = "minimum resolvable temperature difference of four-bar targets (FLIR92's formulation), vertical and "
-             "horizontal bars; first: with their first harmonic alone",
+             "horizontal bars; first: only their first harmonic",
      .arguments = "[SHEET]",
      .in = "preset$?,f_cyc_px,frame_hz?,eye_s?,snr?,temp_k?",
      .out = "f_cyc_mrad,mrtd_v_bars_k,mrtd_h_bars_k,first_v_bars_k,first_h_bars_k,mtf_h,mtf_v",

@@ -1,3 +1,4 @@
+/* terrain/probe.c: the probes of terrain: geodesy, geoid, sun, elevation and cover, one row at a time. */
 #include "terrain/probe.h"
 
 #include "terrain/earth/geoid.h"
@@ -21,7 +22,8 @@ static const char *sun_row(void *state, const ProbeValue *in, ProbeValue *out)
     Geodetic place;
     Sun      sun;
     if (!text_to_unix_s(&unix_s, in[0].text)) return "utc must look like 2026-06-21T10:00:00Z, 1900 .. 2100";
-    if (!place_of(&place, in[1].number, in[2].number, in[3].number)) return "lat_deg within 90, lon_deg within 360, h_m within 1e8";
+    if (!place_of(&place, in[1].number, in[2].number, in[3].number))
+        return "lat_deg within 90, lon_deg within 360, h_m within 1e8";
     if (sun_at(&sun, unix_s, &place, in[4].number, in[5].number, in[6].number) != STATUS_OK)
         return "pressure_mbar in 0 .. 1200, temp_c in -150 .. 100, delta_t_s within 1000";
     out[0].number = 90 - sun.elevation_rad / rad_per_deg;
@@ -50,7 +52,7 @@ static const char *geoid_row(void *state, const ProbeValue *in, ProbeValue *out)
     Geodetic place;
     if (!place_of(&place, in[0].number, in[1].number, 0)) return "lat_deg within 90, lon_deg within 360";
     out[0].number = geoid_height_m(state, place.lat_rad, place.lon_rad);
-    return isfinite(out[0].number) ? NULL : "the grid holds no value there";
+    return isfinite(out[0].number) ? NULL : "the grid has no value there";
 }
 
 static void geoid_probe_close(void *state)
@@ -70,12 +72,13 @@ static const char *geodesy_row(void *state, const ProbeValue *in, ProbeValue *ou
     const int    ecef = !isnan(p_ecef[0]) + !isnan(p_ecef[1]) + !isnan(p_ecef[2]);
     const int    origin = !isnan(in[6].number) + !isnan(in[7].number) + !isnan(in[8].number);
     Geodetic     place;
-    if (!(geodetic == 3 && ecef == 0) && !(geodetic == 0 && ecef == 3)) return "give lat_deg, lon_deg, h_m or x_m, y_m, z_m: all of one, none of the other";
+    if (!(geodetic == 3 && ecef == 0) && !(geodetic == 0 && ecef == 3))
+        return "give lat_deg, lon_deg, h_m or x_m, y_m, z_m: all of one, none of the other";
     if (geodetic) {
         if (!place_of(&place, lat_deg, lon_deg, h_m) || ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK)
             return "lat_deg within 90, lon_deg within 360, h_m within 1e8";
     } else if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK) {
-        return "x_m, y_m, z_m is no place";
+        return "x_m, y_m, z_m is not a valid position";
     }
     out[0].number = place.lat_rad / rad_per_deg;
     out[1].number = place.lon_rad / rad_per_deg;
@@ -86,7 +89,8 @@ static const char *geodesy_row(void *state, const ProbeValue *in, ProbeValue *ou
     Geodetic   at;
     LocalFrame frame;
     double     p_enu[3];
-    if (origin != 3 || !place_of(&at, in[6].number, in[7].number, in[8].number) || local_frame_at(&frame, &at) != STATUS_OK)
+    if (origin != 3 || !place_of(&at, in[6].number, in[7].number, in[8].number) ||
+        local_frame_at(&frame, &at) != STATUS_OK)
         return "origin_lat_deg within 90, origin_lon_deg within 360, origin_h_m within 1e8: all or none";
     enu_from_ecef(p_enu, &frame, p_ecef);
     for (int k = 0; k < 3; k++) out[6 + k].number = p_enu[k];
@@ -94,12 +98,23 @@ static const char *geodesy_row(void *state, const ProbeValue *in, ProbeValue *ou
 }
 
 const Probe terrain_probes[] = {
-    {.name = "sun", .help = "apparent place of the sun (ERFA; parallax and refraction as NREL SPA); delta_t_s: TT - UT1",
-     .in = "utc$,lat_deg,lon_deg,h_m,pressure_mbar,temp_c,delta_t_s?", .out = "zenith_deg,azimuth_deg,distance_au", .row = sun_row},
-    {.name = "geoid", .arguments = "[GRID.gtx]", .help = "height of the geoid above the ellipsoid (EGM96 of proj-data, cubic)",
-     .in = "lat_deg,lon_deg", .out = "n_m", .open = geoid_probe_open, .row = geoid_row, .close = geoid_probe_close},
-    {.name = "geodesy", .help = "WGS 84: geodetic to Earth-centred or back, and east, north, up about an origin (GeographicLib)",
+    {.name = "sun",
+     .help = "apparent place of the sun (ERFA; parallax and refraction as NREL SPA); delta_t_s: TT - UT1",
+     .in = "utc$,lat_deg,lon_deg,h_m,pressure_mbar,temp_c,delta_t_s?",
+     .out = "zenith_deg,azimuth_deg,distance_au",
+     .row = sun_row},
+    {.name = "geoid",
+     .arguments = "[GRID.gtx]",
+     .help = "height of the geoid above the ellipsoid (EGM96 of proj-data, cubic)",
+     .in = "lat_deg,lon_deg",
+     .out = "n_m",
+     .open = geoid_probe_open,
+     .row = geoid_row,
+     .close = geoid_probe_close},
+    {.name = "geodesy",
+     .help = "WGS 84: geodetic to Earth-centred or back, and east, north, up about an origin (GeographicLib)",
      .in = "lat_deg?,lon_deg?,h_m?,x_m?,y_m?,z_m?,origin_lat_deg?,origin_lon_deg?,origin_h_m?",
-     .out = "geodetic_lat_deg,geodetic_lon_deg,geodetic_h_m,ecef_x_m,ecef_y_m,ecef_z_m,east_m,north_m,up_m", .row = geodesy_row},
+     .out = "geodetic_lat_deg,geodetic_lon_deg,geodetic_h_m,ecef_x_m,ecef_y_m,ecef_z_m,east_m,north_m,up_m",
+     .row = geodesy_row},
 };
 const int terrain_probe_count = sizeof terrain_probes / sizeof *terrain_probes;

@@ -1,13 +1,13 @@
-/* entities/effects/effects_history.h: who let puffs go, and when: shots and bursts of the last minute, and what entities have
- * been giving off. Bounded: the oldest is dropped, and counted, when room runs out.
+/* entities/effects/effects_history.h: who let puffs go, and when: shots and bursts of the last minute, and what
+ * entities have been giving off. Bounded: the oldest is dropped, and counted, when room runs out.
  *
- * An entity gives off a puff at every multiple of its kind's interval of exercise time, from where its report in force
- * then put it. What puffs there are at t is therefore a function of what was heard and of t alone. */
+ * An entity gives off a puff at every multiple of its kind's interval of exercise time, from where its report in
+ * force then put it. What puffs there are at t is therefore a function of what was heard and of t alone. */
 #ifndef ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 #define ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 
 #include "dis/warfare.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects.h"
 
 enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff_capacity = 16384 };

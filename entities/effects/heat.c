@@ -110,7 +110,8 @@ static bool is_destroyed(const HeatEvidence *evidence)
 /* Sets every drive that a report speaks of; firing and burning go on by their own clocks. */
 static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_s)
 {
-    const bool platform = evidence->type.kind == dis_kind_platform, air = platform && evidence->type.domain == dis_domain_air;
+    const bool platform = evidence->type.kind == dis_kind_platform,
+               air = platform && evidence->type.domain == dis_domain_air;
     const bool alive = !is_destroyed(evidence), was_moving = state->moving;
     const double ground_drive = clamp(evidence->speed_mps / full_speed_mps, 0, 1);
     HeatDrive *drive = state->drive;

@@ -2,12 +2,7 @@
 #include "entities/import/model_import_private.h"
 #include "entities/parametric/parametric.h"
 
-#include <ctype.h>
-#include <errno.h>
 #include <stdlib.h>
-#include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 const char *import_lost_name(ImportLost lost)
 {
@@ -17,82 +12,6 @@ const char *import_lost_name(ImportLost lost)
         "other_objects",
     };
     return (unsigned)lost < IMPORT_LOST_COUNT ? name[lost] : "?";
-}
-
-/* ---- names of files -------------------------------------------------------------------------------------- */
-
-/* The extension in lower case, without its dot and without `.gz`; stem: length of what is before it. */
-static void split_extension(char out[16], size_t *stem, const char *path)
-{
-    size_t length = strlen(path);
-    out[0] = 0;
-    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
-    *stem = length;
-    for (size_t at = length; at > 0 && path[at - 1] != '/'; at--)
-        if (path[at - 1] == '.') {
-            const size_t count = length - at;
-            if (count >= 16) return;
-            for (size_t i = 0; i < count; i++) out[i] = (char)tolower((unsigned char)path[at + i]);
-            out[count] = 0;
-            *stem = at - 1;
-            return;
-        }
-}
-
-static bool is_file(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
-}
-
-bool model_is_path(const char *name) { return strpbrk(name, "/.") != NULL; }
-
-/* The model's file and the sidecar's from what a user named; reads the sidecar. */
-static Status find_files(ModelImport *report, Sidecar *sidecar, const char *path)
-{
-    char extension[16];
-    size_t stem;
-    if (strlen(path) >= sizeof report->file - 8) {
-        log_error("model: the path is longer than %zu characters: %.60s...", sizeof report->file - 8, path);
-        return STATUS_BAD_VALUE;
-    }
-    split_extension(extension, &stem, path);
-    if (strcmp(extension, "yaml") == 0 || strcmp(extension, "yml") == 0) {
-        snprintf(report->sidecar, sizeof report->sidecar, "%s", path);
-        const Status status = sidecar_read(sidecar, path);
-        if (status != STATUS_OK) return status;
-        if (!sidecar->file[0]) {
-            log_error("sidecar: %s: file: is missing: which model it is for (or name the model's file instead)", path);
-            return STATUS_BAD_VALUE;
-        }
-        const char *slash = strrchr(path, '/');
-        const int folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
-        if ((size_t)snprintf(report->file, sizeof report->file, "%.*s%s", folder, path, sidecar->file) >=
-            sizeof report->file) {
-            log_error("sidecar: %s: file: the path is too long", path);
-            return STATUS_BAD_VALUE;
-        }
-    } else {
-        snprintf(report->file, sizeof report->file, "%s", path);
-        snprintf(report->sidecar, sizeof report->sidecar, "%.*s.yaml", (int)stem, path);
-        if (is_file(report->sidecar)) {
-            const Status status = sidecar_read(sidecar, report->sidecar);
-            if (status != STATUS_OK) return status;
-        } else {
-            report->sidecar[0] = 0;
-        }
-    }
-    struct stat info;
-    if (stat(report->file, &info) != 0) {
-        log_error("model: cannot open: file=%s: %s", report->file, strerror(errno));
-        return STATUS_IO;
-    }
-    if (!S_ISREG(info.st_mode) || info.st_size > import_max_octets) {
-        log_error("model: cannot read: file=%s: %s", report->file,
-                  S_ISREG(info.st_mode) ? "larger than 256 MiB" : "not a file");
-        return S_ISREG(info.st_mode) ? STATUS_BAD_VALUE : STATUS_IO;
-    }
-    return STATUS_OK;
 }
 
 /* ---- building ------------------------------------------------------------------------------------------------ */
@@ -488,7 +407,7 @@ static void name_model(Build *b)
     char extension[16], stem_name[model_name_size];
     size_t stem;
     const char *slash = strrchr(b->report->file, '/');
-    split_extension(extension, &stem, b->report->file);
+    import_split_extension(extension, &stem, b->report->file);
     const size_t from = slash ? (size_t)(slash - b->report->file) + 1 : 0;
     snprintf(stem_name, sizeof stem_name, "%.*s", stem > from ? (int)(stem - from) : 0, b->report->file + from);
     clean_name(b->model.name, b->sidecar->name[0] ? b->sidecar->name : stem_name, "model");
@@ -520,9 +439,9 @@ Status model_import(Model *out, ModelImport *report, const char *path)
     ImportPaints paints = {0};
     char extension[16];
     size_t stem;
-    Status status = find_files(&filled, &sidecar, path);
+    Status status = import_find_files(&filled, &sidecar, path);
     if (status == STATUS_OK) {
-        split_extension(extension, &stem, filled.file);
+        import_split_extension(extension, &stem, filled.file);
         status = strcmp(extension, "flt") == 0 ? import_openflight(&scene, filled.file)
                                                : import_assimp(&scene, filled.file, extension);
     }

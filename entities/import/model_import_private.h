@@ -6,7 +6,7 @@
 #define ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 
 #include "entities/import/model_import.h"
-#include "entities/models/sidecar.h"
+#include "entities/import/sidecar.h"
 
 enum {
     import_max_octets = 1 << 28, /* of a file, unpacked */
@@ -63,6 +63,10 @@ typedef struct ImportScene {
 /* On failure one logged line. path: to a regular file. extension: lower case, without `.gz`. */
 Status import_assimp(ImportScene *out, const char *path, const char *extension);
 Status import_openflight(ImportScene *out, const char *path);
+/* The extension in lower case, without its dot and without `.gz`; stem: length of what is before it. */
+void   import_split_extension(char out[16], size_t *stem, const char *path);
+/* The model's file and the sidecar's, from the one that was named; reads the sidecar. */
+Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path);
 /* An OpenSceneGraph text, as osgconv writes it. path: for messages. text is taken apart. */
 Status import_osgt(ImportScene *out, const char *path, char *text, size_t octets);
 void import_scene_close(ImportScene *scene); /* accepts zeroes */

@@ -43,9 +43,12 @@ void import_say_no_node(const ImportScene *scene, const ImportPlace *place, cons
     int listed = 0, unnamed = 0;
     for (int i = 0; i < scene->node_count; i++)
         for (int p = 0; p < spec->pattern_count; p++)
-            if (import_matches(spec->pattern[p], scene->node[i].name) || import_matches(spec->pattern[p], place[i].path)) {
-                log_error("sidecar: %s:%d: joints: nodes: a later joint, or drop, has all nodes of '%s': say the general "
-                          "first, then the exceptions", sidecar->path, spec->line, spec->pattern[p]);
+            if (import_matches(spec->pattern[p], scene->node[i].name) ||
+                import_matches(spec->pattern[p], place[i].path)) {
+                log_error(
+                    "sidecar: %s:%d: joints: nodes: a later joint, or drop, has all nodes of '%s': say the general "
+                    "first, then the exceptions",
+                    sidecar->path, spec->line, spec->pattern[p]);
                 return;
             }
     for (int i = 0; i < scene->node_count; i++) {
@@ -56,14 +59,15 @@ void import_say_no_node(const ImportScene *scene, const ImportPlace *place, cons
         if (!*name || before || listed++ >= most_listed || n >= sizeof list - 120) continue;
         text_escape(safe, 96, name, strlen(name));
         n += (size_t)snprintf(list + n, sizeof list - n, "%s%s", n ? ", " : "", safe);
-        if (times_named(scene, name) > 1) n += (size_t)snprintf(list + n, sizeof list - n, " (%d times)", times_named(scene, name));
+        if (times_named(scene, name) > 1)
+            n += (size_t)snprintf(list + n, sizeof list - n, " (%d times)", times_named(scene, name));
     }
     const int near = nearest(scene, pattern);
     if (near >= 0) text_escape(safe, sizeof safe, scene->node[near].name, strlen(scene->node[near].name));
     log_error("sidecar: %s:%d: joints: no node of the file matches '%s' (case counts, * is any text)%s%s%s; of its "
-              "%d nodes %d have no name; there are: %s%s", sidecar->path, spec->line, pattern,
-              near >= 0 ? "; did you mean '" : "", near >= 0 ? safe : "", near >= 0 ? "'?" : "", scene->node_count, unnamed,
-              list, listed > most_listed ? " ..." : "");
+              "%d nodes %d have no name; there are: %s%s",
+              sidecar->path, spec->line, pattern, near >= 0 ? "; did you mean '" : "", near >= 0 ? safe : "",
+              near >= 0 ? "'?" : "", scene->node_count, unnamed, list, listed > most_listed ? " ..." : "");
 }
 
 static bool is_above(const ImportScene *scene, int node, int other)
@@ -74,8 +78,8 @@ static bool is_above(const ImportScene *scene, int node, int other)
 }
 
 /* A name without a star that several nodes have, none of them carried by another: they would move about one pivot. */
-static void warn_duplicate(const ImportScene *scene, const Sidecar *sidecar, const SidecarJoint *spec, const char *pattern,
-                           const ImportPlace *place)
+static void warn_duplicate(const ImportScene *scene, const Sidecar *sidecar, const SidecarJoint *spec,
+                           const char *pattern, const ImportPlace *place)
 {
     int first = -1, count = 0;
     for (int i = 0; i < scene->node_count; i++) {
@@ -84,9 +88,10 @@ static void warn_duplicate(const ImportScene *scene, const Sidecar *sidecar, con
         count++;
     }
     if (count < 2) return;
-    log_warn("sidecar: %s:%d: joints: nodes: %d nodes of the file have the name '%s' and will move as one; `each: true` "
-             "makes a joint of each, a path such as '%s' takes one, or rename them in the file", sidecar->path, spec->line,
-             count, pattern, place[first].path);
+    log_warn(
+        "sidecar: %s:%d: joints: nodes: %d nodes of the file have the name '%s' and will move as one; `each: true` "
+        "makes a joint of each, a path such as '%s' takes one, or rename them in the file",
+        sidecar->path, spec->line, count, pattern, place[first].path);
 }
 
 void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file)
@@ -100,7 +105,8 @@ void import_warn_names(const ImportScene *scene, const ImportPlace *place, const
                          sidecar->drop.count || sidecar->damage_hide.count;
     for (int m = 0; m < scene->mesh_count; m++, meshes++) unnamed += is_unnamed(scene->node[scene->mesh[m].node].name);
     if (by_name && unnamed > 0)
-        log_warn("model: %s: %d of %d meshes hang on nodes without a name, which a sidecar's patterns can hardly tell apart: "
+        log_warn("model: %s: %d of %d meshes hang on nodes without a name, which a sidecar's patterns can hardly tell "
+                 "apart: "
                  "name them in the program that made the file (`pitviper model info` lists what they are called here)",
                  file, unnamed, meshes);
 }

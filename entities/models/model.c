@@ -1,3 +1,4 @@
+/* entities/models/model.c: making, poses and destruction of models. */
 #include "entities/models/model.h"
 
 #include <stdio.h>
@@ -327,7 +328,8 @@ static void number_places(uint32_t *place, Corner *corner, const Model *m)
     }
 }
 
-/* What the edges of one part say. volume_m3: of what they enclose, when it is closed. edge: room for three a triangle. */
+/* What the edges of one part say. volume_m3: of what they enclose, when it is closed. edge: room for three a
+ * triangle. */
 static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int part, const uint32_t *place,
                        uint64_t *edge)
 {

@@ -1,7 +1,8 @@
-/* Aircraft other than fighters and helicopters, of one family of lines: airliners (two or four engines under a low
- * swept wing), cargo aircraft (high wing, propellers or jets), a bomber (eight engines in four pods), a patrol aircraft
- * (low wing, four propellers), a ground-attack aircraft (straight wing, two fins, engines on the rear body), a light
- * aircraft (braced high wing, propeller in front) and an unmanned aircraft (long straight wing, propeller behind).
+/* entities/parametric/airplane.c: aircraft other than fighters and helicopters, of one family of lines: airliners
+ * (two or four engines under a low swept wing), cargo aircraft (high wing, propellers or jets), a bomber (eight
+ * engines in four pods), a patrol aircraft (low wing, four propellers), a ground-attack aircraft (straight wing, two
+ * fins, engines on the rear body), a light aircraft (braced high wing, propeller in front) and an unmanned aircraft
+ * (long straight wing, propeller behind).
  *
  * Published length, span and height (manufacturers' airport-planning documents and type certificates, USAF and US Navy
  * fact sheets, Jane's All the World's Aircraft; the same in the open encyclopedias):

@@ -1,5 +1,5 @@
-/* Tracked and towed artillery, and tracked engines of work: rocket launcher with a traversing box of tubes, howitzer in
- * a large turret at the rear, bulldozer, cargo carrier, towed howitzer, mortar.
+/* entities/parametric/artillery.c: tracked and towed artillery, and tracked engines of work: rocket launcher with a
+ * traversing box of tubes, howitzer in a large turret at the rear, bulldozer, cargo carrier, towed howitzer, mortar.
  *
  * Published length, width and height (US Army TM and FM figures; Jane's Armour and Artillery; the same in the open
  * encyclopedias): M270 MLRS 6.97 x 2.97 x 2.59 m (travelling); M109A6 9.68 (gun forward) x 3.15 x 3.24; Caterpillar D7G

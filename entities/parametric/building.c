@@ -1,8 +1,8 @@
-/* Detached house of two storeys under a gable roof. It stands for no one house: 10.0 m by 8.0 m in plan, storeys of
- * 2.7 m, eaves at 5.4 m, roof pitched 40 degrees (ridge at 8.756 m) with an overhang of 0.4 m, as the common run of
- * central European houses; door leaf 2.11 m by 0.985 m (DIN 18101), windows 1.20 m by 1.35 m. Brick outside, clay
- * tiles, timber door and frames. The door faces forward (+x), the ridge runs across (y), the chimney stands right of
- * the middle behind the ridge. All rooms are taken as one heated inside. */
+/* entities/parametric/building.c: detached house of two storeys under a gable roof. It stands for no one house: 10.0
+ * m by 8.0 m in plan, storeys of 2.7 m, eaves at 5.4 m, roof pitched 40 degrees (ridge at 8.756 m) with an overhang
+ * of 0.4 m, as the common run of central European houses; door leaf 2.11 m by 0.985 m (DIN 18101), windows 1.20 m by
+ * 1.35 m. Brick outside, clay tiles, timber door and frames. The door faces forward (+x), the ridge runs across (y),
+ * the chimney stands right of the middle behind the ridge. All rooms are taken as one heated inside. */
 #include "entities/parametric/parametric.h"
 #include "entities/parametric/parts.h"
 

@@ -1,9 +1,10 @@
-/* Tracked infantry carrier of the AIFV / YPR-765 class, the M113's relative with a gun turret. Published (Jane's
- * Armour and Artillery, FMC AIFV; the same in the open encyclopedias): 5.258 m long, 2.819 m wide, hull top at 2.007 m,
- * turret roof at 2.619 m, 2.794 m over all, ground clearance 0.432 m, track 0.381 m wide on 2.159 m between centres,
- * 2.667 m on the ground, five road wheels of 0.61 m a side, drive in front; 25 mm gun, traverse 360 degrees,
- * elevation -10 .. +50 degrees; driver front left, engine and exhaust front right, turret right of the middle behind
- * the engine, commander's cupola behind the driver, ramp hinged at the foot of the rear. The rest is estimate.
+/* entities/parametric/carrier.c: tracked infantry carrier of the AIFV / YPR-765 class, the M113's relative with a
+ * gun turret. Published (Jane's Armour and Artillery, FMC AIFV; the same in the open encyclopedias): 5.258 m long,
+ * 2.819 m wide, hull top at 2.007 m, turret roof at 2.619 m, 2.794 m over all, ground clearance 0.432 m, track 0.381
+ * m wide on 2.159 m between centres, 2.667 m on the ground, five road wheels of 0.61 m a side, drive in front; 25 mm
+ * gun, traverse 360 degrees, elevation -10 .. +50 degrees; driver front left, engine and exhaust front right, turret
+ * right of the middle behind the engine, commander's cupola behind the driver, ramp hinged at the foot of the rear.
+ * The rest is estimate.
  *
  * Articulated: turret (4096 azimuth), gun (4416 elevation), cupola (5696 azimuth), its machine gun (6016 elevation),
  * ramp (3232 hatch, position 0 shut .. 1 down on the ground). */

@@ -1,8 +1,8 @@
-/* Inflatable decoy of a main battle tank: the outline of parametric_tank.c (hull 6.95 m, 9.53 m with the gun, 3.59 m
- * wide, 2.19 m to the turret roof) blown up out of coated fabric over air beams. Makers publish the full size of what
- * is copied and 30 .. 100 kg (open descriptions of Inflatech's and Rusbal's wares); the bulges are estimates. In the
- * visible a tank; in the infrared one cold skin, without engine, exhaust, warm tracks or gun; to radar, cloth. Nothing
- * moves. */
+/* entities/parametric/decoy.c: inflatable decoy of a main battle tank: the outline of parametric_tank.c (hull 6.95
+ * m, 9.53 m with the gun, 3.59 m wide, 2.19 m to the turret roof) blown up out of coated fabric over air beams.
+ * Makers publish the full size of what is copied and 30 .. 100 kg (open descriptions of Inflatech's and Rusbal's
+ * wares); the bulges are estimates. In the visible a tank; in the infrared one cold skin, without engine, exhaust,
+ * warm tracks or gun; to radar, cloth. Nothing moves. */
 #include "entities/parametric/parametric.h"
 #include "entities/parametric/parts.h"
 

@@ -1,7 +1,7 @@
-/* Burning grain of a decoy flare for the 36 mm dispenser: 36 mm across, 148 mm long (the cartridge size of the
- * AN/ALE-39's MJU-8 class; Designation-Systems.net, public data sheets of the makers), six grooves along it as such
- * grains have, on an aluminium piston. Magnesium-Teflon-Viton burns for some four seconds; the grain's radiation
- * temperature is set by heat role `flare`.
+/* entities/parametric/flare.c: burning grain of a decoy flare for the 36 mm dispenser: 36 mm across, 148 mm long
+ * (the cartridge size of the AN/ALE-39's MJU-8 class; Designation-Systems.net, public data sheets of the makers),
+ * six grooves along it as such grains have, on an aluminium piston. Magnesium-Teflon-Viton burns for some four
+ * seconds; the grain's radiation temperature is set by heat role `flare`.
  *
  * The grain alone is modelled: a real flare's fire ball and smoke radiate from an area some twenty times as large,
  * which is a matter of the air about it, not of a solid. It lies along x; the base is its lowest line. */

@@ -1,8 +1,8 @@
-/* Attack helicopter of the AH-1 class. Published for the AH-1G/S (US Army TM 55-1520-236-10; Jane's All the
- * World's Aircraft): fuselage 13.59 m long and 0.99 m wide, height 4.11 m, main rotor of two blades 13.41 m
- * across with a chord of 0.686 m at 324 rpm, tail rotor 2.59 m across at 1,654 rpm on the right of the fin,
- * stub wings of 3.15 m span, skids 2.13 m apart, chin turret of +-110 degrees, gun +20.5 .. -50 degrees.
- * The rotor turns counter-clockwise seen from above. Sections of the body are estimates from the three-view
+/* entities/parametric/helicopter.c: attack helicopter of the AH-1 class. Published for the AH-1G/S (US Army TM
+ * 55-1520-236-10; Jane's All the World's Aircraft): fuselage 13.59 m long and 0.99 m wide, height 4.11 m, main rotor
+ * of two blades 13.41 m across with a chord of 0.686 m at 324 rpm, tail rotor 2.59 m across at 1,654 rpm on the
+ * right of the fin, stub wings of 3.15 m span, skids 2.13 m apart, chin turret of +-110 degrees, gun +20.5 .. -50
+ * degrees. The rotor turns counter-clockwise seen from above. Sections of the body are estimates from the three-view
  * drawings in those books. At rest the blades lie fore and aft, the tail rotor's up and down. */
 #include "entities/parametric/mesh_builder.h"
 #include "entities/parametric/parametric.h"

@@ -1,7 +1,8 @@
-/* Tracked air-defence launcher of the 2P25 class (2K12 Kub, SA-6): three missiles on one turntable. Published (Jane's
- * Land-Based Air Defence; Zaloga; the same in the open encyclopedias): 7.389 m long over the missiles, 3.18 m wide,
- * 3.45 m high, six road wheels a side, drive behind, 0.40 m clearance; missile 3M9: 5.80 m long, 0.335 m across, wings
- * of 1.245 m span. Launcher elevation to 80 degrees is estimate, as are hull lines, wheel base and turntable.
+/* entities/parametric/launcher.c: tracked air-defence launcher of the 2P25 class (2K12 Kub, SA-6): three missiles on
+ * one turntable. Published (Jane's Land-Based Air Defence; Zaloga; the same in the open encyclopedias): 7.389 m long
+ * over the missiles, 3.18 m wide, 3.45 m high, six road wheels a side, drive behind, 0.40 m clearance; missile 3M9:
+ * 5.80 m long, 0.335 m across, wings of 1.245 m span. Launcher elevation to 80 degrees is estimate, as are hull
+ * lines, wheel base and turntable.
  *
  * The missiles point ahead, level, as before a launch. Articulated: turntable (4096 azimuth), rails with their missiles
  * (4736 primary launcher, elevation). */

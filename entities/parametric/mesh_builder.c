@@ -1,4 +1,5 @@
-#include "entities/parametric/mesh_private.h"
+/* entities/parametric/mesh_builder.c: the mesh builder: nodes, parts, vertices and the model they end as. */
+#include "entities/parametric/mesh_builder_private.h"
 
 #include <assert.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* entities/parametric/mesh_loft.c: bodies drawn through cross sections, and bands around wheels. */
-#include "entities/parametric/mesh_private.h"
+#include "entities/parametric/mesh_builder_private.h"
 
 #include <assert.h>
 #include <stdlib.h>

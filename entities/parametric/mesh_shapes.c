@@ -1,5 +1,5 @@
 /* entities/parametric/mesh_shapes.c: bodies of revolution and flat-faced shapes. */
-#include "entities/parametric/mesh_private.h"
+#include "entities/parametric/mesh_builder_private.h"
 
 #include <assert.h>
 #include <stdlib.h>

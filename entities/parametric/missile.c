@@ -1,8 +1,8 @@
-/* Wire-guided anti-tank missile of the TOW class. Published for the BGM-71A: 1.17 m long, 152 mm in
- * diameter, 0.46 m across the open wings; four wings at mid body and four control fins at the tail, both as
- * an X in flight; the flight motor blows through two ports at the sides of the body between the wings, the
- * launch motor through the tail, where the beacon and the wire bobbins are too (US Army FM 3-22.34;
- * Designation-Systems.net, M71). Sections along the body are estimates.
+/* entities/parametric/missile.c: wire-guided anti-tank missile of the TOW class. Published for the BGM-71A: 1.17 m
+ * long, 152 mm in diameter, 0.46 m across the open wings; four wings at mid body and four control fins at the tail,
+ * both as an X in flight; the flight motor blows through two ports at the sides of the body between the wings, the
+ * launch motor through the tail, where the beacon and the wire bobbins are too (US Army FM 3-22.34; Designation-
+ * Systems.net, M71). Sections along the body are estimates.
  *
  * The base is the lowest wing tip: the axis is at 0.1626 m, and nothing has z > 0. */
 #include "entities/parametric/mesh_builder.h"

@@ -1,5 +1,5 @@
-/* Munitions other than the anti-tank missile: air-to-air missile, cruise missile, ballistic missile, bomb, guided bomb,
- * shell, torpedo, mine, grenade.
+/* entities/parametric/munition.c: munitions other than the anti-tank missile: air-to-air missile, cruise missile,
+ * ballistic missile, bomb, guided bomb, shell, torpedo, mine, grenade.
  *
  * Published length, diameter and span (Designation-Systems.net; US Navy and USAF fact files; US Army TM 43-0001; Jane's
  * Weapons; the same in the open encyclopedias): AIM-9L/M 2.87 m long, 0.127 m across, span 0.63; BGM-109 5.56 m (6.25

@@ -1,3 +1,4 @@
+/* entities/parametric/parametric.c: the list of built-in models, and which of them fits a type. */
 #include "entities/parametric/parametric.h"
 
 #include "entities/parametric/mesh_builder.h"

@@ -1,3 +1,4 @@
+/* entities/parametric/parts.c: wheels, tracks, guns and other shapes that several built-in models share. */
 #include "entities/parametric/parts.h"
 
 #include <stdio.h>

@@ -1,8 +1,8 @@
-/* Dismounted soldier standing at the low ready, 1.80 m to the top of the helmet and on the soles. Body of 1.745 m
- * with the segment lengths of Drillis and Contini (1966; as in Winter, "Biomechanics and Motor Control"): of the
- * stature, knee 0.285, hip 0.530, shoulder 0.818, chin 0.870, upper arm 0.186, forearm 0.146, shoulders 0.259 and
- * hips 0.191 wide, foot 0.152 long. Girths are estimates after the US Army's ANSUR survey; rifle 0.84 m (M4 carbine,
- * stock out). Clothing, vest, pack and helmet thicknesses are estimates.
+/* entities/parametric/person.c: dismounted soldier standing at the low ready, 1.80 m to the top of the helmet and on
+ * the soles. Body of 1.745 m with the segment lengths of Drillis and Contini (1966; as in Winter, "Biomechanics and
+ * Motor Control"): of the stature, knee 0.285, hip 0.530, shoulder 0.818, chin 0.870, upper arm 0.186, forearm
+ * 0.146, shoulders 0.259 and hips 0.191 wide, foot 0.152 long. Girths are estimates after the US Army's ANSUR
+ * survey; rifle 0.84 m (M4 carbine, stock out). Clothing, vest, pack and helmet thicknesses are estimates.
  *
  * One rigid body: stance and weapon bits of a life form's appearance are not followed. */
 #include "entities/parametric/parametric.h"

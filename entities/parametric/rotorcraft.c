@@ -1,5 +1,5 @@
-/* Helicopters other than the attack helicopter, and aircraft that are lifted otherwise: utility helicopter,
- * tandem-rotor helicopter, light helicopter, quadcopter, airship.
+/* entities/parametric/rotorcraft.c: helicopters other than the attack helicopter, and aircraft that are lifted
+ * otherwise: utility helicopter, tandem-rotor helicopter, light helicopter, quadcopter, airship.
  *
  * Published (US Army TM 1-1520 series and fact sheets; Jane's All the World's Aircraft; manufacturers; the same in the
  * open encyclopedias): UH-60A 19.76 m over the turning rotors, main rotor 16.36 m, height 5.13; CH-47D 30.1 m over the

@@ -1,7 +1,8 @@
-/* Patrol frigate of the Floreal class. Published (Jane's Fighting Ships; the same in the open encyclopedias): 93.5 m
- * long over all, 85.2 m on the waterline, 14.0 m beam, 4.3 m draught, 2,950 t at full load; 100 mm gun forward (barrel
- * 5.5 m, elevation -15 .. +80 degrees), hangar and flight deck aft, two funnels side by side. The lines are drawn to
- * those figures, with chines for the bilge's curve; superstructure, mast and fittings are estimates.
+/* entities/parametric/ship.c: patrol frigate of the Floreal class. Published (Jane's Fighting Ships; the same in the
+ * open encyclopedias): 93.5 m long over all, 85.2 m on the waterline, 14.0 m beam, 4.3 m draught, 2,950 t at full
+ * load; 100 mm gun forward (barrel 5.5 m, elevation -15 .. +80 degrees), hangar and flight deck aft, two funnels
+ * side by side. The lines are drawn to those figures, with chines for the bilge's curve; superstructure, mast and
+ * fittings are estimates.
  *
  * The base is the waterline: z = 0 is the sea, the hull reaches 4.3 m below it, and the origin lies half way along.
  *

@@ -1,4 +1,5 @@
-/* Things that stand: crates, radar on its mast, tent, bridge, buoy, satellite; rolling stock; an animal.
+/* entities/parametric/structure.c: things that stand: crates, radar on its mast, tent, bridge, buoy, satellite;
+ * rolling stock; an animal.
  *
  * Sizes: crates: a pallet of 1.22 x 1.02 m (the 48 x 40 inch pallet of MIL-P-15011), loaded to 1.20 m; radar: AN/TPQ-36
  * class trailer with a mast, 4.3 x 2.1 x 3.9 m, estimate; tent: GP medium 9.75 x 4.88 x 3.05 (US Army TM 10-8340);

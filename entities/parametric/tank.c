@@ -1,10 +1,10 @@
-/* Main battle tank of the T-72 class. Figures as published for the T-72A and its relatives (Jane's Armour and
- * Artillery; Zaloga, "T-72 Main Battle Tank 1974-93"; the same in the open encyclopedias): hull 6.95 m long,
- * 9.53 m with the gun forward, 3.59 m wide over the skirts, 2.19 m to the turret roof, ground clearance 0.47 m, six
- * 0.75 m road wheels a side, track 0.58 m wide on 2.79 m between centres, 4.27 m on the ground, glacis 68
- * degrees from the vertical, 125 mm gun of 6.0 m, elevation -6 .. +14 degrees, 12.7 mm machine gun on the
- * commander's cupola (right), engine exhaust on the left fender, infrared searchlight on the right of the
- * gun. Rear sprocket, front idler. Everything that those figures leave open is an estimate. */
+/* entities/parametric/tank.c: main battle tank of the T-72 class. Figures as published for the T-72A and its
+ * relatives (Jane's Armour and Artillery; Zaloga, "T-72 Main Battle Tank 1974-93"; the same in the open
+ * encyclopedias): hull 6.95 m long, 9.53 m with the gun forward, 3.59 m wide over the skirts, 2.19 m to the turret
+ * roof, ground clearance 0.47 m, six 0.75 m road wheels a side, track 0.58 m wide on 2.79 m between centres, 4.27 m
+ * on the ground, glacis 68 degrees from the vertical, 125 mm gun of 6.0 m, elevation -6 .. +14 degrees, 12.7 mm
+ * machine gun on the commander's cupola (right), engine exhaust on the left fender, infrared searchlight on the
+ * right of the gun. Rear sprocket, front idler. Everything that those figures leave open is an estimate. */
 #include "entities/parametric/mesh_builder.h"
 #include "entities/parametric/parametric.h"
 

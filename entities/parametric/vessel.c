@@ -1,4 +1,5 @@
-/* Vessels other than the frigate: boats, aircraft carrier, submarine, cargo ship, tanker.
+/* entities/parametric/vessel.c: vessels other than the frigate: boats, aircraft carrier, submarine, cargo ship,
+ * tanker.
  *
  * Published length over all, beam and draught (Jane's Fighting Ships; US Navy fact files; owners' data; the same in the
  * open encyclopedias): Nimitz class 332.8 m x 76.8 m (flight deck; hull 40.8 m) x 11.3 m; Los Angeles class submarine

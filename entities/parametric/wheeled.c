@@ -1,5 +1,6 @@
-/* Wheeled vehicles of simple lines: car, jeep, bus, motorcycle, eight-wheeled armoured carrier, heavy truck, tractor
- * with its semi-trailer, cargo trailer, shelter on a truck, rocket launcher on a truck, robot.
+/* entities/parametric/wheeled.c: wheeled vehicles of simple lines: car, jeep, bus, motorcycle, eight-wheeled
+ * armoured carrier, heavy truck, tractor with its semi-trailer, cargo trailer, shelter on a truck, rocket launcher
+ * on a truck, robot.
  *
  * Published length, width and height (manufacturers' data; US Army TM 9-2320-280, TM 9-2320-279, FM 3-21 figures;
  * Jane's Military Vehicles and Logistics, Armour and Artillery; the same in the open encyclopedias): car: Toyota

@@ -1,3 +1,4 @@
+/* entities/scenario/exercise.c: the simulator of an exercise: when each entity reports, shoots and is hit. */
 #include "entities/scenario/exercise.h"
 
 #include "dis/enumerations.h"

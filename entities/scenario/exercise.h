@@ -1,11 +1,11 @@
-/* entities/scenario/exercise.h: a simulator that takes part in an exercise: it says what a scenario's cast does, as others
- * expect it: an entity's state goes out when dead reckoning of what was said last has left the truth by a threshold,
- * at each heartbeat, and when its appearance changes; shots with Fire and Detonation.
+/* entities/scenario/exercise.h: a simulator that takes part in an exercise: it says what a scenario's cast does, as
+ * others expect it: an entity's state goes out when dead reckoning of what was said last has left the truth by a
+ * threshold, at each heartbeat, and when its appearance changes; shots with Fire and Detonation.
  *
  * The promise, after the first report: at every tick a receiver's dead reckoning is within the thresholds of the
  * truth, as far as the network delivers (tests/entities/test_exercise.c). Nobody is looked at more often than that
- * needs: from an error, its rate and bounds of what both can grow by follows when to look again. 10 000 vehicles cost
- * some 5 % of a core at 60 ticks a second.
+ * needs: from an error, its rate and bounds of what both can grow by follows when to look again. 10 000 vehicles
+ * cost some 5 % of a core at 60 ticks a second.
  *
  * Knows no clock and no socket: each step makes the datagrams of one tick and hands them to a sink. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_H

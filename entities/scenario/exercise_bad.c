@@ -1,5 +1,5 @@
-/* entities/scenario/exercise_bad.c: one malformed datagram of each kind, in turn. Every one must be dropped and counted, or
- * taken for what it is worth; none may disturb the others. */
+/* entities/scenario/exercise_bad.c: one malformed datagram of each kind, in turn. Every one must be dropped and
+ * counted, or taken for what it is worth; none may disturb the others. */
 #include "entities/scenario/exercise.h"
 
 static uint8_t random_octet(const Cast *cast, double t_s, size_t at)

@@ -1,4 +1,5 @@
-/* entities/scenario/exercise_cast.c: where everybody is. Making the cast: exercise_casting.c; missiles: exercise_shots.c. */
+/* entities/scenario/exercise_cast.c: where everybody is. Making the cast: exercise_casting.c; missiles:
+ * exercise_shots.c. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"

@@ -1,4 +1,5 @@
-/* entities/scenario/exercise_cast.h: who is in an exercise, and where everybody is at any time: a scenario made definite.
+/* entities/scenario/exercise_cast.h: who is in an exercise, and where everybody is at any time: a scenario made
+ * definite.
  *
  * Everything is a pure function of scenario, seed, entity and time; nothing is stepped, so any time may be asked in
  * any order. A pose costs some 0.3 us over invented ground, 2 us over ground of files. Lengths in ENU at the place. */
@@ -6,7 +7,7 @@
 #define ENTITIES_SCENARIO_EXERCISE_CAST_H
 
 #include "entities/models/articulation.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/scenario/exercise_ground.h"
 #include "entities/scenario/route.h"
 

@@ -2,7 +2,7 @@
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 
 #include <stdlib.h>
 

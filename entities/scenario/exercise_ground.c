@@ -1,3 +1,4 @@
+/* entities/scenario/exercise_ground.c: the ground that an exercise moves over, from files or made up. */
 #include "entities/scenario/exercise_ground.h"
 
 #include "terrain/landscape/elevation_import.h"

@@ -1,5 +1,5 @@
-/* entities/scenario/exercise_ground.h: the ground that an invented exercise moves over: smooth, in the tangent plane of its
- * place.
+/* entities/scenario/exercise_ground.h: the ground that an invented exercise moves over: smooth, in the tangent plane
+ * of its place.
  *
  * Invented: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files: the terrain room's elevation,
  * through a cubic B-spline of `smooth_m`, so that what drives over its triangles has a velocity and a rate. */

@@ -1,3 +1,5 @@
+/* entities/scenario/exercise_link.c: PDUs stamped and bundled into datagrams, lost, delayed and doubled as
+ * configured. */
 #include "entities/scenario/exercise_link.h"
 
 #include "dis/exercise_clock.h"

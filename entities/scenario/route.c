@@ -1,3 +1,4 @@
+/* entities/scenario/route.c: a smooth curve through points, with position and derivatives by distance. */
 #include "entities/scenario/route.h"
 
 #include <stdlib.h>

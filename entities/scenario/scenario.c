@@ -391,8 +391,8 @@ Status scenario_check(const Scenario *s)
         return STATUS_BAD_VALUE;
     }
     if (s->faults.bad_every_s > 0 && s->faults.bad_every_s < least_bad_s) {
-        log_error("scenario: %s: faults.bad_every_s: %g is neither 0 nor in %g .. 1e6 s", s->path, s->faults.bad_every_s,
-                  least_bad_s);
+        log_error("scenario: %s: faults.bad_every_s: %g is neither 0 nor in %g .. 1e6 s", s->path,
+                  s->faults.bad_every_s, least_bad_s);
         return STATUS_BAD_VALUE;
     }
     for (int i = 0; i < s->group_count; i++)

@@ -1,5 +1,5 @@
-/* entities/scenario/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who shoots, and how
- * it is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key,
+/* entities/scenario/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who
+ * shoots, and how it is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key,
  * etc/scenarios/README.md all.
  *
  * A plain struct: what is absent has its default. exercise_cast.h makes entities of it, exercise.h sends them. */

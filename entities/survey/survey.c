@@ -1,8 +1,7 @@
 /* entities/survey/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
 #include "dis/enumerations.h"
-#include "dis/simulation_management.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_index.h"
 #include "entities/survey/survey_shots.h"
 
@@ -28,6 +27,7 @@ typedef struct TrackBuild {
 typedef struct Building {
     Survey        *survey;
     ExerciseClock *clock;
+    DisPdu         pdu;   /* the one that is read */
     EntityIndex    index;
     int            track_capacity;
     TrackBuild    *build; /* beside survey->track */
@@ -108,7 +108,7 @@ static Status hear_entity_state(Building *b, const DisEntityState *pdu, double t
     DisDrop why;
     int t;
 
-    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+    if (!dis_entity_state_is_usable(&why, pdu)) {
         b->survey->counters.dropped[why]++;
         return STATUS_OK;
     }
@@ -132,7 +132,7 @@ static Status hear_entity_state_update(Building *b, const DisEntityStateUpdate *
     DisDrop why;
     int t;
 
-    if (!dis_entity_is_usable(&why, pdu->id, pdu->p_ecef, pdu->velocity_mps, euler_rad)) {
+    if (!dis_entity_state_update_is_usable(&why, pdu)) {
         b->survey->counters.dropped[why]++;
         return STATUS_OK;
     }
@@ -157,11 +157,11 @@ static Status add_warfare(Building *b, const WarfareEvent *event)
 /* A burst must be somewhere: the ground is fitted through it. */
 static Status hear_detonation(Building *b, const DisDetonation *pdu, double t_s)
 {
-    const DisEntityId anybody = {1, 1, 1};
+    const DisEntityId any_id = {1, 1, 1}; /* the place alone is judged */
     const float euler_rad[3] = {0, 0, 0};
     DisDrop why;
 
-    if (!dis_entity_is_usable(&why, anybody, pdu->p_ecef, euler_rad, euler_rad)) {
+    if (!dis_entity_is_usable(&why, any_id, pdu->p_ecef, euler_rad, euler_rad)) {
         b->survey->counters.dropped[why]++;
         return STATUS_OK;
     }
@@ -224,45 +224,18 @@ static Status settle_date(Building *b)
 
 /* ---- the pass ----------------------------------------------------------------------------- */
 
-static Status hear(Building *b, const DisHeader *header, const uint8_t *octets, double t_s)
+static Status hear(Building *b, const DisPdu *pdu, double t_s)
 {
-    Status decoded = STATUS_OK, kept = STATUS_OK;
-    union {
-        DisEntityState       state;
-        DisEntityStateUpdate update;
-        DisFire              fire;
-        DisDetonation        detonation;
-        DisStartResume       start;
-    } pdu;
-
-    switch (header->type) {
-    case dis_pdu_entity_state:
-        decoded = dis_decode_entity_state(&pdu.state, octets, header->length);
-        if (decoded == STATUS_OK) kept = hear_entity_state(b, &pdu.state, t_s);
-        break;
-    case dis_pdu_entity_state_update:
-        decoded = dis_decode_entity_state_update(&pdu.update, octets, header->length);
-        if (decoded == STATUS_OK) kept = hear_entity_state_update(b, &pdu.update, t_s);
-        break;
+    switch (pdu->type) {
+    case dis_pdu_entity_state: return hear_entity_state(b, &pdu->entity_state, t_s);
+    case dis_pdu_entity_state_update: return hear_entity_state_update(b, &pdu->update, t_s);
     case dis_pdu_fire:
-        decoded = dis_decode_fire(&pdu.fire, octets, header->length);
-        if (decoded != STATUS_OK) break;
-        kept = add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu.fire.firing, .target = pdu.fire.target,
-                                              .munition = pdu.fire.munition, .event = pdu.fire.event});
-        break;
-    case dis_pdu_detonation:
-        decoded = dis_decode_detonation(&pdu.detonation, octets, header->length);
-        if (decoded == STATUS_OK) kept = hear_detonation(b, &pdu.detonation, t_s);
-        break;
-    case dis_pdu_start_resume:
-        decoded = dis_decode_start_resume(&pdu.start, octets, header->length);
-        if (decoded == STATUS_OK) hear_start(b, &pdu.start, t_s);
-        break;
-    default: break;
+        return add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu->fire.firing, .target = pdu->fire.target,
+                                              .munition = pdu->fire.munition, .event = pdu->fire.event});
+    case dis_pdu_detonation: return hear_detonation(b, &pdu->detonation, t_s);
+    case dis_pdu_start_resume: hear_start(b, &pdu->start, t_s); return STATUS_OK;
+    default: return STATUS_OK;
     }
-    if (decoded == STATUS_BAD_VALUE) b->survey->counters.dropped[DIS_DROP_BAD_COUNT]++;
-    else if (decoded != STATUS_OK) b->survey->counters.dropped[DIS_DROP_TRUNCATED]++;
-    return kept;
 }
 
 static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
@@ -286,7 +259,9 @@ static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int
         Status status = STATUS_OK;
         if (exercise_clock_doubts(b->clock)->by_arrival == doubted)
             status = hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
-        if (status == STATUS_OK) status = hear(b, &header, pdu, t_s);
+        const Status refused = dis_decode(&b->pdu, pdu, header.length);
+        if (refused != STATUS_OK) dis_count_refused(&survey->counters, header.type, refused);
+        else if (status == STATUS_OK) status = hear(b, &b->pdu, t_s);
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
@@ -351,6 +326,7 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
         status = hear_datagram(&b, d, log->datagram + d, exercise);
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
+    if (status == STATUS_OK) status = survey_order_shots(&survey.shot_by_munition, survey.shot, survey.shot_count);
     if (status == STATUS_OK) status = end_flights(&b);
     if (status == STATUS_OK) status = settle_date(&b);
     if (status == STATUS_OK) {
@@ -377,6 +353,7 @@ void survey_destroy(Survey *survey)
     for (int t = 0; t < survey->track_count; t++) free(survey->track[t].point);
     free(survey->track);
     free(survey->shot);
+    free(survey->shot_by_munition);
     free(survey->datagram_s);
     memset(survey, 0, sizeof *survey);
 }

@@ -3,10 +3,9 @@
 #ifndef ENTITIES_SURVEY_SURVEY_H
 #define ENTITIES_SURVEY_SURVEY_H
 
-#include "dis/entity_state.h"
+#include "dis/decode.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
-#include "dis/warfare.h"
 
 /* One report of where an entity was. */
 typedef struct TrackPoint {
@@ -38,6 +37,7 @@ typedef struct Survey {
     int       track_count, shot_count;
     Track    *track;                      /* sorted by id */
     Shot     *shot;                       /* in order of fire (else detonation) time */
+    int      *shot_by_munition;           /* [shot_count] of shot, sorted by munition, then by time; NULL: not made */
     double    first_s, last_s;            /* exercise time of the first and last PDU; NaN: none */
     double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none heard */
     double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
@@ -55,6 +55,8 @@ typedef struct Survey {
 Status survey_log(Survey *out, const DisLog *log, int exercise);
 void   survey_destroy(Survey *survey);
 const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never heard */
+/* The first shot of that munition; NULL: none heard. O(log shots). */
+const Shot  *survey_shot(const Survey *survey, DisEntityId munition);
 
 /* Where a track was at t_s, between its reports (cubic in position, shortest turn in attitude); held at the
  * ends. For a replay's own host only: a live node cannot know the next report. */

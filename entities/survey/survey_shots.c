@@ -171,3 +171,52 @@ done:
     free(shot);
     return status;
 }
+
+/* ---- by munition ---------------------------------------------------------------------------------- */
+
+typedef struct ShotKey {
+    uint64_t key;
+    int      shot;
+} ShotKey;
+
+static int by_shot_key(const void *a, const void *b)
+{
+    const ShotKey *x = a, *y = b;
+    if (x->key != y->key) return x->key < y->key ? -1 : 1;
+    return (x->shot > y->shot) - (x->shot < y->shot);
+}
+
+Status survey_order_shots(int **by_munition, const Shot *shot, int count)
+{
+    ShotKey *key   = malloc(((size_t)count + 1) * sizeof *key);
+    int     *order = malloc(((size_t)count + 1) * sizeof *order);
+    if (!key || !order) {
+        free(key);
+        free(order);
+        return STATUS_NO_MEMORY;
+    }
+    for (int i = 0; i < count; i++) key[i] = (ShotKey){entity_key(shot[i].munition), i};
+    qsort(key, (size_t)count, sizeof *key, by_shot_key);
+    for (int i = 0; i < count; i++) order[i] = key[i].shot;
+    free(key);
+    *by_munition = order;
+    return STATUS_OK;
+}
+
+const Shot *survey_shot(const Survey *survey, DisEntityId munition)
+{
+    int low = 0, high = survey->shot_count;
+    if (!survey->shot_by_munition) { /* a survey made by hand */
+        for (int i = 0; i < survey->shot_count; i++)
+            if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return survey->shot + i;
+        return NULL;
+    }
+    while (low < high) { /* the first that is not before */
+        const int middle = low + (high - low) / 2;
+        if (dis_entity_id_compare(survey->shot[survey->shot_by_munition[middle]].munition, munition) < 0) low = middle + 1;
+        else high = middle;
+    }
+    if (low == survey->shot_count) return NULL;
+    const Shot *found = survey->shot + survey->shot_by_munition[low];
+    return dis_entity_id_compare(found->munition, munition) == 0 ? found : NULL;
+}

@@ -18,5 +18,7 @@ typedef struct WarfareEvent {
  * event id decides where it can), else to that of the same event id. One heard twice within half a second is one.
  * event is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
 Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int count);
+/* The numbers of the shots sorted by munition, then by number; malloc'ed. */
+Status survey_order_shots(int **by_munition, const Shot *shot, int count);
 
 #endif

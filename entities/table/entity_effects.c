@@ -179,16 +179,16 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
 }
 
 /* The gun has sunk to its stop and the turret stands where the blow left it, unless the sender says where they are. */
-void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot)
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports)
 {
-    if (slot->type.kind != dis_kind_platform || slot->articulation.count > 0 ||
-        (slot->appearance >> dis_appearance_damage_shift & 3) != dis_damage_destroyed)
+    if (entity->type.kind != dis_kind_platform || reports > 0 ||
+        (entity->appearance >> dis_appearance_damage_shift & 3) != dis_damage_destroyed)
         return;
     for (int n = 0; n < model->node_count; n++) {
         const ModelNode *node = &model->node[n];
         if (node->dis_class < 4096 || node->dis_class >= 7000) continue; /* turrets and guns */
         if (node->dis_metric == 13) joint_value[n] = node->low < node->high ? node->low : -0.1;
         if (node->dis_metric == 11)
-            joint_value[n] = 0.6 * (2 * random_uniform(entity_key(slot->id), 79, 0, (uint64_t)n) - 1);
+            joint_value[n] = 0.6 * (2 * random_uniform(entity_key(entity->id), 79, 0, (uint64_t)n) - 1);
     }
 }

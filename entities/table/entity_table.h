@@ -1,15 +1,13 @@
-/* entities/table/entity_table.h: who is out there: one slot an entity, handles with a generation, the last report
+/* entities/table/entity_table.h: what entities there are: one slot an entity, handles with a generation, the last report
  * of each, and what its history implies (heat, distance travelled, smoke left behind).
  *
  * Fed PDUs in the order of exercise time; asked for a Snapshot at any t at or after the last of them. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_H
 
-#include "dis/entity_state.h"
-#include "dis/simulation_management.h"
-#include "dis/warfare.h"
-#include "entities/models/catalog.h"
-#include "entities/models/contact.h"
+#include "dis/decode.h"
+#include "entities/catalog/catalog.h"
+#include "entities/table/contact.h"
 #include "entities/effects/effects_history.h"
 #include "entities/table/snapshot.h"
 
@@ -28,12 +26,13 @@ typedef struct EntityTableConfig {
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
+    double new_per_s;             /* entities that a sender may add a second, and at once; 65536: all its ids can name */
     double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
-    Pool  *pool;                  /* who helps with snapshots; NULL: the caller alone. The same bits either way */
+    Pool  *pool;                  /* helps with snapshots; NULL: the caller alone. The same bits either way */
     ContactGround ground;         /* what stands on it is set onto it in every pose handed out; none: it is not */
 } EntityTableConfig;
 
-/* Why entities came and went, and what was not believed, how many. */
+/* Why entities came and went, and what was refused, how many. */
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
     uint64_t detonated;      /* munitions ended by their Detonation */
@@ -43,6 +42,8 @@ typedef struct EntityCounters {
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
     uint64_t evicted;        /* given up for others when the table was full */
     uint64_t refused;        /* not taken in, being those that a full table would have given up */
+    uint64_t over_rate;      /* reports of new ones, not taken in because their sender added more than new_per_s */
+    uint64_t tombstones_dropped; /* ends forgotten for want of room while a late report could still come */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -70,13 +71,12 @@ void   entity_table_detonation(EntityTable *table, const DisDetonation *pdu, dou
 void   entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double t_s);
 void   entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s);
 void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s);
-/* Removes who has been silent too long at t_s. */
+/* Removes those silent for too long at t_s. */
 void   entity_table_expire(EntityTable *table, double t_s);
 
-/* Decodes one PDU by its type, checks it, and calls the right one of the above; types that the table does
- * not need are ignored. Every drop is counted. This is what replay and the node call. */
-void   entity_table_pdu(EntityTable *table, const DisHeader *header, const uint8_t *pdu, double t_s,
-                        DisCounters *counters);
+/* Any decoded PDU: checked, and handed to the right one of the above; types that the table does not need are ignored, and
+ * an instant that is not finite. Every drop is counted. This is what replay and the node call. */
+void   entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
 
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
@@ -91,7 +91,7 @@ bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHand
  * scratch. */
 bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
                              EntityHandle handle, double t_s);
-/* Everybody at t_s, sorted by id, in the arena. */
+/* All of them at t_s, sorted by id, in the arena. */
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena);
 
 #endif

@@ -1,20 +1,22 @@
-/* entities/table/entity_table_private.h: what entity_table.c keeps of an entity, and snapshot.c reads. */
+/* entities/table/entity_table_private.h: what the table keeps of an entity, and snapshot.c reads. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 
 #include "dis/enumerations.h"
 #include "entities/models/articulation.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "entities/table/entity_index.h"
 #include "entities/table/entity_ranks.h"
+#include "entities/table/entity_rate.h"
 #include "entities/table/entity_table.h"
 #include "entities/effects/heat.h"
+#include "entities/table/tombstones.h"
 
 enum { entity_effect_places = 4 }; /* flame, smoke, engine smoke, trail */
 
 typedef struct EntitySlot {
-    uint32_t      generation; /* odd while somebody lives here */
+    uint32_t      generation; /* odd while an entity has it */
     DisEntityId   id;
     DisEntityType type;
     uint8_t       force;
@@ -34,19 +36,11 @@ typedef struct EntitySlot {
     double        distance_m; /* gone forward, at the report */
     double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
                                * right, and after how long; missed_s 0: there was none */
-    Kinematics    reported;   /* as believed: entity_table.c */
+    Kinematics    reported;   /* as sanitized: entity_report.c */
     HeatState     heat;
     Articulation  articulation;
     uint64_t      effect[entity_effect_places]; /* what it gives off now: handles of effects_history.h */
 } EntitySlot;
-
-/* Who went lately: a late report must not bring them back. */
-enum { entity_grave_count = 256 };
-typedef struct EntityGrave {
-    uint64_t key_plus_1; /* 0: nobody */
-    double   end_s;
-    bool     detonated;
-} EntityGrave;
 
 /* Where what matters is: entity_table_focus. */
 typedef struct EntityFocus {
@@ -68,8 +62,8 @@ struct EntityTable {
     EntitySlot       *slot;        /* [config.capacity + 1]: a newcomer's too; used below slot_end */
     int              *free_slot;   /* stack of those below slot_end that are free */
     int               slot_end, free_count, count, stopped_count;
-    EntityGrave       grave[entity_grave_count];
-    unsigned          grave_next;
+    Tombstones       *tombstones;
+    EntityRate       *rate;
     EntityCounters    counters;
     EffectHistory    *effects;
 };
@@ -96,7 +90,9 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
 }
 
 EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
-/* Out of the table, and no word of it. */
+/* There is room for one more than the table keeps: entity_room_make. */
+EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s);
+/* Out of the table, uncounted. */
 void entity_slot_free(EntityTable *table, EntitySlot *slot);
 /* The same with what follows from it; counter: why, one of the table's counters. */
 void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
@@ -119,6 +115,7 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
                             const SnapshotEntity *entity, double t_s);
 Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, const EffectPuff *carried,
                                int carried_count, Arena *arena);
-void entity_effects_wreck_joints(double *joint_value, const Model *model, const EntitySlot *slot);
+/* reports: of joints, by the sender. */
+void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports);
 
 #endif

@@ -5,7 +5,7 @@
 
 #include "dis/pdu.h"
 #include "entities/effects/effects.h"
-#include "entities/models/model.h"
+#include "entities/models/articulation.h"
 
 typedef struct SnapshotEntity {
     DisEntityId   id;
@@ -26,11 +26,21 @@ typedef struct SnapshotEntity {
                                     * it is a warm wreck */
 } SnapshotEntity;
 
+/* What turns the joints of an entity, kept until its nodes are asked for: snapshot_pose. */
+typedef struct SnapshotJoints {
+    double     report_s, hold_s; /* of the joints' report; longest time a rate is followed */
+    double     time_s;           /* the entity's own, of the snapshot */
+    JointDrive drive;
+    int        first, count;     /* into Snapshot.joint_report */
+} SnapshotJoints;
+
 typedef struct Snapshot {
     double          t_s;
     int             count, node_count;
     SnapshotEntity *entity; /* sorted by id */
-    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1 */
+    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
+    SnapshotJoints *joints; /* [count]; NULL where node is not */
+    JointReport    *joint_report;
     int             puff_count;
     EffectPuff     *puff;   /* what burns, smokes and bursts */
     int64_t         puffs_left_out; /* the oldest, beyond effect_puff_capacity */
@@ -58,6 +68,10 @@ double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s
  * spoken. tests/sensor/test_frame_error.c. */
 void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
                     double otherwise_m, double heartbeat_s);
+
+/* Nodes of entity `index`, whose model this is, into pose[model->node_count]; joint_value: room for as many. Most entities
+ * of a world are never looked at: a snapshot keeps what turns their joints, and the renderer poses those that it draws. */
+void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot, int index, const Model *model);
 
 /* Index of an id, or -1. */
 int snapshot_find(const Snapshot *snapshot, DisEntityId id);

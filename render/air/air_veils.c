@@ -2,13 +2,13 @@
  * where they end. A sample's answer hangs on its own path alone, whatever comes beside it. */
 #include "render/air/air_private.h"
 
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
-static inline Eight mul(Eight a, Eight b) { return a * b; }
-static inline Eight add(Eight a, Eight b) { return a + b; }
-static inline Eight sub(Eight a, Eight b) { return a - b; }
+static inline F32x8 mul(F32x8 a, F32x8 b) { return a * b; }
+static inline F32x8 add(F32x8 a, F32x8 b) { return a + b; }
+static inline F32x8 sub(F32x8 a, F32x8 b) { return a - b; }
 /* NaN, as the unused end of a block may hold, becomes low. */
-static inline Eight within(Eight x, Eight low, Eight high) { return eight_min(eight_max(x, low), high); }
+static inline F32x8 within(F32x8 x, F32x8 low, F32x8 high) { return f32x8_min(f32x8_max(x, low), high); }
 
 /* ---- where eight paths end, in the table's own steps ------------------------------------------- */
 
@@ -16,7 +16,7 @@ typedef struct Places {
     _Alignas(32) int node[8], turn_node[8], heat_node[8]; /* lower height, nearer range; lower slope, nearer share of
                                                            * the way, lower azimuth; node of the lower temperature */
     _Alignas(32) float height[8], range[8], slope[8], share[8], turn[8]; /* shares of the upper ones */
-    Eight temp, near; /* near: range over the table's nearest, .. 1 */
+    F32x8 temp, near; /* near: range over the table's nearest, .. 1 */
 } Places;
 
 /* What is the same for every eight of a block. */
@@ -24,9 +24,9 @@ typedef struct Look {
     const AirTable *table;
     __m128i row_shift;
     __m256i row_mask;
-    Eight eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m;
-    Eight sun_east, sun_north, slope_low, slope_steps, turn_low, turn_steps, turn_most;
-    Eight temp_low, per_ln_temp; /* of each step of emitter_temp_k */
+    F32x8 eye_m, down_m, row_share, height_most_m, per_fall_m, per_climb_m;
+    F32x8 sun_east, sun_north, slope_low, slope_steps, turn_low, turn_steps, turn_most;
+    F32x8 temp_low, per_ln_temp; /* of each step of emitter_temp_k */
 } Look;
 
 static Look look_from(const Air *air)
@@ -44,69 +44,69 @@ static Look look_from(const Air *air)
                   .per_ln_temp = _mm256_loadu_ps(per_ln_temp),
                   .row_shift = _mm_cvtsi32_si128(table->row_shift),
                   .row_mask = _mm256_set1_epi32((1 << table->row_shift) - 1),
-                  .row_share = eight_all(ldexp(1, -table->row_shift)),
+                  .row_share = f32x8_set(ldexp(1, -table->row_shift)),
                   .height_most_m = _mm256_set1_ps(nextafterf(top_m, 0)),
-                  .eye_m = eight_all(eye_m),
-                  .down_m = eight_all(-eye_m),
-                  .per_fall_m = eight_all(1 / fmax(eye_m, air_least_fall_m)),
-                  .per_climb_m = eight_all(1 / fmax(air_top_m - eye_m, 1e-3)),
-                  .sun_east = eight_all(level > 1e-10 ? air->sun_d_enu[0] / level : 1),
-                  .sun_north = eight_all(level > 1e-10 ? air->sun_d_enu[1] / level : 0),
-                  .slope_low = eight_all((double)table->slope_low),
-                  .slope_steps = eight_all((double)table->slope_steps),
-                  .turn_low = eight_all((double)table->turn_low),
-                  .turn_steps = eight_all((double)table->turn_steps),
-                  .turn_most = eight_all(table->turns - 1e-3)};
+                  .eye_m = f32x8_set(eye_m),
+                  .down_m = f32x8_set(-eye_m),
+                  .per_fall_m = f32x8_set(1 / fmax(eye_m, air_least_fall_m)),
+                  .per_climb_m = f32x8_set(1 / fmax(air_top_m - eye_m, 1e-3)),
+                  .sun_east = f32x8_set(level > 1e-10 ? air->sun_d_enu[0] / level : 1),
+                  .sun_north = f32x8_set(level > 1e-10 ? air->sun_d_enu[1] / level : 0),
+                  .slope_low = f32x8_set((double)table->slope_low),
+                  .slope_steps = f32x8_set((double)table->slope_steps),
+                  .turn_low = f32x8_set((double)table->turn_low),
+                  .turn_steps = f32x8_set((double)table->turn_steps),
+                  .turn_most = f32x8_set(table->turns - 1e-3)};
 }
 
-static inline __m256i bits_above(Eight x, double low)
+static inline __m256i bits_above(F32x8 x, double low)
 {
-    return _mm256_sub_epi32(_mm256_castps_si256(x), _mm256_castps_si256(eight_all(low)));
+    return _mm256_sub_epi32(_mm256_castps_si256(x), _mm256_castps_si256(f32x8_set(low)));
 }
 
 static inline __m256i row_times(__m256i i, int row) { return _mm256_mullo_epi32(i, _mm256_set1_epi32(row)); }
 
 static inline void find_places(Places *p, const Look *look, const float *range_m, const Rays *rays, int i)
 {
-    const Eight dx = eight_of_doubles(rays->d_enu[0] + i), dy = eight_of_doubles(rays->d_enu[1] + i),
-                dz = eight_of_doubles(rays->d_enu[2] + i);
-    const Eight ox = eight_of_doubles(rays->o_enu[0] + i), oy = eight_of_doubles(rays->o_enu[1] + i),
-                per_earth = eight_all(1 / earth_radius_m);
-    const Eight far_m = _mm256_set1_ps(nextafterf((float)air_far_m, 0)); /* (1 << air_octaves) nearest ones */
-    const Eight at = within(_mm256_loadu_ps(range_m + i), eight_all(0), far_m), level2 = eight_fma(dx, dx, mul(dy, dy));
+    const F32x8 dx = f32x8_of_doubles(rays->d_enu[0] + i), dy = f32x8_of_doubles(rays->d_enu[1] + i),
+                dz = f32x8_of_doubles(rays->d_enu[2] + i);
+    const F32x8 ox = f32x8_of_doubles(rays->o_enu[0] + i), oy = f32x8_of_doubles(rays->o_enu[1] + i),
+                per_earth = f32x8_set(1 / earth_radius_m);
+    const F32x8 far_m = _mm256_set1_ps(nextafterf((float)air_far_m, 0)); /* (1 << air_octaves) nearest ones */
+    const F32x8 at = within(_mm256_loadu_ps(range_m + i), f32x8_set(0), far_m), level2 = f32x8_fma(dx, dx, mul(dy, dy));
     /* the tangent plane leaves the Earth: by the eye's own distance from the origin, and along the path */
-    const Eight climb = eight_fma(eight_fma(ox, dx, mul(oy, dy)), per_earth, dz);
-    const Eight bend = mul(level2, eight_all(0.5 / earth_radius_m));
-    const Eight rise_m = _mm256_max_ps(mul(at, eight_fma(at, bend, climb)), look->down_m);
+    const F32x8 climb = f32x8_fma(f32x8_fma(ox, dx, mul(oy, dy)), per_earth, dz);
+    const F32x8 bend = mul(level2, f32x8_set(0.5 / earth_radius_m));
+    const F32x8 rise_m = _mm256_max_ps(mul(at, f32x8_fma(at, bend, climb)), look->down_m);
 
     /* height and range by their own bits */
-    const Eight h = _mm256_min_ps(add(add(look->eye_m, rise_m), eight_all(air_low_m)), look->height_most_m);
-    const Eight r = mul(at, eight_all(1 / air_near_m));
-    const __m256i hb = bits_above(_mm256_max_ps(h, eight_all(air_low_m)), air_low_m);
-    const __m256i rb = bits_above(_mm256_max_ps(r, eight_all(1)), 1);
+    const F32x8 h = _mm256_min_ps(add(add(look->eye_m, rise_m), f32x8_set(air_low_m)), look->height_most_m);
+    const F32x8 r = mul(at, f32x8_set(1 / air_near_m));
+    const __m256i hb = bits_above(_mm256_max_ps(h, f32x8_set(air_low_m)), air_low_m);
+    const __m256i rb = bits_above(_mm256_max_ps(r, f32x8_set(1)), 1);
     const __m256i hi = _mm256_srl_epi32(hb, look->row_shift), ri = _mm256_srli_epi32(rb, air_range_shift);
     _mm256_store_ps(p->height, mul(_mm256_cvtepi32_ps(_mm256_and_si256(hb, look->row_mask)), look->row_share));
     const __m256i rest = _mm256_and_si256(rb, _mm256_set1_epi32((1 << air_range_shift) - 1));
-    _mm256_store_ps(p->range, mul(_mm256_cvtepi32_ps(rest), eight_all(1.0 / (1 << air_range_shift))));
+    _mm256_store_ps(p->range, mul(_mm256_cvtepi32_ps(rest), f32x8_set(1.0 / (1 << air_range_shift))));
     _mm256_store_si256((__m256i *)p->node, _mm256_add_epi32(row_times(hi, air_range_row), ri));
-    p->near = _mm256_min_ps(r, eight_all(1));
+    p->near = _mm256_min_ps(r, f32x8_set(1));
 
-    const Eight rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, eight_all(1e-3)));
-    const Eight root = _mm256_or_ps(_mm256_sqrt_ps(eight_abs(rise)), _mm256_and_ps(rise, eight_all(-0.0)));
-    const Eight s = within(mul(sub(root, look->slope_low), look->slope_steps), eight_all(0),
-                     eight_all(air_slopes - 1e-3));
+    const F32x8 rise = _mm256_div_ps(rise_m, _mm256_max_ps(at, f32x8_set(1e-3)));
+    const F32x8 root = _mm256_or_ps(_mm256_sqrt_ps(f32x8_abs(rise)), _mm256_and_ps(rise, f32x8_set(-0.0)));
+    const F32x8 s = within(mul(sub(root, look->slope_low), look->slope_steps), f32x8_set(0),
+                     f32x8_set(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(s);
     /* range over the whole way, which ends at the ground or the top, and within its limits */
-    const Eight per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
-    const Eight gone = within(mul(eight_abs(rise_m), per_m), mul(at, eight_all(1 / air_longest_way_m)),
-                              mul(at, eight_all(1 / air_shortest_way_m)));
-    const Eight w = within(mul(_mm256_sqrt_ps(gone), eight_all(air_shares)), eight_all(0),
-                     eight_all(air_shares - 1e-3));
+    const F32x8 per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
+    const F32x8 gone = within(mul(f32x8_abs(rise_m), per_m), mul(at, f32x8_set(1 / air_longest_way_m)),
+                              mul(at, f32x8_set(1 / air_shortest_way_m)));
+    const F32x8 w = within(mul(_mm256_sqrt_ps(gone), f32x8_set(air_shares)), f32x8_set(0),
+                     f32x8_set(air_shares - 1e-3));
     const __m256i wi = _mm256_cvttps_epi32(w);
-    const Eight level = _mm256_sqrt_ps(_mm256_max_ps(level2, eight_all(1e-12)));
-    const Eight cosine = _mm256_div_ps(eight_fma(dx, look->sun_east, mul(dy, look->sun_north)), level);
-    const Eight turn = _mm256_sqrt_ps(_mm256_max_ps(sub(eight_all(1), cosine), eight_all(0)));
-    const Eight a = within(mul(sub(turn, look->turn_low), look->turn_steps), eight_all(0), look->turn_most);
+    const F32x8 level = _mm256_sqrt_ps(_mm256_max_ps(level2, f32x8_set(1e-12)));
+    const F32x8 cosine = _mm256_div_ps(f32x8_fma(dx, look->sun_east, mul(dy, look->sun_north)), level);
+    const F32x8 turn = _mm256_sqrt_ps(_mm256_max_ps(sub(f32x8_set(1), cosine), f32x8_set(0)));
+    const F32x8 a = within(mul(sub(turn, look->turn_low), look->turn_steps), f32x8_set(0), look->turn_most);
     const __m256i ai = _mm256_cvttps_epi32(a);
     _mm256_store_ps(p->slope, sub(s, _mm256_cvtepi32_ps(si)));
     _mm256_store_ps(p->share, sub(w, _mm256_cvtepi32_ps(wi)));
@@ -119,14 +119,14 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
  * terms leave 1e-4 over the widest step. */
 static inline void find_temps(Places *p, const Look *look, const float *temp_k)
 {
-    const Eight t = within(_mm256_loadu_ps(temp_k), eight_all(emitter_temp_k[0]),
-                     eight_all(emitter_temp_k[air_temps - 1]));
+    const F32x8 t = within(_mm256_loadu_ps(temp_k), f32x8_set(emitter_temp_k[0]),
+                     f32x8_set(emitter_temp_k[air_temps - 1]));
     __m256i k = _mm256_setzero_si256();
     for (int step = 1; step < air_temps - 1; step++) /* true is -1 */
-        k = _mm256_sub_epi32(k, _mm256_castps_si256(_mm256_cmp_ps(t, eight_all(emitter_temp_k[step]), _CMP_GE_OQ)));
-    const Eight a = _mm256_permutevar8x32_ps(look->temp_low, k);
-    const Eight z = _mm256_div_ps(sub(t, a), add(t, a)), z2 = mul(z, z);
-    const Eight ln = mul(z, eight_fma(z2, eight_fma(z2, eight_all(0.4), eight_all(2.0 / 3)), eight_all(2)));
+        k = _mm256_sub_epi32(k, _mm256_castps_si256(_mm256_cmp_ps(t, f32x8_set(emitter_temp_k[step]), _CMP_GE_OQ)));
+    const F32x8 a = _mm256_permutevar8x32_ps(look->temp_low, k);
+    const F32x8 z = _mm256_div_ps(sub(t, a), add(t, a)), z2 = mul(z, z);
+    const F32x8 ln = mul(z, f32x8_fma(z2, f32x8_fma(z2, f32x8_set(0.4), f32x8_set(2.0 / 3)), f32x8_set(2)));
     p->temp = mul(ln, _mm256_permutevar8x32_ps(look->per_ln_temp, k));
     _mm256_store_si256((__m256i *)p->heat_node,
                        _mm256_add_epi32(row_times(k, air_nodes), _mm256_load_si256((const __m256i *)p->node)));
@@ -135,66 +135,66 @@ static inline void find_temps(Places *p, const Look *look, const float *temp_k)
 /* ---- what the table holds there ------------------------------------------------------------------ */
 
 /* Eight rows of four to four values of eight. */
-static inline void turn_four(Eight out[4], const __m128 row[8])
+static inline void turn_four(F32x8 out[4], const __m128 row[8])
 {
-    Eight pair[4];
+    F32x8 pair[4];
     for (int j = 0; j < 4; j++) pair[j] = _mm256_set_m128(row[j + 4], row[j]);
-    const Eight a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
-    const Eight c = _mm256_unpacklo_ps(pair[2], pair[3]), d = _mm256_unpackhi_ps(pair[2], pair[3]);
+    const F32x8 a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
+    const F32x8 c = _mm256_unpacklo_ps(pair[2], pair[3]), d = _mm256_unpackhi_ps(pair[2], pair[3]);
     out[0] = _mm256_shuffle_ps(a, c, 0x44), out[1] = _mm256_shuffle_ps(a, c, 0xee);
     out[2] = _mm256_shuffle_ps(b, d, 0x44), out[3] = _mm256_shuffle_ps(b, d, 0xee);
 }
 
 /* Two neighbouring nodes, blended by a sample's own share: the first four values and the second four. */
-static inline __m128 along(Eight pair, float share)
+static inline __m128 along(F32x8 pair, float share)
 {
     const __m128 near = _mm256_castps256_ps128(pair), far = _mm256_extractf128_ps(pair, 1);
     return _mm_fmadd_ps(_mm_set1_ps(share), _mm_sub_ps(far, near), near);
 }
 
-static inline void depths(Eight out[air_lights], const AirLight *light, const Places *p)
+static inline void depths(F32x8 out[air_lights], const AirLight *light, const Places *p)
 {
     __m128 row[8];
     for (int j = 0; j < 8; j++) {
         const float *low = light->depth[p->node[j]], *high = low + air_range_row * air_lights;
-        row[j] = along(eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])),
+        row[j] = along(f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), _mm256_set1_ps(p->height[j])),
                          p->range[j]);
     }
     turn_four(out, row);
 }
 
-static inline void scattered_sources(Eight out[air_lights], const AirLight *light, const Places *p)
+static inline void scattered_sources(F32x8 out[air_lights], const AirLight *light, const Places *p)
 {
     __m128 row[8];
     const float *nodes = light->log2_source[0][0];
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->turn_node[j] * air_lights, *high = low + air_slope_nodes * air_lights;
-        const Eight turn = _mm256_set1_ps(p->turn[j]);
-        const Eight a = eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
-        const Eight b = eight_mix(_mm256_loadu_ps(low + air_share_row * air_lights),
+        const F32x8 turn = _mm256_set1_ps(p->turn[j]);
+        const F32x8 a = f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), turn);
+        const F32x8 b = f32x8_lerp(_mm256_loadu_ps(low + air_share_row * air_lights),
                                 _mm256_loadu_ps(high + air_share_row * air_lights), turn);
-        row[j] = along(eight_mix(a, b, _mm256_set1_ps(p->slope[j])), p->share[j]);
+        row[j] = along(f32x8_lerp(a, b, _mm256_set1_ps(p->slope[j])), p->share[j]);
     }
     turn_four(out, row);
-    for (int k = 0; k < air_lights; k++) out[k] = eight_exp2(out[k]);
+    for (int k = 0; k < air_lights; k++) out[k] = f32x8_exp2(out[k]);
 }
 
 /* Both thermal bands' values, after each other. */
-static inline void heats(Eight out[2 * air_warm_values], const AirHeat *heat, const Places *p)
+static inline void heats(F32x8 out[2 * air_warm_values], const AirHeat *heat, const Places *p)
 {
     enum { values = 2 * air_warm_values };
-    Eight row[8], pair[8];
+    F32x8 row[8], pair[8];
     const float *nodes = heat->value[0][0]; /* of all temperatures */
     for (int j = 0; j < 8; j++) {
         const float *low = nodes + p->heat_node[j] * values, *high = low + air_range_row * values;
-        const Eight height = _mm256_set1_ps(p->height[j]);
-        row[j] = eight_mix(eight_mix(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
-                         eight_mix(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
+        const F32x8 height = _mm256_set1_ps(p->height[j]);
+        row[j] = f32x8_lerp(f32x8_lerp(_mm256_loadu_ps(low), _mm256_loadu_ps(high), height),
+                         f32x8_lerp(_mm256_loadu_ps(low + values), _mm256_loadu_ps(high + values), height),
                          _mm256_set1_ps(p->range[j]));
     }
     for (int j = 0; j < 8; j += 4) {
-        const Eight a = _mm256_unpacklo_ps(row[j], row[j + 1]), b = _mm256_unpackhi_ps(row[j], row[j + 1]);
-        const Eight c = _mm256_unpacklo_ps(row[j + 2], row[j + 3]), d = _mm256_unpackhi_ps(row[j + 2], row[j + 3]);
+        const F32x8 a = _mm256_unpacklo_ps(row[j], row[j + 1]), b = _mm256_unpackhi_ps(row[j], row[j + 1]);
+        const F32x8 c = _mm256_unpacklo_ps(row[j + 2], row[j + 3]), d = _mm256_unpackhi_ps(row[j + 2], row[j + 3]);
         pair[j] = _mm256_shuffle_ps(a, c, 0x44), pair[j + 1] = _mm256_shuffle_ps(a, c, 0xee);
         pair[j + 2] = _mm256_shuffle_ps(b, d, 0x44), pair[j + 3] = _mm256_shuffle_ps(b, d, 0xee);
     }
@@ -204,12 +204,12 @@ static inline void heats(Eight out[2 * air_warm_values], const AirHeat *heat, co
     }
 }
 
-static inline Eight transmit(Eight depth, const Places *p)
+static inline F32x8 transmit(F32x8 depth, const Places *p)
 {
-    return eight_exp2(sub(eight_all(0), mul(p->near, depth)));
+    return f32x8_exp2(sub(f32x8_set(0), mul(p->near, depth)));
 }
 
-static inline void store_veil(Veils *out, int i, Eight emitted, Eight sun, Eight own, Eight added)
+static inline void store_veil(Veils *out, int i, F32x8 emitted, F32x8 sun, F32x8 own, F32x8 added)
 {
     _mm256_storeu_ps(out->transmittance + i, emitted);
     _mm256_storeu_ps(out->sun_transmittance + i, sun);
@@ -225,20 +225,20 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
     Places p;
     find_places(&p, look, range_m, rays, i);
 
-    Eight mwir_sun = eight_all(0), mwir_scattered = eight_all(0);
+    F32x8 mwir_sun = f32x8_set(0), mwir_scattered = f32x8_set(0);
     for (int g = 0; g < table->lights; g++) {
         const AirLight *light = table->light[g];
-        Eight depth[air_lights], source[air_lights];
+        F32x8 depth[air_lights], source[air_lights];
         bool any = false;
         for (int k = 0; k < light->bands; k++) any |= out[light->band[k]] != NULL;
         if (!any) continue;
         depths(depth, light, &p);
-        for (int k = 0; k < air_lights; k++) source[k] = eight_all(0);
+        for (int k = 0; k < air_lights; k++) source[k] = f32x8_set(0);
         if (table->scattered) scattered_sources(source, light, &p);
         for (int k = 0; k < light->bands; k++) {
             const AirBand band = light->band[k];
             if (!out[band]) continue;
-            const Eight sun = transmit(depth[k], &p), added = mul(sub(eight_all(1), sun), source[k]);
+            const F32x8 sun = transmit(depth[k], &p), added = mul(sub(f32x8_set(1), sun), source[k]);
             if (band == AIR_MWIR)
                 mwir_sun = sun, mwir_scattered = added;
             else
@@ -250,18 +250,18 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
         find_temps(&p, look, temp_k + i);
     } else {
         memcpy(p.heat_node, p.node, sizeof p.heat_node);
-        p.temp = eight_all(0);
+        p.temp = f32x8_set(0);
     }
-    Eight value[2 * air_warm_values];
+    F32x8 value[2 * air_warm_values];
     heats(value, table->heat, &p);
     for (int t = 0; t < 2; t++) {
         const AirBand band = t ? AIR_LWIR : AIR_MWIR;
-        const Eight *v = value + t * air_warm_values;
+        const F32x8 *v = value + t * air_warm_values;
         if (!out[band]) continue;
-        const Eight own = transmit(v[air_warm_own], &p);
-        const Eight sun = band == AIR_MWIR && table->scattered ? mwir_sun : own;
-        const Eight emitted = temp_k ? transmit(eight_mix(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
-        Eight added = mul(sub(eight_all(1), own), v[air_warm_source]);
+        const F32x8 own = transmit(v[air_warm_own], &p);
+        const F32x8 sun = band == AIR_MWIR && table->scattered ? mwir_sun : own;
+        const F32x8 emitted = temp_k ? transmit(f32x8_lerp(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
+        F32x8 added = mul(sub(f32x8_set(1), own), v[air_warm_source]);
         if (band == AIR_MWIR) added = add(added, mwir_scattered);
         store_veil(out[band], i, emitted, sun, own, added);
     }
@@ -293,7 +293,7 @@ static void find_ranges(float *range_m, const Air *air, const Hits *hits, const 
 
 static bool any_ends(const float *range_m)
 {
-    return _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(range_m), eight_all(INFINITY), _CMP_LT_OQ)) != 0;
+    return _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(range_m), f32x8_set(INFINITY), _CMP_LT_OQ)) != 0;
 }
 
 static void veil_even(Veils *out, const Air *air, AirBand band, const Hits *hits)

@@ -6,7 +6,9 @@
  * between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in the boxes of targets
  * that are too large for a footprint and small enough to have such parts are sampled again whatever they show, and so
  * is the ground where a small target's shadow falls. */
-#include "render/frame/render_private.h"
+#include "render/frame/edges.h"
+
+#include "render/frame/ground_mix.h"
 
 /* Up to this size on the image, along its longer side, some part of a vehicle may be narrower than a pixel: a gun
  * barrel is a sixtieth of its tank's length. */
@@ -42,16 +44,16 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
 /* From the target's foot to where its top's shadow falls on level ground. */
 static bool shadow_box(double box[4], const Job *job, int index)
 {
-    const SnapshotEntity *entity = &job->snapshot->entity[index];
-    const double         *sun    = job->air->sun_d_enu;
+    const SnapshotEntity *entity = &job->scene.snapshot->entity[index];
+    const double         *sun    = job->scene.air->sun_d_enu;
     double                foot_enu[3], tip_enu[3], foot[4], tip[4];
     if (entity->model < 0) return false;
-    const Model          *model  = catalog_model(job->world->catalog, entity->model);
-    if (!job->world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
-    enu_from_ecef(foot_enu, &job->world->frame, entity->p_ecef);
+    const Model          *model  = catalog_model(job->scene.world->catalog, entity->model);
+    if (!job->scene.world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
+    enu_from_ecef(foot_enu, &job->scene.world->frame, entity->p_ecef);
     /* a flying one's shadow is elsewhere, and as faint as it is far */
     const double above_m =
-        foot_enu[2] - elevation_height(&job->world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
+        foot_enu[2] - elevation_height(&job->scene.world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
     if (!(fabs(above_m) < model->height_m)) return false;
     v3_add_scaled(tip_enu, foot_enu, -model->height_m / sun[2], sun);
     tip_enu[2] = foot_enu[2];
@@ -68,7 +70,7 @@ static bool shadow_box(double box[4], const Job *job, int index)
 void mark_boxes(Job *job)
 {
     const bool shadows = has_band(job->request->bands, BAND_OPTICAL) || has_band(job->request->bands, BAND_MWIR);
-    for (int i = 0; i < job->snapshot->count; i++) {
+    for (int i = 0; i < job->scene.snapshot->count; i++) {
         const TargetPixels *t = &job->boxes[i];
         double              shadow[4];
         if (!t->projected) continue;
@@ -125,11 +127,12 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
                           p->normal[2][a] * p->normal[2][b];
     const double near_m = fmin(p->range_m[a], p->range_m[b]);
     const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
-    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px : step_ground * near_m;
+    const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px
+                                                             : step_ground * near_m;
     if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
         return part ? refine_all : refine_step;
     if (part && other) return refine_all;
-    return (other ? refine_ground : 0) | (job->shadow[a] != job->shadow[b] ? refine_sun : 0);
+    return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
 /* 1 where `count` pixels from a on and those from b on are plainly of one kind, as most are: in arrays, and never where
@@ -143,7 +146,7 @@ static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_
     for (int i = 0; i < count; i++) {
         const size_t   k = a + (size_t)i, l = b + (size_t)i;
         const uint32_t other = (entity[k] ^ entity[l]) | (part[k] ^ part[l]) | (material[k] ^ material[l]) |
-                               (uint32_t)(job->shadow[k] ^ job->shadow[l]);
+                               (uint32_t)(job->sun[k] != job->sun[l]);
         const float    turn = nx[k] * nx[l] + ny[k] * ny[l] + nz[k] * nz[l];
         const float    near_m = range_m[k] < range_m[l] ? range_m[k] : range_m[l];
         const float    deep_m = fabsf(range_m[k] - range_m[l]);
@@ -159,7 +162,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
     const int        width = x1 - x0;
     uint32_t         across[side + 1], above[side], below[side]; /* across[k]: pixels x0 + k - 1 and x0 + k */
     uint16_t         corner[corner_capacity];
-    const bool       grounds = job->world->landscape && job->request->samples == 1 &&
+    const bool       grounds = job->scene.world->landscape && job->request->samples == 1 &&
                          job->request->bands & ~(1u << BAND_RADAR);
     const int        left = x0 > 0 ? x0 - 1 : 0, right = x1 < view->width ? x1 : view->width - 1;
     if (grounds) corner_materials(corner, job, x0, y0, x1, y1);
@@ -177,7 +180,8 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 flag |= edge_between(job, x, y, xb, yb);
             }
             const size_t px = pixel_index(job, x, y);
-            if (grounds && !(flag & refine_all) && !job->picture->entity[px] && job->picture->range_m[px] < INFINITY &&
+            if (grounds && !(flag & refine_all) && !job->picture->entity[px] &&
+                job->picture->range_m[px] < INFINITY &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
             if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
@@ -189,29 +193,36 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
 
 /* ---- ground --------------------------------------------------------------------------------- */
 
-void recall_ground(Scratch *s, const Job *job)
+void recall_ground(Worker *w, const Job *job)
 {
-    const View    *view  = &job->request->view;
-    const Picture *p     = job->picture;
-    const Block   *block = &s->block;
-    s->hits.count   = s->rays.count = block->pixels;
-    s->hits.columns = s->rays.columns = 0;
-    for (int i = 0; i < s->hits.count; i++) {
+    const View       *view  = &job->request->view;
+    const Picture    *p     = job->picture;
+    const PixelBlock *block = &w->block;
+    Hits             *hits  = &w->samples.hits;
+    Rays             *rays  = &w->samples.rays;
+    hits->count   = rays->count = block->pixels;
+    hits->columns = rays->columns = 0;
+    hits->several = false;
+    for (int i = 0; i < hits->count; i++) {
         const size_t px = pixel_index(job, block->x[i], block->y[i]);
         double       d_enu[3];
         view_ray(d_enu, view, block->x[i] + 0.5, block->y[i] + 0.5);
-        s->hits.range_m[i] = p->range_m[px];
-        s->hits.entity[i]  = 0;
-        s->hits.part[i] = s->hits.model[i] = 0;
-        s->hits.inside[i] = 0;
-        s->rays.far_m[i] = INFINITY;
+        hits->range_m[i] = p->range_m[px];
+        hits->kind[i]    = hit_ground;
+        hits->entity[i]  = 0;
+        hits->part[i] = hits->model[i] = 0;
+        hits->inside[i] = 0;
+        rays->far_m[i] = INFINITY;
         for (int k = 0; k < 3; k++) {
-            s->rays.o_enu[k][i] = view->p_enu[k];
-            s->rays.d_enu[k][i] = d_enu[k];
-            s->hits.p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
-            s->hits.n_geo[k][i] = s->hits.n_enu[k][i] = p->normal[k][px];
+            rays->o_enu[k][i] = view->p_enu[k];
+            rays->d_enu[k][i] = d_enu[k];
+            hits->p_enu[k][i] = view->p_enu[k] + (double)p->range_m[px] * d_enu[k];
+            hits->n_geo[k][i] = hits->n_enu[k][i] = p->normal[k][px];
         }
-        s->shadow[i] = job->shadow[px];
+        w->samples.sun[i] = job->sun[px];
     }
-    landscape_surfaces(s->hits.surface, job->world->landscape, s->hits.count, s->hits.p_enu[0], s->hits.p_enu[1]);
+    landscape_surfaces(hits->surface, job->scene.world->landscape, hits->count, hits->p_enu[0], hits->p_enu[1]);
+    for (int i = 0; i < hits->count; i++)
+        hits->material[i] =
+            (uint16_t)(hits->surface[i] ? job->scene.world->materials.surface[hits->surface[i]] : 0);
 }

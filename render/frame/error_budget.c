@@ -1,10 +1,10 @@
-/* render/frame/error_budget.c: pixels looked at again. First some candidates, one in each of many equal fields, tell how much
- * they differ from their neighbours; of these the probes are drawn, the likelier the more; then blocks of probes are
- * traced, each to sums of its own. */
+/* render/frame/error_budget.c: the error estimate of a frame: some pixels are sampled again. Candidates, one in each of
+ * many equal fields, say how much they differ from their neighbours; from them the pixels to sample are drawn, the
+ * likelier the more they differ; blocks of those are then shaded, each into sums of its own. */
 #include "render/frame/error_budget.h"
 
-#include "render/light/optical.h"
-#include "render/frame/render_private.h"
+#include "render/frame/error_estimate.h"
+#include "render/frame/edges.h"
 
 enum { probes_a_block = 64, blocks_most = 12, candidates_a_probe = 4, tables_probes = 48,
        tables_blocks = 4 /* of them, for as many threads */ };
@@ -24,11 +24,9 @@ typedef struct ProbeOf {
     double stands_for; /* px */
 } ProbeOf;
 
-typedef enum ProbePass { PASS_RAYS, PASS_BASE, PASS_COARSE } ProbePass;
-
-struct ProbeTask {
+/* A block of probes. */
+typedef struct ProbeTask {
     bool           of_tables; /* asked directly, and nothing else */
-    ProbePass      pass;
     int            count;
     const ProbeOf *probe; /* [count] */
     const Candidate *candidate;
@@ -36,7 +34,7 @@ struct ProbeTask {
     double         image_px[probes_a_block];   /* how far the ground moves on the image */
     double         sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
     double         tables_px;
-};
+} ProbeTask;
 
 typedef struct Budget {
     const Job  *job;
@@ -48,27 +46,6 @@ typedef struct Budget {
     Veils     (*direct)[AIR_BAND_COUNT]; /* [workers] */
 } Budget;
 
-static Band band_of(int plane)
-{
-    return plane == picture_mwir    ? BAND_MWIR
-           : plane == picture_lwir  ? BAND_LWIR
-           : plane == picture_radar ? BAND_RADAR
-                                    : BAND_OPTICAL;
-}
-
-double plane_contrast(const Picture *p, const float *value, int x, int y)
-{
-    const size_t at = (size_t)y * (size_t)p->width + (size_t)x, row = (size_t)p->width;
-    const double here = (double)value[at];
-    double       sum = 0;
-    int          count = 0;
-    if (x > 0) sum += (value[at - 1] - here) * (value[at - 1] - here), count++;
-    if (x + 1 < p->width) sum += (value[at + 1] - here) * (value[at + 1] - here), count++;
-    if (y > 0) sum += (value[at - row] - here) * (value[at - row] - here), count++;
-    if (y + 1 < p->height) sum += (value[at + row] - here) * (value[at + row] - here), count++;
-    return count > 0 ? sum / count : 0;
-}
-
 double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, double rms_w_m2_sr)
 {
     const double step = 1e-3 * mean_w_m2_sr;
@@ -79,14 +56,14 @@ double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, doubl
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
 
-/* Planes whose error at a pixel is not told by its own samples; see refine_tile. */
+/* Planes whose error at a pixel is not told by its own samples; see refine.c. */
 static unsigned planes_to_ask(const Job *job, size_t px)
 {
     const unsigned flags = job->refine ? job->refine[px] : 0;
     unsigned       planes = 0;
     if (flags & refine_all || (job->picture->covered && job->picture->covered[px] > 0)) return 0;
     for (int k = 0; k < picture_plane_count; k++) {
-        const bool sunlit = band_of(k) == BAND_OPTICAL || band_of(k) == BAND_MWIR;
+        const bool sunlit = picture_band(k) == BAND_OPTICAL || picture_band(k) == BAND_MWIR;
         if (picture_plane(job->picture, k) && !(flags & refine_sun && !(flags & refine_step) && sunlit))
             planes |= 1u << k;
     }
@@ -211,60 +188,51 @@ bool error_budget_coarser(double turn_enu[3], double *rise_m, const Elevation *e
 
 static const Candidate *candidate_of(const ProbeTask *t, int p) { return &t->candidate[t->probe[p].candidate]; }
 
-double error_budget_law(const float *out, int n)
+/* What the pixels' values of a plane would change with more rays: sampling error, by their own variance where they have
+ * as many as the picture. */
+static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, int plane)
 {
-    double sum = 0;
-    for (int row = 0; row < n; row++)
-        for (int column = 0; column < n; column++) {
-            const double here = (double)out[row * n + column];
-            if (column + 1 < n) sum += (out[row * n + column + 1] - here) * (out[row * n + column + 1] - here);
-            if (row + 1 < n) sum += (out[(row + 1) * n + column] - here) * (out[(row + 1) * n + column] - here);
-        }
-    return mean_law * sum / ((double)n * n * n * n);
-}
-
-void law_take(Scratch *s, const Job *job, int plane)
-{
-    const Block *block = &s->block;
-    const int    samples = block->n * block->n;
-    for (int p = 0; p < block->pixels; p++) {
-        const double open =
-            job->picture->covered ? 1 - (double)job->picture->covered[pixel_index(job, block->x[p], block->y[p])] : 1;
-        s->law[plane] += open * open * error_budget_law(s->out + p * samples, block->n);
-    }
-}
-
-void probe_take(Scratch *s, const Job *job, int plane)
-{
-    ProbeTask *t = s->block.probe;
-    const int  n = s->block.n, samples = n * n;
-    const bool law = t->pass == PASS_RAYS && n == job->request->samples;
+    const int  samples = n * n;
+    const bool law = n == job->request->samples;
     for (int p = 0; p < t->count; p++) {
         const Candidate *c = candidate_of(t, p);
-        if (t->pass == PASS_BASE) {
-            t->base[plane][p] = s->out[p];
-            continue;
-        }
         if (!(c->planes >> plane & 1)) continue;
         double square, sum = 0;
         if (law) {
-            square = error_budget_law(s->out + p * samples, n);
-        } else if (t->pass == PASS_RAYS) {
-            for (int k = 0; k < samples; k++) sum += (double)s->out[p * samples + k];
+            square = error_budget_law(value + p * samples, n);
+        } else {
+            for (int k = 0; k < samples; k++) sum += (double)value[p * samples + k];
             square = sum / samples - (double)c->value[plane];
             square *= square;
-        } else {
-            const double moved = t->image_px[p] * t->image_px[p], turned = (double)(s->out[p] - t->base[plane][p]);
-            square = turned * turned + (double)c->contrast[plane] * moved / (1 + moved);
         }
-        *(t->pass == PASS_RAYS ? &t->sampling[plane] : &t->detail[plane]) += t->probe[p].stands_for * square;
+        t->sampling[plane] += t->probe[p].stands_for * square;
+    }
+}
+
+/* What the ground at every second post changes. */
+static void take_coarse(ProbeTask *t, const float *value, int plane)
+{
+    for (int p = 0; p < t->count; p++) {
+        const Candidate *c = candidate_of(t, p);
+        if (!(c->planes >> plane & 1)) continue;
+        const double moved = t->image_px[p] * t->image_px[p], turned = (double)(value[p] - t->base[plane][p]);
+        const double square = turned * turned + (double)c->contrast[plane] * moved / (1 + moved);
+        t->detail[plane] += t->probe[p].stands_for * square;
+    }
+}
+
+static void take_tables(ProbeTask *t, const float *value, int plane)
+{
+    for (int p = 0; p < t->count; p++) {
+        const double apart = (double)(value[p] - t->base[plane][p]);
+        t->tables[plane] += t->probe[p].stands_for * apart * apart;
     }
 }
 
 /* Turns the block's hits of ground as their posts, twice as far apart, would. */
-static void coarsen(Scratch *s, const Job *job, ProbeTask *t)
+static void coarsen(Samples *s, const Job *job, ProbeTask *t)
 {
-    const World *world = job->world;
+    const World *world = job->scene.world;
     for (int p = 0; p < t->count; p++) {
         double turn_enu[3], rise_m;
         t->image_px[p] = 0;
@@ -281,58 +249,24 @@ static void coarsen(Scratch *s, const Job *job, ProbeTask *t)
     }
 }
 
-/* The first hits of the block, directly. Those of its own pixels are in radiance and base. */
-static void ask_directly(Scratch *s, const Job *job, ProbeTask *t, Veils direct[AIR_BAND_COUNT], int count)
+/* The task's pixels, n x n samples each, shaded. */
+static void shade_pixels(Worker *w, const Job *job, const ProbeTask *t, int n, int listed)
 {
-    static const int band_at[3] = {optical_channel_r, optical_channel_g, optical_channel_b};
-    const RenderRequest *request = job->request;
-    const Materials     *materials = &job->world->materials;
-    const unsigned       air_bands = render_air_bands(s->block.bands, request->optical);
-    const int            all = s->hits.count;
-    s->hits.count = s->rays.count = count;
-    air_veils_directly(direct, job->air, air_bands, &s->hits, &s->rays, s->temp_k, s->air);
-    for (int plane = 0; plane < picture_plane_count; plane++) {
-        if (!picture_plane(job->picture, plane) || plane == picture_radar) continue;
-        AirBand b = plane == picture_mwir ? AIR_MWIR : AIR_LWIR;
-        if (band_of(plane) == BAND_OPTICAL)
-            b = request->optical == OPTICAL_RGB ? (AirBand)band_at[plane - picture_optical]
-                                                : request->optical == OPTICAL_NIR ? AIR_NIR : AIR_PAN;
-        float        open_w_m2[hits_capacity];
-        const float *around = request->sky_samples > 0 ? s->gathered.w_m2[b] : NULL;
-        if (!around && s->any_open) {
-            const double level_w_m2 = b >= AIR_MWIR ? job->air->ground_w_m2_sr[b] * pi_rad
-                                                    : optical_ground_w_m2((int)b, job->air, materials);
-            for (int i = 0; i < count; i++) {
-                const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
-                open_w_m2[i] = (float)((double)s->open.factor[b][i] * (air_sky_on_plane(job->air, b, n_enu) +
-                                                                       level_w_m2 * 0.5 * (1 - n_enu[2])));
-            }
-            around = open_w_m2;
-        }
-        float       *out = s->radiance[b];
-        if (b >= AIR_MWIR)
-            thermal_shade(out, band_of(plane), job->air, materials, &s->hits, &s->rays, s->material, s->temp_k,
-                          s->shadow, around, &direct[b], NULL);
-        else
-            optical_shade(out, (int)b, job->air, materials, &s->hits, &s->rays, s->material, s->texture[b], s->shadow,
-                          around, &direct[b], NULL);
-        veil_apply(out, &s->veil, b == AIR_MWIR ? effect_band_mwir : b == AIR_LWIR ? effect_band_lwir : (int)b, count);
-        for (int p = 0; p < count; p++) {
-            const double apart = (double)(out[p] - t->base[plane][p]);
-            t->tables[plane] += t->probe[p].stands_for * apart * apart;
-        }
-    }
-    for (int p = 0; p < count; p++) t->tables_px += t->probe[p].stands_for;
-    s->hits.count = s->rays.count = all;
+    w->block.n = n;
+    w->block.pixels = w->block.columns = 0;
+    for (int p = 0; p < t->count; p++) pixels_add(&w->block, candidate_of(t, p)->x, candidate_of(t, p)->y);
+    block_trace(w, job, job->request->bands, listed);
+    samples_sun(&w->shader, &job->scene, &w->samples);
+    block_light(w, job);
 }
 
-static void set_block(Scratch *s, const Job *job, ProbeTask *t, ProbePass pass, int n)
+/* One sample a pixel: what the others are compared with. */
+static void shade_base(Worker *w, const Job *job, ProbeTask *t, int listed)
 {
-    t->pass  = pass;
-    s->block = (Block){.n = n, .pixels = t->count, .sign = 1, .bands = job->request->bands, .probe = t};
-    for (int p = 0; p < t->count; p++) {
-        s->block.x[p] = candidate_of(t, p)->x;
-        s->block.y[p] = candidate_of(t, p)->y;
+    shade_pixels(w, job, t, 1, listed);
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = block_values(w, job, plane);
+        if (value) memcpy(t->base[plane], value, (size_t)t->count * sizeof *value);
     }
 }
 
@@ -341,22 +275,21 @@ static void probe_task(void *user, int worker, int index)
     const Budget *b = user;
     const Job    *job = b->job;
     ProbeTask    *t = &b->task[index];
-    Scratch      *s = job->scratch[worker];
+    Worker       *w = job->worker[worker];
     double        box[4] = {INFINITY, INFINITY, 0, 0};
+    const float  *value;
     for (int p = 0; p < t->count; p++) {
         const Candidate *c = candidate_of(t, p);
         box[0] = fmin(box[0], c->x), box[1] = fmin(box[1], c->y);
         box[2] = fmax(box[2], c->x + 1), box[3] = fmax(box[3], c->y + 1);
     }
-    const int all = visibility_block_entities(s->list, job->visibility, &job->request->view, box[0], box[1], box[2],
-                                              box[3], job->request->hidden_entity, &s->counters.visibility);
-    int       listed = 0;
-    for (int k = 0; k < all; k++)
-        if (!job->is_small[s->list[k]]) s->list[listed++] = s->list[k];
+    const int listed = list_entities(w, job, box, false);
     if (t->of_tables) {
-        set_block(s, job, t, PASS_BASE, 1);
-        render_block(s, job, listed, NULL);
-        ask_directly(s, job, t, b->direct[worker], t->count);
+        shade_base(w, job, t, listed);
+        samples_light_directly(&w->shader, &job->scene, &w->samples, b->direct[worker]);
+        for (int plane = 0; plane < picture_radar; plane++)
+            if ((value = block_values(w, job, plane))) take_tables(t, value, plane);
+        for (int p = 0; p < t->count; p++) t->tables_px += t->probe[p].stands_for;
         return;
     }
     /* as many pixels at a time as a block of samples holds */
@@ -365,15 +298,16 @@ static void probe_task(void *user, int worker, int index)
     for (int p = 0; p < count; p += piece) {
         t->probe = first + p;
         t->count = count - p < piece ? count - p : piece;
-        set_block(s, job, t, PASS_RAYS, b->n);
-        render_block(s, job, listed, NULL);
+        shade_pixels(w, job, t, b->n, listed);
+        for (int plane = 0; plane < picture_plane_count; plane++)
+            if ((value = block_values(w, job, plane))) take_rays(t, job, b->n, value, plane);
     }
     t->probe = first, t->count = count;
-    set_block(s, job, t, PASS_BASE, 1);
-    render_block(s, job, listed, NULL);
-    coarsen(s, job, t);
-    t->pass = PASS_COARSE;
-    shade_block(s, job);
+    shade_base(w, job, t, listed);
+    coarsen(&w->samples, job, t);
+    block_light(w, job);
+    for (int plane = 0; plane < picture_plane_count; plane++)
+        if ((value = block_values(w, job, plane))) take_coarse(t, value, plane);
 }
 
 /* ---- the whole ---------------------------------------------------------------------------------- */
@@ -412,7 +346,7 @@ static int deal(Budget *b, int probes, int of_tables)
     return tasks;
 }
 
-Status error_budget(Job *job, Pool *pool, Arena *arena)
+Status error_estimate(const Job *job, Pool *pool, Arena *arena)
 {
     const double start_s = wall_clock_s();
     Picture     *picture = job->picture;

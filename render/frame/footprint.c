@@ -8,7 +8,9 @@
  * pixel is its own value times what the footprints leave of it, plus the footprints.
  *
  * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
-#include "render/frame/render_private.h"
+#include "render/frame/footprint.h"
+
+#include "render/frame/sampling_variance.h"
 
 /* The target's sample nearest the centre of a pixel. */
 typedef struct FootprintTruth {
@@ -29,7 +31,6 @@ struct Footprint {
     double  visible, amodal, hidden_ground, hidden_entity;
     double  veiled[BAND_COUNT];          /* area x what the veil takes */
     double  square[picture_plane_count]; /* area x radiance^2 */
-    double *hidden_by;                 /* [snapshot count], px; NULL: not wanted */
     float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
     float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
     bool   *met;                       /* cells that show the target */
@@ -77,8 +78,6 @@ static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
         if (budget || handed_plane) ok = (f->cell[k] = arena_alloc(arena, cells, sizeof(float))) && ok;
         if (handed_plane) ok = (f->behind[k] = arena_alloc(arena, pixels, sizeof(float))) && ok;
     }
-    if (job->picture->target)
-        ok = (f->hidden_by = arena_alloc(arena, (size_t)job->snapshot->count, sizeof(double))) && ok;
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
@@ -86,7 +85,7 @@ Status footprints_plan(Job *job, Arena *arena)
 {
     const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
     int          count = 0;
-    for (int i = 0; i < job->snapshot->count; i++) count += job->is_small[i] = is_small(&job->boxes[i]);
+    for (int i = 0; i < job->scene.snapshot->count; i++) count += job->is_small[i] = is_small(&job->boxes[i]);
     if (count == 0) return STATUS_OK;
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
@@ -94,7 +93,7 @@ Status footprints_plan(Job *job, Arena *arena)
     job->footprint_turn = arena_alloc(arena, (size_t)count, sizeof *job->footprint_turn);
     if (!job->footprint || !job->footprint_turn || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
-    for (int i = 0; i < job->snapshot->count && status == STATUS_OK; i++)
+    for (int i = 0; i < job->scene.snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
     if (job->request->hand_over_cells) {
         job->picture->small.target = arena_alloc(arena, (size_t)count, sizeof *job->picture->small.target);
@@ -133,14 +132,14 @@ static double overlap(Span a, double low, double high)
     return length > 0 ? length : 0;
 }
 
-void footprint_box(double box_px[4], const Footprint *f) { memcpy(box_px, f->box, sizeof f->box); }
-
-uint64_t footprint_key(const Footprint *f, int cell)
+/* One number for each cell of each entity: what random choices for a sample depend on; none is a pixel's. */
+static uint64_t cell_key(const Footprint *f, int cell)
 {
     return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
 }
 
-double footprint_area(const Footprint *f, int cell)
+/* Area of a cell within the image, px. */
+static double cell_area(const Footprint *f, int cell)
 {
     return overlap(cell_span(f, 0, cell % f->columns), f->x0, f->x1) *
            overlap(cell_span(f, 1, cell / f->columns), f->y0, f->y1);
@@ -181,21 +180,21 @@ static void splat_pixel(void *user, const Footprint *f, int pixel, int x, int y,
     splat->sum[pixel] += area * splat->value;
 }
 
-void footprint_splat(Scratch *s, int plane)
+/* Gives the samples' values of a plane to the pixels. */
+static void splat(Footprint *f, const int *cell, int count, const float *value, int plane)
 {
-    Footprint *f = s->block.footprint;
-    for (int i = 0; i < s->hits.count; i++) {
-        Splat splat = {f->sum[plane], s->out[i]};
-        over_pixels(f, s->block.cell[i], splat_pixel, &splat);
-        if (f->cell[plane]) f->cell[plane][s->block.cell[i]] = s->out[i], f->met[s->block.cell[i]] = true;
-        f->square[plane] += footprint_area(f, s->block.cell[i]) * s->out[i] * s->out[i];
+    for (int i = 0; i < count; i++) {
+        Splat of = {f->sum[plane], value[i]};
+        over_pixels(f, cell[i], splat_pixel, &of);
+        if (f->cell[plane]) f->cell[plane][cell[i]] = value[i], f->met[cell[i]] = true;
+        f->square[plane] += cell_area(f, cell[i]) * value[i] * value[i];
     }
 }
 
 /* ---- sampling ------------------------------------------------------------------------------- */
 
 typedef struct TruthSample {
-    const Scratch *s;
+    const Samples *s;
     int            sample;
     double         at_px[2];
 } TruthSample;
@@ -206,11 +205,11 @@ static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y,
     const TruthSample *t = user;
     const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
     FootprintTruth    *to = &f->truth[pixel];
-    const Scratch     *s = t->s;
+    const Samples     *s = t->s;
     if (!(square_px < to->square_px)) return;
     *to = (FootprintTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
                            .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
-                           .material = s->material[t->sample]};
+                           .material = s->hits.material[t->sample]};
     for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
 }
 
@@ -224,76 +223,66 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
     box[3] = y + 1 > box[3] ? y + 1 : box[3];
 }
 
-/* Cells whose ray would meet the target with nothing else in the world, close together: nobody else is asked.
- * Without SKIP_CELL all stay. */
-static void keep_amodal(Footprint *f, Scratch *s, const Job *job, int first_cell)
+/* Cells whose ray would meet the target with nothing else in the world, close together: no other ray is traced.
+ * Without SKIP_CELL all stay. Returns how many. */
+static int keep_amodal(int *cell, Footprint *f, Worker *w, const Job *job, int first_cell)
 {
-    const int  count = s->rays.count;
+    Rays      *rays = &w->samples.rays;
+    const int  count = rays->count;
     const bool leave_out = skips(job->request->skips_off, SKIP_CELL);
     int        kept = 0;
-    visibility_entity_only(s->meets, job->visibility, &s->rays, f->entity, &s->counters.visibility);
+    visibility_entity_only(w->meets, job->scene.visibility, rays, f->entity, &w->shader.counters);
     for (int i = 0; i < count; i++) {
-        if (!s->meets[i] && leave_out) continue;
-        s->block.cell[kept] = first_cell + i;
-        s->meets[kept]      = s->meets[i];
+        if (!w->meets[i] && leave_out) continue;
+        cell[kept]     = first_cell + i;
+        w->meets[kept] = w->meets[i];
         for (int k = 0; k < 3; k++) {
-            s->rays.o_enu[k][kept] = s->rays.o_enu[k][i];
-            s->rays.d_enu[k][kept] = s->rays.d_enu[k][i];
+            rays->o_enu[k][kept] = rays->o_enu[k][i];
+            rays->d_enu[k][kept] = rays->d_enu[k][i];
         }
-        s->rays.far_m[kept++] = s->rays.far_m[i];
+        rays->far_m[kept++] = rays->far_m[i];
     }
-    s->counters.visibility.skipped[SKIP_CELL] += (uint64_t)(count - kept);
-    s->rays.count   = kept;
-    s->rays.columns = 0;
+    w->shader.counters.skipped[SKIP_CELL] += (uint64_t)(count - kept);
+    rays->count   = kept;
+    rays->columns = 0;
+    return kept;
 }
 
 /* What hides the target where its own samples did not meet it first. */
-static void count_hidden(Footprint *f, const Scratch *s)
+static void count_hidden(Footprint *f, Worker *w, const Job *job, const int *cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    for (int i = 0; i < s->all.count; i++) {
-        if (!s->meets[i]) continue;
-        const int    cell = s->block.cell[i];
-        const double area = footprint_area(f, cell);
+    const Hits    *hits = &w->samples.hits;
+    for (int i = 0; i < hits->count; i++) {
+        if (!w->meets[i]) continue;
+        const double area = cell_area(f, cell[i]);
         f->amodal += area;
-        over_pixels(f, cell, grow_amodal, f->amodal_box);
-        if (s->all.entity[i] == id) continue;
-        if (s->all.entity[i]) {
+        over_pixels(f, cell[i], grow_amodal, f->amodal_box);
+        if (hits->entity[i] == id) continue;
+        if (hits->entity[i]) {
             f->hidden_entity += area;
-            f->hidden_by[s->all.entity[i] - 1] += area;
+            occlusion_add(&w->sums.hidden, job->rules.arena, f->entity, (int)hits->entity[i] - 1, 0, area);
         } else {
             f->hidden_ground += area;
         }
     }
 }
 
-/* Samples that met the target, close together: nobody else's are shaded here. */
-static void keep_target(const Footprint *f, Scratch *s)
+/* Samples that met the target, close together: no other is shaded here. Returns how many. */
+static int keep_target(const Footprint *f, Samples *s, int *cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
-    const Hits    *from = &s->all;
-    Hits          *to = &s->hits;
+    Hits          *hits = &s->hits;
+    Rays          *rays = &s->rays;
     int            kept = 0;
-    for (int i = 0; i < from->count; i++) {
-        if (from->entity[i] != id) continue;
-        s->block.cell[kept] = s->block.cell[i];
-        to->range_m[kept]   = from->range_m[i];
-        to->entity[kept]    = from->entity[i];
-        to->part[kept]      = from->part[i];
-        to->model[kept]     = from->model[i];
-        to->inside[kept]    = from->inside[i];
-        to->surface[kept]   = from->surface[i];
-        for (int k = 0; k < 3; k++) {
-            to->p_enu[k][kept]       = from->p_enu[k][i];
-            to->n_geo[k][kept]       = from->n_geo[k][i];
-            to->n_enu[k][kept]       = from->n_enu[k][i];
-            s->rays.o_enu[k][kept]   = s->rays.o_enu[k][i];
-            s->rays.d_enu[k][kept]   = s->rays.d_enu[k][i];
-        }
-        s->rays.far_m[kept++] = s->rays.far_m[i];
+    for (int i = 0; i < hits->count; i++) {
+        if (hits->entity[i] != id) continue;
+        cell[kept] = cell[i];
+        hits_copy(hits, rays, kept++, hits, rays, i);
     }
-    to->count   = s->rays.count = kept;
-    to->columns = s->rays.columns = 0;
+    hits->count   = rays->count = kept;
+    hits->columns = rays->columns = 0;
+    return kept;
 }
 
 static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
@@ -302,10 +291,41 @@ static void add_area(void *user, const Footprint *f, int pixel, int x, int y, do
     f->area[pixel] += area;
 }
 
-static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cell, int count, int listed)
+/* Light of the samples that met the target, into its cells, its pixels and its sums. */
+static void shade_cells(Footprint *f, Worker *w, const Job *job, const int *cell, int count)
+{
+    Samples *s = &w->samples;
+    for (int i = 0; i < count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
+    s->key     = w->key;
+    s->per_rad = job->request->view.focal_px;
+    ask_smoke(w, job, f->box);
+    samples_sun(&w->shader, &job->scene, s);
+    samples_light(&w->shader, &job->scene, s);
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = block_values(w, job, plane);
+        if (value) splat(f, cell, count, value, plane);
+    }
+    for (int i = 0; i < count; i++) {
+        w->area_px[i] = cell_area(f, cell[i]);
+        f->visible += w->area_px[i];
+        for (int b = 0; b < BAND_COUNT; b++)
+            f->veiled[b] += w->area_px[i] * samples_smoke_taken(s, job->rules.smoke_channel[b], i);
+        over_pixels(f, cell[i], add_area, NULL);
+        if (!f->truth) continue;
+        TruthSample truth = {.s = s, .sample = i};
+        cell_sample(truth.at_px, f, cell[i]);
+        over_pixels(f, cell[i], offer_truth, &truth);
+    }
+    if (s->radar && job->request->profile_bins > 0)
+        target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);
+}
+
+static void sample_cells(Footprint *f, Worker *w, const Job *job, int first_cell, int count, int listed)
 {
     const View  *view = &job->request->view;
+    Samples     *s = &w->samples;
     const double t0 = wall_clock_s();
+    int          cell[hits_capacity]; /* of each sample: row * columns + column */
     for (int i = 0; i < count; i++) {
         double at_px[2], d_enu[3];
         cell_sample(at_px, f, first_cell + i);
@@ -318,44 +338,30 @@ static void sample_cells(Footprint *f, Scratch *s, const Job *job, int first_cel
     }
     s->rays.count   = count;
     s->rays.columns = f->columns;
-    s->counters.rays_primary += (uint64_t)count;
-    s->counters.rays_small_targets += (uint64_t)count;
-    keep_amodal(f, s, job, first_cell);
-    visibility_first_hit(&s->all, job->visibility, &s->rays, s->list, listed, job->request->hidden_entity,
-                         &s->counters.visibility);
-    if (job->picture->target) count_hidden(f, s);
-    s->visibility_s += wall_clock_s() - t0;
-    keep_target(f, s);
-    if (s->hits.count == 0) return;
-    trace_shadows(s, job);
-    shade_block(s, job);
-    for (int i = 0; i < s->hits.count; i++) {
-        const int cell = s->block.cell[i];
-        f->visible += footprint_area(f, cell);
-        for (int b = 0; b < BAND_COUNT; b++) f->veiled[b] += footprint_area(f, cell) * veil_taken(s, job, (Band)b, i);
-        over_pixels(f, cell, add_area, NULL);
-        if (!f->truth) continue;
-        TruthSample truth = {.s = s, .sample = i};
-        cell_sample(truth.at_px, f, cell);
-        over_pixels(f, cell, offer_truth, &truth);
-    }
+    w->counters.rays_primary += (uint64_t)count;
+    w->counters.rays_small_targets += (uint64_t)count;
+    keep_amodal(cell, f, w, job, first_cell);
+    w->shader.visibility_s += wall_clock_s() - t0;
+    samples_trace(&w->shader, &job->scene, s, w->list, listed);
+    if (job->picture->target) count_hidden(f, w, job, cell);
+    const int kept = keep_target(f, s, cell);
+    if (kept > 0) shade_cells(f, w, job, cell, kept);
 }
 
 void footprint_task(void *user, int worker, int index)
 {
     const Job *job = user;
-    Scratch   *s = job->scratch[worker];
+    Worker    *w = job->worker[worker];
     Footprint *f = &job->footprint[job->footprint_turn[index]];
     const int  cells = f->columns * f->rows;
-    s->counters.small_targets++;
+    w->counters.small_targets++;
     if (cells == 0) return;
-    const int listed = visibility_block_entities(s->list, job->visibility, &job->request->view, f->box[0], f->box[1],
-                                                 f->box[2], f->box[3], job->request->hidden_entity, &s->counters.visibility);
-    s->block = (Block){.n = 1, .sign = 1, .bands = job->request->bands, .footprint = f};
+    const int listed = list_entities(w, job, f->box, true);
+    ask_bands(w, job, job->request->bands);
     /* whole rows, and fours of them where they fit: their rays go in squares */
     const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
     for (int cell = 0; cell < cells; cell += block)
-        sample_cells(f, s, job, cell, cells - cell < block ? cells - cell : block, listed);
+        sample_cells(f, w, job, cell, cells - cell < block ? cells - cell : block, listed);
 }
 
 /* ---- into the picture ----------------------------------------------------------------------- */
@@ -412,7 +418,8 @@ static double hidden_ground(const Footprint *f, const Job *job, const float *val
         for (int x = f->x0; x < f->x1; x++) {
             const size_t px = pixel_index(job, x, y);
             const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
-            if (job->coverer[px] == f->entity && share > 0) sum += share * share * plane_contrast(job->picture, value, x, y);
+            if (job->coverer[px] == f->entity && share > 0)
+                sum += share * share * plane_contrast(job->picture, value, x, y);
         }
     return sum;
 }
@@ -499,9 +506,6 @@ static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
     target->occluded_entity = f->hidden_entity;
     for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
     memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
-    double most = 0;
-    for (int i = 0; i < job->snapshot->count; i++)
-        if (f->hidden_by[i] > most) most = f->hidden_by[i], target->occluder = i;
     for (int y = f->y0, k = 0; y < f->y1; y++)
         for (int x = f->x0; x < f->x1; x++, k++) {
             if (!(f->area[k] > 0)) continue;

@@ -4,7 +4,7 @@
  * samples by 0.6 K (rms), and as the eye moves the border flickers. The hit that is there already says where the ground
  * lies, so no ray is needed: places over the sample's square are laid on the plane of its hit, their surface classes
  * are looked up, and the hit is split into one for each class, at the mean of its places, weighted by their number. */
-#include "render/frame/render_private.h"
+#include "render/frame/ground_mix.h"
 
 #include <assert.h>
 
@@ -22,7 +22,7 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int
 {
     const View      *view = &job->request->view;
     const Picture   *p = job->picture;
-    const Materials *materials = &job->world->materials;
+    const Materials *materials = &job->scene.world->materials;
     const int        columns = x1 - x0 + 1;
     double           x_m[tile_side_samples + 1], y_m[tile_side_samples + 1];
     uint8_t          surface[tile_side_samples + 1];
@@ -41,7 +41,7 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int
             x_m[x - x0] = view->p_enu[0] + range_m * d[0];
             y_m[x - x0] = view->p_enu[1] + range_m * d[1];
         }
-        landscape_surfaces(surface, job->world->landscape, columns, x_m, y_m);
+        landscape_surfaces(surface, job->scene.world->landscape, columns, x_m, y_m);
         for (int k = 0; k < columns; k++)
             out[(y - y0) * columns + k] =
                 surface[k] == SURFACE_NONE ? material_unknown : (uint16_t)materials->surface[surface[k]];
@@ -67,27 +67,28 @@ typedef struct Patch {
 
 /* Classes of the places over a square of 1 / n px about a sample's own place, those of most places first; the rest is
  * counted to the first. Returns how many, 1 .. most; 0: no ground there. */
-static int find_patches(Patch patch[ground_mix_most], const Scratch *s, const Job *job, int i, const double centre_px[2],
+static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
                         int side, int most)
 {
     const View  *view = &job->request->view;
-    const Hits  *hits = &s->hits;
+    const Hits  *hits = &w->samples.hits;
+    const Rays  *rays = &w->samples.rays;
     const int    places = side * side;
     const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    const double d_hit[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+    const double d_hit[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
     double       at_px[ground_mix_places][2], x_m[ground_mix_places], y_m[ground_mix_places];
     uint8_t      surface[ground_mix_places];
     Patch        found[SURFACE_COUNT] = {{0}};
     for (int k = 0; k < places; k++) {
         double place[2], d[3];
         sample_place(place, side, k);
-        for (int c = 0; c < 2; c++) at_px[k][c] = centre_px[c] + (place[c] - 0.5) / s->block.n;
+        for (int c = 0; c < 2; c++) at_px[k][c] = centre_px[c] + (place[c] - 0.5) / w->block.n;
         view_ray(d, view, at_px[k][0], at_px[k][1]);
         const double range_m = plane_through(n, d_hit, hits->range_m[i], d);
         x_m[k] = view->p_enu[0] + range_m * d[0];
         y_m[k] = view->p_enu[1] + range_m * d[1];
     }
-    landscape_surfaces(surface, job->world->landscape, places, x_m, y_m);
+    landscape_surfaces(surface, job->scene.world->landscape, places, x_m, y_m);
     for (int k = 0; k < places; k++) {
         Patch *of = &found[surface[k] < SURFACE_COUNT ? surface[k] : SURFACE_NONE];
         of->count++;
@@ -112,24 +113,6 @@ static int find_patches(Patch patch[ground_mix_most], const Scratch *s, const Jo
     return count;
 }
 
-/* Sample `to` of the split block is sample `from` of the one before. */
-static void copy_sample(Hits *hits, Rays *rays, int to, const Scratch *s, int from)
-{
-    hits->range_m[to] = s->hits.range_m[from];
-    hits->entity[to]  = s->hits.entity[from];
-    hits->part[to]    = s->hits.part[from];
-    hits->model[to]   = s->hits.model[from];
-    hits->surface[to] = s->hits.surface[from];
-    rays->far_m[to]   = s->rays.far_m[from];
-    for (int k = 0; k < 3; k++) {
-        hits->p_enu[k][to] = s->hits.p_enu[k][from];
-        hits->n_geo[k][to] = s->hits.n_geo[k][from];
-        hits->n_enu[k][to] = s->hits.n_enu[k][from];
-        rays->o_enu[k][to] = s->rays.o_enu[k][from];
-        rays->d_enu[k][to] = s->rays.d_enu[k][from];
-    }
-}
-
 /* Moves a ground sample to another place of the picture on the plane of its hit. */
 static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const double at_px[2])
 {
@@ -144,13 +127,14 @@ static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const d
     }
 }
 
-void split_ground(Scratch *s, const Job *job, int side, int most)
+void split_ground(Worker *w, const Job *job, int side, int most)
 {
-    Block    *block = &s->block;
+    const PixelBlock *block = &w->block;
+    Samples  *s = &w->samples;
     const int samples = block->n * block->n, before = s->hits.count;
-    Hits     *hits = &s->all;
-    Rays     *rays = &s->some;
-    uint8_t   shadow[hits_capacity];
+    Hits     *hits = &w->hits;
+    Rays     *rays = &w->rays;
+    float     sun[hits_capacity];
     int       count = 0;
     assert(before * most <= hits_capacity && most <= ground_mix_most && side * side <= ground_mix_places);
     for (int i = 0; i < before; i++) {
@@ -160,22 +144,23 @@ void split_ground(Scratch *s, const Job *job, int side, int most)
         double       centre_px[2];
         sample_place(centre_px, block->n, i % samples);
         centre_px[0] += block->x[pixel], centre_px[1] += block->y[pixel];
-        const int patches = ground ? find_patches(patch, s, job, i, centre_px, side, most) : 0;
+        const int patches = ground ? find_patches(patch, w, job, i, centre_px, side, most) : 0;
         for (int k = 0; k < (patches > 1 ? patches : 1); k++, count++) {
-            copy_sample(hits, rays, count, s, i);
-            shadow[count]          = s->shadow[i];
-            block->pixel_of[count] = (uint16_t)pixel;
-            block->part_of[count]  = 1.0f / (float)samples;
+            hits_copy(hits, rays, count, &s->hits, &s->rays, i);
+            sun[count]          = s->sun[i];
+            hits->ray[count]    = (uint16_t)i;
+            hits->weight[count] = 1;
             if (patches == 0) continue;
-            block->part_of[count] = (float)patch[k].count / (float)(side * side * samples);
-            hits->surface[count]  = patch[k].surface;
+            hits->weight[count]  = (float)patch[k].count / (float)(side * side);
+            hits->surface[count] = patch[k].surface;
+            hits->material[count] = (uint16_t)job->scene.world->materials.surface[patch[k].surface];
             if (patches > 1) move_sample(hits, rays, count, &job->request->view, patch[k].place);
         }
     }
-    for (int i = 0; i < count; i++) s->shadow[i] = shadow[i];
+    for (int i = 0; i < count; i++) s->sun[i] = sun[i];
     hits->count = rays->count = count;
     hits->columns = rays->columns = 0;
+    hits->several = true;
     s->hits = *hits;
     s->rays = *rays;
-    block->split = true;
 }

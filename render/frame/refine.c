@@ -1,6 +1,10 @@
-/* render/frame/refine.c: the pixels that edges.c marks, once more with more samples, in place of what they had: in their planes
- * and in all sums over pixels. */
-#include "render/frame/render_private.h"
+/* render/frame/refine.c: the edges pass: pixels that edges.c marks, once more with more samples, in place of what they
+ * had: in their planes and in all sums over pixels. */
+#include "render/frame/refine.h"
+
+#include "render/frame/edges.h"
+#include "render/frame/ground_mix.h"
+#include "render/frame/sampling_variance.h"
 
 /* One kind of refinement, and the pixels that get it. */
 typedef struct Refinement {
@@ -12,37 +16,36 @@ typedef struct Refinement {
 /* Whether the planes still hold all that a pixel's own sample gave to the sums; else it is traced again. */
 static bool planes_remember(const Job *job)
 {
-    return job->request->samples == 1 && !job->picture->profile && job->effects.count == 0 &&
+    return job->request->samples == 1 && !job->picture->profile && job->scene.effects.count == 0 &&
            skips(job->request->skips_off, SKIP_RETRACE);
 }
 
 /* Takes from the sums what the block's pixels gave with one sample each, as the planes say; before they change. */
-static void take_back(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+static void take_back(Worker *w, const Job *job, unsigned bands, int listed, bool areas)
 {
     const Picture *picture = job->picture;
-    Block         *block   = &s->block;
-    block->n    = 1;
-    block->sign = -1;
-    make_rays(&s->rays, block, &job->request->view);
-    s->hits.count = block->pixels;
-    s->veil.any   = false;
-    s->out        = s->radiance[0];
-    for (int p = 0; p < block->pixels; p++) {
+    PixelBlock    *block   = &w->block;
+    Samples       *s       = &w->samples;
+    const size_t   pixels  = (size_t)block->pixels;
+    block->n = 1;
+    pixels_rays(&s->rays, block, &job->request->view);
+    s->hits.count   = block->pixels;
+    s->hits.several = false;
+    s->smoke.any    = false;
+    for (size_t p = 0; p < pixels; p++) {
         const size_t px = pixel_index(job, block->x[p], block->y[p]);
-        s->cosine3[p]      = pixel_cosine3(&job->request->view, block->x[p], block->y[p]);
         s->hits.entity[p]  = picture->entity[px];
         s->hits.range_m[p] = picture->range_m[px] * (1 - 1e-6); /* a float's: no farther than it was */
     }
+    ask_bands(w, job, bands);
     for (int plane = 0; plane < picture_plane_count; plane++) {
-        const Band   band  = plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR
-                           : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
-        const float *value = picture_plane(picture, plane);
-        if (!value || !has_band(block->bands, band)) continue;
-        for (int p = 0; p < block->pixels; p++) s->out[p] = value[pixel_index(job, block->x[p], block->y[p])];
-        add_radiance(s, job, plane);
+        float *out = block_values(w, job, plane);
+        for (size_t p = 0; out && p < pixels; p++)
+            out[p] = picture_plane(picture, plane)[pixel_index(job, block->x[p], block->y[p])];
     }
-    if (pairs) count_targets(s, job, listed, pairs);
-    s->counters.visibility.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
+    block_add(w, job, -1);
+    if (areas) block_add_areas(w, job, -1, listed);
+    w->shader.counters.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
 }
 
 /* Places a side at which a sample of n x n is asked for kinds of ground: twice as fine as edges of parts are sampled,
@@ -55,55 +58,70 @@ static int ground_side(const Job *job, int n)
 
 enum { step_kinds = 2 }; /* of ground, a sample at a step */
 
-/* As render_block, with the samples split by kinds of ground. */
-static void split_block(Scratch *s, const Job *job, int listed, HiddenBy *pairs)
+/* Squared errors of the block's pixels, by their own samples. */
+static void add_variance(const Worker *w, const Job *job, double sum[picture_plane_count])
 {
-    trace_block(s, job, listed);
-    trace_shadows(s, job);
-    if (pairs) { /* of the samples as they were shot */
-        trace_veils(s, job);
-        count_targets(s, job, listed, pairs);
+    const PixelBlock *block = &w->block;
+    const int         samples = block->n * block->n;
+    for (int plane = 0; plane < picture_plane_count; plane++) {
+        const float *value = block_values(w, job, plane);
+        for (int p = 0; value && p < block->pixels; p++) {
+            const size_t px = pixel_index(job, block->x[p], block->y[p]);
+            const double open = job->picture->covered ? 1 - (double)job->picture->covered[px] : 1;
+            sum[plane] += open * open * error_budget_law(value + p * samples, block->n);
+        }
     }
-    if (job->world->landscape) split_ground(s, job, ground_side(job, s->block.n), step_kinds);
-    shade_block(s, job);
-    s->block.split = false;
 }
 
-/* The block's pixels once more with n samples a side, in place of what they had. */
-static void refine_block(Scratch *s, const Job *job, const Refinement *how, int listed, HiddenBy *pairs)
+/* The block's pixels once more with n samples a side, in place of what they had. law: where their squared errors go;
+ * NULL: not wanted. */
+static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, double *law)
 {
-    Block     *block = &s->block;
-    const bool areas = job->picture->target && !(how->has & refine_sun);
-    const bool sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
-    block->bands  = how->bands;
-    if (sums && remembered && !(how->has & refine_ground)) take_back(s, job, listed, areas ? pairs : NULL);
-    block->n      = how->n;
-    block->sign   = 1;
-    block->writes = true;
-    if (how->has & refine_ground) {
-        recall_ground(s, job);
-        split_ground(s, job, ground_side(job, 1), ground_mix_most);
-        shade_block(s, job);
-        block->split = false;
-        return;
+    PixelBlock *block = &w->block;
+    Samples    *s     = &w->samples;
+    const bool  areas = job->picture->target && !(how->has & refine_sun), ground = how->has & refine_ground;
+    const bool  sums  = job->picture->target || job->picture->profile, remembered = planes_remember(job);
+    if (sums && remembered && !ground) take_back(w, job, how->bands, listed, areas);
+    block->n = how->n;
+    if (ground) {
+        double box_px[4];
+        pixels_box(box_px, block);
+        ask_bands(w, job, how->bands);
+        ask_smoke(w, job, box_px);
+        recall_ground(w, job);
+    } else {
+        block_trace(w, job, how->bands, listed);
+        samples_sun(&w->shader, &job->scene, s);
+        w->counters.rays_edges += (uint64_t)s->rays.count;
     }
-    if (how->has & refine_step) split_block(s, job, listed, areas ? pairs : NULL);
-    else render_block(s, job, listed, areas ? pairs : NULL);
-    s->counters.rays_edges += (uint64_t)s->rays.count;
-    if (!sums || remembered) return;
-    block->n      = job->request->samples;
-    block->sign   = -1;
-    block->writes = false;
-    render_block(s, job, listed, areas ? pairs : NULL);
-    s->counters.rays_edges += (uint64_t)s->rays.count;
+    const bool step = how->has & refine_step;
+    if (step && areas) { /* of the samples as they were shot */
+        samples_smoke(&job->scene, s);
+        block_add_areas(w, job, 1, listed);
+    }
+    if (ground) split_ground(w, job, ground_side(job, 1), ground_mix_most);
+    else if (step && job->scene.world->landscape) split_ground(w, job, ground_side(job, block->n), step_kinds);
+    block_light(w, job);
+    if (law) add_variance(w, job, law);
+    block_write(w, job);
+    block_add(w, job, 1);
+    if (areas && !step && !ground) block_add_areas(w, job, 1, listed);
+    if (ground || !sums || remembered) return;
+    block->n = job->request->samples;
+    block_trace(w, job, how->bands, listed);
+    samples_sun(&w->shader, &job->scene, s);
+    block_light(w, job);
+    block_add(w, job, -1);
+    if (areas) block_add_areas(w, job, -1, listed);
+    w->counters.rays_edges += (uint64_t)s->rays.count;
 }
 
 void refine_tile(void *user, int worker, int task)
 {
     const Job     *job    = user;
-    Scratch       *s      = job->scratch[worker];
+    Worker        *w      = job->worker[worker];
     const Tile     tile   = tile_of(job, task);
-    HiddenBy      *pairs  = job->pairs + (size_t)task * pairs_per_tile;
+    const double   box_px[4] = {tile.x0, tile.y0, tile.x1, tile.y1};
     const int      edge   = job->request->edge_samples;
     const unsigned all    = job->request->bands, no_radar = all & ~(1u << BAND_RADAR);
     const unsigned sunlit = all & (1u << BAND_OPTICAL | 1u << BAND_MWIR), lwir = all & 1u << BAND_LWIR;
@@ -123,28 +141,26 @@ void refine_tile(void *user, int worker, int task)
             const unsigned flags = flags_of[(y - tile.y0) * (tile.x1 - tile.x0) + x - tile.x0];
             job->refine[pixel_index(job, x, y)] = (uint8_t)flags;
             any |= flags;
-            s->counters.pixels_refined += flags != 0;
+            w->counters.pixels_refined += flags != 0;
         }
     if (!any) return;
-    const int listed = list_entities(s, job, &tile);
+    const int listed = list_entities(w, job, box_px, false);
     for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
         const Refinement *how = &ways[k];
         if ((any & how->has) != how->has || how->bands == 0) continue;
-        s->law = job->law && !(how->has & (refine_step | refine_ground)) ? job->law[task] : NULL;
-        s->block = (Block){0};
+        double *law = job->law && !(how->has & (refine_step | refine_ground)) ? job->law[task] : NULL;
+        w->block.pixels = w->block.columns = 0;
         for (int y = tile.y0; y < tile.y1; y++)
             for (int x = tile.x0; x < tile.x1; x++) {
                 const unsigned flags = job->refine[pixel_index(job, x, y)];
                 if ((flags & how->has) != how->has || flags & how->lacks) continue;
-                s->block.x[s->block.pixels]   = (uint16_t)x;
-                s->block.y[s->block.pixels++] = (uint16_t)y;
+                pixels_add(&w->block, x, y);
                 const int each = how->n * how->n * (how->has & refine_ground ? ground_mix_most
                                                     : how->has & refine_step ? step_kinds : 1);
-                if ((s->block.pixels + 1) * each <= hits_capacity) continue;
-                refine_block(s, job, how, listed, pairs);
-                s->block.pixels = 0;
+                if ((w->block.pixels + 1) * each <= hits_capacity) continue;
+                refine_block(w, job, how, listed, law);
+                w->block.pixels = 0;
             }
-        if (s->block.pixels > 0) refine_block(s, job, how, listed, pairs);
+        if (w->block.pixels > 0) refine_block(w, job, how, listed, law);
     }
-    s->law = NULL;
 }

@@ -1,3 +1,4 @@
+/* render/ground/ground.c: the elevation as the ray tracers see it, and the scalar tracer. */
 #include "render/ground/ground_private.h"
 
 void ground_prepare(Ground *out, const Elevation *elevation)

@@ -1,6 +1,6 @@
-/* Eight rays walk the pyramid side by side, each at its own node; a lane that is done takes the next ray of
- * the list. A step is the same for every lane, in two vectors of four; looking up posts, the triangles of a
- * cell and changes of ray are done a lane at a time.
+/* render/ground/ground8.c: eight rays walk the pyramid side by side, each at its own node; a lane that is done takes
+ * the next ray of the list. A step is the same for every lane, in two vectors of four; looking up posts, the
+ * triangles of a cell and changes of ray are done a lane at a time.
  *
  * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
 #include "render/ground/ground_lanes.h"
@@ -20,12 +20,12 @@ typedef struct Walk {
 
 /* What half a step has found out about four lanes. */
 typedef struct Seen {
-    Four node_i, node_j, at_u, at_v, next_m;
-    Four clear; /* mask: above everything in the node */
+    F64x4 node_i, node_j, at_u, at_v, next_m;
+    F64x4 clear; /* mask: above everything in the node */
 } Seen;
 
 /* Highest posts of four lanes' nodes. */
-static inline Four look_up(Four node_i, Four node_j, Four k, const GroundLevel *const level[4])
+static inline F64x4 look_up(F64x4 node_i, F64x4 node_j, F64x4 k, const GroundLevel *const level[4])
 {
     int32_t i[4], j[4], at[4], z[4];
     _mm_storeu_si128((__m128i *)i, _mm256_cvttpd_epi32(node_i));
@@ -33,45 +33,49 @@ static inline Four look_up(Four node_i, Four node_j, Four k, const GroundLevel *
     _mm_storeu_si128((__m128i *)at, _mm256_cvttpd_epi32(k));
     for (int l = 0; l < 4; l++)
         z[l] = level[l]->pyramid[at[l]][(size_t)j[l] * (size_t)level[l]->pyramid_nx[at[l]] + (size_t)i[l]];
-    return _mm256_cvtepi32_pd(_mm_set_epi32(z[3], z[2], z[1], z[0]));
+    return f64x4_of_ints(_mm_set_epi32(z[3], z[2], z[1], z[0]));
 }
 
 static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
 {
-    const Four t = load(w->t_m + l), size = load(w->size + l), per_size = load(w->per_size + l);
-    const Four dw = load(w->dw + l);
+    const F64x4 t = f64x4_load(w->t_m + l), size = f64x4_load(w->size + l), per_size = f64x4_load(w->per_size + l);
+    const F64x4 dw = f64x4_load(w->dw + l);
     Seen       s;
-    s.node_i = _mm256_floor_pd(load(w->i + l) * per_size);
-    s.node_j = _mm256_floor_pd(load(w->j + l) * per_size);
-    const Four highest = look_up(s.node_i, s.node_j, load(w->k + l), level);
-    s.at_u   = ((s.node_i + load(w->east + l)) * size - load(w->u0 + l)) * load(w->per_du + l);
-    s.at_v   = ((s.node_j + load(w->north + l)) * size - load(w->v0 + l)) * load(w->per_dv + l);
-    s.next_m = smaller(smaller(s.at_u, s.at_v), load(w->last_m + l));
-    const Four lowest = load(w->w0 + l) + pick(dw, s.next_m, t) * dw;
-    s.clear = less(highest + set(ground_clear_posts), lowest);
+    s.node_i = f64x4_floor(f64x4_load(w->i + l) * per_size);
+    s.node_j = f64x4_floor(f64x4_load(w->j + l) * per_size);
+    const F64x4 highest = look_up(s.node_i, s.node_j, f64x4_load(w->k + l), level);
+    s.at_u   = ((s.node_i + f64x4_load(w->east + l)) * size - f64x4_load(w->u0 + l)) * f64x4_load(w->per_du + l);
+    s.at_v   = ((s.node_j + f64x4_load(w->north + l)) * size - f64x4_load(w->v0 + l)) * f64x4_load(w->per_dv + l);
+    s.next_m = f64x4_min(f64x4_min(s.at_u, s.at_v), f64x4_load(w->last_m + l));
+    const F64x4 lowest = f64x4_load(w->w0 + l) + f64x4_select(dw, s.next_m, t) * dw;
+    s.clear = f64x4_less(highest + f64x4_set(ground_clear_posts), lowest);
     return s;
 }
 
 /* Lanes whose mask says so go on to the next node, up a level where they leave a parent; the others go down.
  * Returns the bits of those that came to their end. */
-static inline unsigned move(Walk *w, int l, const Seen *s, Four on)
+static inline unsigned move(Walk *w, int l, const Seen *s, F64x4 on)
 {
-    const Four t = s->next_m, one = set(1), half = set(0.5);
-    const Four k = load(w->k + l);
-    const Four n_u = (s->node_i + load(w->east + l)) * half, n_v = (s->node_j + load(w->north + l)) * half;
-    const Four even_u = at_most(n_u, _mm256_floor_pd(n_u)), even_v = at_most(n_v, _mm256_floor_pd(n_v));
-    const Four leaves = either(both(at_most(s->at_u, t), even_u), both(at_most(s->at_v, t), even_v));
-    const Four up = both(leaves, less(k, load(w->top + l)));
-    const Four i = cell_at(load(w->u0 + l), load(w->du + l), load(w->per_du + l), t, load(w->last_u + l));
-    const Four j = cell_at(load(w->v0 + l), load(w->dv + l), load(w->per_dv + l), t, load(w->last_v + l));
+    const F64x4 t = s->next_m, one = f64x4_set(1), half = f64x4_set(0.5);
+    const F64x4 k = f64x4_load(w->k + l);
+    const F64x4 n_u = (s->node_i + f64x4_load(w->east + l)) * half, n_v = (s->node_j + f64x4_load(w->north + l)) * half;
+    const F64x4 even_u = f64x4_at_most(n_u, f64x4_floor(n_u)), even_v = f64x4_at_most(n_v, f64x4_floor(n_v));
+    const F64x4 leaves =
+        f64x4_or(f64x4_and(f64x4_at_most(s->at_u, t), even_u), f64x4_and(f64x4_at_most(s->at_v, t), even_v));
+    const F64x4 up = f64x4_and(leaves, f64x4_less(k, f64x4_load(w->top + l)));
+    const F64x4 i =
+        cell_at(f64x4_load(w->u0 + l), f64x4_load(w->du + l), f64x4_load(w->per_du + l), t, f64x4_load(w->last_u + l));
+    const F64x4 j =
+        cell_at(f64x4_load(w->v0 + l), f64x4_load(w->dv + l), f64x4_load(w->per_dv + l), t, f64x4_load(w->last_v + l));
 
-    _mm256_store_pd(w->t_m + l, pick(on, t, load(w->t_m + l)));
-    _mm256_store_pd(w->i + l, pick(on, i, load(w->i + l)));
-    _mm256_store_pd(w->j + l, pick(on, j, load(w->j + l)));
-    _mm256_store_pd(w->k + l, k + pick(on, both(up, one), set(-1)));
-    _mm256_store_pd(w->size + l, load(w->size + l) * pick(on, pick(up, set(2), one), half));
-    _mm256_store_pd(w->per_size + l, load(w->per_size + l) * pick(on, pick(up, half, one), set(2)));
-    return bits(unless(less(t, load(w->stop_m + l)), on));
+    f64x4_store(w->t_m + l, f64x4_select(on, t, f64x4_load(w->t_m + l)));
+    f64x4_store(w->i + l, f64x4_select(on, i, f64x4_load(w->i + l)));
+    f64x4_store(w->j + l, f64x4_select(on, j, f64x4_load(w->j + l)));
+    f64x4_store(w->k + l, k + f64x4_select(on, f64x4_and(up, one), f64x4_set(-1)));
+    f64x4_store(w->size + l, f64x4_load(w->size + l) * f64x4_select(on, f64x4_select(up, f64x4_set(2), one), half));
+    f64x4_store(w->per_size + l,
+                f64x4_load(w->per_size + l) * f64x4_select(on, f64x4_select(up, half, one), f64x4_set(2)));
+    return f64x4_bits(f64x4_and_not(on, f64x4_less(t, f64x4_load(w->stop_m + l))));
 }
 
 /* The rays still to come, and what each lane is busy with. */
@@ -171,16 +175,17 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
     }
     while (busy) {
         const Seen     low = look(&w, 0, stream.level), high = look(&w, 4, stream.level + 4);
-        const unsigned clear = bits(low.clear) | bits(high.clear) << 4;
-        const unsigned down = bits(less(set(0), load(w.k))) | bits(less(set(0), load(w.k + 4))) << 4;
+        const unsigned clear = f64x4_bits(low.clear) | f64x4_bits(high.clear) << 4;
+        const unsigned down = f64x4_bits(f64x4_less(f64x4_set(0), f64x4_load(w.k))) |
+                              f64x4_bits(f64x4_less(f64x4_set(0), f64x4_load(w.k + 4))) << 4;
         unsigned       decided = 0, over;
         for (unsigned at_cell = busy & ~(clear | down); at_cell; at_cell &= at_cell - 1) {
             const int l = __builtin_ctz(at_cell);
             if (meets_cell(&stream, &w, l)) decided |= 1u << l;
         }
         /* below a cell there is nothing to go down to */
-        over = move(&w, 0, &low, either(low.clear, at_most(load(w.k), set(0))));
-        over |= move(&w, 4, &high, either(high.clear, at_most(load(w.k + 4), set(0)))) << 4;
+        over = move(&w, 0, &low, f64x4_or(low.clear, f64x4_at_most(f64x4_load(w.k), f64x4_set(0))));
+        over |= move(&w, 4, &high, f64x4_or(high.clear, f64x4_at_most(f64x4_load(w.k + 4), f64x4_set(0)))) << 4;
         for (over = (over | decided) & busy; over; over &= over - 1) {
             const int l = __builtin_ctz(over);
             if (!refill(&stream, &w, l)) busy &= ~(1u << l);

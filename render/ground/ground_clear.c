@@ -1,5 +1,5 @@
-/* A bundle of rays over the ground: in pieces along it, each twice as long as the last, the lowest of the piece against
- * the highest posts under it. */
+/* render/ground/ground_clear.c: a bundle of rays over the ground: in pieces along it, each twice as long as the
+ * last, the lowest of the piece against the highest posts under it. */
 #include "render/ground/ground.h"
 
 /* Over the posts by this: roundings of places of 1e6 m are 1e-9 of it, on the steepest ground. */

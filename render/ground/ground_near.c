@@ -1,7 +1,8 @@
-/* Rays that begin close to what they meet, or that all go one way: sixteen walk side by side, all on one level of the
- * pyramid, which spares them most of what a step costs where each is on its own; the triangles of a cell are four
- * rays' at a time. They wait for each other a little; who is not decided then is handed on with the place to go on
- * from. Which cells a ray is asked about, and what it finds there, is as in ground.c, to the bit. */
+/* render/ground/ground_near.c: rays that begin close to what they meet, or that all go one way: sixteen walk side by
+ * side, all on one level of the pyramid, which spares them most of what a step costs where each is on its own; the
+ * triangles of a cell are four rays' at a time. They wait for each other a little; who is not decided then is handed
+ * on with the place to go on from. Which cells a ray is asked about, and what it finds there, is as in ground.c, to
+ * the bit. */
 #include "render/ground/ground_lanes.h"
 
 /* Quarters of a group: fewer, and one waits for its posts; more, and all wait for the slowest. The rest are from trials
@@ -19,69 +20,69 @@ static const double sure_posts = 1e-3, sure_cells = 1e5, sure_height_posts = 1e7
 
 /* Four rays over one level: LevelRay, and where they are. */
 typedef struct Rays4 {
-    Four u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
-    Four t_m, i, j, on;             /* on: mask of those still going; i, j: cell or node */
-    Four gone;                      /* mask: above everything for good, or as far as was asked */
+    F64x4 u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
+    F64x4 t_m, i, j, on;             /* on: mask of those still going; i, j: cell or node */
+    F64x4 gone;                      /* mask: above everything for good, or as far as was asked */
     __m256i u_way, v_way;           /* bits before the rise that is theirs, in an ElevationRise */
-    Four above, sure;               /* mask: known to be `sure` posts over the ground where they are */
-    Four met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three places */
+    F64x4 above, sure;               /* mask: known to be `sure` posts over the ground where they are */
+    F64x4 met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three places */
 } Rays4;
 
 /* ground_inverse_across, ground_inverse, four times. */
-static inline Four inverse_or(Four d, Four otherwise)
+static inline F64x4 inverse_or(F64x4 d, F64x4 otherwise)
 {
-    const Four size = unless(set(-0.0), d);
-    return pick(less(size, set(1e-30)), otherwise, set(1) / d);
+    const F64x4 size = f64x4_abs(d);
+    return f64x4_select(f64x4_less(size, f64x4_set(1e-30)), otherwise, f64x4_set(1) / d);
 }
 
-static inline Four inverse_across(Four d, Four p0, double cells)
+static inline F64x4 inverse_across(F64x4 d, F64x4 p0, double cells)
 {
-    return inverse_or(d, pick(less(p0, set(cells)), set(1e30), set(-1e30)));
+    return inverse_or(d, f64x4_select(f64x4_less(p0, f64x4_set(cells)), f64x4_set(1e30), f64x4_set(-1e30)));
 }
 
 /* level_interval. */
-static inline void interval(Four *first_m, Four *last_m, Four u0, Four v0, Four per_du, Four per_dv,
+static inline void interval(F64x4 *first_m, F64x4 *last_m, F64x4 u0, F64x4 v0, F64x4 per_du, F64x4 per_dv,
                             const GroundLevel *g)
 {
-    const Four zero = set(0);
-    const Four u_low = (zero - u0) * per_du, u_high = (set(g->cells_x) - u0) * per_du;
-    const Four v_low = (zero - v0) * per_dv, v_high = (set(g->cells_y) - v0) * per_dv;
-    const Four u_in = pick(per_du, u_high, u_low), u_out = pick(per_du, u_low, u_high);
-    const Four v_in = pick(per_dv, v_high, v_low), v_out = pick(per_dv, v_low, v_high);
-    *first_m = larger(larger(u_in, v_in), zero);
-    *last_m  = smaller(u_out, v_out);
+    const F64x4 zero = f64x4_set(0);
+    const F64x4 u_low = (zero - u0) * per_du, u_high = (f64x4_set(g->cells_x) - u0) * per_du;
+    const F64x4 v_low = (zero - v0) * per_dv, v_high = (f64x4_set(g->cells_y) - v0) * per_dv;
+    const F64x4 u_in = f64x4_select(per_du, u_high, u_low), u_out = f64x4_select(per_du, u_low, u_high);
+    const F64x4 v_in = f64x4_select(per_dv, v_high, v_low), v_out = f64x4_select(per_dv, v_low, v_high);
+    *first_m = f64x4_max(f64x4_max(u_in, v_in), zero);
+    *last_m  = f64x4_min(u_out, v_out);
 }
 
 static inline void level_rays(Rays4 *r, const GroundLevel *g, const double *const o[3], const double *const d[3], int n)
 {
-    r->u0 = (_mm256_loadu_pd(o[0] + n) - set(g->x0_m)) * set(g->cells_per_m);
-    r->v0 = (_mm256_loadu_pd(o[1] + n) - set(g->y0_m)) * set(g->cells_per_m);
-    r->w0 = (_mm256_loadu_pd(o[2] + n) - set(g->z0_m)) * set(g->posts_per_m);
-    r->du = _mm256_loadu_pd(d[0] + n) * set(g->cells_per_m);
-    r->dv = _mm256_loadu_pd(d[1] + n) * set(g->cells_per_m);
-    r->dw = _mm256_loadu_pd(d[2] + n) * set(g->posts_per_m);
+    r->u0 = (f64x4_loadu(o[0] + n) - f64x4_set(g->x0_m)) * f64x4_set(g->cells_per_m);
+    r->v0 = (f64x4_loadu(o[1] + n) - f64x4_set(g->y0_m)) * f64x4_set(g->cells_per_m);
+    r->w0 = (f64x4_loadu(o[2] + n) - f64x4_set(g->z0_m)) * f64x4_set(g->posts_per_m);
+    r->du = f64x4_loadu(d[0] + n) * f64x4_set(g->cells_per_m);
+    r->dv = f64x4_loadu(d[1] + n) * f64x4_set(g->cells_per_m);
+    r->dw = f64x4_loadu(d[2] + n) * f64x4_set(g->posts_per_m);
     r->per_du = inverse_across(r->du, r->u0, g->cells_x);
     r->per_dv = inverse_across(r->dv, r->v0, g->cells_y);
-    const Four across = r->dv - r->du;
-    r->per_duv = inverse_or(across, either(set(1e30), both(set(-0.0), across)));
+    const F64x4 across = r->dv - r->du;
+    r->per_duv = inverse_or(across, f64x4_or(f64x4_set(1e30), f64x4_and(f64x4_set(-0.0), across)));
     interval(&r->first_m, &r->last_m, r->u0, r->v0, r->per_du, r->per_dv, g);
 }
 
 /* ground_ray's conditions. */
-static inline Four usable(const double *const o[3], const double *const d[3], const double *far_m, int n)
+static inline F64x4 usable(const double *const o[3], const double *const d[3], const double *far_m, int n)
 {
-    Four good = less(set(0), _mm256_loadu_pd(far_m + n)), square[3];
+    F64x4 good = f64x4_less(f64x4_set(0), f64x4_loadu(far_m + n)), square[3];
     for (int c = 0; c < 3; c++) {
-        const Four p = _mm256_loadu_pd(o[c] + n), q = _mm256_loadu_pd(d[c] + n);
-        good = both(good, at_most(unless(set(-0.0), p), set(1e9)));
-        good = both(good, at_most(unless(set(-0.0), q), set(2)));
+        const F64x4 p = f64x4_loadu(o[c] + n), q = f64x4_loadu(d[c] + n);
+        good = f64x4_and(good, f64x4_at_most(f64x4_abs(p), f64x4_set(1e9)));
+        good = f64x4_and(good, f64x4_at_most(f64x4_abs(q), f64x4_set(2)));
         square[c] = q * q;
     }
-    return both(good, less(set(0.25), square[0] + square[1] + square[2]));
+    return f64x4_and(good, f64x4_less(f64x4_set(0.25), square[0] + square[1] + square[2]));
 }
 
 /* Where (i, j) is among rows of nx. */
-static inline __m128i element(Four i, Four j, int nx)
+static inline __m128i element(F64x4 i, F64x4 j, int nx)
 {
     return _mm_add_epi32(_mm_mullo_epi32(_mm256_cvttpd_epi32(j), _mm_set1_epi32(nx)), _mm256_cvttpd_epi32(i));
 }
@@ -89,10 +90,10 @@ static inline __m128i element(Four i, Four j, int nx)
 /* Off are those that have left the level, or everything. */
 static inline void leave(Rays4 *r)
 {
-    r->gone = either(r->gone, both(r->on, at_most(r->stop_m, r->t_m)));
-    r->on   = unless(r->gone, both(r->on, less(r->t_m, r->last_m)));
-    r->i    = both(r->on, r->i); /* who is off stands in the first cell, where there are posts to look up */
-    r->j    = both(r->on, r->j);
+    r->gone = f64x4_or(r->gone, f64x4_and(r->on, f64x4_at_most(r->stop_m, r->t_m)));
+    r->on   = f64x4_and_not(f64x4_and(r->on, f64x4_less(r->t_m, r->last_m)), r->gone);
+    r->i    = f64x4_and(r->on, r->i); /* who is off stands in the first cell, where there are posts to look up */
+    r->j    = f64x4_and(r->on, r->j);
 }
 
 /* Two posts each, from four places. One at a time is faster than the instruction that gathers. */
@@ -108,94 +109,95 @@ static inline __m128i pairs(const uint16_t *post, __m128i at)
 /* ground_cell_hit for four, up to which of the three places is under the surface; and on to the next cell. */
 static inline void cell(Rays4 *r, const GroundLevel *g)
 {
-    const Four zero = set(0), one = set(1), i = r->i, j = r->j;
+    const F64x4 zero = f64x4_set(0), one = f64x4_set(1), i = r->i, j = r->j;
     /* the ways in and out, and the posts: two of a row at once */
-    const Four    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
-    const Four    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
+    const F64x4    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
+    const F64x4    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
     const __m128i at = element(i, j, g->nx);
     const __m128i south = pairs(g->post, at), north = pairs(g->post + g->nx, at);
-    const Four    sw = _mm256_cvtepi32_pd(_mm_and_si128(south, _mm_set1_epi32(0xffff)));
-    const Four    se = _mm256_cvtepi32_pd(_mm_srli_epi32(south, 16));
-    const Four    nw = _mm256_cvtepi32_pd(_mm_and_si128(north, _mm_set1_epi32(0xffff)));
-    const Four    ne = _mm256_cvtepi32_pd(_mm_srli_epi32(north, 16));
-    const Four    u_out = pick(r->per_du, u_low, u_high), v_out = pick(r->per_dv, v_low, v_high);
-    Four          t[3];
-    t[0] = larger(larger(smaller(u_low, u_high), smaller(v_low, v_high)), r->first_m);
-    t[2] = smaller(smaller(u_out, v_out), r->last_m);
+    const F64x4    sw = f64x4_of_ints(_mm_and_si128(south, _mm_set1_epi32(0xffff)));
+    const F64x4    se = f64x4_of_ints(_mm_srli_epi32(south, 16));
+    const F64x4    nw = f64x4_of_ints(_mm_and_si128(north, _mm_set1_epi32(0xffff)));
+    const F64x4    ne = f64x4_of_ints(_mm_srli_epi32(north, 16));
+    const F64x4    u_out = f64x4_select(r->per_du, u_low, u_high), v_out = f64x4_select(r->per_dv, v_low, v_high);
+    F64x4          t[3];
+    t[0] = f64x4_max(f64x4_max(f64x4_min(u_low, u_high), f64x4_min(v_low, v_high)), r->first_m);
+    t[2] = f64x4_min(f64x4_min(u_out, v_out), r->last_m);
     /* a ray whose lower end is above the highest of the four posts is above the rest */
-    const Four highest = larger(larger(sw, se), larger(nw, ne));
-    const Four low_end = pick(r->dw, larger(t[0], t[2]), smaller(t[0], t[2]));
-    const Four clearance = r->w0 + low_end * r->dw - highest;
-    const Four unclear = unless(less(set(ground_clear_posts), clearance), r->on);
-    Four       meets = set(0), at_end = clearance; /* posts over the ground at the way out, or fewer */
-    if (bits(unclear)) {
+    const F64x4 highest = f64x4_max(f64x4_max(sw, se), f64x4_max(nw, ne));
+    const F64x4 low_end = f64x4_select(r->dw, f64x4_max(t[0], t[2]), f64x4_min(t[0], t[2]));
+    const F64x4 clearance = r->w0 + low_end * r->dw - highest;
+    const F64x4 unclear = f64x4_and_not(r->on, f64x4_less(f64x4_set(ground_clear_posts), clearance));
+    F64x4       meets = f64x4_set(0), at_end = clearance; /* posts over the ground at the way out, or fewer */
+    if (f64x4_bits(unclear)) {
         t[1] = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
-        t[1] = larger(t[1], t[0]);
-        t[1] = pick(less(t[1], t[2]), t[1], t[0]);
-        Four       clear[3];
-        const Four east_s = se - sw, north_s = ne - se, east_n = ne - nw, north_n = nw - sw;
+        t[1] = f64x4_max(t[1], t[0]);
+        t[1] = f64x4_select(f64x4_less(t[1], t[2]), t[1], t[0]);
+        F64x4       clear[3];
+        const F64x4 east_s = se - sw, north_s = ne - se, east_n = ne - nw, north_n = nw - sw;
         for (int p = 0; p < 3; p++) {
-            const Four a = smaller(larger(r->u0 + t[p] * r->du - i, zero), one);
-            const Four b = smaller(larger(r->v0 + t[p] * r->dv - j, zero), one);
-            const Four south_side = at_most(b, a);
-            const Four z = sw + a * pick(south_side, east_s, east_n) + b * pick(south_side, north_s, north_n);
+            const F64x4 a = f64x4_min(f64x4_max(r->u0 + t[p] * r->du - i, zero), one);
+            const F64x4 b = f64x4_min(f64x4_max(r->v0 + t[p] * r->dv - j, zero), one);
+            const F64x4 south_side = f64x4_at_most(b, a);
+            const F64x4 z =
+                sw + a * f64x4_select(south_side, east_s, east_n) + b * f64x4_select(south_side, north_s, north_n);
             clear[p] = r->w0 + t[p] * r->dw - z;
         }
-        const Four above = both(less(zero, smaller(clear[0], clear[1])), less(zero, clear[2]));
-        meets  = unless(above, r->on);
+        const F64x4 above = f64x4_and(f64x4_less(zero, f64x4_min(clear[0], clear[1])), f64x4_less(zero, clear[2]));
+        meets  = f64x4_and_not(r->on, above);
         at_end = clear[2];
         for (int p = 0; p < 3; p++) {
-            r->at[p]    = pick(meets, t[p], r->at[p]);
-            r->clear[p] = pick(meets, clear[p], r->clear[p]);
+            r->at[p]    = f64x4_select(meets, t[p], r->at[p]);
+            r->clear[p] = f64x4_select(meets, clear[p], r->clear[p]);
         }
-        r->met   = either(r->met, meets);
-        r->met_i = pick(meets, i, r->met_i);
-        r->met_j = pick(meets, j, r->met_j);
+        r->met   = f64x4_or(r->met, meets);
+        r->met_i = f64x4_select(meets, i, r->met_i);
+        r->met_j = f64x4_select(meets, j, r->met_j);
     }
 
     /* on */
-    const Four sign = set(-0.0), next = t[2];
-    r->on    = unless(meets, r->on);
-    r->above = pick(r->on, less(r->sure, at_end), r->above);
-    r->t_m = pick(r->on, next, r->t_m);
-    r->i   = i + both(both(r->on, at_most(u_out, next)), either(one, both(sign, r->per_du)));
-    r->j   = j + both(both(r->on, at_most(v_out, next)), either(one, both(sign, r->per_dv)));
+    const F64x4 sign = f64x4_set(-0.0), next = t[2];
+    r->on    = f64x4_and_not(r->on, meets);
+    r->above = f64x4_select(r->on, f64x4_less(r->sure, at_end), r->above);
+    r->t_m = f64x4_select(r->on, next, r->t_m);
+    r->i   = i + f64x4_and(f64x4_and(r->on, f64x4_at_most(u_out, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
+    r->j   = j + f64x4_and(f64x4_and(r->on, f64x4_at_most(v_out, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
     leave(r);
 }
 
 /* From the place to the cell or node of level k there. */
 static inline void enter(Rays4 *r, const GroundLevel *g, int k)
 {
-    const Four per_size = set(1.0 / (1 << k)), t = pick(r->on, r->t_m, set(0));
-    r->i = both(r->on, _mm256_floor_pd(cell_at(r->u0, r->du, r->per_du, t, set(g->cells_x - 1)) * per_size));
-    r->j = both(r->on, _mm256_floor_pd(cell_at(r->v0, r->dv, r->per_dv, t, set(g->cells_y - 1)) * per_size));
+    const F64x4 per_size = f64x4_set(1.0 / (1 << k)), t = f64x4_select(r->on, r->t_m, f64x4_set(0));
+    r->i = f64x4_and(r->on, f64x4_floor(cell_at(r->u0, r->du, r->per_du, t, f64x4_set(g->cells_x - 1)) * per_size));
+    r->j = f64x4_and(r->on, f64x4_floor(cell_at(r->v0, r->dv, r->per_dv, t, f64x4_set(g->cells_y - 1)) * per_size));
 }
 
 /* From where it is to the node above it by so many levels. */
 static inline void ascend(Rays4 *r, int levels)
 {
-    const Four per_size = set(1.0 / (1 << levels));
-    r->i = _mm256_floor_pd(r->i * per_size);
-    r->j = _mm256_floor_pd(r->j * per_size);
+    const F64x4 per_size = f64x4_set(1.0 / (1 << levels));
+    r->i = f64x4_floor(r->i * per_size);
+    r->j = f64x4_floor(r->j * per_size);
 }
 
 /* Those that are clear of their node go on to the next; mask of the others. Clear is who is above its highest post, and
  * (asked of the steep only) who was over the ground and rises faster than any edge here: the ground is of triangles,
  * each of which rises along the ray by its edges' share. */
-static inline Four node(Rays4 *r, const GroundLevel *g, int k, bool steep)
+static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
 {
-    const Four one = set(1), sign = set(-0.0), size = set(1 << k);
-    const Four east = pick(r->per_du, set(0), one), north = pick(r->per_dv, set(0), one);
+    const F64x4 one = f64x4_set(1), sign = f64x4_set(-0.0), size = f64x4_set(1 << k);
+    const F64x4 east = f64x4_select(r->per_du, f64x4_set(0), one), north = f64x4_select(r->per_dv, f64x4_set(0), one);
     int32_t    index[4];
     _mm_storeu_si128((__m128i *)index, element(r->i, r->j, g->pyramid_nx[k]));
     const uint16_t *z = g->pyramid[k];
-    const Four highest = _mm256_cvtepi32_pd(_mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]));
-    const Four at_u = ((r->i + east) * size - r->u0) * r->per_du, at_v = ((r->j + north) * size - r->v0) * r->per_dv;
-    const Four next = smaller(smaller(at_u, at_v), r->last_m);
-    const Four lowest = r->w0 + pick(r->dw, next, r->t_m) * r->dw;
-    Four       clear = less(highest + set(ground_clear_posts), lowest);
-    const Four sure = less(highest + r->sure, lowest);
-    Four       outrun = set(0);
+    const F64x4 highest = f64x4_of_ints(_mm_set_epi32(z[index[3]], z[index[2]], z[index[1]], z[index[0]]));
+    const F64x4 at_u = ((r->i + east) * size - r->u0) * r->per_du, at_v = ((r->j + north) * size - r->v0) * r->per_dv;
+    const F64x4 next = f64x4_min(f64x4_min(at_u, at_v), r->last_m);
+    const F64x4 lowest = r->w0 + f64x4_select(r->dw, next, r->t_m) * r->dw;
+    F64x4       clear = f64x4_less(highest + f64x4_set(ground_clear_posts), lowest);
+    const F64x4 sure = f64x4_less(highest + r->sure, lowest);
+    F64x4       outrun = f64x4_set(0);
     if (steep && g->rise[k]) {
         uint64_t rise[4];
         for (int l = 0; l < 4; l++) memcpy(&rise[l], &g->rise[k][index[l]], sizeof rise[l]);
@@ -203,28 +205,28 @@ static inline Four node(Rays4 *r, const GroundLevel *g, int k, bool steep)
         const __m256i by_u = _mm256_and_si256(_mm256_srlv_epi64(all, r->u_way), low);
         const __m256i by_v = _mm256_and_si256(_mm256_srlv_epi64(all, r->v_way), low);
         /* whole numbers below 2^52 become doubles by their exponent */
-        const Four    magic = set(0x1p52);
-        const Four    rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
-        const Four    rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
-        const Four    ground = rise_u * unless(set(-0.0), r->du) + rise_v * unless(set(-0.0), r->dv);
-        outrun = both(r->above, less(ground + set(1e-9), r->dw));
-        clear  = either(clear, outrun);
+        const F64x4    magic = f64x4_set(0x1p52);
+        const F64x4    rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
+        const F64x4    rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
+        const F64x4    ground = rise_u * f64x4_abs(r->du) + rise_v * f64x4_abs(r->dv);
+        outrun = f64x4_and(r->above, f64x4_less(ground + f64x4_set(1e-9), r->dw));
+        clear  = f64x4_or(clear, outrun);
     }
-    clear = both(clear, r->on);
-    r->above = pick(clear, either(sure, outrun), r->above);
-    const Four blocked = unless(clear, r->on);
-    r->t_m = pick(clear, next, r->t_m);
-    r->i   = r->i + both(both(clear, at_most(at_u, next)), either(one, both(sign, r->per_du)));
-    r->j   = r->j + both(both(clear, at_most(at_v, next)), either(one, both(sign, r->per_dv)));
+    clear = f64x4_and(clear, r->on);
+    r->above = f64x4_select(clear, f64x4_or(sure, outrun), r->above);
+    const F64x4 blocked = f64x4_and_not(r->on, clear);
+    r->t_m = f64x4_select(clear, next, r->t_m);
+    r->i   = r->i + f64x4_and(f64x4_and(clear, f64x4_at_most(at_u, next)), f64x4_or(one, f64x4_and(sign, r->per_du)));
+    r->j   = r->j + f64x4_and(f64x4_and(clear, f64x4_at_most(at_v, next)), f64x4_or(one, f64x4_and(sign, r->per_dv)));
     leave(r);
-    return both(blocked, r->on);
+    return f64x4_and(blocked, r->on);
 }
 
 static inline bool any(const Rays4 r[quarters])
 {
-    Four on = r[0].on;
-    for (int h = 1; h < quarters; h++) on = either(on, r[h].on);
-    return bits(on) != 0;
+    F64x4 on = r[0].on;
+    for (int h = 1; h < quarters; h++) on = f64x4_or(on, r[h].on);
+    return f64x4_bits(on) != 0;
 }
 
 /* Innermost level over which the place is, or the outermost; -1: it does not lie well inside those outside it, so that
@@ -263,7 +265,7 @@ static double above_all(const Ground *ground, const GroundLevel *g)
 }
 
 /* 16 where the mask says so, else 0. */
-static inline __m256i bits_16(Four mask)
+static inline __m256i bits_16(F64x4 mask)
 {
     return _mm256_and_si256(_mm256_castpd_si256(mask), _mm256_set1_epi64x(16));
 }
@@ -274,48 +276,53 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
 {
     const GroundLevel *g = &ground->level[level];
     level_rays(r, g, o, d, n);
-    Four good = both(usable(o, d, far_m, n), both(less(r->first_m, r->last_m), less(r->first_m, set(farthest_m))));
-    if (level + 1 < ground->level_count) good = both(good, at_most(r->first_m, set(0)));
+    F64x4 good = f64x4_and(usable(o, d, far_m, n),
+                           f64x4_and(f64x4_less(r->first_m, r->last_m), f64x4_less(r->first_m, f64x4_set(farthest_m))));
+    if (level + 1 < ground->level_count) good = f64x4_and(good, f64x4_at_most(r->first_m, f64x4_set(0)));
     if (level > 0) { /* as far as the level inside */
         Rays4 inner;
         level_rays(&inner, g - 1, o, d, n);
-        r->last_m = pick(less(inner.first_m, inner.last_m), smaller(inner.first_m, r->last_m), r->last_m);
+        r->last_m =
+            f64x4_select(f64x4_less(inner.first_m, inner.last_m), f64x4_min(inner.first_m, r->last_m), r->last_m);
     }
-    r->gone = r->above = set(0);
-    const Four size = larger(unless(set(-0.0), r->u0), unless(set(-0.0), r->v0));
-    const Four tame = both(at_most(size, set(sure_cells)), at_most(unless(set(-0.0), r->w0), set(sure_height_posts)));
-    r->sure = pick(tame, set(sure_posts), set(INFINITY));
-    r->u_way = bits_16(less(r->du, set(0)));
-    r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(less(r->dv, set(0))));
+    r->gone = r->above = f64x4_set(0);
+    const F64x4 size = f64x4_max(f64x4_abs(r->u0), f64x4_abs(r->v0));
+    const F64x4 tame = f64x4_and(f64x4_at_most(size, f64x4_set(sure_cells)),
+                                 f64x4_at_most(f64x4_abs(r->w0), f64x4_set(sure_height_posts)));
+    r->sure = f64x4_select(tame, f64x4_set(sure_posts), f64x4_set(INFINITY));
+    r->u_way = bits_16(f64x4_less(r->du, f64x4_set(0)));
+    r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(f64x4_less(r->dv, f64x4_set(0))));
     /* rising, it leaves everything behind at `above`, if it is near enough to tell; and nobody asks beyond far_m */
-    const Four rises = both(less(set(1e-12), r->dw), at_most(unless(set(-0.0), r->w0), set(1e7)));
-    r->stop_m = smaller(pick(rises, (set(above) - r->w0) / r->dw, set(INFINITY)), _mm256_loadu_pd(far_m + n));
-    const Four from = _mm256_loadu_pd(from_m + n);
-    r->t_m = pick(good, larger(r->first_m, from), from);
-    r->on  = both(good, less(r->t_m, r->last_m));
-    r->met = r->met_i = r->met_j = set(0);
-    for (int p = 0; p < 3; p++) r->at[p] = r->clear[p] = set(0);
+    const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(1e7)));
+    r->stop_m =
+        f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
+    const F64x4 from = f64x4_loadu(from_m + n);
+    r->t_m = f64x4_select(good, f64x4_max(r->first_m, from), from);
+    r->on  = f64x4_and(good, f64x4_less(r->t_m, r->last_m));
+    r->met = r->met_i = r->met_j = f64x4_set(0);
+    for (int p = 0; p < 3; p++) r->at[p] = r->clear[p] = f64x4_set(0);
 }
 
 /* The end of ground_cell_hit. */
 static inline void end(double *range_m, GroundHit *hit, const Rays4 *r, int level, const double *far_m, int n)
 {
-    const Four zero = set(0);
-    const Four comes_down = less(zero, r->clear[0]), late = less(zero, r->clear[1]);
-    const Four from = pick(both(comes_down, late), r->at[1], r->at[0]);
-    const Four to = pick(comes_down, pick(late, r->at[2], r->at[1]), r->at[0]);
-    const Four c_from = pick(late, r->clear[1], r->clear[0]), c_to = pick(late, r->clear[2], r->clear[1]);
-    const Four range = pick(comes_down, from + (to - from) * (c_from / (c_from - c_to)), r->at[0]);
-    const Four middle = set(0.5) * (from + to);
-    const Four north_west = less(r->u0 + middle * r->du - r->met_i, r->v0 + middle * r->dv - r->met_j);
-    const Four near = less(range, _mm256_loadu_pd(far_m + n));
-    const Four seen = both(r->met, near);
+    const F64x4 zero = f64x4_set(0);
+    const F64x4 comes_down = f64x4_less(zero, r->clear[0]), late = f64x4_less(zero, r->clear[1]);
+    const F64x4 from = f64x4_select(f64x4_and(comes_down, late), r->at[1], r->at[0]);
+    const F64x4 to = f64x4_select(comes_down, f64x4_select(late, r->at[2], r->at[1]), r->at[0]);
+    const F64x4 c_from = f64x4_select(late, r->clear[1], r->clear[0]),
+                c_to = f64x4_select(late, r->clear[2], r->clear[1]);
+    const F64x4 range = f64x4_select(comes_down, from + (to - from) * (c_from / (c_from - c_to)), r->at[0]);
+    const F64x4 middle = f64x4_set(0.5) * (from + to);
+    const F64x4 north_west = f64x4_less(r->u0 + middle * r->du - r->met_i, r->v0 + middle * r->dv - r->met_j);
+    const F64x4 near = f64x4_less(range, f64x4_loadu(far_m + n));
+    const F64x4 seen = f64x4_and(r->met, near);
     double     out[4];
     int32_t    i[4], j[4];
-    _mm256_storeu_pd(out, pick(seen, range, set(INFINITY)));
+    f64x4_storeu(out, f64x4_select(seen, range, f64x4_set(INFINITY)));
     _mm_storeu_si128((__m128i *)i, _mm256_cvttpd_epi32(r->met_i));
     _mm_storeu_si128((__m128i *)j, _mm256_cvttpd_epi32(r->met_j));
-    const unsigned met = bits(r->met), west = bits(north_west);
+    const unsigned met = f64x4_bits(r->met), west = f64x4_bits(north_west);
     for (int l = 0; l < 4; l++) {
         if (!(met >> l & 1)) continue;
         range_m[n + l] = out[l];
@@ -336,15 +343,15 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
         const int before = k;
         if (k == 0) {
             for (int h = 0; h < quarters; h++)
-                if (bits(r[h].on)) cell(&r[h], g);
+                if (f64x4_bits(r[h].on)) cell(&r[h], g);
             if (++tried < (steep ? 1 : cells_tried)) continue;
             k = steep && g->top >= elevation_rise_level ? elevation_rise_level : 1;
         } else {
             unsigned blocked = 0;
             for (int h = 0; h < quarters; h++)
-                if (bits(r[h].on)) blocked |= bits(node(&r[h], g, k, steep)) << 4 * h;
+                if (f64x4_bits(r[h].on)) blocked |= f64x4_bits(node(&r[h], g, k, steep)) << 4 * h;
             unsigned on = 0;
-            for (int h = 0; h < quarters; h++) on |= bits(r[h].on) << 4 * h;
+            for (int h = 0; h < quarters; h++) on |= f64x4_bits(r[h].on) << 4 * h;
             if (blocked == 0) {
                 if (++run < (steep ? 1 : run_up) || k == g->top) continue;
                 k = k + 1 + steep < g->top ? k + 1 + steep : g->top;
@@ -356,7 +363,7 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
         }
         tried = waited = run = 0;
         for (int h = 0; h < quarters; h++) {
-            if (!bits(r[h].on)) continue;
+            if (!f64x4_bits(r[h].on)) continue;
             if (k > before) ascend(&r[h], k - before);
             else enter(&r[h], g, k);
         }
@@ -366,11 +373,11 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
 /* Whether all of a group are known to be over the ground as far as they are asked about it: then they meet nothing. */
 static inline bool none_asked(double *range_m, const double *far_m, const double *from_m)
 {
-    Four none = set(0);
-    none = at_most(none, none);
+    F64x4 none = f64x4_set(0);
+    none = f64x4_at_most(none, none);
     for (int l = 0; l < 4 * quarters; l += 4)
-        none = both(none, at_most(_mm256_loadu_pd(far_m + l), _mm256_loadu_pd(from_m + l)));
-    if (bits(none) != 0xf) return false;
+        none = f64x4_and(none, f64x4_at_most(f64x4_loadu(far_m + l), f64x4_loadu(from_m + l)));
+    if (f64x4_bits(none) != 0xf) return false;
     for (int l = 0; l < 4 * quarters; l++) range_m[l] = INFINITY;
     return true;
 }
@@ -399,8 +406,8 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
             const int m = n + 4 * h;
             double    t_m[4];
             end(range_m, hit, &r[h], level, far_m, m);
-            _mm256_storeu_pd(t_m, r[h].t_m);
-            const unsigned met = bits(r[h].met), gone = bits(r[h].gone);
+            f64x4_storeu(t_m, r[h].t_m);
+            const unsigned met = f64x4_bits(r[h].met), gone = f64x4_bits(r[h].gone);
             for (int l = 0; l < 4; l++) {
                 if (met >> l & 1 || m + l < done) continue;
                 if (gone >> l & 1 || !(from_m[m + l] < INFINITY)) {

@@ -1,4 +1,4 @@
-/* Where rays from one eye may begin to be walked.
+/* render/ground/ground_sweep.c: where rays from one eye may begin to be walked.
  *
  * A strip is rays whose tracks run between two tracks from the eye. Along it, row by row of the max pyramid's nodes,
  * the highest post between the two says how steeply a ray may come down and be clear so far; the flattest ray comes

@@ -1,5 +1,5 @@
-/* Rays that keep together: where they begin (ground_sweep.c), what they meet close by (ground_near.c), and who is
- * left (ground8.c). */
+/* render/ground/ground_together.c: rays that keep together: where they begin (ground_sweep.c), what they meet close
+ * by (ground_near.c), and the rays that are left (ground8.c). */
 #include "render/ground/ground_private.h"
 
 /* Whether all are the same. */

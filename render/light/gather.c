@@ -17,9 +17,8 @@ typedef struct Paths {
     int of_hit[hits_capacity], of_sample[hits_capacity];
     int of_path[hits_capacity]; /* its place among those that started together */
     float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
-    uint16_t material[hits_capacity];
     float texture[hits_capacity], temp_k[hits_capacity];
-    uint8_t shadow[hits_capacity];
+    float sun[hits_capacity]; /* share of the direct sun that arrives */
     bool from_ground[hits_capacity]; /* gather_change: the ground's own light stays as it is there */
 } Paths;
 
@@ -122,17 +121,14 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const in
     else visibility_first_hit(&p->hits, scene->visibility, &p->rays, list, listed, -1, counters);
     for (int i = 0; i < p->hits.count; i++) {
         p->texture[i] = 1;
-        const uint32_t entity = p->hits.entity[i];
-        p->material[i] = (uint16_t)(entity ? material_of_part(scene->materials, p->hits.model[i], p->hits.part[i] - 1,
-                                                              visibility_damage(scene->visibility, (int)entity - 1))
-                                           : scene->materials->surface[p->hits.surface[i]]);
     }
-    memset(p->shadow, 0, sizeof p->shadow);
+    uint8_t dark[hits_capacity] = {0};
     if (scene->air->sun_d_enu[2] > 0)
-        visibility_shadow(p->shadow, scene->visibility, &p->hits, scene->air->sun_d_enu, counters);
+        visibility_shadow(dark, scene->visibility, &p->hits, scene->air->sun_d_enu, counters);
+    for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
         thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
-                            p->material, p->texture);
+                            p->hits.material, p->texture);
 }
 
 /* Radiance of level, open ground. */
@@ -151,15 +147,15 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
         const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
         return d_enu[2] < 0 ? ground : air_sky_light(air, band, d_enu);
     }
-    const Material *m = &scene->materials->material[p->material[i]];
+    const Material *m = &scene->materials->material[p->hits.material[i]];
     const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
     *rho = reflectance(m, band);
     double radiance = 0;
     if (band >= AIR_MWIR)
         radiance =
             (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->planck_mwir : air->planck_lwir, p->temp_k[i]);
-    if (!p->shadow[i] && band != AIR_LWIR)
-        radiance += *rho / pi_rad * air->sun_w_m2[band] * fmax(v3_dot(n_enu, air->sun_d_enu), 0);
+    if (p->sun[i] > 0 && band != AIR_LWIR)
+        radiance += *rho / pi_rad * air->sun_w_m2[band] * fmax(v3_dot(n_enu, air->sun_d_enu), 0) * (double)p->sun[i];
     if (last) radiance += *rho * (air_sky_on_plane(air, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
     return radiance;
 }
@@ -306,7 +302,7 @@ static void count_first(Change *to, const Paths *p, int i, const GatherScene *sc
     to->inside += hits->inside[i];
     double along = 0;
     for (int c = 0; c < 3; c++) along += hits->n_enu[c][i] * scene->air->sun_d_enu[c];
-    to->sunlit += !p->shadow[i] && along > 0;
+    to->sunlit += p->sun[i] > 0 && along > 0;
 }
 
 static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsigned bands, double reach_m,
@@ -346,7 +342,7 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
                 air_sky_place(&sky, scene->air, d_enu);
                 if (open->ring) sky = ring_edge(&sky);
             }
-            const double ring = p->shadow[i] ? fmax(v3_dot(n_enu, scene->air->sun_d_enu), 0) / pi_rad : 0;
+            const double ring = (1 - (double)p->sun[i]) * fmax(v3_dot(n_enu, scene->air->sun_d_enu), 0) / pi_rad;
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 if (!(bands >> b & 1)) continue;
                 double       rho;
@@ -384,12 +380,12 @@ enum { close_most = 64 };
 
 /* Of the listed entities those within whose reach a place lies. */
 static int list_close(int close[close_most], const GatherScene *scene, const Hits *hits, int i,
-                      const double *entity_reach_m, const int *list, int listed)
+                      const double *list_reach_m, const int *list, int listed)
 {
     int count = 0;
     for (int k = 0; k < listed && count < close_most; k++) {
         const PosedEntity *e = visibility_posed(scene->visibility, list[k]);
-        const double       far_m = e->radius_m + entity_reach_m[list[k]];
+        const double       far_m = e->radius_m + list_reach_m[k];
         double             square = 0;
         for (int c = 0; c < 3; c++) {
             const double off_m = e->centre_enu[c] - hits->p_enu[c][i];
@@ -435,7 +431,7 @@ static void v2_turn(double turn[2], const double by[2])
 }
 
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
-                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters)
 {
     Paths  paths;
@@ -448,7 +444,7 @@ void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits
     for (int i = 0; i < hits->count; i++) {
         const double u0 = random_uniform(0, stream_first, 0, key[i]), v0 = random_uniform(0, stream_first, 1, key[i]);
         int          close[close_most];
-        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, entity_reach_m, list, listed);
+        const int    closes = hits->entity[i] ? 0 : list_close(close, scene, hits, i, list_reach_m, list, listed);
         double       turn[2] = {cos(2 * pi_rad * v0), sin(2 * pi_rad * v0)};
         Base         base;
         base_at(&base, hits, i);

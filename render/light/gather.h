@@ -38,12 +38,12 @@ typedef struct GatherChange {
 } GatherChange;
 
 /* out[hits->count]. Only what is nearer than reach_m counts, and of the listed entities alone, which must hold all of
- * those; places on the ground look only towards those within whose own reach, entity_reach_m[entities] beyond their
+ * those; places on the ground look only towards those within whose own reach, list_reach_m[listed] beyond their
  * sphere, they lie. From places on the ground the ground is not looked for: only parts change their light. Three
  * bounces; the open form is subtracted direction by direction, so that places which see nothing but open sky get 0,
  * without noise. The bright ring about the sun has directions of its own, for it would be most of the noise. */
 void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
-                   double reach_m, const double *entity_reach_m, const uint64_t *key, const int *list, int listed,
+                   double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters);
 
 #endif

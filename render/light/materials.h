@@ -4,7 +4,7 @@
 #ifndef RENDER_LIGHT_MATERIALS_H
 #define RENDER_LIGHT_MATERIALS_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "terrain/surface.h"
 
 /* In the order of AirBand (render/air/atmosphere.h). */

@@ -26,7 +26,7 @@ float optical_beyond(int channel, const Air *air, double ground_w_m2, const doub
 }
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
-                   const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
+                   const Rays *rays, const uint16_t *material, const float *texture, const float *sun,
                    const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const AirBand band = (AirBand)channel;
@@ -50,11 +50,11 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         const Material *m = &materials->material[material[i]];
         const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
         const double rho = fmin(m->rho[channel] * texture[i], 1);
-        const double n_sun = shadow[i] ? 0 : fmax(v3_dot(n_enu, sun_d_enu), 0);
+        const double lit = sun ? (double)sun[i] : 1, n_sun = lit > 0 ? fmax(v3_dot(n_enu, sun_d_enu), 0) : 0;
         const double around =
             around_w_m2 ? around_w_m2[i]
                         : air_plane_there(air, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
-        const double irradiance_w_m2 = sun_w_m2 * n_sun + around;
+        const double irradiance_w_m2 = sun_w_m2 * n_sun * lit + around;
 
         double radiance;
         if (!(m->gloss > 0)) {
@@ -79,7 +79,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                 if (lobe > 0) {
                     /* at the facet: half the angle between eye and sun */
                     const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, sun_d_enu)), 0));
-                    radiance += material_fresnel(rho * m->gloss, m->roughness, cosine) * lobe * sun_w_m2;
+                    radiance += material_fresnel(rho * m->gloss, m->roughness, cosine) * lobe * sun_w_m2 * lit;
                 }
             }
         }

@@ -6,13 +6,13 @@
 #include "render/scene/hits.h"
 
 /* channel: optical_channel_b .. optical_channel_nir. material: row of each hit (0 for sky). texture: reflectance of the
- * ground in this channel over its material's, 1 elsewhere. d_enu: the eye rays' directions. shadow: 1 = no direct sun.
+ * ground in this channel over its material's, 1 elsewhere. d_enu: the eye rays' directions. sun: share of the direct sun that arrives, 0 .. 1; NULL: all of it.
  * around_w_m2: what sky and surroundings send to each hit (render/light/gather.h); NULL: sky and ground by the share of each
  * that the surface faces. veils: of this band; facing: of these hits; either
  * NULL: asked for here. out: W/(m2 sr) [hits->count]. Frames take the quicker way of render/light/surface_light.h, whose
  * measure this is. */
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
-                   const Rays *rays, const uint16_t *material, const float *texture, const uint8_t *shadow,
+                   const Rays *rays, const uint16_t *material, const float *texture, const float *sun,
                    const float *around_w_m2, const Veils *veils, const Facing *facing);
 
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. ground_w_m2: optical_ground_w_m2. */

@@ -5,7 +5,7 @@
  * nothing: positive terms summed where the edges are close, tails subtracted where they are not. */
 #include "render/light/planck.h"
 
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
 #include <stdlib.h>
 
@@ -260,22 +260,23 @@ double planck_table_radiance(const PlanckTable *table, double temp_k)
 
 void planck_table_radiance8(float radiance[8], const PlanckTable *table, const float temp_k[8])
 {
-    const Eight temp = eight_load(temp_k);
-    const Eight within = eight_and(eight_less(temp, eight_all(table_high_k)), eight_more(temp, eight_all(table_low_k)));
-    const Eight u = eight_all(1) / eight_clamp(temp, table_low_k, table_high_k) - eight_all(table->u0);
-    const Eight at = eight_clamp(u * eight_all(table->cells_per_u), 0, table_cells - 1e-3), cell = eight_floor(at);
+    const F32x8 temp = f32x8_load(temp_k);
+    const F32x8 within =
+        f32x8_and(f32x8_less(temp, f32x8_set(table_high_k)), f32x8_greater(temp, f32x8_set(table_low_k)));
+    const F32x8 u = f32x8_set(1) / f32x8_clamp(temp, table_low_k, table_high_k) - f32x8_set(table->u0);
+    const F32x8 at = f32x8_clamp(u * f32x8_set(table->cells_per_u), 0, table_cells - 1e-3), cell = f32x8_floor(at);
     int32_t     of[8];
     __m128      row[8];
-    _mm256_storeu_si256((EightInt *)of, eight_to_ints(cell));
+    _mm256_storeu_si256((I32x8 *)of, i32x8_truncate(cell));
     for (int k = 0; k < 8; k++) row[k] = _mm_loadu_ps(table->narrow[of[k]]);
-    Eight pair[4];
+    F32x8 pair[4];
     for (int k = 0; k < 4; k++) pair[k] = _mm256_set_m128(row[k + 4], row[k]);
-    const Eight a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
-    const Eight c = _mm256_unpacklo_ps(pair[2], pair[3]), d = _mm256_unpackhi_ps(pair[2], pair[3]);
-    const Eight c0 = _mm256_shuffle_ps(a, c, 0x44), c1 = _mm256_shuffle_ps(a, c, 0xee);
-    const Eight c2 = _mm256_shuffle_ps(b, d, 0x44), c3 = _mm256_shuffle_ps(b, d, 0xee), t = at - cell;
-    eight_store(radiance, eight_fma(t, eight_fma(t, eight_fma(t, c3, c2), c1), c0));
-    for (unsigned other = ~eight_bits(within) & 0xff; other; other &= other - 1) {
+    const F32x8 a = _mm256_unpacklo_ps(pair[0], pair[1]), b = _mm256_unpackhi_ps(pair[0], pair[1]);
+    const F32x8 c = _mm256_unpacklo_ps(pair[2], pair[3]), d = _mm256_unpackhi_ps(pair[2], pair[3]);
+    const F32x8 c0 = _mm256_shuffle_ps(a, c, 0x44), c1 = _mm256_shuffle_ps(a, c, 0xee);
+    const F32x8 c2 = _mm256_shuffle_ps(b, d, 0x44), c3 = _mm256_shuffle_ps(b, d, 0xee), t = at - cell;
+    f32x8_store(radiance, f32x8_fma(t, f32x8_fma(t, f32x8_fma(t, c3, c2), c1), c0));
+    for (unsigned other = ~f32x8_bits(within) & 0xff; other; other &= other - 1) {
         const int k = __builtin_ctz(other);
         radiance[k] = (float)planck_table_radiance(table, (double)temp_k[k]);
     }

@@ -3,7 +3,7 @@
 
 #include "render/light/optical.h"
 #include "render/parts/parts.h"
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
 #include <stdatomic.h>
 
@@ -40,6 +40,7 @@ typedef struct SkySpots {
 
 /* An entity of the frame. */
 typedef struct SkyEntity {
+    int      index;          /* in the snapshot */
     int      columns, rows;  /* of its grid; 0: not on the image */
     double   x0_px, y0_px, step_px[2];
     double   pitch_m;        /* of the grid at its distance */
@@ -48,10 +49,9 @@ typedef struct SkyEntity {
 
 struct SkyVisibility {
     SkyVisibilityScene scene;
-    int                count;
-    SkyEntity         *entity;
-    double            *reach_m;   /* [entities]: from the box of each the ground is looked at */
-    int8_t            *first_step; /* [entities]: log2 of the coarsest cells about it, m */
+    int                count, on_image;
+    int               *grid_of;   /* [entities]: index into entity + 1 of those on the image; 0: of none */
+    SkyEntity         *entity;    /* [on_image] */
     double             cells_per_m[coarsest_log2_m + lattice_steps + 1]; /* by step */
     int               *task_entity, *task_first; /* [tasks] */
     int                tasks;
@@ -71,6 +71,12 @@ static double reach_of(const PosedEntity *e)
     for (int c = 0; c < 3; c++) side_m[c] = fmax(e->box_high[c] - e->box_low[c], 0);
     const double width_m = hypot(side_m[0], side_m[1]), height_m = side_m[2];
     return fmin(cbrt(width_m * height_m * height_m / (4 * pi_rad * hidden_share)), look_m - 10);
+}
+
+/* log2 of the coarsest cells about an entity of this reach, m. */
+static int8_t first_step_of(double reach_m)
+{
+    return (int8_t)clamp(floor(log2(fmax(cell_reach * reach_m, 1e-9))), -lattice_steps, coarsest_log2_m);
 }
 
 /* The grid over what of the box lies on the image. */
@@ -98,12 +104,12 @@ static Status plan_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity 
 static Status plan_tasks(SkyVisibility *v, Arena *arena)
 {
     int count = 0;
-    for (int k = 0; k < v->count; k++)
+    for (int k = 0; k < v->on_image; k++)
         count += (v->entity[k].columns * v->entity[k].rows + task_places - 1) / task_places;
     v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
     v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
     if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
-    for (int k = 0; k < v->count; k++)
+    for (int k = 0; k < v->on_image; k++)
         for (int first = 0; first < v->entity[k].columns * v->entity[k].rows; first += task_places) {
             v->task_entity[v->tasks]  = k;
             v->task_first[v->tasks++] = first;
@@ -117,22 +123,23 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     if (!v) return STATUS_NO_MEMORY;
     *v = (SkyVisibility){.scene = *scene, .count = visibility_count(scene->gather.visibility)};
     v->px_rad = 1 / scene->view->focal_px;
-    v->entity = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->entity);
-    v->reach_m   = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->reach_m);
-    v->first_step = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->first_step);
+    v->grid_of = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->grid_of);
+    if (!v->grid_of) return STATUS_NO_MEMORY;
+    for (int k = 0; k < v->count; k++) v->on_image += !isnan(scene->box_px[k][0]);
+    v->entity = arena_alloc(arena, (size_t)v->on_image + 1, sizeof *v->entity);
     for (int k = 0; k <= coarsest_log2_m + lattice_steps; k++) v->cells_per_m[k] = ldexp(1, lattice_steps - k);
     v->kept_key  = arena_alloc(arena, kept_slots, sizeof *v->kept_key);
     v->kept_done = arena_alloc(arena, kept_slots, sizeof *v->kept_done);
     v->kept      = arena_alloc(arena, kept_slots, sizeof *v->kept);
-    if (!v->entity || !v->reach_m || !v->first_step || !v->kept_key || !v->kept_done || !v->kept)
-        return STATUS_NO_MEMORY;
-    for (int k = 0; k < v->count; k++) {
+    if (!v->entity || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
+    for (int k = 0, at = 0; k < v->count; k++) {
+        if (isnan(scene->box_px[k][0])) continue;
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
-        if (posed->model < 0) continue;
-        v->reach_m[k] = reach_of(posed);
-        v->first_step[k] = (int8_t)clamp(floor(log2(fmax(cell_reach * v->reach_m[k], 1e-9))), -lattice_steps,
-                                         coarsest_log2_m);
-        if (plan_grid(&v->entity[k], v, posed, scene->box_px[k], arena) != STATUS_OK) return STATUS_NO_MEMORY;
+        v->entity[at].index = k;
+        v->grid_of[k] = at + 1;
+        if (posed->model >= 0 && plan_grid(&v->entity[at], v, posed, scene->box_px[k], arena) != STATUS_OK)
+            return STATUS_NO_MEMORY;
+        at++;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->ground_w_m2_sr[b] * pi_rad
@@ -203,7 +210,9 @@ struct SkyWorker {
     Rays         rays;
     uint64_t     key[hits_capacity];
     GatherChange change[hits_capacity];
-    int         *near; /* [entities] */
+    int         *near;       /* [entities] */
+    double      *near_reach_m; /* of each: from its box the ground is looked at */
+    int8_t      *near_step;  /* of each: first_step_of */
 };
 
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
@@ -211,7 +220,9 @@ Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
     SkyWorker *w = *out = arena_alloc(arena, 1, sizeof *w);
     if (!w) return STATUS_NO_MEMORY;
     w->near = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near);
-    return w->near ? STATUS_OK : STATUS_NO_MEMORY;
+    w->near_reach_m = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_reach_m);
+    w->near_step    = arena_alloc(arena, (size_t)v->count + 1, sizeof *w->near_step);
+    return w->near && w->near_reach_m && w->near_step ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
 static uint64_t scramble(uint64_t key)
@@ -301,7 +312,7 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         place_ground(places, i, v, w->key[i]);
     }
     gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
-                  v->reach_m, w->key, list, listed, &unused);
+                  w->near_reach_m, w->key, list, listed, &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
         const double n_enu[3] = {places->n_enu[0][i], places->n_enu[1][i], places->n_enu[2][i]};
@@ -354,7 +365,7 @@ static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibi
 static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell,
                 const double weight[4])
 {
-    Eight  mean = eight_all(0);
+    F32x8  mean = f32x8_set(0);
     double sum = 1;
     float  factor[8];
     if (cell->any_inside) {
@@ -365,8 +376,8 @@ static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, co
     const bool outside = cell->any_inside && sum > 1e-3;
     for (int k = 0; k < 4; k++)
         if (!outside || cell->corner[k]->place.inside <= 0.5f)
-            mean += eight_all(outside ? weight[k] / sum : weight[k]) * eight_load(cell->corner[k]->place.factor);
-    eight_store(factor, eight_all(1) + eight_all((double)h->weight) * (mean - eight_all(1)));
+            mean += f32x8_set(outside ? weight[k] / sum : weight[k]) * f32x8_load(cell->corner[k]->place.factor);
+    f32x8_store(factor, f32x8_set(1) + f32x8_set((double)h->weight) * (mean - f32x8_set(1)));
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
@@ -409,22 +420,22 @@ static double box_distance_m(const PosedEntity *e, const double p_enu[3])
     return sqrt(square);
 }
 
-static void find_ground(SkyHit *h, const SkyVisibility *v, const Hits *hits, int i, const int *near, int count)
+static void find_ground(SkyHit *h, const SkyVisibility *v, const SkyWorker *w, const Hits *hits, int i, int count)
 {
     const double p_enu[3] = {hits->p_enu[0][i], hits->p_enu[1][i], hits->p_enu[2][i]};
     double       offset[3], body_m = INFINITY;
     h->weight = 0;
     h->step = coarsest_log2_m;
     for (int k = 0; k < count; k++) {
-        const PosedEntity *e = visibility_posed(v->scene.gather.visibility, near[k]);
-        const double       reach_m = v->reach_m[near[k]], far_m = reach_m + e->radius_m;
+        const PosedEntity *e = visibility_posed(v->scene.gather.visibility, w->near[k]);
+        const double       reach_m = w->near_reach_m[k], far_m = reach_m + e->radius_m;
         v3_sub(offset, p_enu, e->centre_enu);
         if (!(v3_dot(offset, offset) < far_m * far_m)) continue;
         const double distance_m = box_distance_m(e, p_enu);
         const double weight = clamp((1 - distance_m / reach_m) / fade_share, 0, 1);
         if (!(weight > 0)) continue;
         h->weight = fmaxf(h->weight, (float)weight);
-        if (v->first_step[near[k]] < h->step) h->step = v->first_step[near[k]];
+        if (w->near_step[k] < h->step) h->step = w->near_step[k];
         body_m    = fmin(body_m, distance_m);
     }
     if (!(h->weight > 0)) return;
@@ -445,20 +456,26 @@ static void grow(double box[2][3], const Hits *hits, int i)
     }
 }
 
-/* Entities whose spheres, grown by more_m (and their reach), touch the box. */
-static int list_near(int *list, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach)
+/* Entities whose spheres, grown by more_m (and their reach), touch the box, to w->near and what goes with it. */
+static int list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach)
 {
-    int count = 0;
-    for (int k = 0; k < v->count; k++) {
+    int       count = 0;
+    const int asked = visibility_near(w->near, v->scene.gather.visibility, box[0], box[1],
+                                      more_m + (with_reach ? look_m : 0)); /* no reach is longer */
+    for (int n = 0; n < asked; n++) {
+        const int          k = w->near[n];
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, k);
         if (e->model < 0) continue;
-        const double far_m = e->radius_m + more_m + (with_reach ? v->reach_m[k] : 0);
+        const double reach_m = reach_of(e), far_m = e->radius_m + more_m + (with_reach ? reach_m : 0);
         double       square = 0;
         for (int c = 0; c < 3; c++) {
             const double out = fmax(fmax(box[0][c] - e->centre_enu[c], e->centre_enu[c] - box[1][c]), 0);
             square += out * out;
         }
-        if (square < far_m * far_m) list[count++] = k;
+        if (!(square < far_m * far_m)) continue;
+        w->near_reach_m[count] = reach_m;
+        w->near_step[count]    = first_step_of(reach_m);
+        w->near[count++] = k;
     }
     return count;
 }
@@ -470,8 +487,8 @@ int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 /* What the eye sees of the entity on some of its grid, and what light comes there. */
 void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
 {
-    const int           index = v->task_entity[task], first = v->task_first[task];
-    const SkyEntity    *e = &v->entity[index];
+    const SkyEntity    *e = &v->entity[v->task_entity[task]];
+    const int           index = e->index, first = v->task_first[task];
     const View         *view = v->scene.view;
     const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
     const GatherScene  *scene = &v->scene.gather;
@@ -509,8 +526,8 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         grow(box, places, to);
     }
     if (places->count == 0) return;
-    const int listed = list_near(w->near, v, box, look_m, false);
-    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, v->reach_m, w->key, w->near,
+    const int listed = list_near(w, v, box, look_m, false);
+    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key, w->near,
                   listed, &unused);
     for (int k = 0; k < places->count; k++) {
         const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;
@@ -529,35 +546,35 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
 
 /* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
  * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
-static float add_spots(Eight *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
+static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
                        const float n_enu[3], uint16_t part)
 {
     static const float    other_part = 0.05f;
     const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
     const float *const   *value = (const float *const *)e->spot.value;
-    const Eight           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
-    const Eight           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
+    const F32x8           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
+    const F32x8           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
     float                 all = 0, each[8];
-    Eight                 p[3], n[3];
+    F32x8                 p[3], n[3];
     for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
     for (int row = span[1]; row < span[3]; row += step)
         for (int column = span[0]; column < span[2]; column += 8) {
             const int   at = row * e->columns + column;
             const int   lanes = span[2] - column < 8 ? span[2] - column : 8;
-            const Eight along = n[0] * eight_load(value[SPOT_NORMAL_X] + at) +
-                                n[1] * eight_load(value[SPOT_NORMAL_Y] + at) +
-                                n[2] * eight_load(value[SPOT_NORMAL_Z] + at);
-            const Eight x = eight_load(value[SPOT_X] + at) - p[0], y = eight_load(value[SPOT_Y] + at) - p[1];
-            const Eight z = eight_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
-            const Eight facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
-            const Eight same = _mm256_cmp_ps(eight_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
-            const Eight share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
-            eight_store(each, share * a4 * a4 * square_m2 * square_m2 /
+            const F32x8 along = n[0] * f32x8_load(value[SPOT_NORMAL_X] + at) +
+                                n[1] * f32x8_load(value[SPOT_NORMAL_Y] + at) +
+                                n[2] * f32x8_load(value[SPOT_NORMAL_Z] + at);
+            const F32x8 x = f32x8_load(value[SPOT_X] + at) - p[0], y = f32x8_load(value[SPOT_Y] + at) - p[1];
+            const F32x8 z = f32x8_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
+            const F32x8 facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
+            const F32x8 same = _mm256_cmp_ps(f32x8_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
+            const F32x8 share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
+            f32x8_store(each, share * a4 * a4 * square_m2 * square_m2 /
                                   ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
             for (int k = 0; k < lanes; k++) {
                 if (!(each[k] > 0)) continue; /* faces away, or is not there */
                 all += each[k];
-                *sum += _mm256_set1_ps(each[k]) * eight_load(e->spot.factor[at + k]);
+                *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
             }
         }
     return all;
@@ -574,7 +591,8 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
 {
     static const float enough = 0.3f; /* one spot of the part two steps away */
     const int          index = (int)hits->entity[i] - 1;
-    const SkyEntity   *e = &v->entity[index];
+    if (v->grid_of[index] == 0) return;
+    const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
     const View        *view = v->scene.view;
     const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
     const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
@@ -590,20 +608,20 @@ static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hi
     view_project(image_px, view, p_cam);
     const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
     const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
-    Eight        sum = eight_all(0);
+    F32x8        sum = f32x8_set(0);
     float        all = 0;
     for (int more = 1; more <= 4 && !(all > enough); more += 3) {
         span_about(span, e, column, row, more);
-        sum = eight_all(0);
+        sum = f32x8_set(0);
         all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
     }
     if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
         span_about(span, e, 0, 0, grid_most);
-        sum = eight_all(0);
+        sum = f32x8_set(0);
         all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
     }
     if (!(all > 1e-12f)) return;
-    eight_store(factor, sum * eight_all(1 / (double)all));
+    f32x8_store(factor, sum * f32x8_set(1 / (double)all));
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
@@ -619,7 +637,7 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
     memcpy(near_box, box, sizeof box);
     for (int i = 0; i < hits->count; i++)
         if (hits->range_m[i] < INFINITY) grow(box, hits, i);
-    int near_count = list_near(w->near, v, box, 0, true);
+    int near_count = list_near(w, v, box, 0, true);
     if (near_count == 0) return false;
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -629,14 +647,14 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
         if (!(hits->range_m[i] < INFINITY)) continue;
         if (hits->entity[i]) open_on_entity(out, i, v, hits);
         if (hits->entity[i] || !v->scene.landscape) continue;
-        find_ground(&w->hit[i], v, hits, i, w->near, near_count);
+        find_ground(&w->hit[i], v, w, hits, i, near_count);
         if (!(w->hit[i].weight > 0)) continue;
         grow(near_box, hits, i);
         undone[left++] = i;
     }
     if (skips(v->scene.skips_off, SKIP_LIGHT)) counters->skipped[SKIP_LIGHT] += (uint64_t)left;
     /* a corner lies within a cell of its hit */
-    near_count = list_near(w->near, v, near_box, look_m + 32, false);
+    near_count = list_near(w, v, near_box, look_m + 32, false);
 
     w->block++;
     while (left > 0) {

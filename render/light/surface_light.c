@@ -3,7 +3,7 @@
 #include "render/light/surface_light.h"
 
 #include "render/light/optical.h"
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
 enum GlossValue { gloss_share, gloss_roughness, gloss_per_roughness, gloss_smooth2, gloss_slope2, gloss_values };
 
@@ -50,166 +50,166 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
 
 /* ---- places in the tables ------------------------------------------------------------------- */
 
-typedef struct Three { Eight x, y, z; } Three;
+typedef struct Three { F32x8 x, y, z; } Three;
 
-static inline Eight dot(Three a, Three b) { return eight_fma(a.x, b.x, eight_fma(a.y, b.y, a.z * b.z)); }
-static inline Eight zero(void) { return _mm256_setzero_ps(); }
-static inline Eight one(void) { return eight_all(1); }
-static inline Eight square(Eight a) { return a * a; }
+static inline F32x8 dot(Three a, Three b) { return f32x8_fma(a.x, b.x, f32x8_fma(a.y, b.y, a.z * b.z)); }
+static inline F32x8 zero(void) { return _mm256_setzero_ps(); }
+static inline F32x8 one(void) { return f32x8_set(1); }
+static inline F32x8 square(F32x8 a) { return a * a; }
 
-/* Eight places in steps of a table: lower nodes and shares of the upper ones. */
+/* F32x8 places in steps of a table: lower nodes and shares of the upper ones. */
 typedef struct Steps {
-    EightInt at;
-    Eight    share;
+    I32x8 at;
+    F32x8    share;
 } Steps;
 
-static inline Steps steps_of(Eight x, int most)
+static inline Steps steps_of(F32x8 x, int most)
 {
-    const Eight inside = eight_clamp(x, 0, most), at = eight_min(eight_floor(inside), eight_all(most - 1));
-    return (Steps){eight_to_ints(at), inside - at};
+    const F32x8 inside = f32x8_clamp(x, 0, most), at = f32x8_min(f32x8_floor(inside), f32x8_set(most - 1));
+    return (Steps){i32x8_truncate(at), inside - at};
 }
 
 /* The arc cosine of +-(1 - less), by what is missing to 1: Abramowitz & Stegun 4.4.45, within 7e-5. */
-static inline Eight arc_cosine(Eight less, Eight negative)
+static inline F32x8 arc_cosine(F32x8 less, F32x8 negative)
 {
-    const Eight x = one() - less;
-    Eight       p = eight_fma(x, eight_all(-0.0187293), eight_all(0.0742610));
-    p = eight_fma(x, p, eight_all(-0.2121144));
-    p = eight_fma(x, p, eight_all(1.5707288)) * eight_sqrt(less);
-    return eight_pick(negative, eight_all(pi_rad) - p, p);
+    const F32x8 x = one() - less;
+    F32x8       p = f32x8_fma(x, f32x8_set(-0.0187293), f32x8_set(0.0742610));
+    p = f32x8_fma(x, p, f32x8_set(-0.2121144));
+    p = f32x8_fma(x, p, f32x8_set(1.5707288)) * f32x8_sqrt(less);
+    return f32x8_select(negative, f32x8_set(pi_rad) - p, p);
 }
 
 /* Angle of a direction's azimuth from the sun's, 0 .. pi; 0 where either has none. By the cross product, since the
  * cosine of a small angle has lost half its digits. */
-static inline Eight azimuth_from_sun(Three d, Three sun)
+static inline F32x8 azimuth_from_sun(Three d, Three sun)
 {
-    const Eight n2 = (d.x * d.x + d.y * d.y) * (sun.x * sun.x + sun.y * sun.y);
-    const Eight along = d.x * sun.x + d.y * sun.y, across = d.x * sun.y - d.y * sun.x;
-    const Eight has = eight_more(n2, eight_all(1e-20)), n = eight_sqrt(n2);
+    const F32x8 n2 = (d.x * d.x + d.y * d.y) * (sun.x * sun.x + sun.y * sun.y);
+    const F32x8 along = d.x * sun.x + d.y * sun.y, across = d.x * sun.y - d.y * sun.x;
+    const F32x8 has = f32x8_greater(n2, f32x8_set(1e-20)), n = f32x8_sqrt(n2);
     /* 1 - |cos| = sin^2 / (1 + |cos|) */
-    const Eight less = square(across) / (eight_max(n2, eight_all(1e-20)) + n * eight_abs(along));
-    return eight_and(arc_cosine(eight_min(less, one()), eight_less(along, zero())), has);
+    const F32x8 less = square(across) / (f32x8_max(n2, f32x8_set(1e-20)) + n * f32x8_abs(along));
+    return f32x8_and(arc_cosine(f32x8_min(less, one()), f32x8_less(along, zero())), has);
 }
 
 /* Values of all bands at eight places between nodes of a table of rows, a band after the other. */
-static inline void look_up(Eight out[8], const float *table, int row, Steps up, Steps aside)
+static inline void look_up(F32x8 out[8], const float *table, int row, Steps up, Steps aside)
 {
     int32_t at[8];
     float   u[8], v[8];
-    _mm256_storeu_si256((EightInt *)at, _mm256_add_epi32(_mm256_mullo_epi32(up.at, eight_int(row)), aside.at));
-    eight_store(u, up.share), eight_store(v, aside.share);
+    _mm256_storeu_si256((I32x8 *)at, _mm256_add_epi32(_mm256_mullo_epi32(up.at, i32x8_set(row)), aside.at));
+    f32x8_store(u, up.share), f32x8_store(v, aside.share);
     for (int k = 0; k < 8; k++) {
         const float *low = table + (ptrdiff_t)at[k] * surface_light_bands, *high = low + row * surface_light_bands;
-        const Eight  a = _mm256_set1_ps(v[k]);
-        out[k] = eight_mix(eight_mix(eight_load(low), eight_load(low + 8), a),
-                           eight_mix(eight_load(high), eight_load(high + 8), a), _mm256_set1_ps(u[k]));
+        const F32x8  a = _mm256_set1_ps(v[k]);
+        out[k] = f32x8_lerp(f32x8_lerp(f32x8_load(low), f32x8_load(low + 8), a),
+                           f32x8_lerp(f32x8_load(high), f32x8_load(high + 8), a), _mm256_set1_ps(u[k]));
     }
 }
 
-static inline void light_on_plane(Eight out[8], const SurfaceLight *light, Three n, Three sun)
+static inline void light_on_plane(F32x8 out[8], const SurfaceLight *light, Three n, Three sun)
 {
-    const Eight z = eight_clamp(n.z, -1, 1), x = eight_all(0.5 * air_plane_ups) * eight_sqrt(one() - eight_abs(z));
-    const Eight open = eight_all(0.5) * (one() + z);
-    const Steps up = steps_of(eight_pick(eight_less(z, zero()), x, eight_all(air_plane_ups) - x), air_plane_ups);
+    const F32x8 z = f32x8_clamp(n.z, -1, 1), x = f32x8_set(0.5 * air_plane_ups) * f32x8_sqrt(one() - f32x8_abs(z));
+    const F32x8 open = f32x8_set(0.5) * (one() + z);
+    const Steps up = steps_of(f32x8_select(f32x8_less(z, zero()), x, f32x8_set(air_plane_ups) - x), air_plane_ups);
     const Steps azimuth =
-        steps_of(azimuth_from_sun(n, sun) * eight_all(air_plane_azimuths / pi_rad), air_plane_azimuths);
+        steps_of(azimuth_from_sun(n, sun) * f32x8_set(air_plane_azimuths / pi_rad), air_plane_azimuths);
     look_up(out, light->plane[0][0], air_plane_azimuths + 1, up, azimuth);
-    eight_turn(out);
+    f32x8_transpose(out);
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = out[b] * open;
 }
 
 /* Sky in the direction d, nothing about the sun finer than blur_rad. */
-static inline void sky_towards(Eight out[8], const SurfaceLight *light, Three d, Three sun, Eight blur_rad)
+static inline void sky_towards(F32x8 out[8], const SurfaceLight *light, Three d, Three sun, F32x8 blur_rad)
 {
-    const Steps up = steps_of(eight_sqrt(eight_clamp(d.z, 0, 1)) * eight_all(air_sky_ups), air_sky_ups);
-    const Steps azimuth = steps_of(azimuth_from_sun(d, sun) * eight_all(air_sky_azimuths / pi_rad), air_sky_azimuths);
+    const Steps up = steps_of(f32x8_sqrt(f32x8_clamp(d.z, 0, 1)) * f32x8_set(air_sky_ups), air_sky_ups);
+    const Steps azimuth = steps_of(azimuth_from_sun(d, sun) * f32x8_set(air_sky_azimuths / pi_rad), air_sky_azimuths);
     const Three chord = {d.x - sun.x, d.y - sun.y, d.z - sun.z};
-    const Eight c2 = eight_min(dot(chord, chord) * eight_all(0.25), one()), over = eight_more(c2, eight_all(0.5));
-    const Eight less = eight_pick(over, eight_all(2) - c2 - c2, c2 + c2);
-    const Eight angle =
-        eight_pick(eight_less(c2, eight_all(0.01)), eight_sqrt(c2) * eight_all(2), arc_cosine(less, over));
-    const Eight blurred = eight_min(eight_max(angle, blur_rad), eight_all(pi_rad));
+    const F32x8 c2 = f32x8_min(dot(chord, chord) * f32x8_set(0.25), one()), over = f32x8_greater(c2, f32x8_set(0.5));
+    const F32x8 less = f32x8_select(over, f32x8_set(2) - c2 - c2, c2 + c2);
+    const F32x8 angle =
+        f32x8_select(f32x8_less(c2, f32x8_set(0.01)), f32x8_sqrt(c2) * f32x8_set(2), arc_cosine(less, over));
+    const F32x8 blurred = f32x8_min(f32x8_max(angle, blur_rad), f32x8_set(pi_rad));
     const Steps ring =
-        steps_of(eight_sqrt(blurred * eight_all(1 / pi_rad)) * eight_all(air_sky_angles), air_sky_angles);
+        steps_of(f32x8_sqrt(blurred * f32x8_set(1 / pi_rad)) * f32x8_set(air_sky_angles), air_sky_angles);
     look_up(out, light->scattered[0][0], air_sky_azimuths + 1, up, azimuth);
     int32_t height[8], angles[8];
     float   u[8], a[8];
-    _mm256_storeu_si256((EightInt *)height, up.at), _mm256_storeu_si256((EightInt *)angles, ring.at);
-    eight_store(u, up.share), eight_store(a, ring.share);
+    _mm256_storeu_si256((I32x8 *)height, up.at), _mm256_storeu_si256((I32x8 *)angles, ring.at);
+    f32x8_store(u, up.share), f32x8_store(a, ring.share);
     for (int k = 0; k < 8; k++) {
         const float *around = light->around_sun[angles[k]], *thermal = light->thermal[height[k]];
-        const Eight  bright = eight_mix(eight_load(around), eight_load(around + 8), _mm256_set1_ps(a[k]));
+        const F32x8  bright = f32x8_lerp(f32x8_load(around), f32x8_load(around + 8), _mm256_set1_ps(a[k]));
         out[k] =
-            eight_fma(out[k], bright, eight_mix(eight_load(thermal), eight_load(thermal + 8), _mm256_set1_ps(u[k])));
+            f32x8_fma(out[k], bright, f32x8_lerp(f32x8_load(thermal), f32x8_load(thermal + 8), _mm256_set1_ps(u[k])));
     }
-    eight_turn(out);
+    f32x8_transpose(out);
 }
 
 /* ---- gloss ---------------------------------------------------------------------------------- */
 
-static inline Eight dielectric(Eight index2, Eight cosine)
+static inline F32x8 dielectric(F32x8 index2, F32x8 cosine)
 {
-    const Eight inside = eight_sqrt(index2 - one() + cosine * cosine);
-    const Eight a = cosine - inside, b = cosine + inside, c = index2 * cosine - inside, d = index2 * cosine + inside;
-    return eight_all(0.5) * (square(a * d) + square(b * c)) / square(b * d);
+    const F32x8 inside = f32x8_sqrt(index2 - one() + cosine * cosine);
+    const F32x8 a = cosine - inside, b = cosine + inside, c = index2 * cosine - inside, d = index2 * cosine + inside;
+    return f32x8_set(0.5) * (square(a * d) + square(b * c)) / square(b * d);
 }
 
 /* material_fresnel; water: dielectric(water_index2, cosine), which is most ground's whatever the band. */
-static inline Eight fresnel(Eight gloss_rho, Eight smooth2, Eight cosine, Eight water)
+static inline F32x8 fresnel(F32x8 gloss_rho, F32x8 smooth2, F32x8 cosine, F32x8 water)
 {
-    const Eight cover = eight_min(gloss_rho * eight_all(50), one()), normal = eight_max(gloss_rho, eight_all(0.02));
-    Eight       reflected = water;
-    if (eight_bits(eight_more(gloss_rho, eight_all(0.02)))) {
-        const Eight root = eight_sqrt(normal), index = (one() + root) / (one() - root);
-        const Eight metal = eight_clamp((normal - eight_all(0.2)) * eight_all(10), 0, 1);
-        const Eight away = one() - cosine, away5 = square(square(away)) * away;
-        const Eight other =
-            eight_pick(eight_more(gloss_rho, eight_all(0.02)), dielectric(index * index, cosine), water);
-        reflected = eight_mix(other, eight_fma(one() - normal, away5, normal), metal);
-        reflected = eight_pick(eight_less(metal, one()), reflected, eight_fma(one() - normal, away5, normal));
+    const F32x8 cover = f32x8_min(gloss_rho * f32x8_set(50), one()), normal = f32x8_max(gloss_rho, f32x8_set(0.02));
+    F32x8       reflected = water;
+    if (f32x8_bits(f32x8_greater(gloss_rho, f32x8_set(0.02)))) {
+        const F32x8 root = f32x8_sqrt(normal), index = (one() + root) / (one() - root);
+        const F32x8 metal = f32x8_clamp((normal - f32x8_set(0.2)) * f32x8_set(10), 0, 1);
+        const F32x8 away = one() - cosine, away5 = square(square(away)) * away;
+        const F32x8 other =
+            f32x8_select(f32x8_greater(gloss_rho, f32x8_set(0.02)), dielectric(index * index, cosine), water);
+        reflected = f32x8_lerp(other, f32x8_fma(one() - normal, away5, normal), metal);
+        reflected = f32x8_select(f32x8_less(metal, one()), reflected, f32x8_fma(one() - normal, away5, normal));
     }
-    const Eight all = eight_fma(cover * smooth2, reflected - normal, gloss_rho);
-    return eight_and(eight_pick(eight_less(gloss_rho, one()), all, one()), eight_more(gloss_rho, zero()));
+    const F32x8 all = f32x8_fma(cover * smooth2, reflected - normal, gloss_rho);
+    return f32x8_and(f32x8_select(f32x8_less(gloss_rho, one()), all, one()), f32x8_greater(gloss_rho, zero()));
 }
 
-static inline Eight smith(Eight per_slope, Eight cosine)
+static inline F32x8 smith(F32x8 per_slope, F32x8 cosine)
 {
-    const Eight sine2 = one() - cosine * cosine;
-    const Eight a = cosine * per_slope / eight_sqrt(eight_max(sine2, eight_all(1e-12)));
-    const Eight part = a * eight_fma(eight_all(2.181), a, eight_all(3.535)) /
-                       eight_fma(a, eight_fma(eight_all(2.577), a, eight_all(2.276)), one());
-    return eight_pick(eight_or(eight_more(a, eight_all(1.6)), eight_less(sine2, eight_all(1e-12))), one(), part);
+    const F32x8 sine2 = one() - cosine * cosine;
+    const F32x8 a = cosine * per_slope / f32x8_sqrt(f32x8_max(sine2, f32x8_set(1e-12)));
+    const F32x8 part = a * f32x8_fma(f32x8_set(2.181), a, f32x8_set(3.535)) /
+                       f32x8_fma(a, f32x8_fma(f32x8_set(2.577), a, f32x8_set(2.276)), one());
+    return f32x8_select(f32x8_or(f32x8_greater(a, f32x8_set(1.6)), f32x8_less(sine2, f32x8_set(1e-12))), one(), part);
 }
 
 /* material_lobe towards the sun; the tangent by a cross product, for smooth water. */
-static inline Eight lobe(Eight slope2, Three n, Three eye, Three sun, Eight n_eye, Eight n_sun)
+static inline F32x8 lobe(F32x8 slope2, Three n, Three eye, Three sun, F32x8 n_eye, F32x8 n_sun)
 {
     Three half = {eye.x + sun.x, eye.y + sun.y, eye.z + sun.z};
-    const Eight length2 = eight_max(dot(half, half), eight_all(1e-20)), n_half = dot(n, half);
+    const F32x8 length2 = f32x8_max(dot(half, half), f32x8_set(1e-20)), n_half = dot(n, half);
     const Three cross = {n.y * half.z - n.z * half.y, n.z * half.x - n.x * half.z, n.x * half.y - n.y * half.x};
-    const Eight tangent2 = dot(cross, cross) / eight_max(n_half * n_half, eight_all(1e-20));
-    const Eight per_slope2 = one() / slope2, n_half2 = n_half * n_half / length2;
-    const Eight seen = eight_and(eight_and(eight_more(n_eye, zero()), eight_more(n_sun, zero())),
-                                 eight_less(tangent2, eight_all(40) * slope2));
-    if (!eight_bits(seen)) return zero();
-    const Eight slopes = eight_exp2(tangent2 * per_slope2 * eight_all(-1.4426950408889634)) * per_slope2 /
-                         (eight_all(pi_rad) * n_half2 * n_half2);
-    const Eight per_slope = eight_sqrt(per_slope2);
-    return eight_and(slopes * smith(per_slope, n_eye) * smith(per_slope, n_sun) / (eight_all(4) * n_eye), seen);
+    const F32x8 tangent2 = dot(cross, cross) / f32x8_max(n_half * n_half, f32x8_set(1e-20));
+    const F32x8 per_slope2 = one() / slope2, n_half2 = n_half * n_half / length2;
+    const F32x8 seen = f32x8_and(f32x8_and(f32x8_greater(n_eye, zero()), f32x8_greater(n_sun, zero())),
+                                 f32x8_less(tangent2, f32x8_set(40) * slope2));
+    if (!f32x8_bits(seen)) return zero();
+    const F32x8 slopes = f32x8_exp2(tangent2 * per_slope2 * f32x8_set(-1.4426950408889634)) * per_slope2 /
+                         (f32x8_set(pi_rad) * n_half2 * n_half2);
+    const F32x8 per_slope = f32x8_sqrt(per_slope2);
+    return f32x8_and(slopes * smith(per_slope, n_eye) * smith(per_slope, n_sun) / (f32x8_set(4) * n_eye), seen);
 }
 
 /* ---- eight hits ------------------------------------------------------------------------------ */
 
-/* Eight rows of a table by material, turned: of one material as a rule. */
-static inline void material_rows(Eight out[8], float (*table)[surface_light_bands], const uint16_t material[8],
+/* F32x8 rows of a table by material, turned: of one material as a rule. */
+static inline void material_rows(F32x8 out[8], float (*table)[surface_light_bands], const uint16_t material[8],
                                  bool same)
 {
     if (same) {
         for (int k = 0; k < 8; k++) out[k] = _mm256_set1_ps(table[material[0]][k]);
         return;
     }
-    for (int k = 0; k < 8; k++) out[k] = eight_load(table[material[k]]);
-    eight_turn(out);
+    for (int k = 0; k < 8; k++) out[k] = f32x8_load(table[material[k]]);
+    f32x8_transpose(out);
 }
 
 static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *b, int i)
@@ -222,66 +222,66 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     memcpy(material, b->material + i, (size_t)some * sizeof *material);
     const __m128i rows = _mm_loadu_si128((const __m128i *)material);
     const bool    same = _mm_movemask_epi8(_mm_cmpeq_epi16(rows, _mm_set1_epi16((short)material[0]))) == 0xffff;
-    Eight rho[8], of[8], plane[8], sky[8];
+    F32x8 rho[8], of[8], plane[8], sky[8];
     material_rows(rho, light->rho, material, same);
     material_rows(of, light->gloss, material, same);
-    const bool glossy = eight_bits(eight_more(of[gloss_share], zero())) != 0;
+    const bool glossy = f32x8_bits(f32x8_greater(of[gloss_share], zero())) != 0;
 
-    const Three sun = {eight_all(air->sun_d_enu[0]), eight_all(air->sun_d_enu[1]), eight_all(air->sun_d_enu[2])};
-    const Three n = {eight_load(hits->n_enu[0] + i), eight_load(hits->n_enu[1] + i), eight_load(hits->n_enu[2] + i)};
-    const Three d = {eight_of_doubles(rays->d_enu[0] + i), eight_of_doubles(rays->d_enu[1] + i),
-                     eight_of_doubles(rays->d_enu[2] + i)};
+    const Three sun = {f32x8_set(air->sun_d_enu[0]), f32x8_set(air->sun_d_enu[1]), f32x8_set(air->sun_d_enu[2])};
+    const Three n = {f32x8_load(hits->n_enu[0] + i), f32x8_load(hits->n_enu[1] + i), f32x8_load(hits->n_enu[2] + i)};
+    const Three d = {f32x8_of_doubles(rays->d_enu[0] + i), f32x8_of_doubles(rays->d_enu[1] + i),
+                     f32x8_of_doubles(rays->d_enu[2] + i)};
     const Three eye = {zero() - d.x, zero() - d.y, zero() - d.z};
-    const Eight lit = _mm256_castsi256_ps(_mm256_cmpeq_epi32(eight_of_bytes(b->shadow + i), eight_int(0)));
-    const Eight n_eye = eight_max(dot(n, eye), zero()), n_sun = eight_and(eight_max(dot(n, sun), zero()), lit);
-    const Eight below = eight_all(0.5 * pi_rad) * (one() - n.z), per_pi = eight_all(1 / pi_rad);
+    const F32x8 arrives = f32x8_load(b->sun + i), lit = f32x8_greater(arrives, zero());
+    const F32x8 n_eye = f32x8_max(dot(n, eye), zero()), n_sun = f32x8_and(f32x8_max(dot(n, sun), zero()), lit);
+    const F32x8 below = f32x8_set(0.5 * pi_rad) * (one() - n.z), per_pi = f32x8_set(1 / pi_rad);
     light_on_plane(plane, light, n, sun);
 
-    Eight sees_sky = zero(), glint = zero(), water_eye = zero(), water_half = zero(), half = zero();
+    F32x8 sees_sky = zero(), glint = zero(), water_eye = zero(), water_half = zero(), half = zero();
     if (glossy) {
-        const Eight twice = n_eye + n_eye;
-        const Three mirror = {eight_fma(twice, n.x, d.x), eight_fma(twice, n.y, d.y), eight_fma(twice, n.z, d.z)};
-        sees_sky = eight_clamp(eight_fma(eight_all(0.5) * mirror.z, of[gloss_per_roughness], eight_all(0.5)), 0, 1);
+        const F32x8 twice = n_eye + n_eye;
+        const Three mirror = {f32x8_fma(twice, n.x, d.x), f32x8_fma(twice, n.y, d.y), f32x8_fma(twice, n.z, d.z)};
+        sees_sky = f32x8_clamp(f32x8_fma(f32x8_set(0.5) * mirror.z, of[gloss_per_roughness], f32x8_set(0.5)), 0, 1);
         sky_towards(sky, light, mirror, sun, of[gloss_roughness] + of[gloss_roughness]);
-        water_eye = dielectric(eight_all(water_index2), eight_min(n_eye, one()));
-        if (light->any_sun && eight_bits(eight_more(n_sun, zero()))) {
+        water_eye = dielectric(f32x8_set(water_index2), f32x8_min(n_eye, one()));
+        if (light->any_sun && f32x8_bits(f32x8_greater(n_sun, zero()))) {
             glint = lobe(of[gloss_slope2], n, eye, sun, n_eye, n_sun);
-            half = eight_sqrt(eight_max(eight_all(0.5) * (one() + dot(eye, sun)), zero()));
-            water_half = dielectric(eight_all(water_index2), eight_min(half, one()));
+            half = f32x8_sqrt(f32x8_max(f32x8_set(0.5) * (one() + dot(eye, sun)), zero()));
+            water_half = dielectric(f32x8_set(water_index2), f32x8_min(half, one()));
         }
     }
     for (int band = 0; band < AIR_BAND_COUNT; band++) {
         if (!out[band]) continue;
         const Veils *veil = &b->veils[band];
-        const Eight level = _mm256_set1_ps(light->level_w_m2_sr[band]),
+        const F32x8 level = _mm256_set1_ps(light->level_w_m2_sr[band]),
                     sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
-        const Eight all_rho =
-            band >= AIR_MWIR ? rho[band] : eight_min(rho[band] * eight_load(b->texture[band] + i), one());
-        Eight around =
-            b->around_w_m2[band] ? eight_load(b->around_w_m2[band] + i) : eight_fma(level, below, plane[band]);
-        if (b->open[band]) around = around * eight_load(b->open[band] + i);
-        Eight diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
+        const F32x8 all_rho =
+            band >= AIR_MWIR ? rho[band] : f32x8_min(rho[band] * f32x8_load(b->texture[band] + i), one());
+        F32x8 around =
+            b->around_w_m2[band] ? f32x8_load(b->around_w_m2[band] + i) : f32x8_fma(level, below, plane[band]);
+        if (b->open[band]) around = around * f32x8_load(b->open[band] + i);
+        F32x8 diffuse = all_rho, mirrored = zero(), mirrors = zero(), flash = zero();
         if (glossy) {
-            const Eight gloss_rho = all_rho * of[gloss_share];
-            mirrors = fresnel(gloss_rho, of[gloss_smooth2], eight_min(n_eye, one()), water_eye);
-            diffuse = eight_and((all_rho - gloss_rho) * (one() - mirrors) / (one() - gloss_rho),
-                                eight_less(gloss_rho, one()));
-            mirrored = mirrors * eight_mix(level, sky[band], sees_sky);
-            if (eight_bits(eight_more(glint, zero())))
-                flash = fresnel(gloss_rho, of[gloss_smooth2], eight_min(half, one()), water_half) * glint;
+            const F32x8 gloss_rho = all_rho * of[gloss_share];
+            mirrors = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(n_eye, one()), water_eye);
+            diffuse = f32x8_and((all_rho - gloss_rho) * (one() - mirrors) / (one() - gloss_rho),
+                                f32x8_less(gloss_rho, one()));
+            mirrored = mirrors * f32x8_lerp(level, sky[band], sees_sky);
+            if (f32x8_bits(f32x8_greater(glint, zero())))
+                flash = fresnel(gloss_rho, of[gloss_smooth2], f32x8_min(half, one()), water_half) * glint;
         }
-        const Eight reflected = eight_fma(diffuse * per_pi, around, mirrored);
-        const Eight sunlit = eight_fma(diffuse * per_pi, n_sun, flash) * sun_w_m2;
-        Eight seen = eight_fma(reflected, eight_load(veil->air_transmittance + i), eight_load(veil->added_w_m2_sr + i));
-        seen = eight_fma(sunlit, eight_load(veil->sun_transmittance + i), seen);
+        const F32x8 reflected = f32x8_fma(diffuse * per_pi, around, mirrored);
+        const F32x8 sunlit = f32x8_fma(diffuse * per_pi, n_sun, flash) * (sun_w_m2 * arrives);
+        F32x8 seen = f32x8_fma(reflected, f32x8_load(veil->air_transmittance + i), f32x8_load(veil->added_w_m2_sr + i));
+        seen = f32x8_fma(sunlit, f32x8_load(veil->sun_transmittance + i), seen);
         if (band >= AIR_MWIR) {
             const PlanckTable *planck = band == AIR_MWIR ? air->planck_mwir : air->planck_lwir;
             float              emitted[8];
             planck_table_radiance8(emitted, planck, b->temp_k + i);
             seen =
-                eight_fma((one() - diffuse - mirrors) * eight_load(emitted), eight_load(veil->transmittance + i), seen);
+                f32x8_fma((one() - diffuse - mirrors) * f32x8_load(emitted), f32x8_load(veil->transmittance + i), seen);
         }
-        eight_store(out[band] + i, seen);
+        f32x8_store(out[band] + i, seen);
     }
 }
 

@@ -32,14 +32,14 @@ typedef struct SurfaceBlock {
     const uint16_t *material;                   /* row of each hit; 0 for sky */
     const float   *texture[AIR_BAND_COUNT];     /* of the optical bands: brightness over the material's */
     const float   *temp_k;                      /* thermal bands */
-    const uint8_t *shadow;
+    const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
     const float   *around_w_m2[AIR_BAND_COUNT]; /* gathered; NULL: sky and ground by what the slope sees of them */
     const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1 */
     const Veils   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
-/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rays that met nothing get nonsense: whoever
- * knows the sky comes after. */
+/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
+ * optical_beyond and thermal_beyond give those. */
 void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block);
 
 #endif

@@ -10,7 +10,7 @@
 #include "render/light/thermal.h"
 
 #include "render/light/surface_balance.h"
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 
 /* ---- temperature -------------------------------------------------------------------------- */
 
@@ -48,36 +48,36 @@ static void ground_day(GroundDay *out, const Air *air, const Materials *material
 }
 
 /* Temperature of the air at eight hits: straight between the nodes, as air_temp_at. */
-static Eight air_k8(const Air *air, const Hits *hits, int first)
+static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 {
-    const Eight    x = eight_of_doubles(hits->p_enu[0] + first), y = eight_of_doubles(hits->p_enu[1] + first);
-    const Eight    level = eight_of_doubles(hits->p_enu[2] + first) - eight_all(air->zero_z_m);
-    const Eight    height_m = eight_fma(eight_fma(x, x, y * y), eight_all(1 / (2 * 6371e3)), level);
-    const Eight    at = eight_clamp(height_m * eight_all(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
-    const EightInt node = eight_to_ints(eight_clamp(at, 0, air_warmer_nodes - 2));
-    const Eight    low = eight_gather(air->warmer_k, node), high = eight_gather(air->warmer_k + 1, node);
-    return eight_mix(low, high, at - eight_of_ints(node)) + eight_all(air->weather.air_temp_k);
+    const F32x8    x = f32x8_of_doubles(hits->p_enu[0] + first), y = f32x8_of_doubles(hits->p_enu[1] + first);
+    const F32x8    level = f32x8_of_doubles(hits->p_enu[2] + first) - f32x8_set(air->zero_z_m);
+    const F32x8    height_m = f32x8_fma(f32x8_fma(x, x, y * y), f32x8_set(1 / (2 * 6371e3)), level);
+    const F32x8    at = f32x8_clamp(height_m * f32x8_set(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
+    const I32x8 node = i32x8_truncate(f32x8_clamp(at, 0, air_warmer_nodes - 2));
+    const F32x8    low = f32x8_gather(air->warmer_k, node), high = f32x8_gather(air->warmer_k + 1, node);
+    return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->weather.air_temp_k);
 }
 
 /* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
  * relative brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
  * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that law
  * would be colder than the air at noon. Eight hits at once, within 3e-5 K; what is not ground becomes air. */
-static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, Eight air_k, const uint8_t surface[8],
+static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32x8 air_k, const uint8_t surface[8],
                       const float *const n_enu[3], const float texture[8])
 {
-    const EightInt class = eight_of_bytes(surface);
-    const Eight    along = eight_fma(eight_load(n_enu[0]), eight_all(air->sun_d_enu[0]),
-                                     eight_fma(eight_load(n_enu[1]), eight_all(air->sun_d_enu[1]),
-                                               eight_load(n_enu[2]) * eight_all(air->sun_d_enu[2])));
-    const Eight rise = eight_gather(day->rise_k, class), fall = eight_gather(day->fall_k, class);
-    const Eight level = (eight_all(1) + eight_load(n_enu[2])) * eight_all(0.5 * air->solar_diffuse_w_m2);
-    const Eight slope_kw_m2 =
-        eight_fma(eight_max(along, eight_all(0)), eight_all(air->solar_direct_w_m2), level) * eight_all(1e-3);
-    const Eight dark = eight_all(1.5) - eight_all(0.5) * eight_clamp(eight_load(texture), 0.6, 1.4);
-    const Eight above = eight_fma(rise * slope_kw_m2, dark, fall * eight_all(-1e-2 * air->longwave_loss_w_m2));
-    const Eight least = eight_gather(day->least_k, class), most = eight_gather(day->most_k, class);
-    eight_store(temp_k, eight_min(eight_max(above + air_k, least), most));
+    const I32x8 class = i32x8_of_bytes(surface);
+    const F32x8    along = f32x8_fma(f32x8_load(n_enu[0]), f32x8_set(air->sun_d_enu[0]),
+                                     f32x8_fma(f32x8_load(n_enu[1]), f32x8_set(air->sun_d_enu[1]),
+                                               f32x8_load(n_enu[2]) * f32x8_set(air->sun_d_enu[2])));
+    const F32x8 rise = f32x8_gather(day->rise_k, class), fall = f32x8_gather(day->fall_k, class);
+    const F32x8 level = (f32x8_set(1) + f32x8_load(n_enu[2])) * f32x8_set(0.5 * air->solar_diffuse_w_m2);
+    const F32x8 slope_kw_m2 =
+        f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->solar_direct_w_m2), level) * f32x8_set(1e-3);
+    const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(texture), 0.6, 1.4);
+    const F32x8 above = f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 * air->longwave_loss_w_m2));
+    const F32x8 least = f32x8_gather(day->least_k, class), most = f32x8_gather(day->most_k, class);
+    f32x8_store(temp_k, f32x8_min(f32x8_max(above + air_k, least), most));
 }
 
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
@@ -95,8 +95,8 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
         float              found[8], air_k[8];
         for (int k = 0; k < some; k++)
             surface[k] = hits->surface[first + k] < SURFACE_COUNT ? hits->surface[first + k] : SURFACE_NONE;
-        const Eight there_k = air_k8(air, hits, first);
-        eight_store(air_k, there_k);
+        const F32x8 there_k = air_k8(air, hits, first);
+        f32x8_store(air_k, there_k);
         ground_k8(found, air, &day, there_k, surface, n_enu, texture + first);
         for (int k = 0; k < some; k++) {
             const int i = first + k;
@@ -125,7 +125,7 @@ float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Vei
 }
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
-                   const Rays *rays, const uint16_t *material, const float *temp_k, const uint8_t *shadow,
+                   const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
                    const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const bool mwir = band == BAND_MWIR;
@@ -170,7 +170,8 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
             reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
         }
         double sunlit = 0;
-        if (sun_w_m2 > 0 && !shadow[i]) {
+        const double lit = sun ? (double)sun[i] : 1;
+        if (sun_w_m2 > 0 && lit > 0) {
             const double n_sun = v3_dot(n_enu, air->sun_d_enu);
             if (n_sun > 0) {
                 sunlit = diffuse * n_sun / pi_rad;
@@ -180,7 +181,7 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
                     sunlit += material_fresnel((mwir ? m->rho_mwir : m->rho_lwir) * m->gloss, m->roughness, cosine) *
                               material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
                 }
-                sunlit *= sun_w_m2;
+                sunlit *= sun_w_m2 * lit;
             }
         }
         out[i] = (float)(emitted * v->transmittance[i] + reflected * v->air_transmittance[i] +

@@ -1,3 +1,4 @@
+/* render/parts/parts.c: models made ready to be traced: facets in double, and an Embree scene for each node. */
 #include "render/parts/parts_private.h"
 
 #include <stdatomic.h>
@@ -271,6 +272,13 @@ int          tracer_model_count(const Tracer *tracer) { return tracer->count; }
 const Model *tracer_model(const Tracer *tracer, int model) { return tracer->model[model].model; }
 int          parts_node_count(const Tracer *tracer, int model) { return tracer->model[model].count; }
 
+double parts_largest_node_m(const Tracer *tracer, int model)
+{
+    double largest_m = 0;
+    for (int k = 0; k < tracer->model[model].count; k++) largest_m = fmax(largest_m, tracer->model[model].mesh[k].radius_m);
+    return largest_m;
+}
+
 const double (*parts_node_corners(const PosedNode *node, int *count))[3]
 {
     *count = node->mesh->corner_count;
@@ -362,4 +370,18 @@ void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePos
         out->radius_m = reach_m > out->radius_m ? reach_m : out->radius_m;
     }
     out->radius_m = out->radius_m * (1 + 1e-9) + 1e-6; /* the roundings above, at any distance from the origin */
+}
+
+void parts_place_on_part(double p_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
+                         const double p_enu[3])
+{
+    const int node = model->part[model->triangle_part[triangle]].node;
+    memset(p_node, 0, 3 * sizeof *p_node);
+    for (int k = 0; k < entity->node_count; k++) {
+        const PosedNode *posed = &entity->node[k];
+        double           from_node[3];
+        if (posed->mesh->node != node) continue;
+        v3_sub(from_node, p_enu, posed->p_enu);
+        m3_tmul_v3(p_node, posed->r_enu_from_node, from_node);
+    }
 }

@@ -52,6 +52,8 @@ const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 
 /* The most nodes that posing an entity of this model needs room for. */
 int parts_node_count(const Tracer *tracer, int model);
+/* Radius of the largest of their spheres, m. */
+double parts_largest_node_m(const Tracer *tracer, int model);
 /* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are
  * not there. */
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
@@ -71,6 +73,10 @@ uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *enti
 /* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. Returns as above. */
 uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
                     const double *far_m, const int *list, int count, bool ask_all);
+/* A place on a triangle of the model, in the axes of its node as the entity stands. */
+void parts_place_on_part(double p_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
+                         const double p_enu[3]);
+
 /* A triangle that was met, as it stands now: for as many hits as meet it. */
 typedef struct PosedFacet {
     const PosedNode *node;     /* NULL: none */

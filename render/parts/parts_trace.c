@@ -7,9 +7,9 @@
  * disc's, and at an edge two always do.
  *
  * Four rays at a time in intrinsics, as in ground8.c: the compiler would not. */
-#include <immintrin.h>
-
 #include "render/parts/parts_private.h"
+
+#include "pitviper_simd.h"
 
 enum { lanes = 16, ties_kept = 8, chunk_rays = 128 };
 
@@ -17,33 +17,24 @@ static const double same_edge_m = 2e-5, same_range_m = 1e-4;
 static const double through_m = -1e-9; /* inside by this: a corner leaves room for roundings between its triangles */
 static const double slack_m = 2e-3;    /* beyond the nearest: room for its ties, and for Embree's floats */
 
-typedef __m256d Four;
-
-static inline Four set(double x) { return _mm256_set1_pd(x); }
-static inline Four load(const double *p) { return _mm256_load_pd(p); }
-static inline void store(double *p, Four x) { _mm256_store_pd(p, x); }
-static inline Four less(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LT_OQ); }
-static inline Four at_most(Four a, Four b) { return _mm256_cmp_pd(a, b, _CMP_LE_OQ); }
-static inline Four both(Four a, Four b) { return _mm256_and_pd(a, b); }
-static inline Four pick(Four mask, Four yes, Four no) { return _mm256_blendv_pd(no, yes, mask); }
-static inline Four smaller4(Four a, Four b) { return _mm256_min_pd(a, b); } /* a < b ? a : b */
-static inline Four larger4(Four a, Four b) { return _mm256_max_pd(a, b); }  /* a > b ? a : b */
-static inline unsigned bits(Four mask) { return (unsigned)_mm256_movemask_pd(mask); }
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
 
 typedef struct Vector {
-    Four x, y, z;
+    F64x4 x, y, z;
 } Vector;
 
-static inline Vector load3(const double *x, const double *y, const double *z) { return (Vector){load(x), load(y), load(z)}; }
-static inline Vector set3(const double p[3]) { return (Vector){set(p[0]), set(p[1]), set(p[2])}; }
+static inline Vector load3(const double *x, const double *y, const double *z)
+{
+    return (Vector){f64x4_load(x), f64x4_load(y), f64x4_load(z)};
+}
+static inline Vector set3(const double p[3]) { return (Vector){f64x4_set(p[0]), f64x4_set(p[1]), f64x4_set(p[2])}; }
 static inline Vector sub(Vector a, Vector b) { return (Vector){a.x - b.x, a.y - b.y, a.z - b.z}; }
-static inline Vector add_scaled(Vector a, Four s, Vector b)
+static inline Vector add_scaled(Vector a, F64x4 s, Vector b)
 {
     return (Vector){a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
-static inline Four dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+static inline F64x4 dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 static inline Vector cross(Vector a, Vector b)
 {
     return (Vector){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -51,19 +42,19 @@ static inline Vector cross(Vector a, Vector b)
 /* transpose(m) a */
 static inline Vector turned_back(const double m[9], Vector a)
 {
-    return (Vector){set(m[0]) * a.x + set(m[3]) * a.y + set(m[6]) * a.z,
-                    set(m[1]) * a.x + set(m[4]) * a.y + set(m[7]) * a.z,
-                    set(m[2]) * a.x + set(m[5]) * a.y + set(m[8]) * a.z};
+    return (Vector){f64x4_set(m[0]) * a.x + f64x4_set(m[3]) * a.y + f64x4_set(m[6]) * a.z,
+                    f64x4_set(m[1]) * a.x + f64x4_set(m[4]) * a.y + f64x4_set(m[7]) * a.z,
+                    f64x4_set(m[2]) * a.x + f64x4_set(m[5]) * a.y + f64x4_set(m[8]) * a.z};
 }
 
 /* Narrows the way in .. out through a box to one of its three slabs; a ray along it is in or out, by its sign. */
-static inline void through_slab(Four *in, Four *out, Four low, Four high, Four d)
+static inline void through_slab(F64x4 *in, F64x4 *out, F64x4 low, F64x4 high, F64x4 d)
 {
-    const Four along = less(_mm256_andnot_pd(set(-0.0), d), set(1e-30));
-    const Four per = pick(along, set(1e30), set(1) / d);
-    const Four a = low * per, b = high * per;
-    *in  = larger4(*in, smaller4(a, b));
-    *out = smaller4(*out, larger4(a, b));
+    const F64x4 along = f64x4_less(f64x4_abs(d), f64x4_set(1e-30));
+    const F64x4 per = f64x4_select(along, f64x4_set(1e30), f64x4_set(1) / d);
+    const F64x4 a = low * per, b = high * per;
+    *in  = f64x4_max(*in, f64x4_min(a, b));
+    *out = f64x4_min(*out, f64x4_max(a, b));
 }
 
 /* ---- a node's rays ---------------------------------------------------------------------------- */
@@ -87,8 +78,8 @@ typedef struct NodeRays {
 static inline unsigned in_embree(Vector at, Vector d)
 {
     static const double most = 1e18;
-    const Four sign = set(-0.0), far = _mm256_andnot_pd(sign, at.x) + _mm256_andnot_pd(sign, at.y) + _mm256_andnot_pd(sign, at.z);
-    return bits(both(less(far, set(most)), less(dot(d, d), set(2))));
+    const F64x4 far = f64x4_abs(at.x) + f64x4_abs(at.y) + f64x4_abs(at.z);
+    return f64x4_bits(f64x4_and(f64x4_less(far, f64x4_set(most)), f64x4_less(dot(d, d), f64x4_set(2))));
 }
 
 /* A ray that misses the sphere is given a start as near as it comes. */
@@ -96,29 +87,29 @@ static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool
 {
     const NodeMesh *mesh = node->mesh;
     const Vector    centre = set3(mesh->centre), half = set3(mesh->half);
-    const Four      zero = set(0), radius_m = set(mesh->radius_m);
+    const F64x4      zero = f64x4_set(0), radius_m = f64x4_set(mesh->radius_m);
     for (int i = 0; i < chunk->count; i += 4) {
         const Vector from = sub(load3(chunk->o[0] + i, chunk->o[1] + i, chunk->o[2] + i), set3(node->p_enu));
         const Vector o = turned_back(node->r_enu_from_node, from);
         const Vector d = turned_back(node->r_enu_from_node, load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i));
         const Vector m = sub(centre, o);
-        const Four   along = dot(m, d);
+        const F64x4   along = dot(m, d);
         const Vector across = add_scaled(m, -along, d); /* not |m|^2 - along^2, which cancels from afar */
-        const Four   left = radius_m * radius_m - dot(across, across);
-        const Four   half_m = _mm256_sqrt_pd(larger4(left, zero));
-        const Four   start_m = larger4(along - half_m, zero), length_m = along + half_m - start_m;
+        const F64x4   left = radius_m * radius_m - dot(across, across);
+        const F64x4   half_m = f64x4_sqrt(f64x4_max(left, zero));
+        const F64x4   start_m = f64x4_max(along - half_m, zero), length_m = along + half_m - start_m;
         const Vector at = add_scaled(o, start_m, d), middle = sub(centre, at);
-        Four         in = zero, out = set(INFINITY);
+        F64x4         in = zero, out = f64x4_set(INFINITY);
         through_slab(&in, &out, middle.x - half.x, middle.x + half.x, d.x);
         through_slab(&in, &out, middle.y - half.y, middle.y + half.y, d.y);
         through_slab(&in, &out, middle.z - half.z, middle.z + half.z, d.z);
-        store(r->o[0] + i, at.x), store(r->o[1] + i, at.y), store(r->o[2] + i, at.z);
-        store(r->d[0] + i, d.x), store(r->d[1] + i, d.y), store(r->d[2] + i, d.z);
-        store(r->start_m + i, start_m);
-        store(r->length_m + i, ask_all ? larger4(length_m, radius_m) : length_m);
-        const Four meets = both(both(less(zero, left), less(zero, length_m)),
-                                both(less(start_m, load(chunk->best_m + i)), at_most(in, out)));
-        r->meets[i / 4] = ask_all ? in_embree(at, d) : bits(meets);
+        f64x4_store(r->o[0] + i, at.x), f64x4_store(r->o[1] + i, at.y), f64x4_store(r->o[2] + i, at.z);
+        f64x4_store(r->d[0] + i, d.x), f64x4_store(r->d[1] + i, d.y), f64x4_store(r->d[2] + i, d.z);
+        f64x4_store(r->start_m + i, start_m);
+        f64x4_store(r->length_m + i, ask_all ? f64x4_max(length_m, radius_m) : length_m);
+        const F64x4 meets = f64x4_and(f64x4_and(f64x4_less(zero, left), f64x4_less(zero, length_m)),
+                                f64x4_and(f64x4_less(start_m, f64x4_load(chunk->best_m + i)), f64x4_at_most(in, out)));
+        r->meets[i / 4] = ask_all ? in_embree(at, d) : f64x4_bits(meets);
     }
 }
 
@@ -193,6 +184,7 @@ typedef struct Packet {
     double   tie_m[lanes][ties_kept];
     uint32_t lowest[lanes];
     double   lowest_m[lanes];
+    uint32_t nearest[lanes];      /* the triangle at nearest_m; of equals any */
     int      ray[lanes];          /* of the chunk */
 } __attribute__((aligned(64))) Packet;
 
@@ -210,25 +202,25 @@ static void judge(Verdict *v, const Packet *p, const Facet *facet, int four)
     const int    l = 4 * four;
     const Vector o = load3(p->o[0] + l, p->o[1] + l, p->o[2] + l), d = load3(p->d[0] + l, p->d[1] + l, p->d[2] + l);
     const Vector a = sub(set3(facet->corner[0]), o), b = sub(set3(facet->corner[1]), o), c = sub(set3(facet->corner[2]), o);
-    const Four   ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
-    const Four   whole = ab + bc + ca, share = set(1) / whole;
-    const Four   inside_m = smaller4(ab * share * set((double)facet->height_m[0]),
-                                     smaller4(bc * share * set((double)facet->height_m[1]),
-                                              ca * share * set((double)facet->height_m[2])));
-    const Four   seen = _mm256_cmp_pd(whole, set(0), _CMP_NEQ_OQ); /* not edge-on */
-    const Four   near = both(seen, at_most(set(-same_edge_m), inside_m));
+    const F64x4   ab = dot(cross(a, b), d), bc = dot(cross(b, c), d), ca = dot(cross(c, a), d);
+    const F64x4   whole = ab + bc + ca, share = f64x4_set(1) / whole;
+    const F64x4   inside_m = f64x4_min(ab * share * f64x4_set((double)facet->height_m[0]),
+                                     f64x4_min(bc * share * f64x4_set((double)facet->height_m[1]),
+                                              ca * share * f64x4_set((double)facet->height_m[2])));
+    const F64x4   seen = _mm256_cmp_pd(whole, f64x4_set(0), _CMP_NEQ_OQ); /* not edge-on */
+    const F64x4   near = f64x4_and(seen, f64x4_at_most(f64x4_set(-same_edge_m), inside_m));
     v->judged |= 1u << four;
-    v->near[four] = bits(near);
+    v->near[four] = f64x4_bits(near);
     if (v->near[four] == 0) return;
     const Vector n = cross(sub(b, a), sub(c, a));
-    const Four   at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
-    const Four   low = smaller4(at_a, smaller4(at_b, at_c)), high = larger4(at_a, larger4(at_b, at_c));
-    const Four   t = dot(n, a) / dot(n, d);
-    const Four   at_m = pick(at_most(low, t), smaller4(t, high), low); /* and when t is not a number */
-    const Four   ahead = at_most(set(0), at_m);
-    store(v->at_m + l, at_m);
-    v->near[four]    = bits(both(near, ahead));
-    v->through[four] = v->near[four] & bits(at_most(set(through_m), inside_m));
+    const F64x4   at_a = dot(a, d), at_b = dot(b, d), at_c = dot(c, d);
+    const F64x4   low = f64x4_min(at_a, f64x4_min(at_b, at_c)), high = f64x4_max(at_a, f64x4_max(at_b, at_c));
+    const F64x4   t = dot(n, a) / dot(n, d);
+    const F64x4   at_m = f64x4_select(f64x4_at_most(low, t), f64x4_min(t, high), low); /* and when t is not a number */
+    const F64x4   ahead = f64x4_at_most(f64x4_set(0), at_m);
+    f64x4_store(v->at_m + l, at_m);
+    v->near[four]    = f64x4_bits(f64x4_and(near, ahead));
+    v->through[four] = v->near[four] & f64x4_bits(f64x4_at_most(f64x4_set(through_m), inside_m));
 }
 
 static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
@@ -242,10 +234,11 @@ static void keep_tie(Packet *p, int lane, uint32_t triangle, double at_m)
     p->tie_m[lane][k] = at_m;
 }
 
-static void bring_nearer(Packet *p, int lane, double at_m)
+static void bring_nearer(Packet *p, int lane, uint32_t triangle, double at_m)
 {
     int kept = 0;
     p->nearest_m[lane] = at_m;
+    p->nearest[lane]   = triangle;
     for (int k = 0; k < p->ties[lane]; k++)
         if (p->tie_m[lane][k] <= at_m + same_range_m) {
             p->tie[lane][kept]     = p->tie[lane][k];
@@ -282,7 +275,7 @@ void parts_intersect(const struct RTCIntersectFunctionNArguments *a)
         }
         if (!(at_m <= p->nearest_m[lane] + same_range_m)) continue;
         if (v.through[four] >> bit & 1 && at_m < p->nearest_m[lane]) {
-            bring_nearer(p, lane, at_m);
+            bring_nearer(p, lane, a->primID, at_m);
             const float stop_m = (float)(at_m + slack_m);
             if (stop_m < p->end_m[lane]) end_m[k] = p->end_m[lane] = stop_m;
         }
@@ -376,9 +369,10 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
         p->lowest_only = true;
         rtcIntersect1(p->mesh->scene, &p->base, &ray);
         p->lowest_only = false;
-    } else {
-        for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
     }
+    for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
+    /* it is among those above, were it not for a second look that found less than the first: then it is the answer */
+    offer_lowest(p, l, p->nearest[l], nearest_m);
     *triangle = p->mesh->triangle[p->lowest[l]];
     return p->lowest_m[l];
 }
@@ -467,11 +461,12 @@ static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *co
         const Vector from = turned_back(entity->r_enu_from_body, sub(at, set3(entity->p_enu)));
         const Vector way = load3(chunk->d[0] + i, chunk->d[1] + i, chunk->d[2] + i);
         const Vector along = turned_back(entity->r_enu_from_body, way);
-        Four         in = set(0), out = set(INFINITY);
+        F64x4         in = f64x4_set(0), out = f64x4_set(INFINITY);
         through_slab(&in, &out, low.x - from.x, high.x - from.x, along.x);
         through_slab(&in, &out, low.y - from.y, high.y - from.y, along.y);
         through_slab(&in, &out, low.z - from.z, high.z - from.z, along.z);
-        const unsigned meets = bits(both(at_most(in, out), less(in, load(chunk->best_m + i))));
+        const unsigned meets =
+            f64x4_bits(f64x4_and(f64x4_at_most(in, out), f64x4_less(in, f64x4_load(chunk->best_m + i))));
         for (int j = i; j < i + 4 && j < count && meets; j++) {
             if (!(meets >> (j - i) & 1)) continue;
             for (int c = 0; c < 3; c++) {

@@ -54,13 +54,6 @@ static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_en
     return v3_normalize(out_enu, out_enu) && v3_dot(out_enu, n_geo) > 0;
 }
 
-static int material_of(const Visibility *v, const Materials *materials, const Hits *hits, int k)
-{
-    if (hits->entity[k] == 0) return materials->surface[hits->surface[k]];
-    return material_of_part(materials, hits->model[k], hits->part[k] - 1,
-                            visibility_damage(v, (int)hits->entity[k] - 1));
-}
-
 /* Everything one block needs besides its input. */
 typedef struct Scratch {
     Rays   onward, back;
@@ -73,12 +66,12 @@ typedef struct Scratch {
 
 /* The first bounce: seen from the eye by construction. Starts the paths that go on. */
 static void first_bounce(RadarReturns *out, Scratch *s, const RadarConfig *config, const Materials *materials,
-                         const Hits *hits, const Rays *rays, const uint16_t *material)
+                         const Hits *hits, const Rays *rays)
 {
     s->paths.count = s->onward.count = 0;
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
-        const Material *m = &materials->material[material[i]];
+        const Material *m = &materials->material[hits->material[i]];
         double power = m->radar_gamma / (4 * pi_rad);
         if (m->metal > 0) {
             const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
@@ -115,7 +108,7 @@ static void next_bounce(RadarReturns *out, int nth, Scratch *s, const RadarConfi
     Rays *onward = &s->onward;
     for (int k = 0; k < paths->count; k++) {
         if (!(s->met.range_m[k] < INFINITY)) continue;
-        const Material *m = &materials->material[material_of(v, materials, &s->met, k)];
+        const Material *m = &materials->material[s->met.material[k]];
         if (!(m->metal > 0)) continue;
         const double d_enu[3] = {onward->d_enu[0][k], onward->d_enu[1][k], onward->d_enu[2][k]};
         double exit_enu[3];
@@ -164,7 +157,7 @@ static void next_bounce(RadarReturns *out, int nth, Scratch *s, const RadarConfi
 }
 
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, const uint16_t *material, int hidden,
+                 const Hits *hits, const Rays *rays, int hidden,
                  VisibilityCounters *counters)
 {
     Scratch s; /* written before it is read, so not cleared: it is large */
@@ -173,7 +166,7 @@ void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility 
         memset(out->power[b], 0, (size_t)hits->count * sizeof out->power[b][0]);
         memset(out->slant_m[b], 0, (size_t)hits->count * sizeof out->slant_m[b][0]);
     }
-    first_bounce(out, &s, config, materials, hits, rays, material);
+    first_bounce(out, &s, config, materials, hits, rays);
     for (int b = 1; b < radar_mirrors + config->more_bounces && s.paths.count > 0; b++)
         next_bounce(out, b, &s, config, v, materials, rays, hidden, counters);
 }

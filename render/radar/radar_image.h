@@ -31,7 +31,7 @@ double radar_lobe(double lobe_rad, double cosine);
 
 /* Total of a sample = sum of power over the bounces. hidden as in visibility_first_hit. Some 350 KB of stack. */
 void radar_shade(RadarReturns *out, const RadarConfig *config, const Visibility *v, const Materials *materials,
-                 const Hits *hits, const Rays *rays, const uint16_t *material, int hidden,
+                 const Hits *hits, const Rays *rays, int hidden,
                  VisibilityCounters *counters);
 
 #endif

@@ -14,18 +14,57 @@ typedef struct Rays {
     double far_m[hits_capacity];    /* nothing beyond; INFINITY: to the sky */
 } Rays;
 
-/* A ray that met nothing: range_m INFINITY, everything else 0. */
+/* What a hit is: sky, where nothing was met. */
+typedef enum HitKind { hit_sky, hit_ground, hit_part } HitKind;
+
+/* A ray that met nothing: range_m INFINITY, everything else 0.
+ *
+ * Row i is what the ray in row i of its Rays met. A ray as it was shot may have several returns (kinds of ground within
+ * its square; leaves and haze would be others): they follow one another, each a row of its own in Hits and Rays, and
+ * `several` is set: ray[] then says which ray they were, and weight[] how much of its light each return is. */
 typedef struct Hits {
     int      count, columns;            /* as Rays */
+    bool     several;                   /* ray[] and weight[] hold; else one return a ray, of weight 1 */
+    uint16_t ray[hits_capacity];        /* as it was shot; ascending */
+    float    weight[hits_capacity];     /* 0 .. 1; 1 over the returns of a ray */
     double   range_m[hits_capacity];
     double   p_enu[3][hits_capacity];
     float    n_geo[3][hits_capacity];   /* unit geometric normal, ENU, on the ray's side */
     float    n_enu[3][hits_capacity];   /* unit shading normal, on the ray's side */
+    uint8_t  kind[hits_capacity];       /* HitKind */
+    uint16_t material[hits_capacity];   /* row in the table of materials (visibility_materials); 0: sky */
+    uint32_t facet[hits_capacity];      /* triangle of the model, where kind is hit_part */
     uint32_t entity[hits_capacity];     /* snapshot index + 1; 0: ground or sky */
     uint16_t part[hits_capacity];       /* part index of the model + 1; 0: ground or sky */
     uint16_t model[hits_capacity];      /* of the catalog, where entity > 0 */
     uint8_t  inside[hits_capacity];     /* 1: a part was met from the inner side of its surface */
     uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
 } Hits;
+
+/* Row `to` becomes row `from` of others, as one return of weight 1; rays as well. from and to may be the same arrays. */
+static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hits, const Rays *from_rays, int from)
+{
+    hits->range_m[to]  = from_hits->range_m[from];
+    hits->kind[to]     = from_hits->kind[from];
+    hits->material[to] = from_hits->material[from];
+    hits->facet[to]    = from_hits->facet[from];
+    hits->entity[to]   = from_hits->entity[from];
+    hits->part[to]     = from_hits->part[from];
+    hits->model[to]    = from_hits->model[from];
+    hits->inside[to]   = from_hits->inside[from];
+    hits->surface[to]  = from_hits->surface[from];
+    rays->far_m[to]    = from_rays->far_m[from];
+    for (int k = 0; k < 3; k++) {
+        hits->p_enu[k][to] = from_hits->p_enu[k][from];
+        hits->n_geo[k][to] = from_hits->n_geo[k][from];
+        hits->n_enu[k][to] = from_hits->n_enu[k][from];
+        rays->o_enu[k][to] = from_rays->o_enu[k][from];
+        rays->d_enu[k][to] = from_rays->d_enu[k][from];
+    }
+}
+
+/* The ray, as it was shot, that a hit is a return of; and its share of that ray's light. */
+static inline int   hit_ray(const Hits *hits, int i) { return hits->several ? hits->ray[i] : i; }
+static inline float hit_weight(const Hits *hits, int i) { return hits->several ? hits->weight[i] : 1; }
 
 #endif

@@ -1,3 +1,4 @@
+/* render/scene/skip.c: the names of what a frame leaves out. */
 #include "render/scene/skip.h"
 
 static const struct {
@@ -17,6 +18,7 @@ static const struct {
     [SKIP_RETRACE]       = {"retrace", "first rays of refined pixels, known from their planes: rays"},
     [SKIP_SMOKE]         = {"smoke", "smoke and dust outside a block of pixels: block-volume pairs"},
     [SKIP_LIGHT]         = {"light", "light of places near vehicles, asked for once a frame: hits that may share it"},
+    [SKIP_TREE]          = {"tree", "entities left out by the tree of their spheres: block-entity, ray-entity pairs"},
 };
 
 const char *skip_name(Skip skip) { return rows[skip].name; }

@@ -22,6 +22,7 @@ typedef enum Skip {
     SKIP_RETRACE,       /* a pixel's first ray, when more are shot: its planes still say what it met */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
     SKIP_LIGHT,         /* light of places that a neighbour has asked for already in this frame */
+    SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
     SKIP_COUNT
 } Skip;
 

@@ -1,3 +1,4 @@
+/* render/scene/view.c: the names of bands. */
 #include "render/scene/view.h"
 
 const char *band_name(Band band)

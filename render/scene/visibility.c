@@ -1,61 +1,25 @@
-#include "render/scene/visibility.h"
-
-#include "render/ground/ground.h"
-#include "render/parts/parts.h"
-
-struct Visibility {
-    const Tracer    *tracer;
-    const Landscape *landscape;
-    Ground           ground;
-    unsigned         skips_off;
-    int              count, drawable;
-    PosedEntity     *entity; /* [count], as in the snapshot */
-    int             *in_view; /* those that blocks within the image of visibility_look may see; NULL: not asked */
-    int              in_view_count;
-    double           in_view_columns, in_view_rows;
-};
-
-Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
-                         const Snapshot *snapshot, unsigned skips_off, Arena *arena)
-{
-    const int   count = snapshot->count;
-    Visibility *v = arena_alloc(arena, 1, sizeof *v);
-    if (!v) return STATUS_NO_MEMORY;
-    *v = (Visibility){.tracer = tracer, .landscape = ground, .skips_off = skips_off, .count = count};
-    ground_prepare(&v->ground, ground ? &ground->elevation : NULL);
-    v->entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->entity);
-    if (!v->entity) return STATUS_NO_MEMORY;
-
-    for (int k = 0; k < count; k++) {
-        const SnapshotEntity *e = &snapshot->entity[k];
-        PosedEntity          *posed = &v->entity[k];
-        double                p_enu[3], r_enu_from_body[9];
-        posed->model  = -1;
-        posed->damage = 0;
-        if (e->model < 0 || e->model >= tracer_model_count(tracer)) continue;
-        if (tracer_need(tracer, e->model) != STATUS_OK) return STATUS_NO_MEMORY;
-        posed->node = arena_alloc(arena, (size_t)parts_node_count(tracer, e->model) + 1, sizeof *posed->node);
-        if (!posed->node) return STATUS_NO_MEMORY;
-        enu_from_ecef(p_enu, frame, e->p_ecef);
-        m3_tmul(r_enu_from_body, frame->r_ecef_from_enu, e->r_ecef_from_body);
-        parts_pose(posed, tracer, e->model, &snapshot->node[e->first_node], p_enu, r_enu_from_body,
-                   snapshot_damage(e));
-        v->drawable += posed->model >= 0;
-    }
-    *out = v;
-    return STATUS_OK;
-}
-
-int visibility_count(const Visibility *v) { return v->count; }
-const PosedEntity *visibility_posed(const Visibility *v, int index) { return &v->entity[index]; }
-
-int visibility_damage(const Visibility *v, int index) { return v->entity[index].damage; }
+/* render/scene/visibility.c: what rays meet first, and what stands between a place and the sun. */
+#include "render/scene/visibility_private.h"
 
 /* ---- which entities a block may see ------------------------------------------------------- */
 
-/* Of among[count] (NULL: the first count), those whose bounding sphere meets the block's pyramid; all without SKIP_BLOCK. */
-static int spheres_in_block(int *list, const Visibility *v, const View *view, const int *among, int among_count,
-                            const double box_px[4], int hidden)
+/* The four sides of a block's pyramid and the plane of the eye, ENU: dot(n, p) >= d within. */
+static void pyramid_planes(double plane[5][4], const View *view, const double box_px[4])
+{
+    double tangent[4];
+    view_box_tangents(tangent, view, box_px);
+    const double side[5][3] = {{1, 0, -tangent[0]}, {0, 1, -tangent[1]}, {-1, 0, tangent[2]}, {0, -1, tangent[3]}, {0, 0, 1}};
+    for (int p = 0; p < 5; p++) {
+        double n_cam[3], n_enu[3];
+        v3_scale(n_cam, 1 / v3_length(side[p]), side[p]);
+        m3_mul_v3(n_enu, view->r_enu_from_cam, n_cam);
+        memcpy(plane[p], n_enu, sizeof n_enu);
+        plane[p][3] = v3_dot(n_enu, view->p_enu);
+    }
+}
+
+/* Of list[count], those whose bounding sphere meets the block's pyramid. */
+static int spheres_in_block(int *list, int count, const Visibility *v, const View *view, const double box_px[4])
 {
     /* tangents of the block's four sides, and what turns an offset from a side into a distance */
     double tangent[4];
@@ -63,55 +27,58 @@ static int spheres_in_block(int *list, const Visibility *v, const View *view, co
     const double left = tangent[0], top = tangent[1], right = tangent[2], bottom = tangent[3];
     const double per_left = 1 / sqrt(1 + left * left), per_right = 1 / sqrt(1 + right * right);
     const double per_top = 1 / sqrt(1 + top * top), per_bottom = 1 / sqrt(1 + bottom * bottom);
-    int          count = 0;
-    for (int i = 0; i < among_count; i++) {
-        const int k = among ? among[i] : i;
-        if (k == hidden || v->entity[k].model < 0) continue;
-        if (skips(v->skips_off, SKIP_BLOCK)) {
-            double from_eye[3], c_cam[3];
-            v3_sub(from_eye, v->entity[k].centre_enu, view->p_enu);
-            m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
-            /* room for rounding, a thousand times what it can be */
-            const double r = v->entity[k].radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
-            if (c_cam[2] < -r || (c_cam[0] - left * c_cam[2]) * per_left < -r ||
-                (right * c_cam[2] - c_cam[0]) * per_right < -r || (c_cam[1] - top * c_cam[2]) * per_top < -r ||
-                (bottom * c_cam[2] - c_cam[1]) * per_bottom < -r)
-                continue;
-        }
-        list[count++] = k;
+    int          kept = 0;
+    for (int i = 0; i < count; i++) {
+        const int          k = list[i];
+        const PosedEntity *entity = visibility_posed(v, k);
+        double             from_eye[3], c_cam[3];
+        v3_sub(from_eye, entity->centre_enu, view->p_enu);
+        m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
+        /* room for rounding, a thousand times what it can be */
+        const double r = entity->radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
+        if (c_cam[2] < -r || (c_cam[0] - left * c_cam[2]) * per_left < -r ||
+            (right * c_cam[2] - c_cam[0]) * per_right < -r || (c_cam[1] - top * c_cam[2]) * per_top < -r ||
+            (bottom * c_cam[2] - c_cam[1]) * per_bottom < -r)
+            continue;
+        list[kept++] = k;
     }
-    return count;
+    return kept;
 }
 
-Status visibility_look(Visibility *v, const View *view, Arena *arena)
+static int list_all(int *list, const Visibility *v)
 {
-    const double image_px[4] = {0, 0, view->width, view->height};
-    v->in_view = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->in_view);
-    if (!v->in_view) return STATUS_NO_MEMORY;
-    v->in_view_count   = spheres_in_block(v->in_view, v, view, NULL, v->count, image_px, -1);
-    v->in_view_columns = view->width;
-    v->in_view_rows    = view->height;
-    return STATUS_OK;
+    int count = 0;
+    for (int k = 0; k < v->count; k++)
+        if (v->loose[k]) list[count++] = k;
+    return count;
 }
 
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
                               double column1_px, double row1_px, int hidden,
                               VisibilityCounters *counters)
 {
-    /* what lies beyond a side of the image is met by no ray of a block within the image */
-    const bool within = v->in_view && column0_px >= 0 && row0_px >= 0 && column1_px <= v->in_view_columns &&
-                        row1_px <= v->in_view_rows;
     const double box_px[4] = {column0_px, row0_px, column1_px, row1_px};
-    const int listed = spheres_in_block(list, v, view, within ? v->in_view : NULL, within ? v->in_view_count : v->count, box_px,
-                                        hidden);
-    const int hides = hidden >= 0 && v->entity[hidden].model >= 0;
-    counters->skipped[SKIP_BLOCK] += (uint64_t)(v->drawable - hides - listed);
+    const bool   by_tree = skips(v->skips_off, SKIP_TREE) && skips(v->skips_off, SKIP_BLOCK);
+    int          count = 0, listed = 0;
+    if (by_tree) {
+        double plane[5][4];
+        pyramid_planes(plane, view, box_px);
+        count = broad_phase_in_planes(list, v->tree, (const double (*)[4])plane, 5);
+        counters->skipped[SKIP_TREE] += (uint64_t)(v->drawable - count);
+    } else {
+        count = list_all(list, v);
+    }
+    for (int k = 0; k < count; k++)
+        if (list[k] != hidden && visibility_posed(v, list[k])->model >= 0) list[listed++] = list[k];
+    count = listed;
+    if (skips(v->skips_off, SKIP_BLOCK)) listed = spheres_in_block(list, count, v, view, box_px);
+    counters->skipped[SKIP_BLOCK] += (uint64_t)(count - listed);
     return listed;
 }
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
  * out: nothing here to branch on. */
-static void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
                              const double *limit_m, const double centre[3], double radius_m)
 {
     const double *ox = o[0], *oy = o[1], *oz = o[2], *dx = d[0], *dy = d[1], *dz = d[2];
@@ -170,6 +137,9 @@ static void clear_hit(Hits *hits, int i)
         hits->p_enu[c][i] = 0;
         hits->n_geo[c][i] = hits->n_enu[c][i] = 0;
     }
+    hits->kind[i]     = hit_sky;
+    hits->material[i] = 0;
+    hits->facet[i]    = 0;
     hits->entity[i]  = 0;
     hits->part[i]    = 0;
     hits->model[i]   = 0;
@@ -192,7 +162,7 @@ static void complete_ground_hit(Hits *hits, int i, const Visibility *v, const Gr
 static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity, const PartHit *hit,
                               PosedFacet *facet, const double o[3], const double d[3])
 {
-    const PosedEntity *posed = &v->entity[entity];
+    const PosedEntity *posed = visibility_posed(v, entity);
     const Model       *model = tracer_model(v->tracer, posed->model);
     double             n_geo[3], n_enu[3];
     if (facet->node != &posed->node[hit->node] || facet->triangle != hit->triangle) parts_facet(facet, model, posed, hit);
@@ -202,18 +172,25 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
     hits->model[i]  = (uint16_t)posed->model;
     hits->inside[i] = v3_dot(facet->geo_enu, d) > 0;
     hits->part[i]   = (uint16_t)(model->triangle_part[hit->triangle] + 1);
+    hits->kind[i]   = hit_part;
+    hits->facet[i]  = hit->triangle;
+    if (v->materials)
+        hits->material[i] = (uint16_t)material_of_part(v->materials, posed->model, hits->part[i] - 1, posed->damage);
 }
 
 /* What the ground is where it was met. */
-static void classify_ground(Hits *hits, const Landscape *landscape)
+static void classify_ground(Hits *hits, const Landscape *landscape, const Materials *materials)
 {
     double x_m[hits_capacity], y_m[hits_capacity];
     for (int i = 0; i < hits->count; i++) {
         const bool ground = hits->range_m[i] < INFINITY && hits->entity[i] == 0;
+        if (ground) hits->kind[i] = hit_ground;
         x_m[i] = ground ? hits->p_enu[0][i] : NAN;
         y_m[i] = ground ? hits->p_enu[1][i] : NAN;
     }
     landscape_surfaces(hits->surface, landscape, hits->count, x_m, y_m);
+    for (int i = 0; i < hits->count && materials; i++)
+        if (hits->surface[i]) hits->material[i] = (uint16_t)materials->surface[hits->surface[i]];
 }
 
 static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, int count, const double *const o[3],
@@ -276,14 +253,24 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     hits->columns = rays->columns;
     memcpy(limit_m, rays->far_m, (size_t)count * sizeof *limit_m);
     memset(hits->entity, 0, (size_t)count * sizeof *hits->entity);
-    const int asked_count = list_count < 0 ? v->count : list_count;
-    uint64_t  offered = 0, asked = 0, drawable = 0;
-    for (int k = 0; k < v->count; k++) drawable += k != hidden && v->entity[k].model >= 0;
+    const int      asked_count = list_count < 0 ? v->count : list_count;
+    const bool     crowd = skips(v->skips_off, SKIP_TREE) && (list_count < 0 ? v->drawable : list_count) > crowd_least;
+    const uint64_t drawable = (uint64_t)(v->drawable - (hidden >= 0 && v->loose[hidden]));
+    uint64_t       offered = 0, asked = 0;
+    if (crowd) {
+        CrowdCounts counts = {0};
+        order_rays(order, count, rays->columns);
+        crowd_first_hits(limit_m, hits->entity, part_hit, &counts, v, count, o, d, order, list, list_count, hidden);
+        asked = counts.asked;
+        counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
+        counters->skipped[SKIP_TREE] += (uint64_t)count * (list_count < 0 ? drawable : (uint64_t)list_count) - asked;
+    }
     bool ordered = false;
-    for (int k = 0; k < asked_count; k++) {
-        const int          index = list_count < 0 ? k : list[k];
-        const PosedEntity *entity = &v->entity[index];
-        if (index == hidden || entity->model < 0) continue;
+    for (int k = 0; k < asked_count && !crowd; k++) {
+        const int index = list_count < 0 ? k : list[k];
+        if (index == hidden || !v->loose[index]) continue;
+        const PosedEntity *entity = visibility_posed(v, index);
+        if (entity->model < 0) continue;
         if (skips(v->skips_off, SKIP_SPHERE)) rays_meet_sphere(ask, count, o, d, limit_m, entity->centre_enu, entity->radius_m);
         else memset(ask, 1, sizeof ask);
         if (!ordered) order_rays(order, count, rays->columns);
@@ -325,7 +312,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
     if (ground) counters->rays_ground += (uint64_t)count;
     counters->rays_parts += asked;
     counters->skipped_parts += drawable * (uint64_t)count - asked;
-    counters->skipped[SKIP_SPHERE] += offered - asked;
+    if (!crowd) counters->skipped[SKIP_SPHERE] += offered - asked;
 
     PosedFacet facet = {.node = NULL}; /* neighbours often meet the same */
     for (int i = 0; i < count; i++) {
@@ -337,7 +324,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
         if (entity) complete_part_hit(hits, i, v, (int)entity - 1, &part_hit[i], &facet, o_enu, d_enu);
         else complete_ground_hit(hits, i, v, &ground_hit[i], d_enu);
     }
-    if (v->landscape) classify_ground(hits, v->landscape);
+    if (v->landscape) classify_ground(hits, v->landscape, v->materials);
 }
 
 void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count, int hidden,
@@ -432,11 +419,23 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     const double *o[3] = {start[0], start[1], start[2]}, *d[3] = {towards[0], towards[1], towards[2]};
     double        centre[3];
     const double  radius_m = bound_points(centre, count, o);
-    uint64_t      asked = 0, drawable = 0;
-    for (int k = 0; k < v->count; k++) {
-        const PosedEntity *entity = &v->entity[k];
+    const uint64_t drawable = (uint64_t)v->drawable;
+    uint64_t       offered = 0, asked = 0;
+    int            near[crowd_least], nears = v->count;
+    const bool     by_tree = skips(v->skips_off, SKIP_TREE);
+    if (by_tree) nears = broad_phase_swept(near, crowd_least, v->tree, centre, radius_m, d_enu);
+    if (nears < 0) {
+        CrowdCounts counts = {0};
+        crowd_any_hits(dark, &counts, v, count, o, d);
+        offered = asked = counts.asked;
+        counters->skipped[SKIP_PART] += counts.nodes - counts.asked_nodes;
+    }
+    for (int k = 0; k < nears; k++) {
+        const int index = by_tree ? near[k] : k;
+        if (!v->loose[index]) continue;
+        const PosedEntity *entity = visibility_posed(v, index);
         if (entity->model < 0) continue;
-        drawable++;
+        offered += (uint64_t)count;
         if (skips(v->skips_off, SKIP_SUN_SPHERE)) {
             if (!sphere_may_shadow(entity, centre, radius_m, d_enu)) continue;
             rays_meet_sphere(ask, count, o, d, far_m, entity->centre_enu, entity->radius_m);
@@ -452,7 +451,8 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     }
     counters->rays_sun_parts += asked;
     counters->skipped_sun_parts += drawable * (uint64_t)count - asked;
-    counters->skipped[SKIP_SUN_SPHERE] += drawable * (uint64_t)count - asked;
+    counters->skipped[SKIP_SUN_SPHERE] += offered - asked;
+    if (by_tree) counters->skipped[SKIP_TREE] += drawable * (uint64_t)count - offered;
 
     /* the ground is asked only for what the parts left lit */
     int left = 0, lit = 0;
@@ -479,7 +479,7 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
 {
     const double *const o[3] = {rays->o_enu[0], rays->o_enu[1], rays->o_enu[2]};
     const double *const d[3] = {rays->d_enu[0], rays->d_enu[1], rays->d_enu[2]};
-    const PosedEntity  *entity = &v->entity[index];
+    const PosedEntity  *entity = visibility_posed(v, index);
     if (entity->model < 0) {
         memset(meets, 0, (size_t)rays->count);
         return;
@@ -498,7 +498,7 @@ void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *ray
 
 bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m)
 {
-    const PosedEntity *entity = &v->entity[index];
+    const PosedEntity *entity = visibility_posed(v, index);
     double             m[3], across[3];
     if (!skips(v->skips_off, SKIP_AMODAL)) return true;
     if (entity->model < 0) return false;
@@ -577,7 +577,7 @@ static void grow_by_bowed_edges(double box_px[4], const PosedEntity *entity, con
 
 bool visibility_project_box(double box_px[4], const Visibility *v, const View *view, int index)
 {
-    const PosedEntity *entity = &v->entity[index];
+    const PosedEntity *entity = visibility_posed(v, index);
     double             box[4] = {INFINITY, INFINITY, -INFINITY, -INFINITY};
     if (entity->model < 0) return false;
     for (int k = 0; k < entity->node_count; k++) {

@@ -9,8 +9,9 @@
 #ifndef RENDER_SCENE_VISIBILITY_H
 #define RENDER_SCENE_VISIBILITY_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/table/snapshot.h"
+#include "render/light/materials.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"
 #include "render/scene/view.h"
@@ -25,8 +26,9 @@ typedef struct Tracer Tracer;
 Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
 void   tracer_destroy(Tracer *tracer);
 
-/* One frame's world, posed. Posing costs transforms only; nothing is committed or kept between frames, so any
- * number of them may be alive and traced at once. */
+/* One frame's world: a tree over the spheres of all entities (render/scene/broad_phase.h), and the nodes of those that
+ * anything asks for. Posing costs transforms only; nothing is committed or kept between frames, so any number of them may
+ * be alive and traced at once. */
 typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {
@@ -35,22 +37,32 @@ typedef struct VisibilityCounters {
     uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
 } VisibilityCounters;
 
-/* ground may be NULL (none). The arena owns what the frame needs. skips_off: 1 << Skip. */
+/* ground may be NULL (none). The arena owns what the frame needs, and is used while the frame is traced: by no other
+ * thread then. frame and snapshot must outlive it. skips_off: 1 << Skip. */
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
-/* Entities of the snapshot, and each as it stands; its model is -1 where it cannot be drawn (render/parts/parts.h). */
+/* Entities of the snapshot, and each as it stands, posed when it is first asked for (by any thread); its model is -1 where
+ * it cannot be drawn (render/parts/parts.h). */
 struct PosedEntity;
 int visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
 
+/* Whose rows Hits.material names: before anything is traced. Without: all 0. They must outlive it. */
+void visibility_materials(Visibility *v, const Materials *materials);
+
+/* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
+void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);
+
 /* How damaged an entity is shown: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
 
-/* Once a frame, before visibility_block_entities is asked about blocks of this view by threads: who is in the image at
- * all. Without, or for blocks beyond the image, everybody is asked: longer lists, by some that no ray of the image
- * meets. */
-Status visibility_look(Visibility *v, const View *view, Arena *arena);
+/* STATUS_NO_MEMORY: some entity could not be posed, and the frame is not whole. To be asked once it is done. */
+Status visibility_status(const Visibility *v);
+
+/* Entities that may touch a box grown by more_m, ascending, and some more: each must still be looked at. list: capacity =
+ * snapshot count. */
+int visibility_near(int *list, const Visibility *v, const double low[3], const double high[3], double more_m);
 
 /* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
  * without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */

@@ -4,6 +4,8 @@
 
 #include <stdlib.h>
 
+_Static_assert(veil_bands == 7, "Passed begins with one in each band");
+
 /* ---- one volume along one ray ------------------------------------------------------------- */
 
 typedef struct Chord {
@@ -158,7 +160,7 @@ static int compare_m(const void *a, const void *b)
 /* Sorted boundaries, joined to at most veil_cuts by leaving some of the inner ones out. */
 static int cuts_of(double cut_m[veil_cuts], const Crossing *crossing, int count)
 {
-    double edge_m[2 * veil_most_on_a_ray];
+    double edge_m[2 * veil_together];
     int    edges = 0;
     for (int i = 0; i < count; i++) edge_m[edges++] = crossing[i].from_m, edge_m[edges++] = crossing[i].to_m;
     if (edges == 2) {
@@ -177,11 +179,17 @@ static inline double absorbed(double depth)
     return depth > 1e-3 ? 1 - exp(-depth) : depth * (1 - depth * (0.5 - depth * (1.0 / 6 - depth * (1.0 / 24))));
 }
 
-static void compose(VeilRays *out, int ray, const Crossing *crossing, int count, unsigned bands)
+/* What a ray has met so far, front to back. */
+typedef struct Passed {
+    double through[veil_bands], added[veil_bands];
+    bool   goes_on; /* something still comes through */
+} Passed;
+
+/* Puts the crossings behind what was passed. */
+static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
 {
-    double cut_m[veil_cuts], through[veil_bands], added[veil_bands] = {0};
+    double    cut_m[veil_cuts], *const through = passed->through, *const added = passed->added;
     const int cuts = cuts_of(cut_m, crossing, count);
-    for (int b = 0; b < veil_bands; b++) through[b] = 1;
 
     for (int k = 0; k + 1 < cuts; k++) {
         double depth[veil_bands] = {0}, shown[veil_bands] = {0};
@@ -211,25 +219,25 @@ static void compose(VeilRays *out, int ray, const Crossing *crossing, int count,
             through[b] *= 1 - taken;
             goes_on = goes_on || through[b] > 1e-7;
         }
-        if (!goes_on) break;
-    }
-    for (int b = 0; b < veil_bands; b++) {
-        out->transmittance[b][ray] = (float)through[b];
-        out->added[b][ray] = (float)added[b];
+        if (!goes_on) {
+            passed->goes_on = false;
+            break;
+        }
     }
 }
 
 void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands)
 {
-    Crossing crossing[veil_most_on_a_ray];
+    Crossing crossing[veil_together];
 
     out->any = false;
     for (int r = 0; count > 0 && r < rays->count; r++) {
         const double o_enu[3] = {rays->o_enu[0][r], rays->o_enu[1][r], rays->o_enu[2][r]};
         const double d_enu[3] = {rays->d_enu[0][r], rays->d_enu[1][r], rays->d_enu[2][r]};
-        int crossed = 0;
-        for (int n = 0; n < count && crossed < veil_most_on_a_ray; n++) {
+        Passed passed = {.through = {1, 1, 1, 1, 1, 1, 1}, .goes_on = true};
+        int    crossed = 0, composed = 0;
+        for (int n = 0; n < count && passed.goes_on; n++) {
             const VeilVolume *v = &volume[list[n]];
             Crossing         *c = &crossing[crossed];
             double            off[3], o[3], d[3];
@@ -257,14 +265,20 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
                 if (!(c->to_m > c->from_m)) continue;
             }
             light_crossing(c, o, d, bands);
-            crossed++;
+            if (++crossed < veil_together) continue;
+            compose(&passed, crossing, crossed, bands);
+            composed += crossed, crossed = 0;
         }
-        if (crossed > 0) {
+        if (crossed > 0) compose(&passed, crossing, crossed, bands);
+        if (composed + crossed > 0) {
             if (!out->any)
                 for (int b = 0; b < veil_bands; b++)
                     for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
             out->any = true;
-            compose(out, r, crossing, crossed, bands);
+            for (int b = 0; b < veil_bands; b++) {
+                out->transmittance[b][r] = (float)passed.through[b];
+                out->added[b][r] = (float)passed.added[b];
+            }
         }
     }
 }

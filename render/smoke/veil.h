@@ -12,7 +12,7 @@
 #include "render/scene/view.h"
 
 /* Bands in the order of entities/effects.h. */
-enum { veil_bands = 7, veil_orders = 3, veil_cuts = 24, veil_most_on_a_ray = 96 };
+enum { veil_bands = 7, veil_orders = 3, veil_cuts = 24, veil_together = 96 };
 
 typedef struct VeilVolume {
     double p_enu[3], axis_enu[3];
@@ -39,8 +39,9 @@ typedef struct VeilRays {
  * count. volume: sorted by range_m. */
 int  veil_block(int *list, const VeilVolume *volume, int count, const View *view, double column0_px, double row0_px,
                 double column1_px, double row1_px);
-/* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than
- * veil_most_on_a_ray volumes on a ray the nearest count. */
+/* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than veil_together
+ * volumes on a ray each further veil_together, in order of range, are put behind the ones before: transmittances stay
+ * exact, and what is added is that of clouds one behind the other. */
 void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands);
 void veil_apply(float *radiance, const VeilRays *veil, int band, int count);

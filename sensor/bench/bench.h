@@ -22,7 +22,7 @@ typedef struct BenchRow {
 
 typedef struct Bench Bench;
 
-/* What `pitviper bench NAME` runs. sensor/bench/suites.c lists them; those of one name run one after
+/* What `pitviper bench NAME` runs. sensor/bench/sensor/suites.c lists them; those of one name run one after
  * another. */
 typedef struct BenchSuite {
     const char *name, *help;

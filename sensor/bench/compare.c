@@ -1,9 +1,10 @@
 /* sensor/bench/compare.c: two runs side by side, row by row.
  *
- * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians differ
- * by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no quartiles, its
- * best must say so, too; and a time that was measured once must differ by half. When most rows moved alike it was the
- * machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a change. */
+ * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians
+ * differ by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no
+ * quartiles, its best must say so, too; and a time that was measured once must differ by half. When most rows moved
+ * alike it was the machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a
+ * change. */
 #include "sensor/bench/bench_private.h"
 
 #include <stdlib.h>
@@ -49,8 +50,8 @@ static bool read_number(double *out, const Run *run, int row, const char *name)
     if (text_to_double(out, text) && *out >= 0) return true;
     char shown[64];
     text_escape(shown, sizeof shown, text, strlen(text) < 40 ? strlen(text) : 40);
-    log_error("bench: %s:%d: %s: '%s' is not a number from 0 up; is this a table of `pitviper bench --csv`?", run->table.path,
-              run->table.line[row + 1], name, shown);
+    log_error("bench: %s:%d: %s: '%s' is not a number from 0 up; is this a table of `pitviper bench --csv`?",
+              run->table.path, run->table.line[row + 1], name, shown);
     return false;
 }
 
@@ -116,7 +117,9 @@ static Status run_read(Run *run, const char *path)
     if (!run->entry || !run->order || !run->other) return STATUS_NO_MEMORY;
     for (int i = 0; i < run->count; i++) {
         Entry *e = &run->entry[i];
-        *e = (Entry){.bench = read_text(run, i, "bench"), .what = read_text(run, i, "what"), .unit = read_text(run, i, "unit"),
+        *e = (Entry){.bench = read_text(run, i, "bench"),
+                     .what = read_text(run, i, "what"),
+                     .unit = read_text(run, i, "unit"),
                      .error_unit = read_text(run, i, "error_unit")};
         run->order[i] = i;
         run->other[i] = -1;
@@ -160,7 +163,8 @@ static bool apart(const Entry *a, const Entry *b, double ratio, double least)
 {
     const double by = ratio > 1 ? ratio : 1 / ratio;
     if (a->high >= a->low && b->high >= b->low) return by > least && (ratio > 1 ? b->low > a->high : b->high < a->low);
-    if (a->best > 0 && b->best > 0) return by > least && (ratio > 1 ? b->best > least * a->best : least * b->best < a->best);
+    if (a->best > 0 && b->best > 0)
+        return by > least && (ratio > 1 ? b->best > least * a->best : least * b->best < a->best);
     return by > 1.5;
 }
 
@@ -194,7 +198,10 @@ static void verdict_text(char out[128], const Verdict *v)
     else if (v->change != SAME)
         n = snprintf(out, 128, "%s %.2f x", word[v->change],
                      v->change == FASTER || v->change == LESS ? 1 / v->ratio : v->ratio);
-    const char *error = v->broken ? "error beyond its limit" : v->error_worse ? "error worse" : v->error_better ? "error better" : NULL;
+    const char *error = v->broken         ? "error beyond its limit"
+                        : v->error_worse  ? "error worse"
+                        : v->error_better ? "error better"
+                                          : NULL;
     if (error) n += snprintf(out + n, (size_t)(128 - n), "%s%s", n ? ", " : "", error);
     if (v->limit_wider) n += snprintf(out + n, (size_t)(128 - n), "%slimit wider", n ? ", " : "");
     if (n == 0) snprintf(out, 128, "within noise");
@@ -261,7 +268,10 @@ static void show_line(FILE *page, const Line *l)
         fputs("</td><td class=\"n\">", page);
         html_text(page, "%s", cells[k]);
     }
-    fprintf(page, "</td><td style=\"white-space:nowrap\" class=\"%s\">", l->bad ? "bad" : strcmp(l->verdict, "within noise") == 0 ? "dim" : "");
+    fprintf(page, "</td><td style=\"white-space:nowrap\" class=\"%s\">",
+            l->bad                                    ? "bad"
+            : strcmp(l->verdict, "within noise") == 0 ? "dim"
+                                                      : "");
     html_text(page, "%s", l->verdict);
     fputs("</td></tr>\n", page);
 }
@@ -287,8 +297,10 @@ static void show_heads(FILE *page, const Run *a, const Run *b)
     remark(page, text);
     snprintf(text, sizeof text, "second: %s, %s, %s rounds, %s threads", b->version, b->machine, b->rounds, b->threads);
     remark(page, text);
-    if (strcmp(a->machine, b->machine) != 0) remark(page, "Different machines: times say which machine is faster, not which version.");
-    if (strcmp(a->rounds, b->rounds) != 0) remark(page, "Quick rounds against full ones: scenes of another size, and more noise.");
+    if (strcmp(a->machine, b->machine) != 0)
+        remark(page, "Different machines: times say which machine is faster, not which version.");
+    if (strcmp(a->rounds, b->rounds) != 0)
+        remark(page, "Quick rounds against full ones: scenes of another size, and more noise.");
     if (strcmp(a->threads, b->threads) != 0) remark(page, "Not the same number of threads.");
     if (!a->quartiles || !b->quartiles) remark(page, "Without quartiles in both, the best rounds say what noise is.");
 }
@@ -342,7 +354,8 @@ static void show_drift(FILE *page, const Run *a, const Run *b)
     }
     if (n > 0) {
         qsort(ratio, (size_t)n, sizeof *ratio, by_value);
-        snprintf(text, sizeof text, "median ratio of %d times: %.2f; what moves all rows alike is the machine", n, ratio[n / 2]);
+        snprintf(text, sizeof text, "median ratio of %d times: %.2f; what moves all rows alike is the machine", n,
+                 ratio[n / 2]);
         remark(page, text);
     }
     free(ratio);
@@ -391,9 +404,11 @@ int bench_compare(int argc, char **argv)
         const Limits limits = {quick ? 1.3 : 1.1, slower};
         show_drift(page, &a, &b);
         count_rows(&tally, &a, &b, &limits);
-        snprintf(text, sizeof text, "%d rows in both: %d within noise, %d faster, %d slower; errors: %d beyond their limit, %d worse, "
-                 "%d better; only in the first %d, only in the second %d", tally.both, tally.noise, tally.faster, tally.slower,
-                 tally.broken, tally.worse, tally.better, tally.gone, tally.new);
+        snprintf(text, sizeof text,
+                 "%d rows in both: %d within noise, %d faster, %d slower; errors: %d beyond their limit, %d worse, "
+                 "%d better; only in the first %d, only in the second %d",
+                 tally.both, tally.noise, tally.faster, tally.slower, tally.broken, tally.worse, tally.better,
+                 tally.gone, tally.new);
         if (page) show_text(page, text);
         show_rows(page, &a, &b, &limits);
         puts(text);

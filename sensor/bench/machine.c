@@ -32,8 +32,8 @@ typedef struct Libraries {
 /* The real name of a shared object ends with its version: libgdal.so.32.3.6.2. */
 static int add_library(struct dl_phdr_info *info, size_t size, void *user)
 {
-    static const char *const shown[] = {"embree", "OpenImageIO", "gdal", "GeographicLib", "assimp", "erfa", "pcap", "fftw3",
-                                        "jansson", "crypto", "yaml"};
+    static const char *const shown[] = {"embree", "OpenImageIO", "gdal",    "GeographicLib", "assimp", "erfa",
+                                        "pcap",   "fftw3",       "jansson", "crypto",        "yaml"};
     Libraries *l = user;
     char       real[PATH_MAX];
     (void)size;
@@ -77,6 +77,6 @@ void bench_machine_read(BenchMachine *out)
 
 void bench_machine_line(char out[512], const BenchMachine *m)
 {
-    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s; pitviper %s; load %.1f", m->processor, m->cores, m->isa,
-             m->compiler, PITVIPER_VERSION, m->load);
+    snprintf(out, 512, "%s, %d cores, %s; built for x86-64-v3 by %s; pitviper %s; load %.1f", m->processor, m->cores,
+             m->isa, m->compiler, PITVIPER_VERSION, m->load);
 }

@@ -128,12 +128,15 @@ static void csv_head(const Bench *bench, const BenchMachine *m, const char *line
     const time_t now = time(NULL);
     struct tm    utc;
     strftime(when, sizeof when, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
-    fprintf(bench->csv, "# %s\n# version: %s\n# machine: %s, %d cores, %s\n# rounds: %s\n# threads: %d\n# when: %s\n"
-            "# system: %s, governor %s, %.1f GB\n# built: x86-64-v3, %s\n# libraries: %s\n", line, PITVIPER_VERSION, m->processor,
-            m->cores, m->isa, bench->quick ? "quick" : "full", bench->threads, when, m->system, m->governor, m->memory_gb, m->compiler,
-            m->libraries);
-    fputs("bench,what,median,best,unit,rate,rate_unit,ratio,ratio_to,error,error_limit,error_unit,against,holds,lower_quartile,"
-          "upper_quartile,mark\n", bench->csv);
+    fprintf(bench->csv,
+            "# %s\n# version: %s\n# machine: %s, %d cores, %s\n# rounds: %s\n# threads: %d\n# when: %s\n"
+            "# system: %s, governor %s, %.1f GB\n# built: x86-64-v3, %s\n# libraries: %s\n",
+            line, PITVIPER_VERSION, m->processor, m->cores, m->isa, bench->quick ? "quick" : "full", bench->threads,
+            when, m->system, m->governor, m->memory_gb, m->compiler, m->libraries);
+    fputs("bench,what,median,best,unit,rate,rate_unit,ratio,ratio_to,error,error_limit,error_unit,against,holds,lower_"
+          "quartile,"
+          "upper_quartile,mark\n",
+          bench->csv);
 }
 
 /* Every room's suites of that name, one after the other. */

@@ -1,3 +1,5 @@
+/* sensor/commands/check.c: `pitviper check`: validates configuration files and every table and model that they lead
+ * to. */
 #include "sensor/commands/check.h"
 
 #include "entities/effects/effects_history.h"
@@ -16,13 +18,14 @@ static const char help[] =
     "usage: pitviper check FILE ...\n"
     "       pitviper check --default > node.yaml\n"
     "\n"
-    "Reads files of settings as `replay` and `run` would, and says which keys they set, or what is wrong: file, line,\n"
-    "key, value and what is accepted. Then the tables: the catalog with the models and sidecars that it names, materials,\n"
-    "sensors, atmosphere, and files of elevation and cover, which must be there and be readable.\n"
+    "Reads configuration files as `replay` and `run` do, and lists the keys that they set, or what is wrong: file, "
+    "line,\n"
+    "key, value and what is accepted. Then validates the tables: the catalog with its models and sidecars, materials,\n"
+    "sensors, atmosphere, and files of elevation and land cover, which must exist and be readable.\n"
     "\n"
-    "  --default          print every key with its default, unit, range and meaning: a file to begin with\n";
+    "  --default          print every key with its default, unit, range and meaning: a file to start from\n";
 
-/* ---- what the settings name ------------------------------------------------------------------ */
+/* ---- tables and models ------------------------------------------------------------------ */
 
 typedef struct Check {
     const char   *path;
@@ -30,19 +33,19 @@ typedef struct Check {
     Catalog      *catalog;
 } Check;
 
-/* What one of the files has shown to be good need not be read for the next. */
+/* Tables already validated for an earlier file are not read again. */
 static struct {
     bool bundled, models;
     char air[1024];
     double visibility_m;
 } known;
 
-/* Behind the error itself: which setting led there. False. */
-static bool blame(const Check *c, const char *key, const char *next)
+/* Logged after the error itself: the setting that led there. Returns false. */
+static bool report(const Check *c, const char *key, const char *next)
 {
     const int line = config_line(key, c->path);
-    if (line > 0) log_error("check: %s:%d: %s: see above; %s", c->path, line, key, next);
-    else log_error("check: %s: %s (not set here, its default): see above; %s", c->path, key, next);
+    if (line > 0) log_error("check: %s:%d: %s: see the error above; %s", c->path, line, key, next);
+    else log_error("check: %s: %s (default): see the error above; %s", c->path, key, next);
     return false;
 }
 
@@ -50,8 +53,8 @@ static bool is_bundled(const Check *c, const char *name, Status (*read)(const ch
 {
     char path[4096];
     if (etc_path(path, sizeof path, name) && read(path) == STATUS_OK) return true;
-    log_error("check: %s: the program's own table etc/%s cannot be used, see above; install it anew, or mend the folder "
-              "that PITVIPER_ETC names", c->path, name);
+    log_error("check: %s: the bundled table etc/%s cannot be used, see the error above; reinstall it, or correct the "
+              "folder that PITVIPER_ETC names", c->path, name);
     return false;
 }
 
@@ -69,8 +72,8 @@ static Status read_effects(const char *path)
     return status;
 }
 
-/* Sheets that GDAL knows, a piece of each read. */
-static bool sheets_are_good(const Check *c, const char *paths, const char *key)
+/* Opens every sheet with GDAL and reads a small window of each. */
+static bool sheets_are_valid(const Check *c, const char *paths, const char *key)
 {
     enum { side = 16 };
     static float piece[side * side];
@@ -84,31 +87,32 @@ static bool sheets_are_good(const Check *c, const char *paths, const char *key)
                                  sheet->y0 + sheet->height / 2 - side / 2, side, side, key);
         }
     raster_set_close(&set);
-    return status == STATUS_OK || blame(c, key, "paths in a file of settings are relative to that file; `gdalinfo FILE` "
-                                                "says what GDAL makes of one");
+    return status == STATUS_OK || report(c, key, "paths in a configuration file are relative to that file; `gdalinfo "
+                                                 "FILE` "
+                                                "shows whether GDAL can read one");
 }
 
-static bool ground_is_good(const Check *c)
+static bool terrain_is_valid(const Check *c)
 {
     const Config *config = c->config;
     const char   *table = config->terrain.cover_table;
-    bool          good = sheets_are_good(c, config->terrain.elevation, "terrain.elevation");
-    good &= sheets_are_good(c, config->terrain.cover, "terrain.cover");
-    good &= sheets_are_good(c, config->terrain.orthophoto, "terrain.orthophoto");
+    bool          good = sheets_are_valid(c, config->terrain.elevation, "terrain.elevation");
+    good &= sheets_are_valid(c, config->terrain.cover, "terrain.cover");
+    good &= sheets_are_valid(c, config->terrain.orthophoto, "terrain.orthophoto");
     if (strpbrk(table, "/.")) {
         if (cover_table_check(table) != STATUS_OK)
-            good = blame(c, "terrain.cover_table", "etc/cover_worldcover.csv is an example");
+            good = report(c, "terrain.cover_table", "etc/cover_worldcover.csv is an example");
     }
     if (*config->terrain.geoid) {
         Geoid geoid = {0};
         if (geoid_open(&geoid, config->terrain.geoid) != STATUS_OK)
-            good = blame(c, "terrain.geoid", "leave it out: EGM96 of proj-data is taken");
+            good = report(c, "terrain.geoid", "omit it to use EGM96 of proj-data");
         else geoid_close(&geoid);
     }
     return good;
 }
 
-static bool air_is_good(const Check *c)
+static bool atmosphere_is_valid(const Check *c)
 {
     Atmosphere   *atmosphere = NULL;
     const Config *config = c->config;
@@ -121,47 +125,49 @@ static bool air_is_good(const Check *c)
         snprintf(known.air, sizeof known.air, "%s", config->weather.atmosphere);
         known.visibility_m = config->weather.visibility_m;
     }
-    return there || blame(c, "weather.atmosphere", "us1976 is always there");
+    return there || report(c, "weather.atmosphere", "us1976 is always available");
 }
 
-/* Catalog, the models and sidecars that it names, and the materials of their parts. */
-static bool models_are_good(Check *c)
+/* Catalog, its models and sidecars, and the materials of their parts. */
+static bool models_are_valid(Check *c)
 {
-    static const double coarse_sag_m = 0.1; /* files are read whole, built-in shapes are known to be good */
+    static const double coarse_sag_m = 0.1; /* built-in shapes are valid at any chord error; model files are read in full */
     char      catalog[4096], materials[4096], surfaces[4096];
     Materials read = {0};
     const bool own = etc_own("catalog.csv") || etc_own("materials.csv");
     if (known.models && !own) return true;
     if (!etc_path(catalog, sizeof catalog, "catalog.csv") || !etc_path(materials, sizeof materials, "materials.csv") ||
         !etc_path(surfaces, sizeof surfaces, "surfaces.csv"))
-        return blame(c, "models.catalog", "its path is too long");
-    /* by themselves first: a model's material that is missing is not the catalog's fault */
+        return report(c, "models.catalog", "its path is too long");
+    /* materials alone first, so that a material missing for a model is reported as such */
     Status status = materials_open(&read, materials, surfaces, NULL);
     materials_close(&read);
-    if (status != STATUS_OK) return blame(c, "models.materials", "etc/ADDING.md says what a row of materials needs");
+    if (status != STATUS_OK) return report(c, "models.materials", "etc/ADDING.md describes a row of materials");
     if (catalog_open(&c->catalog, catalog, coarse_sag_m) != STATUS_OK)
-        return blame(c, "models.catalog", "etc/ADDING.md says how a vehicle is added; `pitviper model info FILE` reads one "
-                                          "model by itself");
+        return report(c, "models.catalog", "etc/ADDING.md describes how to add a vehicle; `pitviper model info FILE` "
+                         "checks "
+                                          "one model");
     status = materials_open(&read, materials, surfaces, c->catalog);
     materials_close(&read);
     known.models = known.models || (status == STATUS_OK && !own);
-    return status == STATUS_OK || blame(c, "models.materials", "a part's material needs a row there, or in etc/materials.csv");
+    return status == STATUS_OK || report(c, "models.materials", "the material of each part needs a row there, or in "
+                                            "etc/materials.csv");
 }
 
-static bool sensors_are_good(const Check *c)
+static bool sensors_are_valid(const Check *c)
 {
     const char *own = etc_own("sensors.csv");
     if (own && preset_check(own) != STATUS_OK)
-        return blame(c, "sensor.table", "etc/ADDING.md says what a row of sensors needs");
+        return report(c, "sensor.table", "etc/ADDING.md describes a row of sensors");
     return true;
 }
 
-static bool tables_are_good(Check *c)
+static bool tables_are_valid(Check *c)
 {
-    bool good = models_are_good(c);
-    good &= sensors_are_good(c);
-    good &= air_is_good(c);
-    good &= ground_is_good(c);
+    bool good = models_are_valid(c);
+    good &= sensors_are_valid(c);
+    good &= atmosphere_is_valid(c);
+    good &= terrain_is_valid(c);
     if (!known.bundled)
         known.bundled = is_bundled(c, "sensors.csv", preset_check) && is_bundled(c, "heat.csv", read_heat) &&
                         is_bundled(c, "effects.csv", read_effects);
@@ -178,13 +184,13 @@ static bool check_file(const char *path)
     run  = (Run){0};
     *config = config_default();
     if (config_read(config, path) != STATUS_OK) return false;
-    const Config given = *config; /* a preset fills in what it says */
+    const Config given = *config; /* a preset changes keys that were not given */
     Check        c = {.path = path, .config = config};
-    if (config_check(config) != STATUS_OK || run_prepare(&run) != STATUS_OK || !tables_are_good(&c)) {
-        log_error("check: %s: not good", path);
+    if (config_check(config) != STATUS_OK || run_prepare(&run) != STATUS_OK || !tables_are_valid(&c)) {
+        log_error("check: %s: not valid", path);
         return false;
     }
-    log_say("%s: good\n", path);
+    log_say("%s: valid\n", path);
     if (!log_is_quiet()) config_write_given(stdout, &given);
     return true;
 }

@@ -1,3 +1,4 @@
+/* sensor/commands/contact_sheet.c: thumbnails of the variants of a sweep, and the page that shows them. */
 #include "sensor/commands/contact_sheet.h"
 
 #include "render/frame/render.h"
@@ -22,7 +23,7 @@ static double sample_of(const void *pixels, const ImageInfo *info, size_t at)
     return info->bits == 16 ? ((const uint16_t *)pixels)[at] / 257.0 : ((const uint8_t *)pixels)[at];
 }
 
-/* Means over squares into RGB, at column `left` of rows of `stride` pixels. */
+/* Box filter over squares into RGB, at column `left` of rows of `stride` pixels. */
 static void shrink(uint8_t *out, int stride, int left, const void *pixels, const ImageInfo *info, int square)
 {
     const int width = info->width / square, height = info->height / square;
@@ -50,7 +51,7 @@ static Status add_band(uint8_t *out, int stride, int left, const char *path, con
     return status;
 }
 
-/* All bands of a variant have one size. False: nothing to be shown. */
+/* All bands of a variant have one size. False: there is no image. */
 static bool make_thumbnail(const char *made, const char *folder, int frame)
 {
     char      path[BAND_COUNT][path_size + 64];

@@ -31,32 +31,34 @@ typedef struct Options {
 static const char help[] =
     "usage: pitviper exercise SCENARIO (-o LOG | --send ADDRESS) [options]\n"
     "\n"
-    "Plays a scenario as a simulator on the network does: Entity States when dead reckoning has left the truth, and by\n"
-    "heartbeat; Fire and Detonation. SCENARIO is a YAML file, or the name of one that comes with the program:\n"
+    "Generates the DIS traffic of a scenario as a simulator does: Entity States when dead reckoning deviates from the "
+    "true\n"
+    "pose, and by heartbeat; Fire and Detonation. SCENARIO is a YAML file, or the name of a bundled one:\n"
     "\n"
     "  demo            a column of 3 tanks and 2 trucks; a helicopter hits the last truck with a missile; 30 s\n"
     "  no-vehicles     the helicopter and its missile, which hits the ground\n"
-    "  no-missile      nobody fires\n"
+    "  no-missile      without shots\n"
     "  guns            demo, and the first tank fires at the ground beside the road every 6 s\n"
     "  bad-pdus        demo, with malformed PDUs in between\n"
-    "  empty           nobody at all\n"
+    "  empty           without entities\n"
     "  aircraft        helicopters and aircraft in turns, and a ship\n"
-    "  crowd           10 000 entities on 12 x 16 km, on and on; --set scale=0.1: fewer\n"
+    "  crowd           10 000 entities on 12 x 16 km, unlimited in time; --set scale=0.1: fewer\n"
     "\n"
-    "where to\n"
-    "  -o, --out LOG        a recording: pcapng, or pcap where the name ends so; as fast as it goes\n"
+    "output\n"
+    "  -o, --out LOG        a recording: pcapng, or pcap if the name ends in .pcap; as fast as possible\n"
     "  --send ADDRESS       HOST, HOST:PORT, or [IPv6]:PORT; a host, a broadcast or a multicast group; port 3000;\n"
     "                       in real time, until the scenario ends or Ctrl-C\n"
-    "  --overwrite          replace a LOG that is there already; otherwise it is kept and nothing is done\n"
-    "  --datagrams DIR      each datagram as a file in this folder\n"
-    "what\n"
-    "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or seed=7;\n"
-    "                       may be given several times\n"
-    "  --keys               every key of a scenario, with its range and default\n"
-    "how, with --send\n"
+    "  --overwrite          replace an existing LOG; without it that is an error\n"
+    "  --datagrams DIR      write each datagram as a file to this folder\n"
+    "scenario\n"
+    "  --set KEY=VALUE      one key of the scenario, such as dis.version=6, dis.bundle=true, place.lat_deg=44 or "
+    "seed=7;\n"
+    "                       may be repeated\n"
+    "  --keys               print every key of a scenario, with its range and default\n"
+    "with --send\n"
     "  --interface NAME     send from this network interface, such as eth0\n"
-    "  --ttl N              hops of multicast, 0 .. 255 (1)\n"
-    "  --speed X            exercise seconds a second, 0.01 .. 1000, or max (1)\n";
+    "  --ttl N              multicast hops, 0 .. 255 (1)\n"
+    "  --speed X            exercise seconds per second, 0.01 .. 1000, or max (1)\n";
 
 /* ---- command line ----------------------------------------------------------------------------- */
 
@@ -134,7 +136,7 @@ static int parse(Options *o, int argc, char **argv)
         {"ttl", 1, NULL, TTL},   {"speed", 1, NULL, SPEED}, {"keys", 0, NULL, KEYS}, {"interface", 1, NULL, INTERFACE},
         {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
     const char *of_sending = NULL; /* an option that means nothing without --send */
-    optind = 0;                    /* start anew */
+    optind = 0;                    /* restart getopt */
     for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         bool ok = true;
         if (option == INTERFACE) of_sending = "interface";
@@ -159,7 +161,7 @@ static int parse(Options *o, int argc, char **argv)
         case SPEED: ok = parse_speed(&o->speed, optarg); break;
         case KEYS: scenario_write_keys(stdout); return 1;
         case HELP: fputs(help, stdout); return 1;
-        default: ok = false; break; /* getopt has said which */
+        default: ok = false; break; /* reported by next_option */
         }
         if (!ok) {
             fputs("see `pitviper exercise --help`\n", stderr);
@@ -252,8 +254,8 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
 
 /* ---- the run ---------------------------------------------------------------------------------- */
 
-/* Until the wall clock says `until_s`; a signal ends it. At once when that is past: what is due is sent, late or
- * not. */
+/* Sleeps until the wall clock reaches `until_s`, or a signal. Returns at once when that is past: what is due is sent,
+ * late or not. */
 static void wait_until(double until_s)
 {
     while (!stop_asked()) {
@@ -276,7 +278,7 @@ static void show_progress(const Exercise *exercise)
 
 static double epoch_of(const Scenario *scenario, bool live)
 {
-    static const double undated_unix_s = 1e9;           /* a round time that nobody takes for a date */
+    static const double undated_unix_s = 1e9;           /* a round time, recognisable as not a date */
     static const double summer_unix_s = 1718992800;     /* 2024-06-21 18:00 UTC */
     double              unix_s;
     if (live) return 1e-9 * (double)dis_udp_now_ns();

@@ -1,7 +1,8 @@
+/* sensor/commands/model.c: `pitviper model`: list, info, show. */
 #include "sensor/commands/model.h"
 
-#include "entities/models/model_info.h"
-#include "entities/models/sidecar.h"
+#include "entities/catalog/model_info.h"
+#include "entities/import/sidecar.h"
 #include "sensor/settings/config.h"
 
 static const char help[] =
@@ -11,19 +12,20 @@ static const char help[] =
     "       pitviper model --keys\n"
     "\n"
     "list: every built-in shape and every row of the catalog: name, kind, size, source, articulated parts.\n"
-    "info: what a model is made of: nodes and joints, parts, materials, heat, size, and what was lost on the way.\n"
-    "show: a picture of it from eight sides, optical, with a scale: PNG.\n"
+    "info: contents of a model: nodes and joints, parts, materials, heat, size, and what an import lost.\n"
+    "show: an optical image of it from eight sides, with a scale: PNG.\n"
     "\n"
     "NAME: a built-in model (tank, truck, helicopter ...). FILE: OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and others, also\n"
     "as .gz; OpenFlight (.flt, by osgconv); or a sidecar (.yaml) that names one. A sidecar beside the file is read:\n"
-    "tank.glb, tank.yaml. etc/ADDING.md says how vehicles, materials, sensors and shapes are added.\n"
+    "tank.glb, tank.yaml. etc/ADDING.md describes how to add vehicles, materials, sensors and shapes.\n"
     "\n"
-    "  --sag M            largest distance of a built-in model's facets from its surfaces, 1e-05 .. 0.1 m (0.005)\n"
-    "  --length M         a built-in model of that length, width or height, as a row of etc/catalog.csv gives it:\n"
-    "  --width M          0.001 .. 2000 m; what is left out is in proportion. Length and width: of the bounding box at\n"
-    "  --height M         rest; height: from the ground, or the lowest point below it. Of a file: whether it has that\n"
-    "                     size, and which axes or scale would give it\n"
-    "  --out PNG          of show (default: NAME.png here)\n"
+    "  --sag M            chord error of a built-in model: largest distance of facets from surfaces, 1e-05 .. 0.1 m "
+    "(0.005)\n"
+    "  --length M         scale a built-in model to that length, width or height, as a row of etc/catalog.csv does:\n"
+    "  --width M          0.001 .. 2000 m; sizes not given follow in proportion. Length and width: bounding box at\n"
+    "  --height M         rest; height: above the ground, or above the lowest point below it. For a file: checks that\n"
+    "                     it has that size, and prints which axes or scale would give it\n"
+    "  --out PNG          output of show (default: NAME.png in the current folder)\n"
     "  --config FILE      or -c: settings, whose models.catalog and models.materials are read\n"
     "  --keys             every key of a sidecar: type, unit, range, meaning\n";
 
@@ -38,7 +40,7 @@ typedef struct ModelOptions {
     double      sag_m;
 } ModelOptions;
 
-/* Of list and show. 0: good. */
+/* Options of list and show. 0: valid; else the exit code. */
 static int parse(ModelOptions *o, int argc, char **argv)
 {
     *o = (ModelOptions){.sag_m = 0.005};
@@ -48,7 +50,7 @@ static int parse(ModelOptions *o, int argc, char **argv)
                             : strcmp(option, "--config") == 0 || strcmp(option, "-c") == 0 ? &o->config
                                                                                            : NULL;
         if (text) {
-            if (!value) return refuse(option, "what is missing behind it");
+            if (!value) return refuse(option, "needs an argument");
             *text = value;
             i++;
         } else if (strcmp(option, "--sag") == 0) {
@@ -77,7 +79,7 @@ static int list_command(int argc, char **argv)
     char         catalog[4096];
     const int    wrong = parse(&o, argc, argv);
     if (wrong) return wrong;
-    if (o.name || o.out) return refuse(o.name ? o.name : "--out", "is not for list");
+    if (o.name || o.out) return refuse(o.name ? o.name : "--out", "does not apply to list");
     if (take_config(o.config) != STATUS_OK || !etc_path(catalog, sizeof catalog, "catalog.csv")) return 1;
     return model_list(stdout, catalog) == STATUS_OK ? 0 : 1;
 }
@@ -88,9 +90,9 @@ static int show_command(int argc, char **argv)
     char         out[256];
     const int    wrong = parse(&o, argc, argv);
     if (wrong) return wrong;
-    if (!o.name) return refuse("show", "which model: a built-in name, or a file");
+    if (!o.name) return refuse("show", "needs a model: a built-in name, or a file");
     if (take_config(o.config) != STATUS_OK) return 1;
-    etc_own_set("catalog.csv", NULL); /* one model is shown, whatever its types are */
+    etc_own_set("catalog.csv", NULL); /* the model is shown whatever its entity types */
     const char *slash = strrchr(o.name, '/'), *last = slash ? slash + 1 : o.name;
     snprintf(out, sizeof out, "%.*s.png", (int)strcspn(last, "."), last);
     return model_show(o.name, o.sag_m, o.out ? o.out : out) == STATUS_OK ? 0 : 1;
@@ -115,7 +117,8 @@ int model_command(int argc, char **argv)
         sidecar_write_keys(stdout);
         return 0;
     }
-    text_print(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model show "
+    text_print(stderr, "pitviper model: no such action: %s; there are `model list`, `model info NAME|FILE`, `model "
+                       "show "
             "NAME|FILE` and `model --keys`\n", argv[1]);
     return 2;
 }

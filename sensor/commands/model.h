@@ -2,7 +2,7 @@
 #ifndef SENSOR_COMMANDS_MODEL_H
 #define SENSOR_COMMANDS_MODEL_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 
 /* 0: done; 1: the model cannot be had; 2: wrong usage. */
 int model_command(int argc, char **argv);

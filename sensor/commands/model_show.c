@@ -1,4 +1,5 @@
-/* sensor/commands/model_show.c: `pitviper model show`: a model from eight sides, optical, with a scale, in one picture. */
+/* sensor/commands/model_show.c: `pitviper model show`: a model from eight sides, optical, with a scale, in one
+ * image. */
 #include "sensor/commands/model.h"
 
 #include "entities/import/model_import.h"
@@ -18,7 +19,7 @@ static const double view_hfov_deg = 20, view_down_deg = 14;
 
 /* ---- letters --------------------------------------------------------------------------------- */
 
-/* Five columns of seven dots, the lowest bit above. */
+/* Five columns of seven dots, the lowest bit at the top. */
 static const struct {
     char    letter;
     uint8_t column[5];
@@ -50,14 +51,14 @@ static void write_text(uint8_t *rgb, int x, int y, const char *text)
                     if (glyphs[g].column[u / 2] >> (v / 2) & 1) dot(rgb, x + 12 * i + u, y + v, 255);
 }
 
-/* 1, 2 or 5 times a power of ten: the longest that is no longer than this. */
+/* The largest of 1, 2 or 5 times a power of ten that is not above this. */
 static double round_length(double most)
 {
     const double power = pow(10, floor(log10(most)));
     return power * (most >= 5 * power ? 5 : most >= 2 * power ? 2 : 1);
 }
 
-/* A bar of a round length, as long as it would look where the model stands. */
+/* A scale bar of a round length, at the distance of the model. */
 static void draw_scale(uint8_t *rgb, double px_per_m)
 {
     const double length_m = round_length(0.3 * tile_width / px_per_m);
@@ -76,13 +77,13 @@ typedef struct Stage {
     Catalog  *catalog;
     World     world;
     Pool     *pool;
-    Arena    *arena, *air_arena; /* of a side; of all */
+    Arena    *arena, *air_arena; /* of one side; of all sides */
     Air       air;
     int       model;
     double    unix_s, place_m[2]; /* east and north of the origin */
 } Stage;
 
-/* A catalog of this model alone, for all types. */
+/* A catalog with this model for all entity types. */
 static Status open_catalog(Stage *stage, const char *name, double sag_m)
 {
     char   path[temp_path_size];
@@ -107,7 +108,7 @@ static Status open_catalog(Stage *stage, const char *name, double sag_m)
     return status;
 }
 
-/* Where all ground about is of one kind: the nearest such place, or the origin. */
+/* The position nearest to the origin around which the surface class is uniform; the origin if there is none. */
 static void find_place(Stage *stage, double about_m)
 {
     for (int k = 0; k < 4000; k++) {
@@ -154,7 +155,7 @@ static void close_stage(Stage *stage)
     catalog_close(stage->catalog);
 }
 
-/* The model alone, on the ground, its nose turned so far from the east by the north. */
+/* The model on the ground, its nose turned by turn_rad from east towards north. */
 static Status put_model(Snapshot *out, SnapshotEntity *entity, const Stage *stage, double turn_rad)
 {
     const Model      *model = catalog_model(stage->catalog, stage->model);
@@ -172,12 +173,12 @@ static Status put_model(Snapshot *out, SnapshotEntity *entity, const Stage *stag
     return STATUS_OK;
 }
 
-/* From the south, a little above, far enough to have it all in the picture; px_per_m: where it stands. */
+/* View from the south, slightly above, with the whole model in the image; px_per_m: scale at the model. */
 static View view_of(double *px_per_m, const Stage *stage)
 {
     const Model *model = catalog_model(stage->catalog, stage->model);
     double       reach_m = 0;
-    for (int k = 0; k < 4; k++) /* as it turns, the corner of the base that is farthest from the middle */
+    for (int k = 0; k < 4; k++) /* largest horizontal distance of a corner from the centre, for any rotation */
         reach_m = fmax(reach_m, hypot(k & 1 ? model->box_high[0] : model->box_low[0],
                                       k & 2 ? model->box_high[1] : model->box_low[1]));
     const double tall_m = fmax(-model->box_low[2], 0.01), low_m = fmax(model->box_high[2], 0);
@@ -195,9 +196,9 @@ static View view_of(double *px_per_m, const Stage *stage)
     return view;
 }
 
-/* ---- the picture ----------------------------------------------------------------------------- */
+/* ---- the image ----------------------------------------------------------------------------- */
 
-/* Sun, air and eye are the same for all sides: it is the model that turns. */
+/* Sun, atmosphere and view are the same for all sides: only the model turns. */
 static Status light(Stage *stage, const RenderRequest *request)
 {
     const World *world = &stage->world;
@@ -212,7 +213,7 @@ static Status light(Stage *stage, const RenderRequest *request)
     return air_at(&stage->air, &source, &weather, &sun, &eye, stage->pool, stage->air_arena);
 }
 
-/* One side into its place of the three planes. */
+/* Renders one side into its tile of the three planes. */
 static Status draw_side(float *const plane[3], double white[3], double *px_per_m, Stage *stage, int side)
 {
     Snapshot       snapshot;
@@ -222,7 +223,7 @@ static Status draw_side(float *const plane[3], double white[3], double *px_per_m
     const RenderRequest request = {.view = view_of(px_per_m, stage), .bands = 1u << BAND_OPTICAL, .optical = OPTICAL_RGB,
                                    .sky_visibility = true, .samples = 1, .edge_samples = 4, .target_samples = 48,
                                    .hidden_entity = -1};
-    /* first its nose towards the eye, then clockwise from above: its right side, its tail ... */
+    /* first nose on, then clockwise from above: right side, tail ... */
     Status status = put_model(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
     if (status == STATUS_OK && side == 0) status = light(stage, &request);
     if (status == STATUS_OK)
@@ -269,7 +270,7 @@ Status model_show(const char *name, double sag_m, const char *out)
         DisplayColour  colour;
         display.display_gamma = true;
         display_colour(&colour, white, 0, INFINITY);
-        /* as an exposure for what reflects half: the same for every model, whatever is in the picture */
+        /* fixed exposure: a reflectance of 0.5 is white, for every model */
         display.auto_level = false;
         display.level_low  = 0;
         display.level_high = 0.5 * colour.white;
@@ -279,7 +280,7 @@ Status model_show(const char *name, double sag_m, const char *out)
         write_labels(rgb, model, px_per_m);
         status = image_write_png(out, rgb, width, height, 3, 8);
         if (status == STATUS_OK)
-            printf("%s: %s, %.3f x %.3f x %.3f m (length, width, height), from eight sides: its nose towards you first\n",
+            printf("%s: %s, %.3f x %.3f x %.3f m (length, width, height), from eight sides, nose on first\n",
                    out, model->name, model->length_m, model->width_m,
                    fmax(model->box_high[2], 0) - model->box_low[2]);
     }

@@ -1,9 +1,9 @@
-/* sensor/commands/next_option.c: one option of a command line, or what is wrong with it. */
+/* sensor/commands/next_option.c: one option of a command line, or an error message. */
 #include "sensor/commands/next_option.h"
 
 #include "pitviper.h"
 
-/* How many options begin with these letters; one that is exactly so counts alone. */
+/* Number of options with this prefix; 1 for an exact match. */
 static int matches(const struct option **found, const struct option *list, const char *name, size_t length)
 {
     int count = 0;
@@ -16,11 +16,12 @@ static int matches(const struct option **found, const struct option *list, const
     return count;
 }
 
-static void explain(const char *command, const char *typed, const char *letters, const struct option *list)
+static void print_error(const char *command, const char *typed, const char *letters, const struct option *list)
 {
     const struct option *found = NULL;
     if (strncmp(typed, "--", 2) != 0) {
-        if (optopt == ':' || !strchr(letters, optopt)) text_print(stderr, "%s: invalid option -- '%c'\n", command, optopt);
+        if (optopt == ':' || !strchr(letters, optopt)) text_print(stderr, "%s: invalid option -- "
+                                                            "'%c'\n", command, optopt);
         else text_print(stderr, "%s: option requires an argument -- '%c'\n", command, optopt);
         return;
     }
@@ -35,6 +36,6 @@ int next_option(int argc, char **argv, const char *letters, const struct option 
 {
     opterr           = 0;
     const int option = getopt_long(argc, argv, letters, list, NULL);
-    if (option == '?') explain(argv[0], argv[optind > 0 ? optind - 1 : 0], letters, list);
+    if (option == '?') print_error(argv[0], argv[optind > 0 ? optind - 1 : 0], letters, list);
     return option;
 }

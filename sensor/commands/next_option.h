@@ -1,5 +1,5 @@
-/* sensor/commands/next_option.h: getopt_long, whose own messages show what was typed as it is: here they are safe for a
- * terminal (text_print). Used as getopt_long; '?' has been explained. */
+/* sensor/commands/next_option.h: getopt_long with its messages escaped for the terminal (text_print). Used like
+ * getopt_long; for '?' the error has been printed. */
 #ifndef SENSOR_COMMANDS_NEXT_OPTION_H
 #define SENSOR_COMMANDS_NEXT_OPTION_H
 

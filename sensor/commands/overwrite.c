@@ -1,7 +1,7 @@
-/* sensor/commands/overwrite.c: what is there already, before anything is written. */
+/* sensor/commands/overwrite.c: refuses to replace existing products unless --overwrite is given. */
 #include "sensor/commands/overwrite.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 
 #include <sys/stat.h>
 
@@ -9,8 +9,9 @@ Status overwrite_folder(const char *command, const char *out, bool allowed)
 {
     char found[frame_path_size];
     if (allowed || !frame_files_earlier(found, out)) return STATUS_OK;
-    log_error("%s: %s is there from an earlier run; choose another folder with --out, or --overwrite, which takes the frames, "
-              "truth.jsonl and run.json of that run away", command, found);
+    log_error("%s: %s exists from an earlier run; choose another folder with --out, or --overwrite, which deletes the "
+              "frames, "
+              "truth.jsonl and run.json of that run", command, found);
     return STATUS_BAD_VALUE;
 }
 
@@ -18,7 +19,8 @@ Status overwrite_file(const char *command, const char *path, bool allowed)
 {
     struct stat about;
     if (allowed || stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size == 0) return STATUS_OK;
-    log_error("%s: %s is there already (%lld octets); choose another name, or --overwrite, which replaces it", command, path,
+    log_error("%s: %s exists already (%lld octets); choose another name, or --overwrite, which replaces "
+              "it", command, path,
               (long long)about.st_size);
     return STATUS_BAD_VALUE;
 }

@@ -11,7 +11,7 @@
 
 typedef struct Options {
     const char  *out;
-    double       for_s; /* INFINITY: until told to stop */
+    double       for_s; /* INFINITY: until stopped */
     long long    count; /* -1: any number */
     bool         overwrite;
     DisUdpConfig udp;
@@ -20,17 +20,17 @@ typedef struct Options {
 static const char help[] =
     "usage: pitviper record -o LOG [options]\n"
     "\n"
-    "Records the DIS exercise it hears, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap where the\n"
-    "name ends so) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
+    "Records the DIS datagrams received, with the times of arrival, until Ctrl-C. LOG is a pcapng file (pcap if the\n"
+    "name ends in .pcap) that `pitviper replay`, `pitviper inspect`, Wireshark and tshark read.\n"
     "\n"
-    "  -o, --out LOG      where to\n"
-    "  --overwrite        replace a LOG that is there already; otherwise it is kept and nothing is done\n"
-    "  --address A        hear what is sent to this address: a multicast group (joined, IPv4 or IPv6) or one of this\n"
-    "                     machine's; default: all that comes by IPv4, broadcast too\n"
-    "  --interface NAME   hear this network interface alone, such as eth0; default: all\n"
+    "  -o, --out LOG      the recording\n"
+    "  --overwrite        replace an existing LOG; without it that is an error\n"
+    "  --address A        receive on this address: a multicast group (joined, IPv4 or IPv6) or an address of this\n"
+    "                     machine; default: all IPv4 addresses, and broadcast\n"
+    "  --interface NAME   receive on this network interface only, such as eth0; default: all\n"
     "  --port N           default: 3000\n"
-    "  --for S            end after so many seconds\n"
-    "  --count N          end after so many datagrams\n";
+    "  --for S            stop after S seconds\n"
+    "  --count N          stop after N datagrams\n";
 
 /* ---- command line ----------------------------------------------------------------------------------- */
 
@@ -52,7 +52,7 @@ static int parse(Options *o, int argc, char **argv)
         {"out", 1, NULL, OUT},   {"address", 1, NULL, ADDRESS}, {"interface", 1, NULL, INTERFACE},
         {"port", 1, NULL, PORT}, {"for", 1, NULL, FOR},         {"count", 1, NULL, COUNT},
         {"overwrite", 0, NULL, OVERWRITE}, {"help", 0, NULL, HELP}, {NULL, 0, NULL, 0}};
-    optind = 0; /* start anew */
+    optind = 0; /* restart getopt */
     for (int option; (option = next_option(argc, argv, "o:h", options)) != -1;) {
         long long number;
         bool      ok = true;
@@ -133,7 +133,7 @@ static void show_progress(Recording *r, double now_s)
     r->shown_s = now_s;
 }
 
-/* Until somebody or something says stop; then what had arrived by that moment, and no more. */
+/* Records until a stop by signal or by an option; then what had arrived by that moment, and no more. */
 static Status record(Recording *r, double for_s)
 {
     const int64_t look_ns = 100000000; /* a signal does not end a wait */

@@ -1,8 +1,9 @@
-/* sensor/commands/sweep.c: `replay --sweep`: tries every variant, then runs one after another, each a process of its own. */
+/* sensor/commands/sweep.c: `replay --sweep`: validates every variant, then runs one after another, each in a process
+ * of its own. */
 #include "sensor/commands/sweep.h"
 
 #include "sensor/commands/contact_sheet.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/stop.h"
 #include "sensor/commands/sweep_file.h"
@@ -24,7 +25,7 @@ typedef struct Variant {
     int  number;               /* of the file, 0 is the first */
     char name[name_size];
     char config_sha256[sha256_text_size];
-    char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones make the same run */
+    char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones are the same run */
 } Variant;
 
 typedef struct SweepRun {
@@ -49,9 +50,9 @@ typedef struct Outcome {
     double      seconds;
 } Outcome;
 
-/* ---- before the first ------------------------------------------------------------------------- */
+/* ---- before the first run ------------------------------------------------------------------------- */
 
-/* key=value of the axes, separated; as much as there is room for. */
+/* key=value of each axis, separated; truncated to the size of out. */
 static void settings_words(char out[words_size], const Sweep *sweep, int number, const char *between)
 {
     char   value[sweep_value_size];
@@ -65,7 +66,7 @@ static void settings_words(char out[words_size], const Sweep *sweep, int number,
 
 static int by_key(const void *a, const void *b) { return strcmp(*(const char *const *)a, *(const char *const *)b); }
 
-/* By what its axes say, in the order of the keys: not by its number, nor by the order of the file. */
+/* Named by the values of its axes sorted by key: independent of its number and of the order in the file. */
 static Status name_variant(char name[name_size], const Sweep *sweep, int number)
 {
     char  *line[sweep_axes_max], value[sweep_value_size], sha256[sha256_text_size], *text = NULL;
@@ -91,11 +92,12 @@ static Status name_variant(char name[name_size], const Sweep *sweep, int number)
     return status;
 }
 
-/* Options that are no settings, but change what is made: they belong to what a variant is. */
+/* The command that reproduces the variant, with the options that are not settings but change the products. */
 static void write_again(FILE *file, const Options *o)
 {
     char escaped[1024];
-    fprintf(file, "# A variant of a sweep: what it sets stands without a #.\n# Again: pitviper replay LOG --config THIS");
+    fprintf(file, "# A variant of a sweep: what it sets is not commented out.\n"
+                  "# To reproduce: pitviper replay LOG --config THIS");
     for (int i = 0; i < o->given_count; i++) {
         const OptionGiven *given = &o->given[i];
         if (given->same_products) continue;
@@ -105,7 +107,7 @@ static void write_again(FILE *file, const Options *o)
     fputc('\n', file);
 }
 
-/* All settings, as the file that the run reads. */
+/* All settings, as the text of settings.yaml. */
 static Status settings_text_of(char **text, size_t *octets, char sha256[sha256_text_size], const Options *o,
                                const Config *config)
 {
@@ -135,7 +137,7 @@ static Status try_variant(Variant *variant, const SweepRun *s)
         status = name_variant(variant->name, &s->sweep, variant->number);
     } else {
         settings_words(words, &s->sweep, variant->number, ", ");
-        log_error("sweep: that is of variant %d, %s; nothing has been run", variant->number + 1, words);
+        log_error("sweep: in variant %d, %s; nothing has been run", variant->number + 1, words);
     }
     free(run);
     return status;
@@ -154,7 +156,7 @@ static int by_number(const void *a, const void *b)
     return (x->number > y->number) - (x->number < y->number);
 }
 
-/* A list may say a value twice: the first of its variants is run. */
+/* A list may hold equal values: only the first of equal variants is run. */
 static void drop_repeated(SweepRun *s)
 {
     int kept = 0;
@@ -171,7 +173,7 @@ static Status prepare(SweepRun *s)
 {
     const Options *o = s->options;
     if (o->host_count > 1) {
-        log_error("sweep: --host is given several times; a sweep has one a variant: make exercise.host an axis");
+        log_error("sweep: only one --host; to vary it, make exercise.host an axis");
         return STATUS_BAD_VALUE;
     }
     Status status = sweep_read(&s->sweep, o->sweep, &o->config);
@@ -206,7 +208,7 @@ static bool has_coco(const char *folder)
     return access(path, R_OK) == 0;
 }
 
-/* A run of another log, other settings or another version in a variant's folder is no earlier try of this sweep. */
+/* Refuses when the folder of a variant holds a run of another log, other settings or another version. */
 static Status check_folders(const SweepRun *s)
 {
     char   folder[path_size];
@@ -217,13 +219,14 @@ static Status check_folders(const SweepRun *s)
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
         bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
         made_run_free(&run);
-        if (!other && read_run(&run, folder, "variant.json")) { /* what no hash of pictures holds: the span, the planes */
+        if (!other && read_run(&run, folder, "variant.json")) { /* settings outside of config_sha256: time span, planes */
             other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
             made_run_free(&run);
         }
         if (!other) continue;
-        log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder with --out, "
-                  "or --overwrite, which takes it away", folder);
+        log_error("sweep: %s holds a run of another log, other settings or another version; choose another folder "
+                  "with --out, "
+                  "or --overwrite, which deletes it", folder);
         status = STATUS_BAD_VALUE;
     }
     return status;
@@ -244,13 +247,13 @@ static Status open_products(SweepRun *s)
     snprintf(path, sizeof path, "%s/manifest.jsonl", o->out);
     s->manifest = fopen(path, "w");
     if (s->manifest) return coco_merge_open(&s->coco, o->out);
-    log_error("sweep: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    log_error("sweep: cannot write %s: %s; choose another folder with --out", path, strerror(errno));
     return STATUS_IO;
 }
 
 /* ---- one variant ------------------------------------------------------------------------------ */
 
-/* A whole run of these settings; its run.json is then the outcome's. */
+/* Whether the folder holds a complete run of these settings; its run.json is then in the outcome. */
 static bool is_kept(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, bool coco)
 {
     MadeRun    variant, run;
@@ -272,7 +275,7 @@ static Status write_file(const char *path, const char *text, size_t octets)
     return STATUS_IO;
 }
 
-/* A stop that this process was asked for is the child's too: it ends with its frame. A terminal has told it already. */
+/* Passes on a stop by SIGTERM, so that the child ends after its frame; Ctrl-C reaches it from the terminal. */
 static void wait_for(int *state, pid_t child)
 {
     bool told = false;
@@ -283,7 +286,7 @@ static void wait_for(int *state, pid_t child)
     }
 }
 
-/* This program again, in a process of its own. Its exit code; -1: it ended otherwise. */
+/* Runs the variant as a child process. Returns its exit code; -1: ended by a signal, or not started. */
 static int run_child(const Options *o, const char *folder)
 {
     char        settings[path_size + 32], said[path_size + 32];
@@ -310,7 +313,7 @@ static void find_reason(char *why, size_t size, const char *folder, int code)
     char   path[path_size + 32], *text = NULL;
     size_t octets;
     if (code >= 0) snprintf(why, size, "exit code %d", code);
-    else snprintf(why, size, "it ended by a signal, or could not be started");
+    else snprintf(why, size, "ended by a signal, or could not be started");
     snprintf(path, sizeof path, "%s/log.txt", folder);
     if (access(path, R_OK) != 0 || text_read_file(&text, &octets, "sweep", path, 1 << 24) != STATUS_OK) return;
     for (char *line = text, *end; *line; line = end) {
@@ -339,7 +342,7 @@ static char *line_of(const SweepRun *s, const Variant *v, const Outcome *outcome
     });
 }
 
-/* The settings file, which must read back as the settings that the variant was tried with. */
+/* Writes the settings file, which must read back as the settings that were validated. */
 static Status write_settings(const char *path, const Options *o, const Variant *v, const Config *config)
 {
     char    sha256[sha256_text_size], *text = NULL, *again = NULL;
@@ -354,7 +357,7 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     if (status == STATUS_OK) status = settings_text_of(&again, &octets, sha256, o, back);
     if (status == STATUS_OK && strcmp(sha256, v->settings_sha256) != 0) {
         const char *key = config_difference(config, back);
-        log_error("sweep: %s: %s: does not read back as it was set; a settings file cannot hold this value, choose "
+        log_error("sweep: %s: %s: a configuration file cannot hold this value (it does not read back equal); choose "
                   "another", path, key ? key : "a setting");
         status = STATUS_BAD_VALUE;
     }
@@ -376,7 +379,7 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     unlink(path);
     snprintf(path, sizeof path, "%s/settings.yaml", folder);
     if (write_settings(path, s->options, v, config) != STATUS_OK) {
-        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written, or not be read back");
+        snprintf(outcome->why, sizeof outcome->why, "its settings cannot be written or read back");
         return;
     }
     const double begun_s = wall_clock_s();
@@ -392,12 +395,12 @@ static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, 
     else find_reason(outcome->why, sizeof outcome->why, folder, code);
 }
 
-static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
+static void report_variant(SweepRun *s, const Variant *v, const Outcome *outcome, int place)
 {
     char words[words_size], text[words_size + 600];
     settings_words(words, &s->sweep, v->number, "\n");
     snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
-    /* the frame in the middle of the run: mid-course, its target in view */
+    /* the middle frame of the run: the target is usually in view */
     sheet_add(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text, *outcome->why);
     settings_words(words, &s->sweep, v->number, ", ");
     if (*outcome->why)
@@ -409,7 +412,7 @@ static void tell(SweepRun *s, const Variant *v, const Outcome *outcome, int plac
     fflush(stdout);
 }
 
-/* Makes it, or keeps what is there. */
+/* Runs the variant, or keeps the run in its folder. */
 static Status make_or_keep(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder)
 {
     Config *config = malloc(sizeof *config);
@@ -432,7 +435,7 @@ static Status one_variant(SweepRun *s, int place)
     s->made += strcmp(outcome.status, "made") == 0;
     s->kept += strcmp(outcome.status, "kept") == 0;
     s->failed += strcmp(outcome.status, "failed") == 0;
-    tell(s, v, &outcome, place);
+    report_variant(s, v, &outcome, place);
 
     char *text = line_of(s, v, &outcome);
     if (!text) status = STATUS_NO_MEMORY;
@@ -456,8 +459,7 @@ static Status run_all(SweepRun *s)
 {
     Status status = open_products(s);
     if (status == STATUS_OK && s->repeated > 0)
-        log_say("%d variant%s others and %s left out\n", s->repeated, s->repeated == 1 ? " repeats" : "s repeat",
-                s->repeated == 1 ? "is" : "are");
+        log_say("%d variant%s left out: equal to others\n", s->repeated, s->repeated == 1 ? "" : "s");
     for (int i = 0; i < s->count && status == STATUS_OK && !s->stopped; i++) {
         s->stopped = stop_asked();
         if (!s->stopped) status = one_variant(s, i);
@@ -470,9 +472,11 @@ static Status run_all(SweepRun *s)
     const Status merged = coco_merge_close(s->coco, status == STATUS_OK);
     if (status == STATUS_OK) status = merged;
     if (s->stopped)
-        log_warn("sweep: stopped with %d of %d variants made; the same command goes on from there", s->made + s->kept, s->count);
+        log_warn("sweep: stopped with %d of %d variants made; the same command resumes "
+                 "it", s->made + s->kept, s->count);
     if (status == STATUS_OK)
-        log_say("%d variants in %s: %d made, %d kept, %d failed; see manifest.html\n", s->count, s->options->out, s->made,
+        log_say("%d variants in %s: %d made, %d kept, %d failed; see "
+                "manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
     return status;
 }

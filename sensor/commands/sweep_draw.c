@@ -1,15 +1,15 @@
-/* sensor/commands/sweep_draw.c: what `mode: random` draws: values of all axes from one seed, each combination once. */
+/* sensor/commands/sweep_draw.c: `mode: random`: draws values of all axes from one seed, without repetition. */
 #include "sensor/commands/sweep_file.h"
 
 #include "sensor/publish/plane_hash.h"
 
 #include <stdlib.h>
 
-/* As many draws as even the last of 10000 combinations is found in (10000 (ln 10000 + 0.577) = 98000 on average, standard
- * deviation 12800). What is rarer, of lists that name a value many times, is then taken in order. */
+/* Enough draws to find all of 10000 equally likely combinations (10000 (ln 10000 + 0.577) = 98000 on average, standard
+ * deviation 12800). Rarer ones, from lists that repeat a value, are then enumerated in order. */
 enum { draws_max = 200000, key_size = sweep_axes_max * 24 };
 
-/* ---- values that say the same --------------------------------------------------------------- */
+/* ---- equal values --------------------------------------------------------------- */
 
 typedef struct Listed {
     const char *text;
@@ -18,7 +18,7 @@ typedef struct Listed {
     int         place;
 } Listed;
 
-/* 5000 and 5e3 are one value. */
+/* 5000 and 5e3 are equal values. */
 static int by_value(const void *a, const void *b)
 {
     const Listed *x = a, *y = b;
@@ -71,7 +71,7 @@ static Status count_kinds(SweepAxis *axis)
 
 static double uniform(const Sweep *sweep, int draw, const SweepAxis *axis)
 {
-    uint64_t key = 14695981039346656037u; /* of the key's name, FNV-1a: another axis more moves no draw */
+    uint64_t key = 14695981039346656037u; /* of the key's name, FNV-1a: an additional axis changes no draw of the others */
     for (const char *at = axis->key; *at; at++) key = (key ^ (uint8_t)*at) * 1099511628211u;
     return random_uniform((uint64_t)sweep->draw, 0x53770000u, (uint32_t)draw, key);
 }
@@ -106,7 +106,7 @@ void sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw,
         snprintf(out, sweep_value_size, "%.9g", clamp(a->low + u * (a->high - a->low), a->low, a->high));
 }
 
-/* What makes two draws the same: the kinds of their values. */
+/* Key of a draw: the kinds of its values. Draws with equal keys are the same. */
 static void key_of(char key[key_size], const Sweep *sweep, int draw)
 {
     char   value[sweep_value_size];
@@ -123,14 +123,14 @@ static void key_of(char key[key_size], const Sweep *sweep, int draw)
     }
 }
 
-/* ---- each once -------------------------------------------------------------------------------- */
+/* ---- without repetition -------------------------------------------------------------------------------- */
 
 typedef struct Seen {
     int size;                           /* a power of two, twice what it will hold at least */
     char (*sha256)[sha256_text_size];   /* empty: free */
 } Seen;
 
-/* False: it is there already. */
+/* False: already present. */
 static bool add(Seen *seen, const char *key, Status *status)
 {
     char sha256[sha256_text_size], head[9];
@@ -170,7 +170,7 @@ Status sweep_draw(Sweep *sweep, const char *path)
     if (status != STATUS_OK) return status;
     const long long all = combinations(&ordered, sweep);
     if (sweep->count > all) {
-        log_error("sweep: %s:%d: count: %d different draws are asked for, but the axes have %lld combination%s; lower "
+        log_error("sweep: %s:%d: count: %d different draws are requested, but the axes have %lld combination%s; lower "
                   "count, or add values", path, sweep->count_line, sweep->count, all, all == 1 ? "" : "s");
         return STATUS_BAD_VALUE;
     }

@@ -1,4 +1,4 @@
-/* sensor/commands/sweep_file.c: reads the axes of a sweep, and says what each variant sets. */
+/* sensor/commands/sweep_file.c: reads the axes of a sweep; the settings of each variant. */
 #include "sensor/commands/sweep_file.h"
 
 #include <stdlib.h>
@@ -18,7 +18,8 @@ static Status refuse(const Reading *r, const yaml_node_t *node, const char *key,
 {
     char shown[160] = "";
     if (node->type == YAML_SCALAR_NODE) text_escape(shown, sizeof shown, text_of(node), strlen(text_of(node)));
-    log_error("sweep: %s:%d: %s: %s%s%s%s", r->path, line_of(node), key, *shown ? "'" : "", shown, *shown ? "' " : "", what);
+    log_error("sweep: %s:%d: %s: %s%s%s%s", r->path, line_of(node), key, *shown ? "'" : "", shown, *shown ? "' "
+              "" : "", what);
     return STATUS_BAD_VALUE;
 }
 
@@ -48,7 +49,8 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
 {
     const char *form = "needs a list of values, or {from: LOW, to: HIGH}";
     bool        from = false, to = false;
-    if (config_kind(axis->key) == CONFIG_WORD) return refuse(r, node, axis->key, "is no number to draw");
+    if (config_kind(axis->key) == CONFIG_WORD) return refuse(r, node, axis->key, "is not a number; only lists of "
+                                                            "values");
     for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair < node->data.mapping.pairs.top; pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *value = yaml_document_get_node(r->document, pair->value);
@@ -62,7 +64,8 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
         to |= is_to;
     }
     if (!from || !to) return refuse(r, node, axis->key, form);
-    if (r->sweep->mode != SWEEP_RANDOM) return refuse(r, node, axis->key, "only `mode: random` draws between from and to");
+    if (r->sweep->mode != SWEEP_RANDOM) return refuse(r, node, axis->key, "only `mode: random` draws between from and "
+                                                            "to");
     if (!(axis->low <= axis->high)) return refuse(r, node, axis->key, "from is above to");
     axis->whole = config_kind(axis->key) == CONFIG_WHOLE;
     return STATUS_OK;
@@ -73,7 +76,7 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
     Sweep *sweep = r->sweep;
     for (int i = 0; i < sweep->axis_count; i++)
         if (strcmp(sweep->axis[i].key, key) == 0) return refuse(r, name, key, "is given twice");
-    if (sweep->axis_count == sweep_axes_max) return refuse(r, name, key, "is the 65th axis; there is room for 64");
+    if (sweep->axis_count == sweep_axes_max) return refuse(r, name, key, "is the 65th axis; at most 64");
     if (config_kind(key) == CONFIG_NONE) return try_value(r, key, "", line_of(name)); /* names the nearest */
 
     SweepAxis *axis = &sweep->axis[sweep->axis_count];
@@ -83,7 +86,7 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
     if (node->type == YAML_MAPPING_NODE) return read_range(axis, r, node);
     const bool   list = node->type == YAML_SEQUENCE_NODE;
     const size_t count = list ? (size_t)(node->data.sequence.items.top - node->data.sequence.items.start) : 1;
-    if (count == 0) return refuse(r, node, key, "an empty list: no value to run with");
+    if (count == 0) return refuse(r, node, key, "an empty list");
     if (count > sweep_variants_max) return refuse(r, node, key, "more than 10000 values");
     if (!(axis->value = calloc(count, sizeof *axis->value))) return STATUS_NO_MEMORY;
     if (!list) return add_value(axis, r, node);
@@ -104,7 +107,7 @@ static Status read_axes(const Reading *r, const char *section, const yaml_node_t
         char               key[96];
         if (name->type != YAML_SCALAR_NODE) return refuse(r, name, "axes", "a key must be a word");
         if ((size_t)snprintf(key, sizeof key, "%s%s%s", section, *section ? "." : "", text_of(name)) >= sizeof key)
-            return refuse(r, name, "axes", "is no such key: too long");
+            return refuse(r, name, "axes", "unknown key: too long");
         const bool   below = !*section && node->type == YAML_MAPPING_NODE && config_kind(key) == CONFIG_NONE;
         const Status status = below ? read_axes(r, key, node) : read_axis(r, key, name, node);
         if (status != STATUS_OK) return status;
@@ -134,7 +137,7 @@ static Status read_mode(const Reading *r, const yaml_node_t *node)
     return refuse(r, node, "mode", "is not one of grid|zip|random");
 }
 
-/* Axes last, whatever their place: what may stand there depends on the mode. */
+/* Axes last, wherever they are in the file: what is accepted depends on the mode. */
 static Status read_root(Reading *r, const yaml_node_t *root)
 {
     static const char *const keys[] = {"mode", "count", "draw", "axes"};
@@ -149,7 +152,8 @@ static Status read_root(Reading *r, const yaml_node_t *root)
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         int                k = 0;
         while (k < 4 && !(name->type == YAML_SCALAR_NODE && strcmp(text_of(name), keys[k]) == 0)) k++;
-        if (k == 4) return refuse(r, name, "no such key", "stands beside mode, count, draw and axes; settings go below axes");
+        if (k == 4) return refuse(r, name, "no such key", "accepted are mode, count, draw and axes; settings go below "
+                                           "axes");
         if (value[k]) return refuse(r, name, keys[k], "is given twice");
         value[k] = yaml_document_get_node(r->document, pair->value);
     }
@@ -158,9 +162,10 @@ static Status read_root(Reading *r, const yaml_node_t *root)
     if (status == STATUS_OK && value[2]) status = read_whole(&r->sweep->draw, r, "draw", value[2], 0, 2147483647);
     if (status != STATUS_OK) return status;
     const bool random = r->sweep->mode == SWEEP_RANDOM;
-    if (!random && value[1]) return refuse(r, value[1], "count", "is for `mode: random`");
-    if (!random && value[2]) return refuse(r, value[2], "draw", "is for `mode: random`");
-    if (random && !value[1]) return refuse(r, root, "count", "how many draws `mode: random` makes is missing, 1 .. 10000");
+    if (!random && value[1]) return refuse(r, value[1], "count", "applies to `mode: random` only");
+    if (!random && value[2]) return refuse(r, value[2], "draw", "applies to `mode: random` only");
+    if (random && !value[1]) return refuse(r, root, "count", "is missing: number of draws of `mode: random`, 1 .. "
+                                                    "10000");
     r->sweep->count = (int)count;
     if (value[1]) r->sweep->count_line = line_of(value[1]);
     if (!value[3]) return refuse(r, root, "axes", "are missing: keys with lists of values");
@@ -173,7 +178,7 @@ static Status count_variants(const Reading *r)
     long long product = 1, longest = 1;
     const SweepAxis *first = NULL;
     if (sweep->axis_count == 0) {
-        log_error("sweep: %s: axes: has no key; nothing would be varied", r->path);
+        log_error("sweep: %s: axes: is empty; nothing to vary", r->path);
         return STATUS_BAD_VALUE;
     }
     for (int i = 0; i < sweep->axis_count && sweep->mode != SWEEP_RANDOM; i++) {
@@ -181,7 +186,8 @@ static Status count_variants(const Reading *r)
         if (product <= sweep_variants_max) product *= axis->count; /* no more than 1e8 */
         if (sweep->mode == SWEEP_ZIP && axis->count > 1) {
             if (first && axis->count != first->count) {
-                log_error("sweep: %s:%d: %s: has %d values, but %s has %d; `mode: zip` takes them side by side", r->path,
+                log_error("sweep: %s:%d: %s: has %d values, but %s has %d; `mode: zip` needs lists of equal "
+                          "length", r->path,
                           axis->line, axis->key, axis->count, first->key, first->count);
                 return STATUS_BAD_VALUE;
             }
@@ -191,8 +197,9 @@ static Status count_variants(const Reading *r)
     }
     if (sweep->mode == SWEEP_RANDOM) return sweep_draw(sweep, r->path);
     if (sweep->mode == SWEEP_GRID && product > sweep_variants_max) {
-        log_error("sweep: %s: the grid has more than %d variants; shorten a list, or let `mode: random` with `count` "
-                  "draw from it", r->path, sweep_variants_max);
+        log_error("sweep: %s: the grid has more than %d variants; shorten a list, or draw from it with `mode: random` "
+                  "and "
+                  "`count`", r->path, sweep_variants_max);
         return STATUS_BAD_VALUE;
     }
     sweep->count = (int)(sweep->mode == SWEEP_ZIP ? longest : product);
@@ -208,7 +215,8 @@ static Status parse(Reading *r, const char *text, size_t octets)
     if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
     if (!yaml_parser_load(&parser, &document)) {
-        log_error("sweep: %s:%d: %s", r->path, (int)parser.problem_mark.line + 1, parser.problem ? parser.problem : "not YAML");
+        log_error("sweep: %s:%d: "
+                  "%s", r->path, (int)parser.problem_mark.line + 1, parser.problem ? parser.problem : "not YAML");
         yaml_parser_delete(&parser);
         return STATUS_BAD_VALUE;
     }

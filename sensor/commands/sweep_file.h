@@ -1,17 +1,17 @@
-/* sensor/commands/sweep_file.h: which settings a sweep turns, from a YAML file:
+/* sensor/commands/sweep_file.h: the settings that a sweep varies, from a YAML file:
  *
- *     mode: grid            # every combination, the last axis fastest (default); zip: one of each, side by side;
- *     count: 100            # random: so many different draws, no more than there are combinations,
- *     draw: 1               # of this seed (default 1): the n-th is the same for any count
+ *     mode: grid            # every combination, the last axis fastest (default); zip: the lists in parallel;
+ *     count: 100            # random: number of different draws, at most the number of combinations,
+ *     draw: 1               # seed of the draws (default 1): the n-th is the same for any count
  *     axes:
  *       weather.visibility_m: [5000, 23000]
  *       sensor:
- *         hfov_deg: {from: 2, to: 6}      # random: evenly between; whole numbers where the key wants them
+ *         hfov_deg: {from: 2, to: 6}      # random: uniform; whole numbers for integer keys
  *       exercise.utc: [2026-06-21T10:00:00Z, 2026-12-21T17:00:00Z]
- *       seed: 7                           # one value: the same for all
+ *       seed: 7                           # one value for all
  *
- * Any key of `pitviper check --default`. Names of files are relative to the sweep's. Every value is tried before the
- * first run; what is wrong is one logged line with file, line, key, value and range. */
+ * Any key of `pitviper check --default`. Names of files are relative to the sweep's. Every value is validated before
+ * the first run; an error is one logged line with file, line, key, value and range. */
 #ifndef SENSOR_COMMANDS_SWEEP_FILE_H
 #define SENSOR_COMMANDS_SWEEP_FILE_H
 
@@ -42,15 +42,15 @@ typedef struct Sweep {
     SweepAxis axis[sweep_axes_max];
 } Sweep;
 
-/* base: what values are tried on. On failure *out holds nothing. */
+/* base: settings on which the values are validated. On failure *out is empty. */
 Status sweep_read(Sweep *out, const char *path, const Config *base);
 void   sweep_close(Sweep *sweep);
-/* Random: which draws the variants are, count of them that differ. Logs with path and line when there are fewer. */
+/* Random: finds `count` draws that differ. Logs path and line when there are fewer. */
 Status sweep_draw(Sweep *sweep, const char *path);
 void   sweep_drawn_value(char out[sweep_value_size], const Sweep *sweep, int draw, int axis);
-/* As a command line would give it. */
+/* As on a command line. */
 void   sweep_value(char out[sweep_value_size], const Sweep *sweep, int variant, int axis);
-/* All axes over base; checked but for what involves several keys. */
+/* base with the values of all axes; checks that involve several keys are not made. */
 Status sweep_config(Config *out, const Sweep *sweep, const Config *base, int variant);
 
 #endif

@@ -1,8 +1,9 @@
+/* sensor/detector/bad_pixels.c: defective pixels: their map, their values, and replacement from neighbours. */
 #include "sensor/detector/bad_pixels.h"
 
 #include <stdlib.h>
 
-static const uint32_t streams = 0x3f000000u; /* away from the small numbers that others use */
+static const uint32_t streams = 0x3f000000u; /* does not overlap with the streams of other noise */
 
 void bad_pixels_make(uint8_t *map, int width, int height, double share, double clustered, uint64_t seed,
                      uint32_t stream)

@@ -1,3 +1,4 @@
+/* sensor/detector/blur.c: applies an MTF chain to a plane by cosine and sine transforms. */
 #include "sensor/detector/blur.h"
 
 #include "sensor/detector/transform.h"
@@ -12,11 +13,11 @@ struct Blur {
     Transform *cosines, *back, *back_odd;
 };
 
-/* The frequency at which the chain is read for frequency f of a row or column: f itself to 0.4, then bending to a
+/* The frequency at which the chain is evaluated for frequency f of a row or column: f itself to 0.4, then bending to a
  * level end at 0.5 (slope and curvature continuous at both), so that the chain's mirror image beyond Nyquist joins
- * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, which beside
- * an exhaust is stripes all over the vehicle. Bent, the point spread of a chain with optics is positive but for a
- * hair, as a real one is. */
+ * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, visible as
+ * stripes next to an exhaust. Tapered, the point spread of a chain with optics is positive to within rounding,
+ * as a real one is. */
 double blur_bent(double f_cyc_px)
 {
     static const double from = 0.4, width = 0.1;
@@ -24,8 +25,8 @@ double blur_bent(double f_cyc_px)
     return u <= 0 ? f_cyc_px : copysign(from + width * u * (1 - u * u * (1 - 0.5 * u)), f_cyc_px);
 }
 
-/* An oblique smear passes other shares of fx and -fx, which are one at 0.5: without this the step there rings on with
- * 1 / n along rows and columns. */
+/* The transfer of an oblique smear differs between fx and -fx, which are the same frequency at 0.5: without this the
+ * step there rings with 1 / n along rows and columns. */
 static double odd_share(double f_cyc_px)
 {
     const double u = clamp((fabs(f_cyc_px) - 0.4) / 0.1, 0, 1);

@@ -5,11 +5,11 @@
  * axis; its odd part goes through the sine transforms of the same cosine coefficients, which a third transform
  * gives (transform.h).
  *
- * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, where the picture's samples end, the
- * chain levels off instead of breaking off, so that hot things do not ring (blur.c says how). An edge overshoots
- * by 1 % with the footprint alone and not at all behind optics; a point has a dark ring of 0.8 % at most. Radiance
- * that this would turn negative is 0. Mean kept to rounding (the coefficient of frequency 0 is not touched); with
- * an oblique smear but for the corners. 720 x 486, one core: 5 ms; 17 ms with an oblique smear. */
+ * Exact to 0.4 cycles a pixel along rows and columns; from there to Nyquist, the limit of the image's sampling, the
+ * chain tapers instead of ending abruptly, so that hot objects do not ring (see blur.c). An edge overshoots
+ * by 1 % with the footprint alone and not at all behind optics; a point has a dark ring of 0.8 % at most. Negative
+ * radiance is clipped to 0. The mean is preserved to rounding (the coefficient of frequency 0 is not touched); with
+ * an oblique smear except in the corners. 720 x 486, one core: 5 ms; 17 ms with an oblique smear. */
 #ifndef SENSOR_DETECTOR_BLUR_H
 #define SENSOR_DETECTOR_BLUR_H
 
@@ -17,16 +17,16 @@
 
 typedef struct Blur Blur;
 
-/* chain's smear is left out here: it changes by frame. STATUS_NO_MEMORY. One user at a time. */
+/* Without the smear of the chain, which changes per frame. STATUS_NO_MEMORY. One user at a time. */
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
-/* The frequency at which the chain is read for frequency f of a row or column, -0.5 .. 0.5. */
+/* The frequency at which the chain is evaluated for frequency f of a row or column, -0.5 .. 0.5. */
 double blur_bent(double f_cyc_px);
-/* What it passes of a smear at (fx, fy), bent; what differs between fx and -fx fades from 0.4 to 0.5. */
+/* Transfer of a smear at (fx, fy), tapered; the difference between fx and -fx fades from 0.4 to 0.5. */
 double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);
 /* Rows top down; in and out may be the same. Values that are not finite become 0 before, and come back afterwards. */
 void   blur_apply(Blur *blur, float *out, const float *in, const double smear_px[2]);
-/* The same with a plane added before what is negative becomes 0; more: NULL, nothing. */
+/* The same with a plane added before clipping at 0; more: NULL: none. */
 void   blur_apply_with(Blur *blur, float *out, const float *in, const double smear_px[2], const double *more);
 
 #endif

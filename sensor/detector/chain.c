@@ -1,3 +1,4 @@
+/* sensor/detector/chain.c: the stages of a detector in order, from radiance to raw counts. */
 #include "sensor/detector/chain.h"
 
 #include "render/light/planck.h"

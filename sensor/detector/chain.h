@@ -1,10 +1,10 @@
 /* sensor/detector/chain.h: one band's sensor from radiance at the aperture to raw counts.
  *
  *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, footprint, smear, jitter -> each
- *     line at its own time -> gain that differs from pixel to pixel -> shot, dark and read noise, three-dimensional
- *     noise, noise along lines -> AC coupling -> well, converter -> faulty pixels, and their patches
+ *     line at its own time -> pixel-to-pixel gain -> shot, dark and read noise, three-dimensional
+ *     noise, noise along lines -> AC coupling -> well, converter -> defective pixels and their replacement
  *
- * A frame needs no other: all noise is a function of (seed, frame, row, column), so any frame may be made first. */
+ * Frames are independent: all noise is a function of (seed, frame, row, column), so frames may be made in any order. */
 #ifndef SENSOR_DETECTOR_CHAIN_H
 #define SENSOR_DETECTOR_CHAIN_H
 
@@ -13,20 +13,20 @@
 
 typedef struct Chain Chain;
 
-/* The one wavelength that diffraction is computed for, m: the photons' mean over the band, of a black body of 300 K in
+/* Wavelength for which diffraction is computed, m: the mean of the photons over the band, of a black body of 300 K in
  * MWIR and LWIR and of 5772 K, the sun's, in the optical channels; channel as preset_band's. Against the OTF of all
  * wavelengths: within 0.001 (tests/sensor/test_sensor_mtf.c). */
 double chain_wavelength_m(const SensorPreset *preset, int channel);
 
 /* places: along a row of a pixel, which the picture has averaged (MtfChain, render_places). Of the optical band there
- * are three channels, R G B, or one, as preset->optical says; else one. */
+ * are three channels, R G B, or one, by preset->optical; else one. */
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed);
 void   chain_destroy(Chain *chain);
 
 /* Sets the exposure for these planes, [channels], in-band W/(m2 sr). Before the calls below. */
 void chain_expose(Chain *chain, const float *const radiance[]);
-/* small: the picture's targets of few pixels, whose cells go through the optics from where they lie (subpixel.h); NULL:
- * they stay in whole pixels. rate_px_s: how the scene moves over the picture, column and row. */
+/* small: the small targets of the image, whose cells pass through the optics at their subpixel positions (subpixel.h);
+ * NULL: they stay in whole pixels. rate_px_s: image motion of the scene, column and row. */
 void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *small, int frame,
                const double rate_px_s[2]);
 /* Of the last run: [height][width], 0 .. 2^bits - 1; as numbers for levels and displays, the same. */
@@ -35,13 +35,13 @@ const float    *chain_values(const Chain *chain, int channel);
 
 /* Counts that this radiance gives, unbounded, before noise. */
 double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
-/* Rms of everything random at this radiance, in it: temporal, fixed and along lines. Faulty pixels are not in it. */
+/* Rms of all noise at this radiance, as radiance: temporal, fixed and along lines, without defective pixels. */
 double chain_sigma(const Chain *chain, int channel, double radiance_w_m2_sr);
-/* The same as a temperature difference of a black body, K. */
+/* The same as a temperature difference of a blackbody, K. */
 double chain_netd_k(const Chain *chain, double temp_k);
-/* Electrons a count. */
+/* Electrons per count. */
 double chain_step_e(const Chain *chain);
-/* The greatest count. */
+/* Full scale in counts. */
 double chain_full(const Chain *chain);
 
 #endif

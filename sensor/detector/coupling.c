@@ -1,3 +1,4 @@
+/* sensor/detector/coupling.c: AC coupling: a first-order high pass along each line. */
 #include "sensor/detector/coupling.h"
 
 void coupling_apply(float *plane, int width, int height, const Scan *scan, double fc_t)

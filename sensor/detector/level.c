@@ -1,3 +1,4 @@
+/* sensor/detector/level.c: gain and level of display images. */
 #include "sensor/detector/level.h"
 
 /* ---- configuration ------------------------------------------------------------------------ */

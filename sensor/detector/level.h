@@ -1,7 +1,7 @@
-/* sensor/detector/level.h: gain and level: what black and white of a display stand for.
+/* sensor/detector/level.h: gain and level: the values displayed as black and white.
  *
- * Pure functions on planes of `count` values, no allocation; what memory an automatic level has, its caller keeps.
- * Values that are not finite never move the levels. */
+ * Pure functions on planes of `count` values, no allocation; the state of an automatic level is held by the caller.
+ * Values that are not finite do not affect the levels. */
 #ifndef SENSOR_DETECTOR_LEVEL_H
 #define SENSOR_DETECTOR_LEVEL_H
 
@@ -25,7 +25,7 @@ DetectorConfig detector_default_config(void);
 /* STATUS_BAD_VALUE and one log line (field, value, range) for anything outside the ranges above. */
 Status detector_check_config(const DetectorConfig *config);
 
-/* What black and white stand for, in the plane's unit; high > low always. */
+/* Values of black and white, in the plane's unit; high > low always. */
 typedef struct DetectorLevel {
     double low, high;
 } DetectorLevel;
@@ -35,8 +35,8 @@ typedef struct DetectorLevel {
  * rounding, lands in the middle of the scale. Planes without a finite value: 0 .. 1. */
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count);
 
-/* An automatic level with a time constant: state, the last frame's, goes to `now` by 1 - exp(-step_s / time_s).
- * time_s 0: at once, no memory. */
+/* An automatic level with a time constant: the state of the last frame approaches `now` by 1 - exp(-step_s / time_s).
+ * time_s 0: immediately. */
 void detector_level_follow(DetectorLevel *state, DetectorLevel now, double step_s, double time_s);
 
 #endif

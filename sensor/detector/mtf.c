@@ -1,3 +1,4 @@
+/* sensor/detector/mtf.c: closed-form modulation transfer functions of optics, footprint, smear and jitter. */
 #include "sensor/detector/mtf.h"
 
 /* Overlap of two unit circles whose centres are 2 x apart, over the area of one. */

@@ -1,7 +1,7 @@
 /* sensor/detector/mtf.h: modulation transfer of optics, detector footprint, smear and jitter, closed forms.
  *
- * Frequencies are cycles per pixel of the picture; lengths are pixels. tests/sensor/test_mtf.c holds them against
- * published values to 1e-9 and the chain, measured on our own planes, against their product. */
+ * Frequencies are cycles per pixel of the image; lengths are pixels. tests/sensor/test_mtf.c compares them with
+ * published values to 1e-9, and the chain, measured on rendered planes, with their product. */
 #ifndef SENSOR_DETECTOR_MTF_H
 #define SENSOR_DETECTOR_MTF_H
 
@@ -18,17 +18,17 @@ double mtf_gauss(double sigma_px, double f_cyc_px);
 typedef struct MtfChain {
     double cutoff_cyc_px;  /* pitch / (wavelength x f-number); INFINITY: no diffraction */
     double obscuration;
-    double footprint_px;   /* side of the square that a detector sees; 1: the whole pixel */
-    int    places;         /* along a row of a pixel, or a column, that the picture has averaged already, 1 .. */
+    double footprint_px;   /* side of the sensitive square; 1: the whole pixel */
+    int    places;         /* sample positions per row or column of a pixel that the renderer has averaged, 1 .. */
     double smear_px[2];    /* of the line of sight within the integration time: column, row */
-    double jitter_px;      /* rms a direction, within the integration time */
+    double jitter_px;      /* rms per axis, within the integration time */
 } MtfChain;
 
-/* What the optics pass at (fx, fy), |f| <= 0.5. */
+/* Transfer of the optics at (fx, fy), |f| <= 0.5. */
 double mtf_optics(const MtfChain *chain, double fx, double fy);
-/* What the footprint passes on top of what the renderer's own averaging has taken away already. n evenly spaced
- * places pass sin(pi f) / (n sin(pi f / n)): nothing is taken by one, the whole sinc by many, and this is the
- * quotient. Exact along rows and columns. For a footprint of a whole pixel that is sinc(f / n). */
+/* Transfer of the footprint divided by that of the renderer's averaging: n evenly spaced sample positions
+ * pass sin(pi f) / (n sin(pi f / n)), from 1 for one to the sinc for many. Exact along rows and columns. For a
+ * footprint of a whole pixel that is sinc(f / n). */
 double mtf_footprint(const MtfChain *chain, double fx, double fy);
 double mtf_smear(const MtfChain *chain, double fx, double fy);
 double mtf_jitter(const MtfChain *chain, double fx, double fy);

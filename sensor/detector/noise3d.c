@@ -1,3 +1,4 @@
+/* sensor/detector/noise3d.c: three-dimensional noise: generation and estimation. */
 #include "sensor/detector/noise3d.h"
 
 #include <stdlib.h>

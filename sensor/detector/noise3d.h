@@ -1,7 +1,7 @@
-/* sensor/detector/noise3d.h: three-dimensional noise: time, row (v) and column (h), alone and together.
+/* sensor/detector/noise3d.h: three-dimensional noise: components of time, row (v) and column (h).
  *
- * Seven independent components; each is a function of (seed, stream) and of those of frame, row and column that
- * its name has: v, h and vh are fixed patterns. Source: D'Agostino & Webb, "Three-dimensional analysis framework
+ * Seven independent components; each is a function of (seed, stream) and of the axes in its name, of frame, row and
+ * column: v, h and vh are fixed patterns. Source: D'Agostino & Webb, "Three-dimensional analysis framework
  * and measurement methodology for imaging system noise", SPIE 1488 (1991). */
 #ifndef SENSOR_DETECTOR_NOISE3D_H
 #define SENSOR_DETECTOR_NOISE3D_H
@@ -17,7 +17,7 @@ typedef struct Noise3d {
 
 /* Standard normal of one component. stream < 2^16; frame, row, column >= 0. */
 double noise3d_unit(NoiseAxis axis, uint64_t seed, uint32_t stream, int frame, int row, int column);
-/* The sum of all seven at one place. */
+/* The sum of all seven at one pixel of one frame. */
 double noise3d_at(const Noise3d *noise, uint64_t seed, uint32_t stream, int frame, int row, int column);
 
 /* plane += the components v, h and vh; plane is [height][width]. */
@@ -26,8 +26,8 @@ void noise3d_add_fixed(float *plane, int width, int height, const Noise3d *noise
 void noise3d_add_moving(float *plane, int width, int height, const Noise3d *noise, uint64_t seed, uint32_t stream,
                         int frame, double *columns);
 
-/* Unbiased estimate from cube [frames][rows][columns], each at least 2: directional averages, with the share that the
- * components below them leave in an average taken off (tests/sensor/test_noise3d.c). A variance estimated below 0 gives
+/* Unbiased estimate from cube [frames][rows][columns], each at least 2: directional averages, minus the share that
+ * other components leave in an average (tests/sensor/test_noise3d.c). A variance estimated below 0 gives
  * 0. STATUS_NO_MEMORY. */
 Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, int columns);
 

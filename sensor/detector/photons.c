@@ -1,3 +1,4 @@
+/* sensor/detector/photons.c: in-band photon radiance, electrons, and noise-equivalent temperature difference. */
 #include "sensor/detector/photons.h"
 
 #include "render/light/planck.h"

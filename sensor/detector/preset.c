@@ -1,3 +1,4 @@
+/* sensor/detector/preset.c: reads rows of etc/sensors.csv. */
 #include "sensor/detector/preset.h"
 
 #include "render/air/atmosphere.h"

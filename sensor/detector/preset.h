@@ -14,7 +14,7 @@ typedef struct SensorPreset {
     double         width_px, height_px, hfov_deg;
     double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/lens.h); R and B over G, less 1 */
     PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */
-    double         tdi;                /* stages whose electrons are added; 0 or 1: none are */
+    double         tdi;                /* stages whose electrons are summed; 0 or 1: no TDI */
     double         obscuration, footprint, jitter_px;
     bool           auto_exposure;
     double         dark_e_s;
@@ -28,19 +28,19 @@ typedef struct SensorPreset {
     bool           smear;              /* motion within the integration time, and between lines */
 } SensorPreset;
 
-/* The row of that name. Logs file, line, column, value and range of what is wrong; of an unknown name, what there
- * is. */
+/* The row of that name. On error logs file, line, column, value and range; for an unknown name the known
+ * ones. */
 Status preset_read(SensorPreset *out, const char *path, const char *name);
 /* Whether a table has a row of that name. */
 /* Every row of a table is read; the first that is wrong is logged. */
 Status preset_check(const char *path);
 Status preset_has(bool *has, const char *path, const char *name);
-/* What the converter gets: tdi stages look one after another at the same place, so that light and dark current add
- * up, and the noise of their reading as squares: NEdT is the root of their number better. */
+/* The detector seen by the converter: tdi stages integrate the same point one after another, so that light and dark
+ * current add, read noise adds in squares, and NETD improves by the root of their number. */
 PhotonDetector preset_photons(const SensorPreset *preset);
-/* After fields were changed by hand. */
+/* After fields were changed by settings. */
 void   preset_refresh(SensorPreset *preset);
-/* Edges of a band in wavelength, as the renderer has them. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */
+/* Edges of a band in wavelength, as in the renderer. Channel 0 .. 2 of OPTICAL_RGB: R G B; -1: the whole. */
 void   preset_band(double *low_m, double *high_m, Band band, OpticalChannels optical, int channel);
 
 #endif

@@ -1,3 +1,4 @@
+/* sensor/detector/quantise.c: quantisation to raw counts and to display values. */
 #include "sensor/detector/quantise.h"
 
 void quantise_counts(uint16_t *out, const float *in, size_t count, double step, uint16_t full)

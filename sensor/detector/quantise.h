@@ -1,6 +1,6 @@
-/* sensor/detector/quantise.h: electrons to counts, and anything to what a screen shows.
+/* sensor/detector/quantise.h: electrons to raw counts, and values to display values.
  *
- * Pure functions on planes, no allocation. NaN shows as 0, -inf as 0, +inf as full scale. */
+ * Pure functions on planes, no allocation. NaN and -inf give 0, +inf full scale. */
 #ifndef SENSOR_DETECTOR_QUANTISE_H
 #define SENSOR_DETECTOR_QUANTISE_H
 
@@ -11,8 +11,9 @@ void quantise_counts(uint16_t *out, const float *in, size_t count, double step, 
 
 /* Quantisation to config->bits: monotone, saturating, rounding to nearest. out: uint8_t or uint16_t [count]. */
 void detector_display(void *out, const float *in, size_t count, const DetectorConfig *config, DetectorLevel level);
-/* Three planes to RGB interleaved. The level is that of their mean; a pixel's colours keep their ratios (a black level
- * taken off each channel would turn haze into colour), also beyond full scale. out: uint8_t or uint16_t [3 * count]. */
+/* Three planes to RGB interleaved. The level is that of their mean; the colour ratios of a pixel are preserved (a
+ * black level subtracted per channel would colour haze), also beyond full scale. out: uint8_t or uint16_t [3 *
+ * count]. */
 void detector_display_rgb(void *out, const float *const in[3], size_t count, const DetectorConfig *config,
                           DetectorLevel level);
 

@@ -1,3 +1,4 @@
+/* sensor/detector/scan.c: time of each pixel of a scanned image, resampling in motion, and noise along lines. */
 #include "sensor/detector/scan.h"
 
 double scan_time_s(const Scan *scan, int width, int height, double column_px, int row)

@@ -1,4 +1,4 @@
-/* sensor/detector/sheet.c: a sensor's data sheet, line by line, and what follows from its entries. */
+/* sensor/detector/sheet.c: parses a sensor's data sheet, and derives a preset from its entries. */
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>
@@ -88,12 +88,13 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
         k = strcmp(key, "name") == 0 ? name_entry : strcmp(key, "sensor_type") == 0 ? type_entry : all_entries;
     if (k == all_entries) {
         text_escape(safe, sizeof safe, key, strnlen(key, 40));
-        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h lists them, etc/sensors/example_flir2.sheet shows them", lines->path, line,
+        log_error("sheet: %s:%d: unknown key '%s'; sensor/detector/sheet.h lists them, "
+                  "etc/sensors/example_flir2.sheet shows them", lines->path, line,
                   safe);
         return STATUS_BAD_VALUE;
     }
     if (lines->of[k]) {
-        log_error("sheet: %s:%d: %s is given twice, in line %d already", lines->path, line, key, lines->of[k]);
+        log_error("sheet: %s:%d: %s is given twice, first in line %d", lines->path, line, key, lines->of[k]);
         return STATUS_BAD_VALUE;
     }
     lines->of[k] = line;
@@ -122,7 +123,7 @@ static Status read_entry(Sheet *s, Lines *lines, int line, const char *key, cons
     return STATUS_OK;
 }
 
-/* Splits a line in place; comment and line end are gone. More than three words: the fourth is said. */
+/* Splits a line in place, without comment and line end. With more than three words the fourth is reported. */
 static Status read_line(Sheet *s, Lines *lines, int line, char *text)
 {
     char *word[4] = {NULL}, *save = NULL;
@@ -136,7 +137,7 @@ static Status read_line(Sheet *s, Lines *lines, int line, char *text)
     return read_entry(s, lines, line, word[0], word[1], word[2]);
 }
 
-/* Whether all that the kind of sensor needs is there, and nothing that it does not have. */
+/* Checks that all entries of the sensor type are given, and no others. */
 static Status check_entries(Sheet *s, const Lines *lines)
 {
     for (int k = name_entry; k < all_entries; k++)
@@ -147,7 +148,7 @@ static Status check_entries(Sheet *s, const Lines *lines)
     const unsigned not_ours = strcmp(s->sensor_type, "staring") == 0 ? parallel_only : staring_only;
     for (int k = 0; k < entry_count; k++) {
         if (entries[k].flags & not_ours && lines->of[k]) {
-            log_error("sheet: %s:%d: %s does not belong to a %s sensor", lines->path, lines->of[k], entries[k].key,
+            log_error("sheet: %s:%d: %s does not apply to a %s sensor", lines->path, lines->of[k], entries[k].key,
                       s->sensor_type);
             return STATUS_BAD_VALUE;
         }
@@ -170,7 +171,7 @@ static Status check_entries(Sheet *s, const Lines *lines)
     return STATUS_OK;
 }
 
-/* ---- what follows ----------------------------------------------------------------------------- */
+/* ---- the preset ----------------------------------------------------------------------------- */
 
 static Status choose_band(Band *band, const Sheet *s, const char *path)
 {
@@ -221,7 +222,7 @@ static Status raster(SensorPreset *p, const Sheet *s, const char *path)
     return STATUS_OK;
 }
 
-/* Electrons of a stage that the sheet's D* calls noise, at its peak, the cut-off: D* = sqrt(area / 2 t) / NEP. */
+/* Noise electrons of a stage from D* at its peak, the cut-off wavelength: D* = sqrt(area / 2 t) / NEP. */
 static double d_star_noise_e(const Sheet *s, double integration_s)
 {
     static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0;
@@ -230,7 +231,7 @@ static double d_star_noise_e(const Sheet *s, double integration_s)
     return s->qe * nep_w * integration_s * 1e-6 * s->cut_off_um / (h_j_s * c_mps);
 }
 
-/* The reading's noise is what the sheet's leaves beside that of photons, dark current and steps. */
+/* Read noise: the noise of the sheet minus that of photons, dark current and quantisation. */
 static Status noise_of_reading(SensorPreset *p, const Sheet *s, const char *path)
 {
     p->photons.read_e = 0;
@@ -248,7 +249,7 @@ static Status noise_of_reading(SensorPreset *p, const Sheet *s, const char *path
                   path, s->netd_k, p->bits, step_e, sqrt(open_e2) / per_k);
         return STATUS_BAD_VALUE;
     }
-    /* a D* beyond that was measured before a colder background */
+    /* a higher D* was measured against a colder background */
     p->photons.read_e = sqrt(fmax(wanted_e2 - open_e2, 0) / stages);
     if (p->photons.well_e > 1.2 * (signal_e + d.dark_e)) return STATUS_OK;
     log_error("sheet: %s: 300 K gives %.4g electrons, which fills well_capacity=%g; shorten integration_time", path,
@@ -271,7 +272,7 @@ static Status build(SensorPreset *out, const Sheet *s, const char *path)
     strcpy(p.name, s->name);
     p.photons.f_number      = s->f_number;
     p.photons.transmission  = s->transmission;
-    p.photons.qe            = s->qe * p.footprint * p.footprint; /* of a pixel's photons, or of more than a pixel's */
+    p.photons.qe            = s->qe * p.footprint * p.footprint; /* relative to the photons on a whole pixel */
     p.photons.integration_s = isnan(s->integration_us) ? p.scan.line_s : 1e-6 * s->integration_us;
     for (int k = 0; k < 6; k++) p.ratio.sigma[axis[k]] = s->noise[k];
     preset_refresh(&p);
@@ -295,7 +296,7 @@ Status sheet_read(SensorPreset *out, const char *path)
     if (status != STATUS_OK) return status;
     int line = 1;
     if (strlen(text) != octets) {
-        log_error("sheet: %s: holds a NUL octet; it is no text", path);
+        log_error("sheet: %s: contains a NUL octet; not a text file", path);
         status = STATUS_BAD_VALUE;
     }
     for (char *at = text; status == STATUS_OK && at; at = next, line++) {

@@ -35,8 +35,8 @@
  *   rms_motion               mrad          random image motion, a direction; 0
  *   high_pass_3db_cuton      Hz            parallel: of the AC coupling; 0
  *
- * Source of the entries: Scott & D'Agostino, "NVEOD FLIR92 thermal imaging systems performance model", SPIE 1689 (1992);
- * those of its display and observer are no part of a sensor here. */
+ * Source of the entries: Scott & D'Agostino, "NVEOD FLIR92 thermal imaging systems performance model", SPIE 1689
+ * (1992); those of its display and observer are no part of a sensor here. */
 #ifndef SENSOR_DETECTOR_SHEET_H
 #define SENSOR_DETECTOR_SHEET_H
 

@@ -1,4 +1,4 @@
-/* sensor/detector/subpixel.c: what whole pixels get wrong of small targets, from their cells. */
+/* sensor/detector/subpixel.c: corrects small targets for their subpixel positions, from their cells. */
 #include "sensor/detector/subpixel.h"
 
 #include "sensor/detector/blur.h"
@@ -11,11 +11,11 @@ enum {
     nodes_per_px = 8,
     reach_px = 8,                        /* of the difference of point spreads, each way */
     side = 2 * reach_px + 1,
-    period_px = 32,                      /* of both point spreads as they are computed: their tails beyond fold */
+    period_px = 32,                      /* period of both computed point spreads; tails beyond are aliased */
     fine = period_px * nodes_per_px,     /* samples of the continuous one */
     fine_half = fine / 2 + 1, coarse_half = period_px / 2 + 1,
     phases = nodes_per_px * nodes_per_px,
-    /* nodes of the pixels that the largest small target touches, which is one more than its length, and one beyond each
+    /* nodes of the pixels covered by the largest small target, its length plus one, and one beyond each
      * end */
     most_nodes = (small_target_px + 3) * (small_target_long_px + 3) * phases,
     most_shares = nodes_per_px + 2,      /* nodes that share what lies within one pixel */
@@ -27,7 +27,7 @@ typedef struct Kernel {
 
 struct SubPixel {
     MtfChain      chain;
-    double        smear_px[2];   /* that the kernels are for; NaN: none yet */
+    double        smear_px[2];   /* smear of the present kernels; NaN: none yet */
     double       *true_pass;     /* [fine][fine_half]: optics, footprint, jitter; over the nodes' own and the period */
     double       *pixel_pass;    /* [period_px][coarse_half]: what the blur passes without smear, over the period */
     double       *fine_value;    /* [fine][fine]: continuous point spread, px^-2 */
@@ -38,10 +38,10 @@ struct SubPixel {
     double       *node;          /* [most_nodes] */
 };
 
-/* Frequency of a place in a transform of n places, period_px long. */
+/* Frequency of an index of a transform of n points, period_px long. */
 static double frequency(int k, int n) { return (double)(k <= n / 2 ? k : k - n) / period_px; }
 
-/* A target's light is shared between nodes by hats 2 / nodes_per_px wide. */
+/* A target's light is distributed to nodes by hat functions 2 / nodes_per_px wide. */
 static double hat_pass(double f)
 {
     const double sinc = mtf_sinc(f / nodes_per_px);
@@ -115,7 +115,7 @@ void subpixel_destroy(SubPixel *s)
 
 /* ---- the kernels of a smear -------------------------------------------------------------------- */
 
-/* At half the rate of samples the frequencies f and -f are one: what an oblique smear passes of the two is averaged. */
+/* At the Nyquist frequency f and -f are the same: the transfer of an oblique smear is averaged over both. */
 static double smear_pass(const double smear_px[2], double fx, double fy, bool both)
 {
     const double along = smear_px[0] * fx, down = smear_px[1] * fy;
@@ -156,7 +156,7 @@ static void make_kernels(SubPixel *s, const double smear_px[2])
 
 /* ---- cells onto nodes -------------------------------------------------------------------------- */
 
-/* Integral of a node's hat from far below to t node distances beyond it; the hat's own integral is 1. */
+/* Integral of a node's hat function up to t node distances beyond it; its total integral is 1. */
 static double hat_below(double t)
 {
     if (t <= -1) return 0;
@@ -169,8 +169,8 @@ typedef struct Shares {
     double share[most_shares]; /* px that go to each node */
 } Shares;
 
-/* What each node gets of from .. to, px, within one pixel. Nodes are at whole multiples of 1 / nodes_per_px; those beyond
- * the picture's edge leave theirs to the last within. */
+/* Share of each node in from .. to, px, within one pixel. Nodes are at multiples of 1 / nodes_per_px; shares beyond the
+ * edge of the image go to the last node within. */
 static void share_out(Shares *s, double from_px, double to_px, int size_px)
 {
     const double from = from_px * nodes_per_px, to = to_px * nodes_per_px;
@@ -206,7 +206,7 @@ static double electrons_of(const PhotonTable *photons, double exposure, float ra
     return isfinite(e) ? e : 0;
 }
 
-/* The cells' electrons less those of what is behind them. */
+/* Electrons of the cells minus those of the background behind them. */
 static void share_target(SubPixel *s, const Grid *g, const SmallTarget *t, int plane, const PhotonTable *photons,
                          double exposure, int width, int height)
 {

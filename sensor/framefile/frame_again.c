@@ -5,9 +5,12 @@
 
 /* ---- what came out ------------------------------------------------------------------------------ */
 
+/* Of a complex one the magnitude. */
 static double value_at(const Plane *plane, size_t i)
 {
+    const float *part = plane->values;
     switch (plane->type) {
+    case PLANE_C64: return hypot((double)part[2 * i], (double)part[2 * i + 1]);
     case PLANE_F32: return (double)((const float *)plane->values)[i];
     case PLANE_U32: return ((const uint32_t *)plane->values)[i];
     case PLANE_F64: break;
@@ -33,16 +36,14 @@ static void measure(FramePlane *out, const Plane *plane)
     out->mean = out->finite > 0 ? sum / out->finite : 0;
 }
 
-Status frame_made(FrameMade *out, const FrameFiles *files)
+Status frame_made(FrameMade *out, const FrameArray *from, int count)
 {
-    Plane  plane[frame_planes_most];
-    char   name[frame_planes_most][32];
-    *out             = (FrameMade){0};
-    out->plane_count = frame_files_planes(plane, name, files);
-    Status status    = frame_files_hash(out->sha256, files);
-    for (int i = 0; i < out->plane_count && status == STATUS_OK; i++) {
+    Plane plane[frame_max_planes] = {0};
+    *out = (FrameMade){.plane_count = count};
+    for (int i = 0; i < count; i++) plane[i] = frame_plane(out->plane[i].name, &from[i]);
+    Status status = plane_hash(out->sha256, plane, count);
+    for (int i = 0; i < count && status == STATUS_OK; i++) {
         FramePlane *p = &out->plane[i];
-        memcpy(p->name, name[i], sizeof p->name);
         measure(p, &plane[i]);
         status = plane_hash(p->sha256, &plane[i], 1);
     }
@@ -63,9 +64,9 @@ Status frame_again(FrameAgain *out, const FrameFile *file, const Snapshot *snaps
     Status status     = frame_light(&air, &out->sun, r_host_from_enu, world, config, &at, pool, arena);
     if (status == STATUS_OK) status = render(&out->picture, world, snapshot, &request, &air, pool, arena);
     if (status != STATUS_OK) return status;
-    turn_normals(&out->picture, r_host_from_enu);
-    return frame_made(&out->made, &(FrameFiles){.config = config, .world = world, .picture = &out->picture,
-                                                .snapshot = snapshot, .request = &request});
+    if (out->picture.normal[0]) turn_normals(&out->picture, r_host_from_enu);
+    FrameArray plane[frame_max_planes];
+    return frame_made(&out->made, plane, frame_planes(plane, &out->picture, &request));
 }
 
 /* ---- compared ----------------------------------------------------------------------------------- */

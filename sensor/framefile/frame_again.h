@@ -3,16 +3,16 @@
 #define SENSOR_FRAMEFILE_FRAME_AGAIN_H
 
 #include "sensor/framefile/frame_file.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame.h"
 
 /* What came out: of one picture, as a frame file lists it. */
 typedef struct FrameMade {
     char       sha256[sha256_text_size];
     int        plane_count;
-    FramePlane plane[frame_planes_most];
+    FramePlane plane[frame_max_planes];
 } FrameMade;
 
-Status frame_made(FrameMade *out, const FrameFiles *files);
+Status frame_made(FrameMade *out, const FrameArray *plane, int count);
 
 typedef struct FrameAgain {
     Picture   picture;

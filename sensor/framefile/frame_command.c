@@ -6,6 +6,7 @@
 #include "sensor/commands/overwrite.h"
 #include "sensor/framefile/frame_again.h"
 #include "sensor/framefile/frame_scene.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/publish/records.h"
 #include "sensor/truth/frame_error.h"
 

@@ -317,8 +317,8 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
 void frame_fields_planes(Fields *f, FrameFile *file)
 {
     field_chars(f, "frame sha256", file->frame_sha256, sizeof file->frame_sha256);
-    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 129,
-                     frame_planes_most))
+    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 161,
+                     frame_max_planes))
         return;
     for (int i = 0; i < file->plane_count && fields_good(f); i++) {
         FramePlane *p = &file->plane[i];

@@ -6,9 +6,9 @@
 #ifndef SENSOR_FRAMEFILE_FRAME_FILE_H
 #define SENSOR_FRAMEFILE_FRAME_FILE_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "sensor/framefile/chunks.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/settings/tables_used.h"
 #include "sensor/truth/truth.h"
@@ -25,7 +25,7 @@ typedef struct FrameModel {
 
 /* What came out. The figures are of the finite values alone: by how much a plane differs when its hash does. */
 typedef struct FramePlane {
-    char   name[32];                 /* lwir/Y, truth/range_m ... as hashes of frames name them */
+    char   name[frame_plane_name_size]; /* lwir/Y, truth/range_m ... as hashes of frames name them */
     char   sha256[sha256_text_size]; /* of this plane by itself (plane_hash) */
     double finite, mean, low, high;
 } FramePlane;

@@ -52,22 +52,40 @@ static Status list_models(FrameFile *file, const Catalog *catalog, Arena *arena)
     return status;
 }
 
+/* The nodes of all entities: the snapshot of a frame poses only those that are drawn. */
+static Status pose_nodes(FrameFile *file, const Catalog *catalog, Arena *arena)
+{
+    Snapshot *s = &file->snapshot;
+    if (s->node) return STATUS_OK;
+    const size_t nodes = (size_t)s->node_count + 1;
+    NodePose    *pose  = arena_alloc(arena, nodes, sizeof *pose);
+    double      *value = arena_alloc(arena, nodes, sizeof *value);
+    if (!pose || !value) return STATUS_NO_MEMORY;
+    for (int e = 0; e < s->count; e++) {
+        const int m = s->entity[e].model;
+        if (m >= 0) snapshot_pose(pose + s->entity[e].first_node, value, s, e, catalog_model(catalog, m));
+    }
+    s->node = pose;
+    return STATUS_OK;
+}
+
 static Status gather(FrameFile *file, FrameMade *made, char **settings, const FrameSave *save, Arena *arena)
 {
-    const FrameFiles *files = save->files;
-    char              catalog[path_size];
-    *file = (FrameFile){.version = PITVIPER_VERSION, .host = files->host, .config_sha256 = files->config_sha256,
-                        .frame = files->frame, .time_s = files->time_s, .unix_s = save->unix_s,
-                        .snapshot = *files->snapshot, .request = *files->request, .eye = *save->eye,
-                        .rate_px_s = {files->rate_px_s[0], files->rate_px_s[1]},
-                        .at_limit = save->record->gimbal_at_limit, .all_on_ground = save->all_on_ground};
-    memcpy(file->r_ecef_from_body, save->record->r_ecef_from_body, sizeof file->r_ecef_from_body);
-    landscape_parts(&file->ground, files->world->landscape);
+    const Frame *f = save->frame;
+    char         catalog[path_size];
+    *file = (FrameFile){.version = f->provenance.version, .host = f->host,
+                        .config_sha256 = f->provenance.config_sha256, .frame = f->number, .time_s = f->time_s,
+                        .unix_s = save->unix_s, .snapshot = f->seen.snapshot, .request = f->request,
+                        .eye = *save->eye, .rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                        .at_limit = f->record.gimbal_at_limit, .all_on_ground = save->all_on_ground};
+    memcpy(file->r_ecef_from_body, f->record.r_ecef_from_body, sizeof file->r_ecef_from_body);
+    landscape_parts(&file->ground, f->world->landscape);
     if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
-    Status status = frame_tables(&file->tables, files->config, catalog);
-    if (status == STATUS_OK) status = write_settings(settings, files->config);
-    if (status == STATUS_OK) status = list_models(file, files->world->catalog, arena);
-    if (status == STATUS_OK) status = frame_made(made, files);
+    Status status = frame_tables(&file->tables, save->config, catalog);
+    if (status == STATUS_OK) status = write_settings(settings, save->config);
+    if (status == STATUS_OK) status = pose_nodes(file, f->world->catalog, arena);
+    if (status == STATUS_OK) status = list_models(file, f->world->catalog, arena);
+    if (status == STATUS_OK) status = frame_made(made, f->seen.plane, f->seen.plane_count);
     if (status != STATUS_OK) return status;
     file->settings    = *settings;
     file->plane       = made->plane;
@@ -77,12 +95,12 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
 }
 
 /* Where the frame's rays meet the ground, or what stands on it; the eye, the origin, and smoke on the ground. */
-static Status gather_places(GroundCutout *out, const FrameFiles *files, Arena *arena)
+static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 {
-    const Picture    *picture = files->picture;
-    const View       *view = &files->request->view;
-    const Snapshot   *snapshot = files->snapshot;
-    const LocalFrame *frame = &files->world->frame;
+    const Picture    *picture = &f->seen.picture;
+    const View       *view = &f->request.view;
+    const Snapshot   *snapshot = &f->seen.snapshot;
+    const LocalFrame *frame = &f->world->frame;
     const size_t      most = (size_t)picture->width * (size_t)picture->height + (size_t)snapshot->puff_count + 2;
     double (*place)[2] = arena_alloc(arena, most, sizeof *place);
     int n = 1; /* the first is the origin */
@@ -112,22 +130,22 @@ static Status gather_places(GroundCutout *out, const FrameFiles *files, Arena *a
 /* Whether the octets give the same planes. */
 static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Arena *arena)
 {
-    const FrameFiles *files = save->files;
-    FrameFile         file;
-    FrameAgain       *again = arena_alloc(arena, 1, sizeof *again);
-    Landscape         landscape = {0};
-    World             world = {0};
-    const char       *why = NULL;
+    const Frame *f = save->frame;
+    FrameFile    file;
+    FrameAgain  *again = arena_alloc(arena, 1, sizeof *again);
+    Landscape    landscape = {0};
+    World        world = {0};
+    const char  *why = NULL;
     *same = false;
     if (!again) return STATUS_NO_MEMORY;
     Status status = frame_file_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
     if (status == STATUS_OK) status = landscape_from_parts(&landscape, &why, &file.ground);
     if (status == STATUS_BAD_VALUE && why) log_error("frame: the ground of the file just made: %s", why);
     if (status == STATUS_OK)
-        status = frame_world(&world, files->config, files->world->catalog, &landscape, &file.ground.frame, "avx2");
+        status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
     if (status == STATUS_OK) {
-        file.snapshot.effect_table = files->snapshot->effect_table;
-        status = frame_again(again, &file, &file.snapshot, &world, files->config, false, save->pool, arena);
+        file.snapshot.effect_table = f->seen.snapshot.effect_table;
+        status = frame_again(again, &file, &file.snapshot, &world, save->config, false, save->pool, arena);
     }
     if (status == STATUS_OK) *same = frame_differences(&file, &again->made, false) == 0;
     world_close(&world);
@@ -137,7 +155,8 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
 
 /* The smallest of a few cut-outs that gives the same bits. reach_m: its own. What is seen directly is in the first;
  * glossy surfaces mirror hills that are farther away than what the picture shows. */
-static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *file, const FrameSave *save, Arena *gathered)
+static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *file, const FrameSave *save,
+                          Arena *gathered)
 {
     static const double reaches_m[][2] = {
         {100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
@@ -145,7 +164,7 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
     Arena              *arena = arena_create();
     bool                same = false;
     Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK && !file->ground.invented) status = gather_places(&kept, save->files, gathered);
+    if (status == STATUS_OK && !file->ground.invented) status = gather_places(&kept, save->frame, gathered);
     for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
         if (file->ground.invented && isfinite(reaches_m[r][0])) continue;
         *reach_m = kept.reach_m = reaches_m[r][0];
@@ -187,7 +206,7 @@ Status frame_save(const FrameSave *save)
     FrameFile *file = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
     FrameMade *made = arena ? arena_alloc(arena, 1, sizeof *made) : NULL;
     Status     status = file && made ? STATUS_OK : STATUS_NO_MEMORY;
-    if (snprintf(path, sizeof path, "%s/frame_%06d.pvf", save->files->out, save->files->frame) >= (int)sizeof path)
+    if (snprintf(path, sizeof path, "%s/frame_%06d.pvf", save->out, save->frame->number) >= (int)sizeof path)
         status = STATUS_BAD_VALUE;
     if (status == STATUS_OK) status = gather(file, made, &settings, save, arena);
     if (status == STATUS_OK) status = pack_proved(&bytes, &reach_m, file, save, arena);

@@ -2,16 +2,17 @@
 #ifndef SENSOR_FRAMEFILE_FRAME_SAVE_H
 #define SENSOR_FRAMEFILE_FRAME_SAVE_H
 
-#include "sensor/node/frame_files.h"
-#include "sensor/publish/records.h"
+#include "sensor/publish/frame.h"
+#include "sensor/settings/config.h"
 
 typedef struct FrameSave {
-    const FrameFiles  *files;   /* the frame as it was made; its planes are compared with what the file gives */
-    const FrameRecord *record;
-    const EyeState    *eye;
-    double             unix_s;  /* Unix time of exercise time 0 */
-    bool               all_on_ground;
-    Pool              *pool;
+    const Frame    *frame;  /* complete, with planes of truth; its planes are compared with those of the file */
+    const Config   *config;
+    const char     *out;    /* folder; exists */
+    const EyeState *eye;
+    double          unix_s; /* Unix time of exercise time 0 */
+    bool            all_on_ground;
+    Pool           *pool;
 } FrameSave;
 
 /* Writes it only after rendering it again from its own octets to the same bits; with ground of files it takes more of

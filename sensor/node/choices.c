@@ -1,3 +1,4 @@
+/* sensor/node/choices.c: host, aim, rate, time of day and frame, where the configuration leaves them open. */
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
 
@@ -53,9 +54,7 @@ static double path_m(const Track *track)
 
 const Shot *choice_shot_of(const Survey *survey, DisEntityId munition)
 {
-    for (int i = 0; i < survey->shot_count; i++)
-        if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return &survey->shot[i];
-    return NULL;
+    return survey_shot(survey, munition);
 }
 
 static const char *who(char out[who_size], const Survey *survey, DisEntityId id)

@@ -4,7 +4,7 @@
 #ifndef SENSOR_NODE_CHOICES_H
 #define SENSOR_NODE_CHOICES_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/landscape.h"

@@ -2,7 +2,7 @@
  * exercise says of it; and who is set onto it. */
 #include "sensor/node/choices.h"
 
-#include "entities/models/contact.h"
+#include "entities/table/contact.h"
 #include "sensor/node/ground_evidence.h"
 #include "terrain/landscape/landscape_import.h"
 

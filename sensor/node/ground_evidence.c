@@ -2,7 +2,7 @@
 #include "sensor/node/ground_evidence.h"
 
 #include "dis/enumerations.h"
-#include "entities/models/contact.h"
+#include "entities/table/contact.h"
 #include "sensor/node/choices.h"
 
 #include <stdlib.h>
@@ -51,7 +51,7 @@ static bool is_aircraft(DisEntityType type)
     return type.kind == dis_kind_platform && type.domain == dis_domain_air;
 }
 
-/* Carried or falling, as entities/models/contact.h has it. */
+/* Carried or falling, as entities/table/contact.h has it. */
 static bool goes_through_the_air(const Track *track, const TrackPoint *point)
 {
     double up[3], v = v3_length(point->v_ecef_mps);

@@ -10,7 +10,7 @@
 #ifndef SENSOR_NODE_GROUND_EVIDENCE_H
 #define SENSOR_NODE_GROUND_EVIDENCE_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
 #include "terrain/landscape/landscape.h"
 

@@ -50,6 +50,7 @@ typedef struct HealthSample {
     uint64_t   frames, missing; /* made; due since the last of them, and the host was not there */
     double     frame_s;         /* of the last frame, or when making began */
     int        entities;        /* in the table */
+    uint64_t   over_rate;       /* reports of new ones that came too fast */
     int        others;          /* of the last frame: but for the host */
     double     nearest_m;       /* of them, from the eye; NaN: not computed */
     double     in_view_s, visible_s; /* last frame with an entity in view, with a visible part; or when making began */

@@ -1,8 +1,9 @@
+/* sensor/node/host_run.c: from what was heard to choices, a world, a session and run.json. */
 #include "sensor/node/host_run.h"
 
-#include "sensor/node/frame_files.h"
 #include "sensor/node/frame_world.h"
-#include "sensor/settings/quality.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/quality/quality.h"
 #include "sensor/node/shape_choice.h"
 
 #include <stdlib.h>
@@ -90,10 +91,11 @@ static int compare_doubles(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-static void summarise_stages(double out[session_stages][3], const SessionResult *r)
+static Status summarise_stages(double out[session_stages][3], const SessionResult *r)
 {
     double *sorted = calloc((size_t)r->listed + 1, sizeof *sorted);
-    for (int stage = 0; sorted && stage < session_stages; stage++) {
+    if (!sorted) return STATUS_NO_MEMORY;
+    for (int stage = 0; stage < session_stages; stage++) {
         for (int i = 0; i < r->listed; i++) sorted[i] = r->stage_ms[i][stage];
         qsort(sorted, (size_t)r->listed, sizeof *sorted, compare_doubles);
         out[stage][0] = sorted[r->listed / 2];
@@ -101,6 +103,7 @@ static void summarise_stages(double out[session_stages][3], const SessionResult 
         out[stage][2] = r->listed ? sorted[r->listed - 1] : 0;
     }
     free(sorted);
+    return STATUS_OK;
 }
 
 static Status write_run(const Run *run, const char *out, const char *host, const Choices *choices,
@@ -109,9 +112,13 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     char        path[path_size + 16], settings[config_text_size];
     const char *choice[choices_capacity], *hosts[session_hosts_kept];
     const char *table[tables_used_max], *table_sha256[tables_used_max];
-    double      stage_ms[session_stages][3] = {{0}};
+    double      stage_ms[session_stages][3];
     const char **hash = calloc((size_t)result->listed + 1, sizeof *hash);
-    if (!hash) return STATUS_NO_MEMORY;
+    if (!hash || summarise_stages(stage_ms, result) != STATUS_OK) {
+        log_error("%s: out of memory for run.json", options_command(&run->options));
+        free(hash);
+        return STATUS_NO_MEMORY;
+    }
 
     for (int i = 0; i < result->listed; i++) hash[i] = result->hash[i];
     config_text(settings, sizeof settings, &run->options.config);
@@ -122,7 +129,6 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
     for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
     if (result->host_count == 0) hosts[0] = host; /* still to come */
-    summarise_stages(stage_ms, result);
     for (int i = 0; i < session_stages; i++)
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
@@ -141,6 +147,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
               .entities_deactivated = result->entities.deactivated, .entities_removed = result->entities.removed,
               .entities_evicted = result->entities.evicted, .entities_refused = result->entities.refused,
+              .entities_over_rate = result->entities.over_rate, .tombstones_dropped = result->entities.tombstones_dropped,
+              .shots_forgotten = result->shots_forgotten, .munitions_forgotten = result->munitions_forgotten,
               .frames_crowded = result->frames_crowded, .most_left_out = result->most_left_out,
               .at_limit = result->at_limit,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,

@@ -3,14 +3,14 @@
 
 #include "dis/exercise_clock.h"
 #include "dis/udp.h"
-#include "sensor/bench/quality.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
 #include "sensor/commands/overwrite.h"
-#include "sensor/settings/quality.h"
+#include "sensor/quality/machine_factor.h"
+#include "sensor/quality/quality.h"
 #include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/publish/dis_records.h"
@@ -28,7 +28,7 @@ typedef struct Live {
     Run          run;
     DisUdp      *udp;
     LiveRecording *recording;       /* NULL: none, or closed */
-    bool         record_whole;      /* all that was heard is in it */
+    bool         record_whole;      /* all that was heard is in it, and it can be read again */
     char         where[dis_udp_where_size];
     LiveCounters counters;
     Health       health;
@@ -119,7 +119,10 @@ static void look_at_health(Live *l, const Session *session)
     if (now_s - l->health_s < 1e-9 * look_ns) return;
     l->health_s = now_s;
     read_counters(l);
-    if (session) l->health.sample.entities = session_entities(session);
+    if (session) {
+        l->health.sample.entities  = session_entities(session);
+        l->health.sample.over_rate = session_over_rate(session);
+    }
     const HealthNames names = names_of(l, session);
     health_check(&l->health, &l->counters, &names, now_s);
     if (now_s - l->shown_s < show_s) return;
@@ -238,9 +241,7 @@ static Status wait_until(bool *there, Live *l, const Session *session, Player *p
         *there = now_ns > until_ns;
         if (*there || over(l)) return STATUS_OK;
         look_at_health(l, session);
-        const int64_t         wake_ns = until_ns < now_ns + look_ns ? until_ns + 1 : now_ns + look_ns;
-        const struct timespec wake    = {(time_t)(wake_ns / 1000000000), (long)(wake_ns % 1000000000)};
-        clock_nanosleep(CLOCK_REALTIME, TIMER_ABSTIME, &wake, NULL);
+        dis_udp_sleep_until(until_ns < now_ns + look_ns ? until_ns + 1 : now_ns + look_ns);
         const Status status = feed(l, player, until_ns);
         if (status != STATUS_OK) return status;
     }
@@ -259,9 +260,13 @@ static void conclude(Live *l)
     l->counters.record_failed = live_recording_failed(l->recording);
     l->record_whole           = live_recording_close(l->recording) == STATUS_OK && l->counters.record_failed == 0;
     l->recording              = NULL;
-    if (l->record_whole) sha256_file(l->run.log_sha256, path);
-    else log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
+    if (!l->record_whole) {
+        log_error("run: the recording %s ends early: %llu datagrams and more are not in it", path,
                    (unsigned long long)l->counters.record_failed);
+    } else if (sha256_file(l->run.log_sha256, path) != STATUS_OK) {
+        log_error("run: the recording %s cannot be read again, and run.json does not name it by its hash", path);
+        l->record_whole = false;
+    }
 }
 
 /* The newest frame whose time has come, else the next: who is late leaves frames out, and queues none. */
@@ -342,7 +347,7 @@ static Status measure_machine(Live *l)
     if (!quality_wants_factor(config)) return STATUS_OK;
     if (*config->quality.table) snprintf(path, sizeof path, "%s", config->quality.table);
     else if (!etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
-    Status status = bench_machine_factor(&factor, path, l->run.options.threads);
+    Status status = machine_factor(&factor, path, l->run.options.threads);
     if (status != STATUS_OK) return status;
     snprintf(text, sizeof text, "%g", factor);
     choice_add(&l->run.choices, "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);

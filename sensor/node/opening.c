@@ -1,6 +1,7 @@
+/* sensor/node/opening.c: which datagrams a causal run makes its choices from. */
 #include "sensor/node/opening.h"
 
-#include "dis/entity_state.h"
+#include "dis/decode.h"
 
 bool opening_own(const DisDatagram *datagram, const Config *config)
 {
@@ -25,12 +26,10 @@ int opening_drop_own(DisLog *log, const Config *config)
 
 bool opening_usable(const DisHeader *header, const uint8_t *pdu)
 {
-    DisEntityState state;
-    DisDrop        why;
-    if (header->type != dis_pdu_entity_state || dis_decode_entity_state(&state, pdu, header->length) != STATUS_OK)
-        return false;
-    const float euler_rad[3] = {state.psi_rad, state.theta_rad, state.phi_rad};
-    return dis_entity_is_usable(&why, state.id, state.p_ecef, state.velocity_mps, euler_rad);
+    DisPdu  decoded;
+    DisDrop why;
+    return header->type == dis_pdu_entity_state && dis_decode(&decoded, pdu, header->length) == STATUS_OK &&
+           dis_entity_state_is_usable(&why, &decoded.entity_state);
 }
 
 bool opening_starts(DisHeader *out, const DisDatagram *datagram, const Config *config)

@@ -1,3 +1,4 @@
+/* sensor/node/player.c: PDUs in order of time into the entity table, each decoded once, when it is fed. */
 #include "sensor/node/player.h"
 
 #include "dis/enumerations.h"
@@ -10,10 +11,11 @@ enum { shots_kept = 1024, munitions_kept = 256 };
 typedef struct Event {
     double         counts_s, t_s; /* from when it counts; its own exercise time */
     uint32_t       order;
+    uint16_t       length;
+    uint8_t        type;
     bool           kept;
-    DisHeader      header;
     union {
-        const uint8_t *pdu;
+        const uint8_t *octets;
         size_t         at; /* in kept octets */
     };
 } Event;
@@ -38,6 +40,7 @@ struct Player {
     ExerciseClock *clock;
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     DisCounters    counters;
+    DisPdu         pdu;                          /* the one that is fed */
     Aimed          aimed[shots_kept];            /* rings: the latest */
     uint64_t       shots;
     Munitions      guided, unguided;
@@ -115,22 +118,25 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep)
 {
     const uint8_t *at = datagram->bytes, *pdu;
     Event          event = {.kept = keep};
+    DisHeader      header;
     player->counters.datagrams++;
-    while (dis_next_pdu(&event.header, &pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
-        if (player->exercise >= 0 && event.header.exercise != player->exercise) {
+    while (dis_next_pdu(&header, &pdu, &at, datagram->bytes + datagram->octets, &player->counters)) {
+        if (player->exercise >= 0 && header.exercise != player->exercise) {
             player->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        event.t_s = exercise_clock_pdu_time(player->clock, &event.header, pdu, datagram->capture_s);
+        event.t_s = exercise_clock_pdu_time(player->clock, &header, pdu, datagram->capture_s);
         if (isnan(event.t_s)) continue;
         note_doubts(player, keep);
         if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
         player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
         event.counts_s   = player->causal ? player->latest_s : event.t_s;
         event.order      = player->order++;
+        event.length     = header.length;
+        event.type       = header.type;
         Status status    = STATUS_OK;
-        if (keep) status = keep_octets(&event.at, player, pdu, event.header.length);
-        else event.pdu = pdu;
+        if (keep) status = keep_octets(&event.at, player, pdu, header.length);
+        else event.octets = pdu;
         if (status == STATUS_OK) status = add_event(player, &event);
         if (status != STATUS_OK) return status;
     }
@@ -153,13 +159,10 @@ static int compare_events(const void *a, const void *b)
     return p->order < q->order ? -1 : p->order > q->order;
 }
 
-static void note_fire(Player *player, const uint8_t *pdu, size_t octets)
+static void note_fire(Player *player, const DisFire *fire)
 {
-    DisFire fire;
-    if (dis_decode_fire(&fire, pdu, octets) != STATUS_OK || dis_entity_id_is_none(fire.munition) ||
-        dis_entity_id_is_none(fire.target))
-        return;
-    player->aimed[player->shots++ % shots_kept] = (Aimed){fire.munition, fire.target};
+    if (dis_entity_id_is_none(fire->munition) || dis_entity_id_is_none(fire->target)) return;
+    player->aimed[player->shots++ % shots_kept] = (Aimed){fire->munition, fire->target};
 }
 
 static bool munition_known(const Munitions *m, DisEntityId id)
@@ -169,33 +172,36 @@ static bool munition_known(const Munitions *m, DisEntityId id)
     return false;
 }
 
-/* From the octets of its velocity, three big-endian floats. */
-static bool lies(const uint8_t *velocity)
+static bool moves(const float velocity_mps[3])
 {
     double sum = 0;
-    for (int i = 0; i < 3; i++, velocity += 4) {
-        const uint32_t bits = (uint32_t)velocity[0] << 24 | (uint32_t)velocity[1] << 16 |
-                              (uint32_t)velocity[2] << 8 | velocity[3];
-        float v;
-        memcpy(&v, &bits, sizeof v);
-        sum += (double)v * (double)v;
-    }
-    return !(sum > munition_still_mps * munition_still_mps);
+    for (int i = 0; i < 3; i++) sum += (double)velocity_mps[i] * (double)velocity_mps[i];
+    return sum > munition_still_mps * munition_still_mps; /* false for NaN */
 }
 
 /* Guided ones from their first report on; others from the first in which they move. */
-static void note_munition(Player *player, const uint8_t *pdu, size_t octets)
+static void note_munition(Player *player, const DisEntityState *state)
 {
-    enum { id_octet = 12, kind_octet = 20, category_octet = 24, velocity_octet = 36 };
-    if (octets < velocity_octet + 12 || pdu[kind_octet] != dis_kind_munition ||
-        pdu[category_octet] == dis_munition_fixed)
+    const bool guided = state->type.category == dis_munition_guided;
+    if (state->type.kind != dis_kind_munition || state->type.category == dis_munition_fixed) return;
+    if (!guided && !moves(state->velocity_mps)) return;
+    Munitions *m = guided ? &player->guided : &player->unguided;
+    if (!munition_known(m, state->id)) m->id[m->count++ % munitions_kept] = state->id;
+}
+
+/* Decoded here, once: until then a PDU is its octets. */
+static void feed_event(Player *player, EntityTable *table, const Event *event)
+{
+    const uint8_t *octets = event->kept ? player->octets + event->at : event->octets;
+    DisPdu        *pdu    = &player->pdu;
+    const Status   status = dis_decode(pdu, octets, event->length);
+    if (status != STATUS_OK) {
+        if (isfinite(event->t_s)) dis_count_refused(&player->counters, event->type, status);
         return;
-    const uint8_t    *at = pdu + id_octet;
-    const DisEntityId id = {(uint16_t)(at[0] << 8 | at[1]), (uint16_t)(at[2] << 8 | at[3]),
-                            (uint16_t)(at[4] << 8 | at[5])};
-    if (pdu[category_octet] != dis_munition_guided && lies(pdu + velocity_octet)) return;
-    Munitions *m = pdu[category_octet] == dis_munition_guided ? &player->guided : &player->unguided;
-    if (!munition_known(m, id)) m->id[m->count++ % munitions_kept] = id;
+    }
+    entity_table_pdu(table, pdu, event->t_s, &player->counters);
+    if (pdu->type == dis_pdu_fire) note_fire(player, &pdu->fire);
+    if (pdu->type == dis_pdu_entity_state) note_munition(player, &pdu->entity_state);
 }
 
 void player_feed(Player *player, EntityTable *table, double t_s)
@@ -203,13 +209,8 @@ void player_feed(Player *player, EntityTable *table, double t_s)
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are by themselves */
-    for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
-        const Event   *event = &player->event[player->next];
-        const uint8_t *pdu   = event->kept ? player->octets + event->at : event->pdu;
-        entity_table_pdu(table, &event->header, pdu, event->t_s, &player->counters);
-        if (event->header.type == dis_pdu_fire) note_fire(player, pdu, event->header.length);
-        if (event->header.type == dis_pdu_entity_state) note_munition(player, pdu, event->header.length);
-    }
+    for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++)
+        feed_event(player, table, &player->event[player->next]);
     if (player->causal && player->next == player->count) { /* a live node's memory is what it has not fed */
         player->next = player->count = 0;
         player->octets_used          = 0;
@@ -268,6 +269,14 @@ bool player_munition(DisEntityId *munition, bool *guided, const Player *player, 
     if (*guided) return true;
     if (first_there(munition, &player->guided, table)) return *guided = true;
     return there || first_there(munition, &player->unguided, table);
+}
+
+static uint64_t beyond(uint64_t count, uint64_t kept) { return count > kept ? count - kept : 0; }
+
+void player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player)
+{
+    *shots     = beyond(player->shots, shots_kept);
+    *munitions = beyond(player->guided.count, munitions_kept) + beyond(player->unguided.count, munitions_kept);
 }
 
 const DisCounters *player_counters(const Player *player) { return &player->counters; }

@@ -40,6 +40,9 @@ bool   player_target(DisEntityId *target, const Player *player, DisEntityId muni
  * (category 3: mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are known. */
 bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
+/* Fire PDUs and munitions that went for newer ones, since only the latest are known. */
+void   player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
+
 const DisCounters *player_counters(const Player *player); /* everything added, and what the table refused of it */
 
 #endif

@@ -1,6 +1,7 @@
+/* sensor/node/replay.c: a recorded exercise played to pictures and truth. */
 #include "sensor/node/replay.h"
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/commands/overwrite.h"

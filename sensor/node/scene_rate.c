@@ -1,3 +1,4 @@
+/* sensor/node/scene_rate.c: how what the camera looks at moves over the picture. */
 #include "sensor/node/scene_rate.h"
 
 void turn_rate(double w_cam_rps[3], const double r_world_from_before[9], const double r_world_from_after[9],

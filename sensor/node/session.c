@@ -1,7 +1,9 @@
+/* sensor/node/session.c: one host's seeker: frames made, handed to consumers, and listed. */
 #include "sensor/node/session_private.h"
 
 #include "sensor/framefile/frame_save.h"
 #include "sensor/node/scene_rate.h"
+#include "sensor/publish/pairs.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -24,7 +26,7 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
     const Config *config = s->shared->config;
-    *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands, .truth = true,
+    *request = (RenderRequest){.view = eye->view, .bands = s->shared->bands,
                                .optical = config_optical(config),
                                .lateral = {s->shared->sensors->lateral[0], s->shared->sensors->lateral[1]},
                                .sky_samples = config->sensor.sky_samples,
@@ -37,6 +39,7 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
         request->edge_samples   = config->sensor.edge_samples;
         request->target_samples = config->sensor.target_samples;
     }
+    consumers_request(request, s->wants);
     if (s->shared->bands >> BAND_RADAR & 1) {
         double to_aim[3], range_m = 1000;
         if (eye->aim_known) {
@@ -49,139 +52,116 @@ static void make_request(RenderRequest *request, const Session *s, const Eye *ey
     }
 }
 
-typedef struct FrameDone {
-    bool           shown;
-    int            left_out;
-    char           hash[sha256_text_size];
-    double         stage_ms[session_stages];
-    RenderCounters counters;
-} FrameDone;
-
-/* Hash, picture files and the line of truth. Live, the files are handed over, and a disk that takes nothing ends
- * nothing. */
-static Status write_files(char hash[sha256_text_size], Session *s, const FrameFiles *files, FrameRecord *record)
+/* One rendering. */
+static Status look(FrameView *view, const Session *s, const RenderRequest *request, const Air *air,
+                   const double r_host_from_enu[9], Arena *arena)
 {
-    const bool live = s->shared->live;
-    Status     status = s->shared->config->publish.files && !live ? frame_files_write(hash, files, s->shared->pool)
-                                                                  : frame_files_hash(hash, files);
-    record->frame_sha256 = hash;
+    const Status status = render(&view->picture, s->shared->world, &view->snapshot, request, air, s->shared->pool, arena);
     if (status != STATUS_OK) return status;
-    if (s->writer) frame_writer_put(s->writer, files);
-    if (!live) return record_write_frame(s->truth, record);
+    if (view->picture.normal[0]) turn_normals(&view->picture, r_host_from_enu);
+    view->plane_count = frame_planes(view->plane, &view->picture, request);
+    return STATUS_OK;
+}
 
-    const bool due = patience_due(&s->truth_patience);
-    if (due) status = record_write_frame(s->truth, record);
-    patience_over(&s->truth_patience, due, due ? status : STATUS_IO);
-    clearerr(s->truth);
-    return status == STATUS_IO ? STATUS_OK : status;
+/* The same without what is aimed at, or without all. */
+static Status look_without(Frame *f, const Session *s, const Air *air, const double r_host_from_enu[9], int host)
+{
+    const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
+    f->without     = arena_alloc(f->arena, 1, sizeof *f->without);
+    if (!f->without) return STATUS_NO_MEMORY;
+    *f->without->sha256 = 0;
+    const Status status = pairs_take_away(&f->without->snapshot, &f->taken, &f->taken_count, &f->seen.snapshot, all,
+                                          s->plan.aim, host, f->arena);
+    return status == STATUS_OK ? look(f->without, s, &f->request, air, r_host_from_enu, f->arena) : status;
+}
+
+/* Targets, and how wrong the frame is. */
+static Status know_targets(Frame *f, const Session *s, const Eye *eye)
+{
+    const SessionShared *shared  = s->shared;
+    const FrameView     *seen    = &f->seen;
+    FrameRecord         *r       = &f->record;
+    Target              *target  = arena_alloc(f->arena, (size_t)seen->snapshot.count, sizeof *target);
+    TruthNoise           noise;
+    if (!target) return STATUS_NO_MEMORY;
+    frame_expose(&noise, s->chain, &seen->picture, shared->config);
+    r->target       = target;
+    r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
+                                    &noise);
+    if (s->wants & WANT_ERROR && frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request,
+                                             target, r->target_count, shared->config->models.sag_m,
+                                             shared->contact == GROUND_CONTACT_ALL))
+        r->error = &f->error;
+    return STATUS_OK;
+}
+
+static void fill_record(Frame *f, const Session *s, const Eye *eye)
+{
+    FrameRecord *r = &f->record;
+    *r = (FrameRecord){.frame = f->number, .time_s = f->time_s, .snapshot = &f->seen.snapshot,
+                       .catalog = s->shared->catalog,
+                       .host = eye->hidden >= 0 ? &f->seen.snapshot.entity[eye->hidden] : NULL, .request = &f->request,
+                       .hfov_rad = s->shared->config->sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = eye->at_limit,
+                       .scene_rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]}, .sun = &f->sun};
+    memcpy(r->p_eye_ecef, eye->state.p_ecef, sizeof r->p_eye_ecef);
+    memcpy(r->v_eye_mps, eye->state.v_ecef_mps, sizeof r->v_eye_mps);
+    memcpy(r->r_ecef_from_body, eye->r_ecef_from_body, sizeof r->r_ecef_from_body);
+    memcpy(r->r_ecef_from_cam, eye->state.r_ecef_from_cam, sizeof r->r_ecef_from_cam);
 }
 
 /* Where it is asked for: the frame as a file of its own. */
-static Status save_frame(const Session *s, const FrameFiles *files, const FrameRecord *record, const Eye *eye)
+static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
 {
     const SessionShared *shared = s->shared;
     for (int i = 0; i < shared->save_count; i++)
-        if (shared->save[i] == files->frame)
-            return frame_save(&(FrameSave){files, record, &eye->state, shared->unix_s, shared->contact == GROUND_CONTACT_ALL,
-                                           shared->pool});
+        if (shared->save[i] == f->number)
+            return frame_save(&(FrameSave){f, shared->config, s->out, &eye->state, shared->unix_s,
+                                           shared->contact == GROUND_CONTACT_ALL, shared->pool});
     return STATUS_OK;
 }
 
-static Status make_frame(FrameDone *done, Session *s, int frame, double t_s)
+/* shown: false when the host is not there. left_out: entities that are not in it. */
+static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
 {
     const SessionShared *shared = s->shared;
-    const double         start_s = wall_clock_s();
-    Snapshot             snapshot;
     Eye                  eye;
+    *shown                = false;
+    f->provenance.begun_s = wall_clock_s();
+    Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
+    if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
+    *left_out  = f->seen.snapshot.left_out;
+    f->number  = number;
+    f->time_s  = t_s;
+    f->unix_s  = shared->unix_s + t_s;
+    f->world   = shared->world;
+    memcpy(f->host, s->host_text, sizeof f->host);
 
-    *done = (FrameDone){0};
-    if (!session_host_is_there(s)) return STATUS_OK; /* nor is anything extrapolated for it */
-    Arena *arena = s->writer ? frame_writer_arena(s->writer) : s->frame_arena;
-    arena_reset(arena);
-    Status status = entity_table_snapshot(&snapshot, s->table, t_s, arena);
-    if (status != STATUS_OK) return status;
-    if (!session_eye(&eye, s, &snapshot, t_s)) return STATUS_OK;
-    done->left_out = snapshot.left_out;
-
-    Air           air;
-    Sun           sun;
-    double        r_host_from_enu[9] = {0};
-    Picture       picture;
-    RenderRequest request;
-    const FrameEye at = {shared->unix_s + t_s, {eye.state.p_ecef[0], eye.state.p_ecef[1], eye.state.p_ecef[2]}, &eye.view,
-                         shared->bands};
-    status = frame_light(&air, &sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, arena);
-    make_request(&request, s, &eye);
+    Air            air;
+    double         r_host_from_enu[9] = {0};
+    const double  *p_ecef = eye.state.p_ecef;
+    const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands};
+    status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
+    make_request(&f->request, s, &eye);
     const double posed_s = wall_clock_s();
-    if (status == STATUS_OK)
-        status = render(&picture, shared->world, &snapshot, &request, &air, shared->pool, arena);
+    if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &air, r_host_from_enu, f->arena);
+    if (status == STATUS_OK && s->wants & WANT_WITHOUT) status = look_without(f, s, &air, r_host_from_enu, eye.hidden);
     if (status != STATUS_OK) return status;
-    turn_normals(&picture, r_host_from_enu);
-
-    Target          *target = arena_alloc(arena, (size_t)snapshot.count, sizeof *target);
-    TruthNoise       noise;
-    frame_expose(&noise, s->chain, &picture, shared->config);
-    if (!target) return STATUS_NO_MEMORY;
-    const int targets = truth_targets(target, &picture, shared->world, &snapshot, &request, &eye.state, &noise);
-
-    const double      rendered_s = wall_clock_s();
-    double            rate_px_s[2];
-    rate_of_scene(rate_px_s, &eye, &picture);
-    const FrameFiles  files  = {.out = s->out, .config = shared->config, .world = shared->world, .picture = &picture,
-                                .snapshot = &snapshot, .request = &request, .host = s->host_text,
-                                .config_sha256 = shared->config_sha256, .frame = frame, .time_s = t_s,
-                                .unix_s = shared->unix_s + t_s, .png = shared->config->publish.png, .chain = s->chain,
-                                .level = s->level, .rate_px_s = {rate_px_s[0], rate_px_s[1]}};
-    FrameRecord       record = {.frame = frame, .time_s = t_s, .snapshot = &snapshot, .catalog = shared->catalog,
-                                .host = eye.hidden >= 0 ? &snapshot.entity[eye.hidden] : NULL, .request = &request,
-                                .hfov_rad = shared->config->sensor.hfov_deg * rad_per_deg,
-                                .gimbal_at_limit = eye.at_limit,
-                                .scene_rate_px_s = {rate_px_s[0], rate_px_s[1]}, .sun = &sun,
-                                .target = target, .target_count = targets};
-    FrameError error;
-    if (frame_error(&error, &picture, shared->world, &snapshot, &request, target, targets,
-                    shared->config->models.sag_m, shared->contact == GROUND_CONTACT_ALL))
-        record.error = &error;
-    memcpy(record.p_eye_ecef, eye.state.p_ecef, sizeof record.p_eye_ecef);
-    memcpy(record.v_eye_mps, eye.state.v_ecef_mps, sizeof record.v_eye_mps);
-    memcpy(record.r_ecef_from_body, eye.r_ecef_from_body, sizeof record.r_ecef_from_body);
-    memcpy(record.r_ecef_from_cam, eye.state.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
-    if (shared->publish) shared->publish(shared->user, &record); /* before the disk has its turn */
-    status = write_files(done->hash, s, &files, &record);
-    if (status == STATUS_OK && s->coco) status = coco_frame(s->coco, &record, picture.entity);
-    if (status == STATUS_OK && s->pairs)
-        status = pairs_frame(s->pairs, &files, done->hash, &air, r_host_from_enu, s->plan.aim, eye.hidden, arena);
-    if (status == STATUS_OK) status = save_frame(s, &files, &record, &eye);
+    if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
+    fill_record(f, s, &eye);
+    if (s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;
-
-    const double end_s = wall_clock_s();
-    const double share = 1.0 / pool_threads(shared->pool); /* of a sum over threads: as if evenly spread */
-    const double ms[session_stages] = {
-        1e3 * (end_s - start_s), 1e3 * (posed_s - start_s),
-        picture.times.prepare_ms + share * (picture.times.visibility_ms + picture.times.shadow_ms),
-        share * picture.times.shade_ms, share * picture.times.radar_ms, 1e3 * (end_s - rendered_s)};
-    memcpy(done->stage_ms, ms, sizeof ms);
-    done->counters = picture.counters;
-    done->shown    = true;
-    s->result.at_limit += eye.at_limit;
     if (shared->world->landscape) {
         const double *p_enu = eye.view.p_enu;
-        s->result.buried += p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
+        f->buried = p_enu[2] < elevation_height(&shared->world->landscape->elevation, p_enu[0], p_enu[1], NULL);
     }
-    return STATUS_OK;
+    f->provenance = (Provenance){.version = PITVIPER_VERSION, .config_sha256 = shared->config_sha256,
+                                 .seed = shared->config->seed, .datagrams = player_counters(s->player)->datagrams,
+                                 .begun_s = f->provenance.begun_s, .posed_s = posed_s, .rendered_s = wall_clock_s()};
+    *shown = true;
+    return save_frame(s, f, &eye);
 }
 
 /* ---- the loop ------------------------------------------------------------------------------- */
-
-/* After the folders are there. */
-static Status open_writer(Session *s)
-{
-    Chain *chain[BAND_COUNT] = {NULL};
-    Status status = sensors_chains(chain, s->shared->sensors, s->shared->config);
-    if (status == STATUS_OK) return frame_writer_create(&s->writer, chain, s->shared->config);
-    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
-    return status;
-}
 
 static bool observes(const HostPlan *plan) { return dis_entity_id_is_none(plan->host) && !plan->any_munition; }
 
@@ -195,6 +175,8 @@ void session_note_host(Session *s)
     memcpy(r->host[r->host_count++], s->host_text, sizeof s->host_text);
 }
 
+static void list_frame(void *user, const Frame *frame);
+
 static Status open_session(Session *s)
 {
     const SessionShared *shared = s->shared;
@@ -204,6 +186,7 @@ static Status open_session(Session *s)
     table.pool                  = shared->pool;
     table.capacity              = shared->config->entities.capacity;
     table.shown                 = shared->config->entities.shown;
+    table.new_per_s             = shared->config->entities.new_per_s;
     table.timeout_s             = shared->config->entities.timeout_s;
     table.timeout_land_v7_s     = shared->config->entities.timeout_land_v7_s;
     table.extrapolation_limit_s = shared->config->entities.extrapolation_limit_s;
@@ -238,34 +221,11 @@ static Status open_session(Session *s)
     s->joint = calloc((size_t)most_nodes, sizeof *s->joint);
     if (!s->node || !s->joint) return STATUS_NO_MEMORY;
 
-    s->frame_arena = arena_create();
-    if (!s->frame_arena) return STATUS_NO_MEMORY;
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
-    Status        status = entity_table_create(&s->table, &table, shared->catalog, path);
-    const Config *config = shared->config;
-    unsigned      raw = 0;
+    Status status = entity_table_create(&s->table, &table, shared->catalog, path);
     if (status == STATUS_OK) session_keep(s);
-    if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, config);
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
-    const unsigned kept = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
-    if (status == STATUS_OK) status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
-    if (status != STATUS_OK) return status;
-    snprintf(path, sizeof path, "%s/truth.jsonl", s->out);
-    s->truth = fopen(path, "w");
-    if (!s->truth) {
-        log_error("session: cannot write %s: %s; choose another place with --out", path, strerror(errno));
-        return STATUS_IO;
-    }
-    s->truth_patience = (Patience){.what = "lines in truth.jsonl"};
-    if (shared->live) return config->publish.files ? open_writer(s) : STATUS_OK;
-    if (config->publish.coco)
-        status = coco_open(&s->coco, s->out, config->publish.png ? "png" : "exr",
-                           (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible},
-                           shared->config_sha256, config->seed);
-    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0)
-        status = pairs_open(&s->pairs, shared, s->out, raw);
-    return status;
+    if (status == STATUS_OK) status = sensors_chains(s->chain, shared->sensors, shared->config);
+    return status == STATUS_OK ? session_consumers(s, list_frame) : status;
 }
 
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
@@ -286,31 +246,49 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
 
 /* ---- frame after frame ------------------------------------------------------------------------ */
 
-static Status list_frame(SessionResult *r, int *capacity, int number, const FrameDone *done)
+static Status room_in_lists(SessionResult *r, int *capacity)
 {
-    r->frames++;
-    render_counters_add(&r->counters, &done->counters);
-    if (r->listed == session_frames_kept) return STATUS_OK;
-    if (r->listed == *capacity) {
-        const int larger = *capacity ? 2 * *capacity : 1024;
-        int (*numbers)   = realloc(r->number, (size_t)larger * sizeof *numbers);
-        if (numbers) r->number = numbers;
-        char(*hash)[sha256_text_size] = realloc(r->hash, (size_t)larger * sizeof *hash);
-        if (hash) r->hash = hash;
-        double(*stage_ms)[session_stages] = realloc(r->stage_ms, (size_t)larger * sizeof *stage_ms);
-        if (stage_ms) r->stage_ms = stage_ms;
-        if (!numbers || !hash || !stage_ms) return STATUS_NO_MEMORY;
-        *capacity = larger;
-    }
-    r->number[r->listed] = number;
-    memcpy(r->hash[r->listed], done->hash, sizeof done->hash);
-    memcpy(r->stage_ms[r->listed], done->stage_ms, sizeof done->stage_ms);
-    r->listed++;
+    if (r->listed < *capacity) return STATUS_OK;
+    const int larger = *capacity ? 2 * *capacity : 1024;
+    int (*numbers)   = realloc(r->number, (size_t)larger * sizeof *numbers);
+    if (numbers) r->number = numbers;
+    char(*hash)[sha256_text_size] = realloc(r->hash, (size_t)larger * sizeof *hash);
+    if (hash) r->hash = hash;
+    double(*stage_ms)[session_stages] = realloc(r->stage_ms, (size_t)larger * sizeof *stage_ms);
+    if (stage_ms) r->stage_ms = stage_ms;
+    if (!numbers || !hash || !stage_ms) return STATUS_NO_MEMORY;
+    *capacity = larger;
     return STATUS_OK;
 }
 
+/* A frame that all consumers have had; in the publishing thread. */
+static void list_frame(void *user, const Frame *f)
+{
+    Session            *s     = user;
+    SessionResult      *r     = &s->result;
+    const Provenance   *p     = &f->provenance;
+    const RenderTimes  *times = &f->seen.picture.times;
+    const double        share = 1.0 / pool_threads(s->shared->pool); /* of a sum over threads: as if evenly spread */
+    const double        publish_s = wall_clock_s() - f->publish_begun_s;
+    const double ms[session_stages] = {
+        1e3 * (p->rendered_s - p->begun_s + publish_s), 1e3 * (p->posed_s - p->begun_s),
+        times->prepare_ms + share * (times->visibility_ms + times->shadow_ms), share * times->shade_ms,
+        share * times->radar_ms, 1e3 * publish_s};
+    s->published++;
+    r->at_limit += f->record.gimbal_at_limit;
+    r->buried += f->buried;
+    render_counters_add(&r->counters, &f->seen.picture.counters);
+    if (r->listed == session_frames_kept || s->listed != STATUS_OK) return;
+    s->listed = room_in_lists(r, &s->capacity);
+    if (s->listed != STATUS_OK) return;
+    r->number[r->listed] = f->number;
+    memcpy(r->hash[r->listed], f->seen.sha256, sizeof f->seen.sha256);
+    memcpy(r->stage_ms[r->listed], ms, sizeof ms);
+    r->listed++;
+}
+
 /* What did not fit: at once, and then once a minute where there is more. */
-static void say_crowd(Session *s, const FrameDone *done)
+static void say_crowd(Session *s, int left_out)
 {
     static const double   remind_s = 60;
     const EntityCounters *c        = entity_table_counters(s->table);
@@ -327,24 +305,30 @@ static void say_crowd(Session *s, const FrameDone *done)
         s->given_up_said   = given_up;
         s->given_up_said_s = now_s;
     }
-    if (done->left_out == 0) return;
+    if (left_out == 0) return;
     if (!(now_s - s->left_out_said_s < remind_s)) {
         log_warn("host %s: %d entities are not in the pictures, the farthest from it; the nearest %d are (entities.shown)",
-                 s->host_text, done->left_out, config->entities.shown);
+                 s->host_text, left_out, config->entities.shown);
         s->left_out_said_s = now_s;
     }
     s->result.frames_crowded++;
-    if (done->left_out > s->result.most_left_out) s->result.most_left_out = done->left_out;
+    if (left_out > s->result.most_left_out) s->result.most_left_out = left_out;
 }
 
 Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
-    FrameDone done;
+    int    left_out = 0;
+    Status status   = STATUS_OK;
     session_advance(s, t_s);
-    Status status = make_frame(&done, s, number, t_s);
-    *shown        = done.shown;
-    say_crowd(s, &done);
-    if (status == STATUS_OK && done.shown) status = list_frame(&s->result, &s->capacity, number, &done);
+    *shown = false;
+    if (session_host_is_there(s)) { /* else nothing is extrapolated for it */
+        Frame *frame = frame_pool_take(s->frames);
+        status       = make_frame(shown, &left_out, frame, s, number, t_s);
+        if (status == STATUS_OK && *shown) status = consumers_put(&s->consumers, frame);
+        frame_release(frame);
+    }
+    say_crowd(s, left_out);
+    if (status == STATUS_OK && *shown) s->result.frames++;
     if (status == STATUS_NO_MEMORY)
         log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);
     return status;
@@ -352,27 +336,25 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
 
 const SessionResult *session_result(const Session *s) { return &s->result; }
 int                  session_entities(const Session *s) { return entity_table_count(s->table); }
+uint64_t             session_over_rate(const Session *s) { return entity_table_counters(s->table)->over_rate; }
 const char          *session_host(const Session *s) { return s->host_text; }
 
 Status session_close(Session *s, SessionResult *result)
 {
-    Status status = STATUS_OK;
-    const FrameWriterCounters written = frame_writer_destroy(s->writer);
-    s->result.files_failed   = written.failed + s->truth_patience.lacking;
-    s->result.files_left_out = written.left_out;
+    Status status = consumers_close(&s->consumers); /* the last frames are published before */
+    if (status == STATUS_OK) status = s->listed;
+    s->result.frames         = s->published;
+    s->result.files_failed   = s->written.failed + s->lines_failed;
+    s->result.files_left_out = s->written.left_out;
+    player_forgotten(&s->result.shots_forgotten, &s->result.munitions_forgotten, s->player);
     if (s->table) s->result.entities = *entity_table_counters(s->table);
     if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
-    if (s->truth && fclose(s->truth) != 0) {
-        log_error("session: cannot write truth.jsonl: %s", strerror(errno));
-        status = STATUS_IO;
-    }
-    const Status coco = coco_close(s->coco), pairs = pairs_close(s->pairs);
-    if (status == STATUS_OK) status = coco != STATUS_OK ? coco : pairs;
     if (result) *result = s->result;
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);
     entity_table_destroy(s->table);
-    arena_destroy(s->frame_arena);
+    frame_pool_destroy(s->frames);
+    pool_destroy(s->publish_pool);
     free(s->node);
     free(s->joint);
     free(s);

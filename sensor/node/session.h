@@ -49,6 +49,7 @@ typedef struct SessionResult {
     RenderCounters counters;
     EntityCounters entities;
     EffectCounters effects;
+    uint64_t    shots_forgotten, munitions_forgotten; /* player_forgotten */
 } SessionResult;
 
 typedef struct Session Session;
@@ -61,6 +62,7 @@ Status session_frame(bool *shown, Session *session, int number, double t_s);
 /* So far. */
 const SessionResult *session_result(const Session *session);
 int         session_entities(const Session *session); /* how many are there */
+uint64_t    session_over_rate(const Session *session); /* reports of new ones that came too fast: entities.new_per_s */
 const char *session_host(const Session *session); /* id as text, `observer`, or `munition` that is still to come */
 /* The session's result is the caller's to free with session_result_free; NULL: it goes too. */
 Status session_close(Session *session, SessionResult *result);

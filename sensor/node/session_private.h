@@ -2,16 +2,13 @@
 #ifndef SENSOR_NODE_SESSION_PRIVATE_H
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
-#include "sensor/node/frame_files.h"
 #include "sensor/node/frame_light.h"
-#include "sensor/node/frame_writer.h"
 #include "sensor/node/mount.h"
-#include "sensor/node/pairs.h"
-#include "sensor/node/patience.h"
 #include "sensor/node/player.h"
 #include "sensor/node/seeker.h"
 #include "sensor/node/session.h"
-#include "sensor/publish/coco.h"
+#include "sensor/publish/consumers.h"
+#include "sensor/publish/frame_queue.h"
 
 struct Session {
     const SessionShared *shared;
@@ -20,9 +17,7 @@ struct Session {
     char                 host_text[dis_id_text_size];
     EntityTable         *table;
     Player              *player;        /* the caller's */
-    FILE                *truth;
     Seeker               seeker;
-    Arena               *frame_arena;
     int64_t              tick;          /* next gimbal tick */
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
@@ -34,12 +29,16 @@ struct Session {
     int64_t              limit_tick;
     uint64_t             given_up_said; /* what was last said of a full table, and when; wall clock */
     double               given_up_said_s, left_out_said_s;
-    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv */
-    FrameLevel           level[BAND_COUNT];
-    FrameWriter         *writer;        /* of a live node with files; else they are written in the loop */
-    Patience             truth_patience; /* live: with truth.jsonl */
-    Pairs               *pairs;         /* NULL: not asked for */
-    Coco                *coco;
+    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: what noise targets have */
+    Consumers            consumers;
+    unsigned             wants;         /* of all consumers */
+    FramePool           *frames;
+    Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
+    FrameLevel           level[BAND_COUNT]; /* of the picture files: the publishing thread's */
+    QueueCounters        written;       /* live: picture files; when closed */
+    int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
+    int                  published;     /* frames that all consumers have had: the publishing thread's */
+    Status               listed;        /* of the result's lists: the publishing thread's */
     SessionResult        result;
     int                  capacity;      /* of the result's lists */
 };
@@ -65,5 +64,8 @@ bool session_host_is_there(const Session *s);
 /* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
  * host is not there. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
+/* Who gets this session's frames, from the configuration; and room for as many frames as that takes. done: each frame
+ * that all have had. */
+Status session_consumers(Session *s, FrameDone *done);
 
 #endif

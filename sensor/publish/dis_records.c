@@ -1,3 +1,4 @@
+/* sensor/publish/dis_records.c: what the seeker sees, packed into Data PDUs. */
 #include "sensor/publish/dis_records.h"
 
 #include "dis/reader.h"

@@ -1,3 +1,4 @@
+/* sensor/publish/image_file.cpp: pictures read, and EXR written with a compression by name, through OpenImageIO. */
 #include "sensor/publish/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -16,13 +17,6 @@ using OIIO::ImageInput;
 using OIIO::ImageOutput;
 using OIIO::ImageSpec;
 using OIIO::TypeDesc;
-
-/* Measured, 720 x 486, one core, ms and kB: a truth frame of 8 channels / a noisy radiance plane alone.
- *     none 32, 11205 / 11, 1407    zips  71, 3044 / 34, 1407    piz   116, 3375 / 57, 1247
- *     rle  31,  5153 / 13, 1407    zip:1 64, 2917 / 29, 1323    zip:4  80, 2847 / 31, 1326 (the default)
- * zip:1: nearly the smallest, a fifth faster than the default. */
-static const char exr_compression[] = "zip:1";
-static const int  png_compression_level = 1;
 
 /* One thread each: the pool above us has one frame a worker, and the bytes must not depend on threads. */
 static void library_set_up()
@@ -133,36 +127,6 @@ try {
     std::vector<unsigned char> bytes;
     OIIO::Filesystem::IOVecOutput memory(bytes);
     if (!out->set_ioproxy(&memory) || !out->open("memory.exr", spec) || !write_planes(out.get(), plane, plane_count) ||
-        !out->close())
-        return refuse(STATUS_IO, "write", path, out->geterror().c_str());
-    return write_whole(path, bytes);
-} catch (const std::exception &e) {
-    return refuse(STATUS_NO_MEMORY, "write", path, e.what());
-}
-
-Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
-                       const ImageAttribute *attribute, int attribute_count)
-{
-    return image_write_exr_as(path, exr_compression, plane, plane_count, date_time, attribute, attribute_count);
-}
-
-Status image_write_png(const char *path, const void *values, int width, int height, int channels, int bits)
-try {
-    if (width < 1 || height < 1 || width > image_max_size_px || height > image_max_size_px ||
-        (channels != 1 && channels != 3) || (bits != 8 && bits != 16))
-        return refuse(STATUS_BAD_VALUE, "write", path, "a size, channel count or depth outside the range");
-    library_set_up();
-
-    const TypeDesc format = bits == 8 ? TypeDesc::UINT8 : TypeDesc::UINT16;
-    ImageSpec      spec(width, height, channels, format);
-    spec.attribute("png:compressionLevel", png_compression_level);
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-
-    auto out = ImageOutput::create("png");
-    if (!out) return refuse(STATUS_UNSUPPORTED, "write", path, "OpenImageIO without PNG");
-    std::vector<unsigned char> bytes;
-    OIIO::Filesystem::IOVecOutput memory(bytes);
-    if (!out->set_ioproxy(&memory) || !out->open("memory.png", spec) || !out->write_image(format, values) ||
         !out->close())
         return refuse(STATUS_IO, "write", path, out->geterror().c_str());
     return write_whole(path, bytes);

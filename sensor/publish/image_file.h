@@ -1,8 +1,8 @@
-/* sensor/publish/image_file.h: pictures as files, through OpenImageIO (the only file that knows it:
- * image_file.cpp).
+/* sensor/publish/image_file.h: pictures as files. Frames are written by exr_file.c and png_file.c, chunk by chunk;
+ * read, and written in any other compression, through OpenImageIO (image_file.cpp, the only file that knows it).
  *
- * A file appears whole or not at all: it is encoded in memory, written to `PATH.part` and renamed. Every
- * failure is one log line with path and reason, and a Status; nothing of a failed file is left behind.
+ * A file appears whole or not at all: it is written as `PATH.part` and renamed. Every failure is one log line with path
+ * and reason, and a Status; nothing of a failed file is left behind.
  * Thread-safe for different paths. Each call allocates and frees its own memory. */
 #ifndef SENSOR_PUBLISH_IMAGE_FILE_H
 #define SENSOR_PUBLISH_IMAGE_FILE_H
@@ -49,12 +49,11 @@ enum { image_max_planes = 64, image_max_size_px = 32768 };
 /* EXR, one channel a plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float).
  * date_time: `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock
  * there; NULL: 1970:01:01 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64,
- * a name that is empty or used twice. STATUS_IO: the disk or the library refused. */
+ * a name that is empty or used twice. STATUS_IO: the disk refused. */
 Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
                        const ImageAttribute *attribute, int attribute_count);
 
-/* The same with a named compression (`none`, `rle`, `zips`, `zip:1`, `piz`, ...). image_write_exr takes
- * zip:1; its measured reasons stand in image_file.cpp. */
+/* The same with a named compression (`none`, `rle`, `zips`, `zip:1`, `piz`, ...), encoded in memory. */
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
                           const char *date_time, const ImageAttribute *attribute, int attribute_count);
 

@@ -1,3 +1,4 @@
+/* sensor/publish/json_values.c: JSON read into a flat list of paths and values. */
 #include "sensor/publish/json_values.h"
 
 #include <jansson.h>

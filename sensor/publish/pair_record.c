@@ -1,3 +1,4 @@
+/* sensor/publish/pair_record.c: the lines of pairs.jsonl. */
 #include "sensor/publish/pair_record.h"
 
 #include <jansson.h>

@@ -1,8 +1,9 @@
-/* sensor/publish/pair_record.h: pairs.jsonl (sensor/node/pairs.h): a line a frame, all its members and their files. */
+/* sensor/publish/pair_record.h: pairs.jsonl (sensor/publish/pairs.h): a line a frame, all its members and their
+ * files. */
 #ifndef SENSOR_PUBLISH_PAIR_RECORD_H
 #define SENSOR_PUBLISH_PAIR_RECORD_H
 
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 
 enum { pair_members = 1 + pair_folders };
 

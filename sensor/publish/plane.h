@@ -4,9 +4,9 @@
 
 #include "pitviper.h"
 
-typedef enum PlaneType { PLANE_F32, PLANE_U32, PLANE_F64 } PlaneType;
+typedef enum PlaneType { PLANE_F32, PLANE_U32, PLANE_F64, PLANE_C64 } PlaneType; /* C64: two floats, real, imaginary */
 
-/* Borrowed, never owned. values: float, uint32_t or double [height][width], rows top down. */
+/* Borrowed, never owned. values: float, uint32_t, double or float complex [height][width], rows top down. */
 typedef struct Plane {
     const char *name; /* channel name; for a hash with the folder before it: `lwir/Y`, `truth/range_m` */
     PlaneType   type;

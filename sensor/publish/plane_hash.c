@@ -1,3 +1,4 @@
+/* sensor/publish/plane_hash.c: the hash of a frame: names, sizes and values of its planes. */
 #include "sensor/publish/plane_hash.h"
 
 #include <errno.h>
@@ -69,7 +70,8 @@ static bool update_f64(EVP_MD_CTX *digest, const double *values, size_t count)
 
 static bool update_plane(EVP_MD_CTX *digest, const Plane *plane)
 {
-    static const char tag[][4] = {[PLANE_F32] = "f32", [PLANE_U32] = "u32", [PLANE_F64] = "f64"};
+    static const char tag[][4] = {[PLANE_F32] = "f32", [PLANE_U32] = "u32", [PLANE_F64] = "f64",
+                                  [PLANE_C64] = "c64"};
     const uint32_t size[2] = {(uint32_t)plane->width, (uint32_t)plane->height};
     const size_t   count = (size_t)plane->width * (size_t)plane->height;
 
@@ -79,6 +81,7 @@ static bool update_plane(EVP_MD_CTX *digest, const Plane *plane)
     switch (plane->type) {
     case PLANE_F32: return update_f32(digest, plane->values, count);
     case PLANE_F64: return update_f64(digest, plane->values, count);
+    case PLANE_C64: return update_f32(digest, plane->values, 2 * count);
     case PLANE_U32: break;
     }
     return EVP_DigestUpdate(digest, plane->values, count * sizeof(uint32_t)) == 1;

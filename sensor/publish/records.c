@@ -1,3 +1,4 @@
+/* sensor/publish/records.c: truth.jsonl and run.json, line by line. */
 #include "sensor/publish/records.h"
 
 #include "sensor/publish/target_class.h"
@@ -208,6 +209,12 @@ static void set_count(json_t *object, const char *key, uint64_t count)
     json_object_set_new(object, key, json_integer((json_int_t)count));
 }
 
+/* Absent: 0. So records from before it was counted stay comparable. */
+static void set_if_any(json_t *object, const char *key, uint64_t count)
+{
+    if (count) set_count(object, key, count);
+}
+
 /* What these pictures were computed with. Headers of the libraries belong to the files that know them: versions come
  * from the build (CMakeLists.txt); of the C library, whose functions are in every number, from the running one. */
 static json_t *libraries_json(void)
@@ -265,6 +272,10 @@ static json_t *counters_json(const RunRecord *r)
     set_count(entities, "removed", r->entities_removed);
     set_count(entities, "evicted", r->entities_evicted);
     set_count(entities, "refused", r->entities_refused);
+    set_if_any(entities, "over_rate", r->entities_over_rate);
+    set_if_any(entities, "tombstones_dropped", r->tombstones_dropped);
+    set_if_any(entities, "shots_forgotten", r->shots_forgotten);
+    set_if_any(entities, "munitions_forgotten", r->munitions_forgotten);
     set_count(entities, "most_left_out_of_a_frame", (uint64_t)r->most_left_out);
     set_count(counters, "frames_without_all_entities", (uint64_t)r->frames_crowded);
     json_object_set_new(counters, "entities", entities);

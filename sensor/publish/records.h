@@ -6,7 +6,7 @@
 #ifndef SENSOR_PUBLISH_RECORDS_H
 #define SENSOR_PUBLISH_RECORDS_H
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "sensor/truth/frame_error.h"
 #include "sensor/truth/truth.h"
@@ -64,6 +64,8 @@ typedef struct RunRecord {
     int         at_limit;             /* frames whose aim was beyond the gimbal */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t    entities_evicted, entities_refused; /* by a full table */
+    uint64_t    entities_over_rate, tombstones_dropped;
+    uint64_t    shots_forgotten, munitions_forgotten; /* of those that may yet carry the sensor */
     int         frames_crowded, most_left_out; /* frames without all entities; the most that one of them lacks */
     EffectCounters effects;
     RenderCounters render;

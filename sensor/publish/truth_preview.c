@@ -1,3 +1,4 @@
+/* sensor/publish/truth_preview.c: truth as a picture for people. */
 #include "sensor/publish/truth_preview.h"
 
 typedef struct Rgb {
@@ -20,17 +21,25 @@ static Rgb id_colour(DisEntityId id)
     }
 }
 
-static uint8_t code(double x) { return (uint8_t)(clamp(x, 0, 1) * 255 + 0.5); }
+static uint8_t code(double x) { return (uint8_t)((x > 1 ? 1 : x > 0 ? x : 0) * 255 + 0.5); }
+
+static void put(uint8_t *rgb, Rgb c)
+{
+    rgb[0] = code(c.r);
+    rgb[1] = code(c.g);
+    rgb[2] = code(c.b);
+}
 
 void truth_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, const float *normal_up, size_t count,
                    const Snapshot *snapshot)
 {
-    double near_m = INFINITY, far_m = 0;
+    float nearest_m = INFINITY, farthest_m = 0;
     for (size_t i = 0; i < count; i++) {
         if (!(range_m[i] > 0) || !isfinite(range_m[i])) continue;
-        near_m = fmin(near_m, range_m[i]);
-        far_m = fmax(far_m, range_m[i]);
+        if (range_m[i] < nearest_m) nearest_m = range_m[i];
+        if (range_m[i] > farthest_m) farthest_m = range_m[i];
     }
+    const double near_m = nearest_m, far_m = farthest_m;
     /* light 0.85 at the nearest, 0.15 at the farthest; 0 .. 1 m of depth is no depth */
     const double log_near = near_m < far_m ? log(near_m) : 0;
     const double per_log = near_m < far_m ? 0.7 / fmax(log(far_m) - log_near, 1e-6) : 0;
@@ -38,19 +47,16 @@ void truth_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, c
     for (size_t i = 0; i < count; i++) {
         const bool   sky = !(range_m[i] > 0) || !isfinite(range_m[i]);
         const double up = normal_up && isfinite(normal_up[i]) ? 0.7 + 0.3 * normal_up[i] : 1;
-        const double light = sky ? 1 : (0.85 - per_log * (log(range_m[i]) - log_near)) * up;
-        Rgb          c = {light, light, light};
         if (entity[i] != 0) {
             const uint32_t index = entity[i] - 1;
-            c = (Rgb){1, 1, 1};
-            if (index < (uint32_t)snapshot->count) c = id_colour(snapshot->entity[index].id);
-            const double shade = 0.45 + 0.55 * up; /* hues stay apart: range does not darken them */
-            c = (Rgb){c.r * shade, c.g * shade, c.b * shade};
+            const bool     known = index < (uint32_t)snapshot->count;
+            const Rgb      c = known ? id_colour(snapshot->entity[index].id) : (Rgb){1, 1, 1};
+            const double   shade = 0.45 + 0.55 * up; /* hues stay apart: range does not darken them */
+            put(rgb + 3 * i, (Rgb){c.r * shade, c.g * shade, c.b * shade});
         } else if (sky) {
-            c = (Rgb){0.05, 0.07, 0.2};
+            put(rgb + 3 * i, (Rgb){0.05, 0.07, 0.2});
+        } else {
+            memset(rgb + 3 * i, code((0.85 - per_log * (log(range_m[i]) - log_near)) * up), 3);
         }
-        rgb[3 * i] = code(c.r);
-        rgb[3 * i + 1] = code(c.g);
-        rgb[3 * i + 2] = code(c.b);
     }
 }

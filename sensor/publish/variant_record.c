@@ -1,3 +1,4 @@
+/* sensor/publish/variant_record.c: manifest.jsonl and variant.json of a sweep. */
 #include "sensor/publish/variant_record.h"
 
 #include <jansson.h>

@@ -1,55 +1,57 @@
-/* sensor/reference/network.c: Data PDUs that a live node sends, and the table of PDUs that inspect writes. */
+/* sensor/reference/network.c: Data PDUs sent by a live node, and the table of PDUs written by inspect. */
 #include "sensor/reference/reference.h"
 
 static const ReferenceField data_fields[] = {
     {"fixed 600001", "u32", "", "from 0", "", "number of the frame"},
     {"fixed 600002", "u32", "", "0 optical, 1 mwir, 2 lwir, 3 radar", "", "band"},
     {"fixed 600003", "u32", "", "1 sensor, 2 truth", "", "kind: what a seeker could measure, or truth (publish.dis)"},
-    {"fixed 600004", "u16[2]", "px", "columns, rows", "", "size of the picture"},
+    {"fixed 600004", "u16[2]", "px", "columns, rows", "", "size of the image"},
     {"fixed 600005", "f32", "rad", "", "", "horizontal field of view"},
     {"fixed 600006", "f32", "rad", "", "", "vertical field of view"},
     {"fixed 600007", "u32", "", "", "", "targets in this PDU"},
-    {"fixed 600008", "u32", "", "", "", "targets left out for want of room, the smallest"},
+    {"fixed 600008", "u32", "", "", "", "targets left out because the PDU was full, the smallest"},
     {"variable 600101+0", "f64", "s", "exercise time", "", "instant of the frame"},
-    {"variable 600102+0", "f64[3]", "m", "ecef", "", "the eye"},
+    {"variable 600102+0", "f64[3]", "m", "ecef", "", "position of the sensor"},
     {"variable 600103+0", "f64[3]", "rad",
-     "psi, theta, phi of a body that looks along x, y right, z down; as in an Entity "
-     "State", "", "the camera"},
-    {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "who carries it; 0:0:0: an observer"},
+     "psi, theta, phi as in an Entity State; x along the boresight, y right, z down", "",
+     "attitude of the camera"},
+    {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "the host; 0:0:0: an observer"},
     {"variable 600201+0", "u16[4]", "px", "image: left, top, right, bottom; from 0, the last two beyond it", "",
-     "box of its visible pixels"},
+     "bounding box of its visible pixels"},
     {"variable 600201+8", "f32", "px", "", "", "area"},
     {"variable 600201+12", "f32", "rad", "camera right", "", "boresight error"},
     {"variable 600201+16", "f32", "rad", "camera up", "", "boresight error"},
-    {"variable 600201+20", "f32", "K in mwir and lwir; a share in optical and radar", "", "", "contrast"},
-    {"variable 600201+24", "f32", "", "", "", "signal to noise"},
-    {"variable 600201+28", "f32", "m", "", "", "range; NaN but in radar"},
-    {"variable 600201+32", "f32", "m/s", "", "", "closing speed; NaN but in radar"},
+    {"variable 600201+20", "f32", "K in mwir and lwir; ratio in optical and radar", "", "", "contrast"},
+    {"variable 600201+24", "f32", "", "", "", "signal-to-noise ratio"},
+    {"variable 600201+28", "f32", "m", "", "", "range; NaN except in radar"},
+    {"variable 600201+32", "f32", "m/s", "", "", "closing speed; NaN except in radar"},
     {"variable 600202+0", "u16[4]", "", "site, application, entity, 0", "", "its id"},
     {"variable 600202+8", "u16[4]", "px", "image: left, top, right, bottom; from 0, the last two beyond it", "",
-     "box of its visible pixels; 0 0 0 0: hidden"},
-    {"variable 600202+16", "f32", "px", "", "", "area seen"},
+     "bounding box of its visible pixels; 0 0 0 0: occluded"},
+    {"variable 600202+16", "f32", "px", "", "", "visible area"},
     {"variable 600202+20", "f32", "", "0 .. 1", "", "visible fraction"},
     {"variable 600202+24", "f32", "m", "", "", "range"},
     {"variable 600202+28", "f32", "m/s", "", "", "closing speed"},
     {"variable 600202+32", "f32", "rad", "", "", "aspect, 0 nose on"},
-    {"variable 600202+36", "f32", "rad", "ENU at the eye, from north over east", "", "azimuth of the line of sight"},
-    {"variable 600202+40", "f32", "rad", "ENU at the eye", "", "elevation of the line of sight"},
+    {"variable 600202+36", "f32", "rad", "ENU at the sensor, from north over east", "", "azimuth of the line of sight"},
+    {"variable 600202+40", "f32", "rad", "ENU at the sensor", "", "elevation of the line of sight"},
     {"variable 600202+44", "f32", "rad", "camera right", "", "boresight error"},
     {"variable 600202+48", "f32", "rad", "camera up", "", "boresight error"},
-    {"variable 600202+52", "f32", "", "", "", "signal to noise"},
+    {"variable 600202+52", "f32", "", "", "", "signal-to-noise ratio"},
 };
 
 const Reference reference_data_pdu = {
     .topic = "data-pdu",
     .file  = "Data PDU",
-    .title = "what the seeker sees, as Data PDUs (type 20) on the exercise, one a frame and band",
-    .about = "Of `pitviper run` with --set publish.dis=sensor (datum 600201, one a target that is seen) or truth (datum\n"
-             "600202, one a target in the field of view), the largest first. From node.site:node.application:0 to all\n"
-             "(0xFFFF), request 0, at most 1400 octets. The ids of the datums are this program's own and registered\n"
-             "nowhere.",
-    .notation = "Field: `fixed ID`, a fixed datum of 32 bits; `variable ID+OFFSET`, octets within a variable datum. Type:\n"
-                "big-endian; u16, u32: unsigned; f32, f64: IEEE 754; [n]: so many. NaN: not computed.",
+    .title = "what the seeker sees, as Data PDUs (type 20), one per frame and band",
+    .about = "Sent by `pitviper run` with --set publish.dis=sensor (datum 600201 per visible target) or truth (datum "
+             "600202\n"
+             "per target in the field of view), the largest first. From node.site:node.application:0 to all (0xFFFF),\n"
+             "request 0, at most 1400 octets. The ids of the datums are experimental: defined by this program, not\n"
+             "registered.",
+    .notation = "Field: `fixed ID`, a fixed datum of 32 bits; `variable ID+OFFSET`, octets within a variable datum. "
+                "Type:\n"
+                "big-endian; u16, u32: unsigned; f32, f64: IEEE 754; [n]: array of n. NaN: not computed.",
     .field = REFERENCE_FIELDS(data_fields),
     .python =
         "import socket, struct\n"
@@ -61,7 +63,7 @@ const Reference reference_data_pdu = {
         "    if len(pdu) < 40 or pdu[2] != 20: continue\n"
         "    fixed, variable = struct.unpack('>II', pdu[32:40])\n"
         "    datum, at = dict(struct.unpack('>II', pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed)), 40 + 8 * fixed\n"
-        "    if 600001 not in datum: continue      # another program's\n"
+        "    if 600001 not in datum: continue      # of another program\n"
         "    for _ in range(variable):\n"
         "        kind, bits = struct.unpack('>II', pdu[at:at + 8])\n"
         "        value, at = pdu[at + 8:at + 8 + bits // 8], at + 8 + (bits + 63) // 64 * 8\n"
@@ -106,14 +108,14 @@ static const ReferenceField pdu_fields[] = {
     {"dis.subcategory", "integer", "", "", "without --full", "entity type"},
     {"dis.specific", "integer", "", "", "without --full", "entity type"},
     {"dis.extra", "integer", "", "", "without --full", "entity type"},
-    {"dis.dead_reckoning_algorithm", "integer", "", "", "without --full", "1 static ... 9; 0 other"},
+    {"dis.dead_reckoning_algorithm", "integer", "", "", "without --full", "1 static .. 9; 0 other"},
     {"dis.dead_reckoning_other_parameters", "hexadecimal", "", "", "without --full", "15 octets, 30 digits"},
     {"dis.capabilities", "integer", "", "", "without --full", "capabilities"},
     {"alternative_type", "text", "", "kind.domain.country.category.subcategory.specific.extra", "without --full",
      "alternative entity type"},
     {"articulation", "text", "rad, rad/s or m by the parameter", "change:attached:parameter:value; ...",
      "without --full",
-     "articulated parts; attached: before attached ones, record: before others"},
+     "articulation parameters; prefixed attached: for attached parts, record: for other records"},
 };
 
 const Reference reference_pdus = {

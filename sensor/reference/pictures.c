@@ -14,37 +14,37 @@ static const ReferenceField exr_fields[] = {
      "radiance at the aperture"},
     {"channel optical/Y", "float", "W/(m2 sr)", "pan 0.4-0.7 um, nir 0.7-1.1 um", "with sensor.optical rgb",
      "radiance at the aperture"},
-    {"channel mwir/Y", "float", "W/(m2 sr)", "3-5 um", "", "radiance at the aperture"},
+    {"channel mwir/Y", "float", "W/(m2 sr)", "3.4-4.8 um", "", "radiance at the aperture"},
     {"channel lwir/Y", "float", "W/(m2 sr)", "8-12 um", "", "radiance at the aperture"},
     {"channel radar/Y", "float", "relative", "", "",
-     "power of the pseudo-radar: comparable within a run, no unit of physics"},
-    {"channel truth/range_m", "float", "m", "from the eye, along the ray", "",
-     "distance of the surface in the pixel's middle; +infinity: sky"},
-    {"channel truth/entity", "uint", "", "from 1, into entity_ids; 0: none", "", "which entity"},
+     "power of the pseudo-radar: comparable within a run, in no physical unit"},
+    {"channel truth/range_m", "float", "m", "from the sensor, along the ray", "",
+     "range of the surface at the pixel's centre; +infinity: sky"},
+    {"channel truth/entity", "uint", "", "from 1, into entity_ids; 0: none", "", "entity"},
     {"channel truth/part", "uint", "", "from 1, into the parts of its model in part_names; 0: none", "",
-     "which part of it"},
-    {"channel truth/material", "uint", "", "from 1, into material_names; 0: none", "", "which material"},
+     "part of its model"},
+    {"channel truth/material", "uint", "", "from 1, into material_names; 0: none", "", "material"},
     {"channel truth/temp_k", "float", "K", "", "", "temperature of the surface; NaN: sky"},
-    {"channel truth/nx", "float", "", "ENU at the terrain's origin, east", "", "unit normal of the surface"},
-    {"channel truth/ny", "float", "", "ENU at the terrain's origin, north", "", "the same"},
-    {"channel truth/nz", "float", "", "ENU at the terrain's origin, up", "", "the same"},
+    {"channel truth/nx", "float", "", "ENU at the terrain origin, east", "", "unit normal of the surface"},
+    {"channel truth/ny", "float", "", "ENU at the terrain origin, north", "", "the same"},
+    {"channel truth/nz", "float", "", "ENU at the terrain origin, up", "", "the same"},
     {"header band", "string", "", "", "", "BAND, or `truth`"},
     {"header unit", "string", "", "", "in truth", "`W/(m2 sr)` or `relative`"},
     {"header model", "string", "", "", "but in radar", "`pseudo-radar`"},
-    {"header wavelengths_um", "string", "um", "", "but in optical", "what each channel sees"},
+    {"header wavelengths_um", "string", "um", "", "except in optical", "wavelengths of each channel"},
     {"header frame", "int", "", "from 0", "", "number of the frame"},
     {"header time_s", "double", "s", "exercise time", "", "instant of the frame"},
     {"header capDate", "string", "", "UTC, YYYY:MM:DD HH:MM:SS", "",
-     "the same as a date; OpenImageIO shows it as DateTime"},
-    {"header host", "string", "", "site:application:entity, or `observer`", "", "who carries the sensor"},
+     "the same as a date; DateTime in OpenImageIO"},
+    {"header host", "string", "", "site:application:entity, or `observer`", "", "the host"},
     {"header seed", "int", "", "", "", "of all random numbers"},
     {"header config_sha256", "string", "", "", "", "as in run.json"},
     {"header entity_ids", "string", "", "site:application:entity, separated by commas; the first is entity 1",
-     "but in truth",
+     "except in truth",
      "the frame's entities"},
-    {"header material_names", "string", "", "separated by commas; the first is material 1", "but in truth",
+    {"header material_names", "string", "", "separated by commas; the first is material 1", "except in truth",
      "names of etc/materials.csv"},
-    {"header part_names", "string", "", "model:part,part,...;model:... ; the first part is part 1", "but in truth",
+    {"header part_names", "string", "", "model:part,part,...;model:... ; the first part is part 1", "except in truth",
      "the parts of the models in this frame"},
 };
 
@@ -53,11 +53,14 @@ static const ReferenceWord bands[] = {REFERENCE_WORD_BAND};
 const Reference reference_exr = {
     .topic = "exr",
     .file  = "frames/BAND/NNNNNN.exr",
-    .title = "radiance of every pixel, and in frames/truth/NNNNNN.exr what each shows",
-    .about = "OpenEXR, scan lines, ZIP. Rows from the top, columns from the left: [row][column] of a plane is the pixel\n"
-             "whose middle is (column + 0.5, row + 0.5). Truth is that of the sample nearest the middle; radiance is the\n"
+    .title = "radiance per pixel, and in frames/truth/NNNNNN.exr ground truth per pixel",
+    .about = "OpenEXR, scan lines, ZIP. Rows from the top, columns from the left: [row][column] of a plane is the "
+             "pixel\n"
+             "whose centre is (column + 0.5, row + 0.5). Truth is that of the sample nearest the centre; radiance is "
+             "the\n"
              "mean over the pixel. Python: `pip install OpenEXR numpy` (3.3 or later); OpenImageIO reads them as well.",
-    .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an attribute.",
+    .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an "
+                "attribute.",
     .field = REFERENCE_FIELDS(exr_fields),
     .word  = REFERENCE_FIELDS(bands),
     .python =
@@ -78,19 +81,20 @@ const Reference reference_exr = {
 
 static const ReferenceField png_fields[] = {
     {"optical", "RGB 8 bit", "", "sRGB", "with sensor.optical pan or nir, which are grey 8 bit",
-     "the camera's picture: white balance of the day, display gamma"},
+     "colour image with the day's white balance and display gamma"},
     {"mwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level"},
-    {"lwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level; hot is white"},
-    {"radar", "grey 8 bit", "", "", "", "dB: 255 is the brightest of the picture, 0 is 60 dB below it or less"},
-    {"truth", "RGB 8 bit", "", "", "", "for people: a colour an entity over range"},
+    {"lwir", "grey 8 bit", "", "", "", "linear between black and white of detector.level; white is hot"},
+    {"radar", "grey 8 bit", "", "", "", "dB: 255 is the brightest of the image, 0 is 60 dB below it or less"},
+    {"truth", "RGB 8 bit", "", "", "", "for viewing: a colour per entity, shaded by range"},
 };
 
 const Reference reference_png = {
     .topic = "png",
     .file  = "frames/BAND/NNNNNN.png",
-    .title = "what a display behind the detector shows",
-    .about = "Noise, gain, level and quantisation of the detector.* settings. Same pixels as the EXR. detector.bits: 16\n"
-             "makes 16 bits of all but truth. Black and white of an automatic level stand in pairs.jsonl (level).\n"
+    .title = "display images, after gain and level",
+    .about = "Noise, gain, level and quantisation of the detector.* settings. Same pixels as the EXR. detector.bits: "
+             "16\n"
+             "makes 16 bits of all but truth. Black and white of an automatic level are in pairs.jsonl (level).\n"
              "Python: `pip install pillow numpy`.",
     .notation = "Field: folder below frames/. Type: channels and bits of each.",
     .field = REFERENCE_FIELDS(png_fields),
@@ -113,9 +117,10 @@ const Reference reference_raw = {
     .topic = "raw",
     .file  = "raw/BAND/NNNNNN.png",
     .title = "counts of a detector's converter, before gain and level",
-    .about = "Of bands that have a sensor (sensor.preset, sensor.table) with detector.raw. The counts as they are, from 0;\n"
-             "full scale is 2 to the sensor's number of bits less 1 (bits of etc/sensors.csv), not 65535. Beware of\n"
-             "readers that make 8 bits of RGB with 16 (Pillow does); the lines below need no library.",
+    .about = "Of bands that have a sensor (sensor.preset, sensor.table) with detector.raw. Counts from 0, not "
+             "rescaled;\n"
+             "full scale is 2 to the sensor's number of bits less 1 (bits of etc/sensors.csv), not 65535. Some\n"
+             "readers reduce 16-bit RGB to 8 bits (Pillow does); the code below needs no library.",
     .notation = "Field: folder below raw/. Type: channels and bits of each.",
     .field = REFERENCE_FIELDS(raw_fields),
     .python =
@@ -146,17 +151,18 @@ const Reference reference_raw = {
 /* ---- range profile --------------------------------------------------------------------------- */
 
 static const ReferenceField profile_fields[] = {
-    {"range_m", "number", "m", "from the eye", "", "middle of the range bin; they are evenly spaced"},
-    {"bounce_1", "number", "relative", "", "", "power that met one surface"},
-    {"bounce_2", "number", "relative", "", "", "power that met two: dihedral corners"},
-    {"bounce_3", "number", "relative", "", "", "power that met three or more: trihedral corners"},
+    {"range_m", "number", "m", "from the sensor", "", "centre of the range bin; evenly spaced"},
+    {"bounce_1", "number", "relative", "", "", "power reflected once"},
+    {"bounce_2", "number", "relative", "", "", "power reflected twice: dihedral corners"},
+    {"bounce_3", "number", "relative", "", "", "power reflected three or more times: trihedral corners"},
 };
 
 const Reference reference_profile = {
     .topic = "profile",
     .file  = "profiles/radar/NNNNNN.csv",
-    .title = "power of the pseudo-radar over range, by how often it was reflected",
-    .about = "CSV: lines that begin with # are comments, then a header, then radar.bins rows, the nearest first. Linear\n"
+    .title = "power of the pseudo-radar over range, by number of reflections",
+    .about = "CSV: lines that begin with # are comments, then a header, then radar.bins rows, the nearest first. "
+             "Linear\n"
              "power, of the same relative scale in a whole run.",
     .notation = "Field: column.",
     .field = REFERENCE_FIELDS(profile_fields),

@@ -1,16 +1,16 @@
-/* sensor/reference/reference.h: every field of every product: what it means, its type, unit, frame or index base, and
- * when it is absent; and some lines of Python that read it.
+/* sensor/reference/reference.h: every field of every product: meaning, type, unit, frame or index base, and
+ * when it is absent; and Python to read it.
  *
  * One table, out of which come `pitviper help TOPIC`, the PRODUCTS section of the manual page and products.md. A new
- * field of a product is one row here: tests/system/test_reference.sh replays exercises with all products and fails for a
- * field that has no row, a row that no product has, another type, and one that is absent though its row says never. */
+ * field of a product is one row here: tests/system/test_reference.sh replays exercises with all products and fails for
+ * a field without a row, a row without a field, a different type, and a missing field whose row has no `absent`. */
 #ifndef SENSOR_REFERENCE_REFERENCE_H
 #define SENSOR_REFERENCE_REFERENCE_H
 
 #include "pitviper.h"
 
 /* path: of JSON, keys joined by dots, `[]` for each item of a list; else what `notation` of the topic says. A word in
- * capitals stands for one of many (ReferenceWord).
+ * capitals is a placeholder (ReferenceWord).
  * type: integer, number, string, boolean, object, or `list of N` of these; of binary files what `notation` says.
  * frame: coordinate frame, order of a list, or from where an index counts.
  * absent: when there is no such field though there is what holds it; empty: never. */
@@ -18,10 +18,10 @@ typedef struct ReferenceField {
     const char *path, *type, *unit, *frame, *absent, *about;
 } ReferenceField;
 
-/* What a word in capitals stands for: text, or each name with what it is. */
+/* Values of a placeholder: text, or a list of names with meanings. */
 typedef struct ReferenceWord {
     const char *word, *about;
-    const char *(*name)(int i);  /* NULL at the end; NULL: about alone says it */
+    const char *(*name)(int i);  /* returns NULL at the end; NULL: described by about */
     const char *(*what)(int i);  /* may be NULL */
 } ReferenceWord;
 
@@ -35,19 +35,19 @@ typedef struct Reference {
     int                   field_count;
     const ReferenceWord  *word;
     int                   word_count;
-    const char           *python; /* run in the folder that --out names; may be NULL */
+    const char           *python; /* run in the folder given by --out; may be NULL */
 } Reference;
 
 #define REFERENCE_FIELDS(list) (list), (int)(sizeof(list) / sizeof *(list))
 
-/* In the order of the data. */
+/* In the order of the data path. */
 extern const Reference reference_products, reference_truth, reference_run, reference_exr, reference_png, reference_raw,
     reference_profile, reference_pairs, reference_coco, reference_manifest, reference_sheet, reference_data_pdu,
     reference_pdus, reference_regress;
 
 /* Names of the topics, separated by blanks. */
 void reference_list(FILE *to);
-/* `pitviper help TOPIC`, for a terminal; a product's file name is taken too. False: no such topic. */
+/* `pitviper help TOPIC`, for a terminal; a product's file name is accepted too. False: no such topic. */
 bool reference_write(FILE *to, const char *topic);
 /* All topics, as Markdown: products.md. */
 void reference_write_markdown(FILE *to);

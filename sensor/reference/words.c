@@ -1,4 +1,4 @@
-/* sensor/reference/words.c: lists that the program has, for words in capitals. */
+/* sensor/reference/words.c: values of placeholders that are lists in the program. */
 #include "sensor/reference/words.h"
 
 #include "render/scene/view.h"

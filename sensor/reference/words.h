@@ -1,4 +1,4 @@
-/* sensor/reference/words.h: what words in capitals stand for in several topics. */
+/* sensor/reference/words.h: placeholders used in several topics. */
 #ifndef SENSOR_REFERENCE_WORDS_H
 #define SENSOR_REFERENCE_WORDS_H
 

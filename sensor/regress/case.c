@@ -1,3 +1,4 @@
+/* sensor/regress/case.c: reads case.yaml: its keys, default tolerances and checks. */
 #include "sensor/regress/case.h"
 
 #include <errno.h>
@@ -7,92 +8,96 @@
 #define AT(member) SETTING_AT(Case, member)
 
 static const Setting keys[] = {
-    {"purpose", SETTING_TEXT, AT(purpose), 0, 0, NULL, "", "what the case is for, in one sentence"},
+    {"purpose", SETTING_TEXT, AT(purpose), 0, 0, NULL, "", "purpose of the case, in one sentence"},
     {"scenario", SETTING_TEXT, AT(scenario), 0, 0, NULL, "",
-     "of `pitviper exercise`: a name, or a YAML file in the case's folder"},
+     "scenario of `pitviper exercise`: a name, or a YAML file in the case's folder"},
     {"scenario_set", SETTING_TEXT, AT(scenario_set), 0, 0, NULL, "",
-     "its --set, KEY=VALUE separated by blanks or lines"},
-    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "", "or a recording: in the case's folder, or ${PITVIPER_DATA}/..."},
+     "settings of the scenario: KEY=VALUE, separated by blanks or lines"},
+    {"log", SETTING_TEXT, AT(log), 0, 0, NULL, "", "recording, in place of a scenario: in the case's folder, or "
+     "${PITVIPER_DATA}/..."},
     {"config", SETTING_TEXT, AT(config), 0, 0, NULL, "",
      "settings of `pitviper replay`, indented below `config: |`; paths in them are relative to the case's folder"},
-    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "or a file of them in the case's folder"},
+    {"config_file", SETTING_TEXT, AT(config_file), 0, 0, NULL, "", "file of settings in the case's folder, in place "
+     "of config"},
     {"frames", SETTING_NUMBERS, AT(frames), 0, 999999, NULL, "",
-     "numbers of the frames to look at, as replay gives them"},
+     "numbers of the frames to compare, as in replay"},
     {"causal", SETTING_BOOL, AT(causal), 0, 1, NULL, "", "replay --causal"},
     {"log_may_be_absent", SETTING_BOOL, AT(log_may_be_absent), 0, 1, NULL, "",
-     "a log that is not here skips the case, instead of failing it"},
+     "a missing log skips the case instead of failing it"},
     {"timeout_s", SETTING_DOUBLE, AT(timeout_s), 0.1, 86400, NULL, "s",
-     "for each child; one that takes longer is ended"},
-    {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, of itself"},
+     "time limit of each process of the case"},
+    {"tolerance.range_rel", SETTING_DOUBLE, AT(tolerance.range_rel), 0, 1, NULL, "", "range, relative"},
     {"tolerance.normal", SETTING_DOUBLE, AT(tolerance.normal), 0, 2, NULL, "", "each component of a normal"},
     {"tolerance.temp_k", SETTING_DOUBLE, AT(tolerance.temp_k), 0, 1000, NULL, "K", "surface temperature"},
     {"tolerance.optical_rel", SETTING_DOUBLE, AT(tolerance.optical_rel), 0, 10, NULL, "",
-     "optical radiance, of itself"},
+     "optical radiance, relative"},
     {"tolerance.optical_w_m2_sr", SETTING_DOUBLE, AT(tolerance.optical_w_m2_sr), 0, 1e4, NULL, "W/(m2 sr)",
-     "and this much more"},
+     "optical radiance, absolute, in addition"},
     {"tolerance.mwir_k", SETTING_DOUBLE, AT(tolerance.mwir_k), 0, 1000, NULL, "K", "apparent temperature"},
     {"tolerance.lwir_k", SETTING_DOUBLE, AT(tolerance.lwir_k), 0, 1000, NULL, "K", "apparent temperature"},
-    {"tolerance.radar_db", SETTING_DOUBLE, AT(tolerance.radar_db), 0, 100, NULL, "dB", "radar picture"},
+    {"tolerance.radar_db", SETTING_DOUBLE, AT(tolerance.radar_db), 0, 100, NULL, "dB", "radar image"},
     {"tolerance.profile_db", SETTING_DOUBLE, AT(tolerance.profile_db), 0, 100, NULL, "dB", "range profile"},
     {"tolerance.radar_span_db", SETTING_DOUBLE, AT(tolerance.radar_span_db), 1, 200, NULL, "dB",
-     "radar: what is this far below the brightest counts as nothing"},
+     "radar: power this far below the brightest counts as zero"},
     {"tolerance.share", SETTING_DOUBLE, AT(tolerance.share), 0, 1, NULL, "",
-     "of pixels that may lie beyond, temperature and radiance"},
+     "share of pixels that may be beyond tolerance, of temperature and radiance"},
     {"tolerance.edge_share", SETTING_DOUBLE, AT(tolerance.edge_share), 0, 1, NULL, "",
-     "of edge pixels whose ids may differ, when libraries or ISA are others"},
+     "share of edge pixels whose ids may differ, with different libraries or ISA"},
     {"tolerance.truth", SETTING_DOUBLE, AT(tolerance.truth), 0, 1e6, NULL, "",
-     "factor of the tolerances of truth.jsonl"},
+     "factor on the tolerances of truth.jsonl"},
 };
 static const SettingTable table = {.module = "regress", .row = keys, .count = sizeof keys / sizeof *keys,
                                    .all_keys = "`pitviper regress --keys`"};
 
-/* Why these: below what a user of the products would notice, above the rounding of sensor/regress/frame.h: a number that
- * crosses from one step to the next is still within. Nothing is left for threads, ISAs and builds, which give the same
+/* Below any significance for a user of the products, above the rounding of sensor/regress/frame.h: a value that
+ * crosses from one step to the next is still within. No allowance for threads, ISAs and builds, which give the same
  * bits (tests/system/test_determinism*.sh). */
 Case case_default(void)
 {
     return (Case){
         .timeout_s = 300,
-        .tolerance = {.range_rel = 3e-5, /* 6 cm in 2 km: two steps of the record */
-                      .normal = 0.004,   /* 0.2 degree: two steps of the record */
-                      .temp_k = 0.05,    /* of a surface: no more than that in the bands below */
-                      .optical_rel = 0.01, /* a step of the record is 0.8 %; the sun 0.1 degree off is 7 x .share */
+        .tolerance = {.range_rel = 3e-5, /* 6 cm in 2 km: two steps of the baseline */
+                      .normal = 0.004,   /* 0.2 degree: two steps of the baseline */
+                      .temp_k = 0.05,    /* surface temperature: as in the thermal bands */
+                      .optical_rel = 0.01, /* a step of the baseline is 0.8 %; the sun 0.1 degree off is 7 x .share */
                       .optical_w_m2_sr = 1e-3, /* half a step of 8 bits on a screen; a dark night */
                       .mwir_k = 0.05,
                       .lwir_k = 0.05, /* NETD of the sensors that look at it */
                       .radar_db = 0.1,
-                      .profile_db = 0.1,   /* what the radar models promise: Mie, trihedral */
-                      .radar_span_db = 60, /* what the display shows */
+                      .profile_db = 0.1,   /* stated accuracy of the radar models: Mie, trihedral */
+                      .radar_span_db = 60, /* range of the display */
                       .share = 0.001,      /* 6 pixels of 96 x 64 */
-                      .edge_share = 0.02,  /* ISAs of the tracer differ in t for 5 % of the rays, in ids for none */
+                      .edge_share = 0.02,  /* ISAs of the ray tracer differ in t for 5 % of the rays, in ids for none */
                       .truth = 1}};
 }
 
-/* Whether what was read can be run. */
+/* Checks that involve several keys. */
 static Status check(const Case *c, const char *path)
 {
     const char *wrong = NULL;
-    if (!*c->purpose) wrong = "purpose: is missing; say in one sentence what the case is for";
+    if (!*c->purpose) wrong = "purpose: is missing; one sentence what the case is for";
     else if (!*c->log && !*c->scenario)
         wrong = "log: or scenario: is missing; name a recording, or a scenario such as demo";
     else if (*c->log && *c->scenario) wrong = "log: and scenario: are both given; leave one out";
     else if (!*c->log && c->log_may_be_absent)
-        wrong = "log_may_be_absent: is of a log, and a scenario is given; leave it out";
-    else if (*c->log && *c->scenario_set) wrong = "scenario_set: is of a scenario, and a log is given; leave it out";
+        wrong = "log_may_be_absent: applies to a log, and a scenario is given; leave it out";
+    else if (*c->log && *c->scenario_set) wrong = "scenario_set: applies to a scenario, and a log is given; leave it "
+                                                  "out";
     else if (*c->config && *c->config_file) wrong = "config: and config_file: are both given; leave one out";
-    else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to look at, such as [3, 7, 12]";
-    else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a record is to be small";
+    else if (c->frames.count == 0) wrong = "frames: is missing; list the frames to compare, such as [3, 7, 12]";
+    else if (c->frames.count > case_frames_max) wrong = "frames: more than 64; a baseline is kept small";
     for (int i = 0; !wrong && i < c->frames.count; i++) {
         if (c->frames.number[i] != floor(c->frames.number[i]))
-            wrong = "frames: these are whole numbers, such as [3, 7, 12]";
-        if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i])) wrong = "frames: are to ascend, each once";
+            wrong = "frames: must be whole numbers, such as [3, 7, 12]";
+        if (i > 0 && !(c->frames.number[i - 1] < c->frames.number[i])) wrong = "frames: must be in ascending order, "
+                                                            "without duplicates";
     }
     if (!wrong) return STATUS_OK;
     log_error("regress: %s: %s", path, wrong);
     return STATUS_BAD_VALUE;
 }
 
-/* The last part of the folder's path; of `.`, that of where it is. */
+/* The last component of the folder's absolute path. */
 static void name_of(char out[128], const char *folder)
 {
     char *whole = realpath(folder, NULL);
@@ -115,7 +120,7 @@ Status case_read(Case *out, const char *folder)
     char path[case_path_size];
     Case read = case_default();
     if (snprintf(read.folder, sizeof read.folder, "%s", folder) >= (int)sizeof read.folder - 64) {
-        log_error("regress: %.200s...: the path is too long; go nearer with cd", folder);
+        log_error("regress: %.200s...: the path is too long; change to a nearer folder", folder);
         return STATUS_BAD_VALUE;
     }
     name_of(read.name, folder);
@@ -144,7 +149,7 @@ bool case_path(char out[case_path_size], char reason[256], const Case *c, const 
         rest   = end + 1;
         slash  = "";
         if (!before || !*before) {
-            snprintf(reason, 256, "%s is not set; let it name the folder of the recordings", variable);
+            snprintf(reason, 256, "%s is not set; it should name the folder of the recordings", variable);
             return false;
         }
     } else if (*name == '/') {
@@ -159,7 +164,7 @@ void case_write_keys(FILE *to)
 {
     const Case plain = case_default();
     static const bool none[sizeof keys / sizeof *keys] = {false};
-    fputs("# case.yaml of `pitviper regress`: every key with its default, behind a #. purpose, frames, and one of\n"
-          "# scenario and log must be given.\n", to);
+    fputs("# case.yaml of `pitviper regress`: every key with its default, commented out. purpose, frames, and one of\n"
+          "# scenario and log are required.\n", to);
     settings_write(to, &table, &plain, none);
 }

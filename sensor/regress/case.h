@@ -1,12 +1,12 @@
-/* sensor/regress/case.h: a case of the regression: what is shown again, and how near it must come to its record.
+/* sensor/regress/case.h: a case of the regression: exercise, settings, frames and tolerances.
  *
  * A case is a folder:
  *
  *     case.yaml   what to run and what to look at (below)
- *     record/     the products as they should be; written by `pitviper regress --update`, by nobody else
- *     card.md     when and why the record changed, newest first; written with it
+ *     record/     the baseline: the approved products; written only by `pitviper regress --update`
+ *     card.md     when and why the baseline changed, newest first; written with it
  *
- * Whatever else lies there is left alone. case.yaml:
+ * Other files in the folder are left alone. case.yaml:
  *
  *     purpose: a missile flies at a truck in a column of five     # one sentence
  *     scenario: demo              # a name that `pitviper exercise` knows, or a YAML file in this folder
@@ -18,15 +18,15 @@
  *         height_px: 64
  *     # config_file: node.yaml    # or such a file in this folder
  *     frames: [3, 7, 12]          # numbers, as replay gives them
- *     causal: true                # --causal; false by default, as of replay
- *     log_may_be_absent: true     # then the case is skipped; by default it has failed
- *     timeout_s: 300              # a child that takes longer is ended, and the case has failed
- *     tolerance:                  # over the defaults, which case_default has with their reasons
+ *     causal: true                # --causal; false by default
+ *     log_may_be_absent: true     # then the case is skipped; by default it fails
+ *     timeout_s: 300              # a process that takes longer is ended, and the case fails
+ *     tolerance:                  # overrides of the defaults, whose reasons are in case_default
  *       lwir_k: 0.05
  *
  * record/ holds NNNNNN.exr for each frame, all planes in one (range_m, entity, part, material, temp_k, nx, ny, nz,
- * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row of range
- * bins; truth.jsonl as the run wrote it, and run.json without times. */
+ * optical.R ..., mwir.Y, lwir.Y, radar.Y), rounded and coded as sensor/regress/frame.h says; NNNNNN.profile.exr, a row
+ * of range bins; truth.jsonl as the run wrote it, and run.json without times. */
 #ifndef SENSOR_REGRESS_CASE_H
 #define SENSOR_REGRESS_CASE_H
 
@@ -34,18 +34,18 @@
 
 enum { case_path_size = 4096, case_frames_max = 64 };
 
-/* The largest difference that is none. Numbers: share of pixels that may lie beyond. */
+/* The largest accepted differences, and the share of pixels that may be beyond them. */
 typedef struct Tolerance {
-    double range_rel;              /* range: of itself */
+    double range_rel;              /* range: relative */
     double normal;                 /* each component */
     double temp_k;
     double optical_rel, optical_w_m2_sr; /* both added */
     double mwir_k, lwir_k;         /* apparent temperature */
     double radar_db, profile_db;
-    double radar_span_db;          /* what lies this far below the brightest counts as nothing */
+    double radar_span_db;          /* power this far below the brightest counts as zero */
     double share;                  /* of pixels, temperature and radiance */
     double edge_share;             /* of edge pixels whose ids may differ; only under other libraries or another ISA */
-    double truth;                  /* factor of the tolerances of truth.jsonl's fields (sensor/regress/truth_diff.c) */
+    double truth;                  /* factor on the tolerances of the fields of truth.jsonl (sensor/regress/truth_diff.c) */
 } Tolerance;
 
 typedef struct Case {
@@ -62,7 +62,7 @@ typedef struct Case {
 Case   case_default(void);
 /* case.yaml of this folder. Any bytes; on failure logs file, line, key, value, range and what to do. */
 Status case_read(Case *out, const char *folder);
-/* The same of a file by itself, which is in no folder yet. On failure *out is untouched. */
+/* The same for a file outside of a case folder. On failure *out is untouched. */
 Status case_read_file(Case *out, const char *path);
 /* Where a file that the case names is: ${NAME} from the environment, else relative to the folder. False, and why in
  * reason, when that variable is not set or the path too long. */

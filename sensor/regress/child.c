@@ -1,3 +1,4 @@
+/* sensor/regress/child.c: runs this program as a child process with output in files and a time limit. */
 #include "sensor/regress/child.h"
 
 #include "sensor/node/stop.h"
@@ -22,7 +23,7 @@ bool child_add(ChildLine *line, const char *argument)
     return true;
 }
 
-/* Ours without what changes how numbers and dates are written. */
+/* The environment of this process, but with LC_ALL=C and TZ=UTC. */
 static char **environment(void)
 {
     static char locale[] = "LC_ALL=C", zone[] = "TZ=UTC";
@@ -86,7 +87,7 @@ Status child_run(ChildEnd *end, const ChildLine *line, const char *out_path, con
         end->stopped   = stop_asked();
         if (end->timed_out || end->stopped) {
             kill(-child, SIGKILL);
-            kill(child, SIGKILL); /* before it had its group */
+            kill(child, SIGKILL); /* in case it has no process group yet */
             while (waitpid(child, &state, 0) < 0 && errno == EINTR) {}
             break;
         }
@@ -134,7 +135,7 @@ void child_tail(char *out, size_t out_size, const char *path)
         if (octets > 0 && fseek(file, from, SEEK_SET) == 0) {
             const size_t got = fread(out, 1, out_size - 1, file);
             out[got]         = 0;
-            for (size_t i = 0; i < got; i++) /* libraries say what they like */
+            for (size_t i = 0; i < got; i++) /* output of libraries may hold any octet */
                 if ((out[i] < ' ' && out[i] != '\n') || out[i] == 0x7f || (unsigned char)out[i] >= 0x80) out[i] = '?';
             const char *line = from > 0 ? strchr(out, '\n') : NULL;
             if (line) memmove(out, line + 1, strlen(line));

@@ -1,3 +1,4 @@
+/* sensor/regress/compare.c: pixel-wise comparison of planes of numbers and of ids. */
 #include "sensor/regress/compare.h"
 
 #include "render/light/planck.h"
@@ -90,7 +91,7 @@ size_t mark_edges(uint8_t *edge, const uint32_t *expected, const uint32_t *got, 
 
 void plane_to_kelvin(float *out, const float *radiance_w_m2_sr, size_t count, double low_m, double high_m)
 {
-    /* many neighbours are equal, rounded as they are */
+    /* rounding makes many neighbours equal: reuse the last result */
     float last = NAN, last_k = NAN;
     for (size_t i = 0; i < count; i++) {
         const float v = radiance_w_m2_sr[i];

@@ -1,3 +1,4 @@
+/* sensor/regress/frame.c: reads the planes of a frame from a run and from a baseline, and writes the latter. */
 #include "sensor/regress/frame.h"
 
 #include "sensor/publish/image_file.h"
@@ -7,7 +8,7 @@
 
 enum { path_size = 4096 };
 
-/* Where a plane is in a run, and how it is rounded. */
+/* Folder and channel of each plane in a run, and its rounding. */
 static const struct Row {
     const char *name, *folder, *channel;
     bool        is_id;
@@ -75,8 +76,8 @@ float value_of(const Rounding *rounding, int32_t steps)
     return steps < 0 ? -value : value;
 }
 
-/* Small differences of either sign are small numbers (zigzag), and stand in both halves: OpenEXR takes octets 0 and 2 of
- * a word to one place, 1 and 3 to another, and stores how each differs from the one before. */
+/* Zigzag coding makes small differences of either sign small numbers; they are repeated in both halves of the word
+ * because OpenEXR stores octets 0 and 2 of a word in one run, 1 and 3 in another, each as differences. */
 void code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding)
 {
     for (int y = 0; y < height; y++) {
@@ -230,7 +231,7 @@ static Status read_profile_exr(RecordFrame *f, const char *path, int bins)
     if (status != STATUS_OK) return status;
     f->bins = bins;
     if (!image_read_number(&f->near_m, path, "near_m") || !image_read_number(&f->bin_m, path, "bin_m")) {
-        log_error("regress: %s: says not where its bins are (near_m, bin_m)", path);
+        log_error("regress: %s: has no position of its bins (near_m, bin_m)", path);
         return STATUS_BAD_VALUE;
     }
     for (int b = 0; b < frame_bounces && status == STATUS_OK; b++)

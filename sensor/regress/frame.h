@@ -1,9 +1,9 @@
-/* sensor/regress/frame.h: all recorded planes of one frame, from a run's folder or from a record's one EXR.
+/* sensor/regress/frame.h: all recorded planes of one frame, from the folder of a run or from the EXR of a baseline.
  *
- * A record is small because its numbers are rounded, below the tolerances of case_default; a run is rounded the same
- * way before it is compared, so that equal runs differ by nothing at all. One step of each:
+ * A baseline is small because its numbers are rounded, below the tolerances of case_default; a run is rounded the same
+ * way before it is compared, so that equal runs have zero difference. One step of each:
  *
- *     range_m            16 bits of mantissa      1.5e-5 of itself at most
+ *     range_m            16 bits of mantissa      1.5e-5 relative at most
  *     nx, ny, nz         1/512                    0.002
  *     temp_k             1/32 K                   0.03 K
  *     optical            7 bits of mantissa       0.8 % at most
@@ -28,18 +28,18 @@ enum { frame_bounces = 3, frame_size_max = 8192, frame_bins_max = 65536 };
 
 typedef struct RecordFrame {
     int       number, width, height;
-    float    *number_plane[FRAME_PLANES]; /* [height][width]; NULL: not there, or of ids */
+    float    *number_plane[FRAME_PLANES]; /* [height][width]; NULL: absent, or a plane of ids */
     uint32_t *id_plane[FRAME_PLANES];     /* entity, part, material */
     int       bins;                       /* 0: no profile */
-    double    near_m, bin_m;              /* middle of the first bin; between two */
+    double    near_m, bin_m;              /* middle of the first bin; spacing */
     float    *profile[frame_bounces];     /* [bins] */
     char      date[32];                   /* of the exercise, as EXR writes it */
 } RecordFrame;
 
-const char *frame_plane_name(FramePlane plane); /* channel in the record */
+const char *frame_plane_name(FramePlane plane); /* channel in the baseline */
 bool        frame_plane_is_id(FramePlane plane);
 
-/* Frame `number` of replay's folder, rounded. STATUS_IO, logged, when it is not there. */
+/* Frame `number` of a replay, rounded. STATUS_IO, logged, when it is missing. */
 Status frame_from_run(RecordFrame *out, const char *folder, int number);
 /* The same of record/. like: only a frame of that size and number of bins is read; else STATUS_BAD_VALUE, logged. */
 Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like);
@@ -51,15 +51,15 @@ Status frame_record_size(FrameSize *out, const char *folder, int number);
 Status frame_to_record(const char *folder, const RecordFrame *frame);
 void   frame_free(RecordFrame *frame);
 
-/* Whole steps: to the nearest number of so many bits of mantissa (1 .. 22); to the nearest multiple of a step. Infinity
- * and NaN have a place of their own; -0 is 0. value_of is the inverse. */
+/* Rounding in whole steps: to that many bits of mantissa (1 .. 22), or to the nearest multiple of a step. Infinity and
+ * NaN have reserved numbers; -0 is 0. value_of is the inverse. */
 typedef struct Rounding {
     int    bits; /* 0: by step */
     double step;
 } Rounding;
 int32_t steps_of(const Rounding *rounding, float value);
 float   value_of(const Rounding *rounding, int32_t steps);
-/* Differences to the left neighbour, as the file has them; and back. May not alias. */
+/* Differences to the left neighbour, as stored in the file; and the inverse. Must not alias. */
 void    code_plane(uint32_t *coded, const float *value, int width, int height, const Rounding *rounding);
 void    decode_plane(float *value, const uint32_t *coded, int width, int height, const Rounding *rounding);
 

@@ -33,7 +33,7 @@ static void put_case(FILE *to, const CaseResult *r)
             fputs("\">", to);
             put(to, r->c.purpose);
             if (r->compared && *r->verdict.remarks) {
-                fputs("\nother than when it was recorded:\n", to);
+                fputs("\ninputs that differ from those of the baseline:\n", to);
                 put(to, r->verdict.remarks);
             }
             for (int k = 0; k < CHANNEL_COUNT && r->compared; k++)
@@ -41,7 +41,7 @@ static void put_case(FILE *to, const CaseResult *r)
                     fprintf(to, "\n%s: ", channel_name((Channel)k));
                     put(to, r->verdict.channel[k].line);
                 }
-            if (*r->command) fputs("\n\nby hand:\n", to);
+            if (*r->command) fputs("\n\nto reproduce:\n", to);
             put(to, r->command);
             fprintf(to, "</%s>\n", kind[r->state]);
         }
@@ -70,7 +70,7 @@ Status junit_write(const char *path, const CaseResult *const *result, int count)
     }
     FILE *file = snprintf(part, sizeof part, "%s.part", path) < (int)sizeof part ? fopen(part, "w") : NULL;
     if (!file) {
-        log_error("regress: --junit: cannot write %s: %s; choose another place", path, strerror(errno));
+        log_error("regress: --junit: cannot write %s: %s; choose another path", path, strerror(errno));
         return STATUS_IO;
     }
     fprintf(

@@ -1,3 +1,4 @@
+/* sensor/regress/picture.c: planes as false-colour PNGs in an HTML page, with a colour scale. */
 #include "sensor/regress/picture.h"
 
 #include "sensor/publish/html.h"
@@ -52,7 +53,7 @@ Scale scale_of_difference(const float *difference, size_t count, double least)
     return (Scale){-most, most};
 }
 
-/* Between colours of a list of `count`, evenly spaced. */
+/* Interpolates in a list of `count` evenly spaced colours. */
 static void between(uint8_t out[3], const uint8_t colour[][3], int count, double t)
 {
     const double at = clamp(t, 0, 1) * (count - 1);
@@ -62,7 +63,7 @@ static void between(uint8_t out[3], const uint8_t colour[][3], int count, double
 
 static void colour_of(uint8_t out[3], float value, Colours colours, Scale scale)
 {
-    /* dark blue, purple, orange, pale yellow: brightness rises evenly, also for those who see no red */
+    /* dark blue, purple, orange, pale yellow: monotonic brightness, readable with colour blindness */
     static const uint8_t heat[5][3] = {{8, 8, 40}, {84, 24, 110}, {182, 54, 84}, {246, 140, 40}, {252, 250, 190}};
     static const uint8_t sides[5][3] = {
         {10, 60, 160}, {120, 170, 225}, {250, 250, 250}, {235, 150, 110}, {165, 15, 30}};
@@ -81,7 +82,7 @@ static void colour_of(uint8_t out[3], float value, Colours colours, Scale scale)
     }
 }
 
-/* A file only for a moment: the page wants octets. */
+/* Through a temporary file, whose octets are embedded in the page. */
 static bool put_png(FILE *page, const uint8_t *rgb, int width, int height, const char *scratch, const char *alt)
 {
     char  *bytes;
@@ -95,7 +96,7 @@ static bool put_png(FILE *page, const uint8_t *rgb, int width, int height, const
     return true;
 }
 
-/* Light on a screen. */
+/* Display gamma. */
 static uint8_t shown(float value, Scale scale)
 {
     if (!isfinite(value)) return 128;

@@ -1,3 +1,4 @@
+/* sensor/regress/regress.c: the command `pitviper regress`: its options, the cases given, their output and summary. */
 #include "sensor/regress/regress.h"
 
 #include "sensor/commands/next_option.h"
@@ -18,39 +19,41 @@ static const char help[] =
     "usage: pitviper regress CASE ... [options]\n"
     "       pitviper regress --update CASE ... --why TEXT [options]\n"
     "\n"
-    "Shows recorded exercises again and holds pictures, truth and counters against what was recorded when they were\n"
-    "found right. CASE is a folder with a case.yaml, or a folder of such folders.\n"
+    "Re-renders recorded exercises and compares images, truth and counters with approved baselines. CASE is a folder "
+    "with\n"
+    "a case.yaml, or a folder of such folders.\n"
     "\n"
-    "  --update             write the record anew, and say why in card.md\n"
-    "  --why TEXT           that reason; with --update alone, and then it must be given\n"
-    "  --allow-missing      skip a case whose log is not here; otherwise it has failed, unless its case.yaml says\n"
+    "  --update             approve: write the baseline (record/) from the present output, and card.md\n"
+    "  --why TEXT           the reason, kept in card.md; required with --update, and only there\n"
+    "  --allow-missing      skip a case whose log is missing; otherwise it fails, unless its case.yaml has\n"
     "                       log_may_be_absent: true\n"
     "  --junit FILE         JUnit XML for a test server\n"
-    "  --report FILE        one HTML page: expected, got and difference of each channel that failed\n"
-    "  --work DIR           where everything is made, and kept (default: a temporary folder, kept when a case fails)\n"
-    "  --jobs N             cases at a time (default: one for each processor)\n"
-    "  --threads N          of each case (default: what the cases at a time leave)\n"
-    "  --isa NAME           instruction set of the tracer, as of replay: avx2 (default), sse4.2, avx512\n"
-    "  --keys               every key of case.yaml, with its range and default\n"
-    "  --help               this\n"
+    "  --report FILE        one HTML page: expected, actual and difference of each channel that failed\n"
+    "  --work DIR           working folder, kept (default: a temporary folder, kept when a case fails)\n"
+    "  --jobs N             cases in parallel (default: one per processor)\n"
+    "  --threads N          threads of each case (default: the remaining processors)\n"
+    "  --isa NAME           instruction set of the ray tracer: avx2 (default), sse4.2, avx512\n"
+    "  --keys               print every key of case.yaml, with its range and default\n"
+    "  --help               print this help\n"
     "\n"
     "a case\n"
-    "  case.yaml            purpose: one sentence; scenario: (a name of `pitviper exercise`, or a file) or log: (a file, or\n"
-    "                       ${PITVIPER_DATA}/...); config: | (settings of replay); frames: [3, 7, 12]; tolerance: what is\n"
-    "                       other than by default. --keys says all\n"
-    "  record/              written by --update: a small EXR of each frame, truth.jsonl, run.json\n"
-    "  card.md              written by --update: when and why the record changed, newest first\n"
+    "  case.yaml            purpose: one sentence; scenario: (a name of `pitviper exercise`, or a file) or log: (a\n"
+    "                       file, or ${PITVIPER_DATA}/...); config: | (settings of replay); frames: [3, 7, 12];\n"
+    "                       tolerance: what differs from the defaults. --keys prints all\n"
+    "  record/              the baseline, written by --update: a small EXR per frame, truth.jsonl, run.json\n"
+    "  card.md              written by --update: when and why the baseline changed, newest first\n"
     "\n"
-    "what is compared, in the way of the data; what fails first is named, as the probable cause of what fails after it\n"
-    "  counters, time, pose of the eye, sun, motion of the targets; entity, part, range, normal, targets seen; material;\n"
-    "  temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and counters must be the\n"
-    "  same; radiance may differ by 0.05 K apparent, 1 % of light, 0.1 dB, in all but 0.1 % of the pixels. A number\n"
-    "  crosses from one step of the record to the next within that.\n"
+    "compared, in the order of the data path; the first failed channel is named, as the probable cause of the others\n"
+    "  counters, time, pose of the sensor, sun, motion of the targets; entity, part, range, normal, visible targets;\n"
+    "  material; temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and counters\n"
+    "  must be equal; radiance may differ by 0.05 K apparent, 1 % of optical radiance, 0.1 dB, in all but 0.1 % of the\n"
+    "  pixels. The rounding of the baseline is within these tolerances.\n"
     "\n"
-    "What is other than when the record was made (tables, models, settings, log, libraries, choices) is said before any\n"
-    "channel: hashes in run.json tell. Each case runs in processes of its own: one that crashes or hangs has failed by\n"
-    "itself. A log or a record that is not there has failed, unless allowed. --update prints what the run chose: host,\n"
-    "aim, ground, time. Exit code: 0: nothing failed; 1: something did; 2: usage; 130, 143: stopped by Ctrl-C, by SIGTERM.\n";
+    "Differences of the inputs from those of the baseline (tables, models, settings, log, libraries, choices) are\n"
+    "reported before any channel, by hashes in run.json. Each case runs in processes of its own: a crash or a timeout\n"
+    "fails only that case. A missing log or baseline fails the case, unless allowed. --update prints the automatic\n"
+    "choices: host, aim, terrain, time. Exit code: 0: nothing failed; 1: a case failed; 2: usage; 130, 143: stopped by\n"
+    "Ctrl-C, by SIGTERM.\n";
 
 typedef struct Options {
     bool        update, allow_missing;
@@ -77,7 +80,7 @@ static int refuse(const char *format, const char *text)
     return 1 + 2;
 }
 
-static bool few(int *out, const char *text)
+static bool parse_count(int *out, const char *text)
 {
     long long value;
     if (!text_to_long(&value, text) || value < 1 || value > 256) return false;
@@ -85,7 +88,7 @@ static bool few(int *out, const char *text)
     return true;
 }
 
-/* 0: go on; else exit with this code - 1. */
+/* 0: continue; else exit with this code - 1. */
 static int parse(Options *o, int argc, char **argv)
 {
     enum { UPDATE = 256, WHY, JUNIT, REPORT, WORK, JOBS, THREADS, ISA, KEYS, ALLOW, HELP };
@@ -102,11 +105,11 @@ static int parse(Options *o, int argc, char **argv)
         case REPORT: o->report = optarg; break;
         case WORK: o->work = optarg; break;
         case JOBS:
-            if (!few(&o->jobs, optarg))
+            if (!parse_count(&o->jobs, optarg))
                 return refuse("regress: --jobs: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case THREADS:
-            if (!few(&o->threads, optarg))
+            if (!parse_count(&o->threads, optarg))
                 return refuse("regress: --threads: '%s' is not a whole number in 1 .. 256", optarg);
             break;
         case ISA:
@@ -126,12 +129,12 @@ static int parse(Options *o, int argc, char **argv)
     }
     if (o->update && (!o->why || strspn(o->why, " \t\r\n") == strlen(o->why)))
         return refuse("regress: --update needs --why TEXT: %s",
-                      "say in a sentence why the record changes; card.md keeps it");
-    if (o->why && !o->update) return refuse("regress: --why is of --update; %s", "give both, or neither");
+                      "one sentence why the baseline changes; card.md keeps it");
+    if (o->why && !o->update) return refuse("regress: --why needs --update; %s", "give both, or neither");
     if (o->update && (o->junit || o->report))
-        return refuse("regress: --update compares nothing, so it has no --junit and no --report; %s",
+        return refuse("regress: --update makes no comparison, so --junit and --report do not apply; %s",
                       "run again without --update");
-    if (o->work && !*o->work) return refuse("regress: --work: the folder has no name%s", "");
+    if (o->work && !*o->work) return refuse("regress: --work: the name of the folder is empty%s", "");
     return 0;
 }
 
@@ -145,14 +148,14 @@ static bool is_case(const char *folder)
     return stat(path, &there) == 0;
 }
 
-static int named_before(const Suite *s, const char *name)
+static int count_named(const Suite *s, const char *name)
 {
     int count = 0;
     for (int i = 0; i < s->count; i++) count += strcmp(s->result[i]->c.name, name) == 0;
     return count;
 }
 
-/* A case that cannot be read is a result too. */
+/* False, logged: the case cannot be read, is given twice, or there are too many. */
 static bool add_case(Suite *s, const char *folder)
 {
     CaseResult *r = calloc(1, sizeof *r);
@@ -177,7 +180,7 @@ static bool add_case(Suite *s, const char *folder)
         free(r);
         return false;
     }
-    const int before = named_before(s, r->c.name);
+    const int before = count_named(s, r->c.name);
     if (before == 0) snprintf(r->work, sizeof r->work, "%.3900s/%s", s->o.work, r->c.name);
     else snprintf(r->work, sizeof r->work, "%.3900s/%s-%d", s->o.work, r->c.name, before + 1);
     s->result[s->count++] = r;
@@ -202,12 +205,12 @@ static bool add_argument(Suite *s, const char *argument)
         free(entry[i]);
     }
     if (entries >= 0) free(entry);
-    if (ok && found == 0) ok = add_case(s, folder); /* which says what is missing */
+    if (ok && found == 0) ok = add_case(s, folder); /* which reports what is missing */
     free(folder);
     return ok;
 }
 
-/* ---- showing ---------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------- */
 
 const char *case_state_name(CaseState state)
 {
@@ -215,7 +218,7 @@ const char *case_state_name(CaseState state)
     return names[state];
 }
 
-/* Lines, each behind the case's name and a word. */
+/* Each line prefixed with the case's name and a word. */
 static void print_lines(const CaseResult *r, const char *word, const char *text)
 {
     for (size_t length; *text; text += length + (text[length] == '\n')) {
@@ -224,12 +227,13 @@ static void print_lines(const CaseResult *r, const char *word, const char *text)
     }
 }
 
-/* What is other than when it was recorded comes before what that did. */
+/* Changed inputs before the channels that failed. */
 static void print_line(const CaseResult *r)
 {
     if (r->state == CASE_FAILED) print_lines(r, "changed: ", r->verdict.remarks);
     if (r->updated) print_lines(r, "chosen: ", r->chosen);
-    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": " : "",
+    text_print(stdout, "%-24s %s%s%s", r->c.name, r->updated ? "updated" : case_state_name(r->state), *r->line ? ": "
+                       "" : "",
            r->line);
     if (r->state != CASE_SKIPPED && r->state != CASE_NO_RECORD) printf("  (%.1f s)", r->seconds);
     putchar('\n');
@@ -242,7 +246,7 @@ static void show_progress(const Suite *s)
     log_status(s->done == s->count ? NULL : text);
 }
 
-/* In the order in which they were given, each as soon as those before it are done. */
+/* Results are printed in the order given, each as soon as those before it are done. */
 static void take_case(void *user, int worker, int task)
 {
     Suite *s = user;
@@ -268,10 +272,10 @@ static int remove_one(const char *path, const struct stat *about, int kind, stru
     return remove(path);
 }
 
-/* Only ever what this process has made by mkdtemp. */
+/* Called only for a folder that this process has made by mkdtemp. */
 static void remove_made(const char *folder) { nftw(folder, remove_one, 16, FTW_DEPTH | FTW_PHYS | FTW_MOUNT); }
 
-/* A folder of our own, or the one that was named. */
+/* A temporary folder (its path in own), or the one given by --work. */
 static bool open_work(Suite *s, char own[case_path_size])
 {
     *own = 0;
@@ -295,7 +299,7 @@ static bool run_all(Suite *s)
                        .why = s->o.why};
     s->begun_s = wall_clock_s();
     if (pool_create(&pool, jobs) != STATUS_OK) {
-        log_error("regress: cannot start %d threads; fewer --jobs", jobs);
+        log_error("regress: cannot start %d threads; give fewer --jobs", jobs);
         return false;
     }
     log_set_sink(run_case_log, NULL);
@@ -340,7 +344,8 @@ int regress_command(int argc, char **argv)
     if (s.o.report && report_write(s.o.report, (const CaseResult *const *)s.result, s.count) != STATUS_OK) code = 1;
     for (int i = 0; i < s.count && *own; i++)
         if (s.result[i]->state == CASE_OK || s.result[i]->state == CASE_SKIPPED) remove_made(s.result[i]->work);
-    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) text_print(stdout, "what failed is kept in %s\n", own);
+    if (failed && *own && access(own, F_OK) == 0 && rmdir(own) != 0) text_print(stdout, "the output of the failed "
+                                                            "cases is kept in %s\n", own);
 
 done:
     if (!failed && s.o.work && *own) remove_made(own);

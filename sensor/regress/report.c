@@ -1,3 +1,4 @@
+/* sensor/regress/report.c: the HTML report: a table of all cases, then each failed channel with its images. */
 #include "sensor/regress/report.h"
 
 #include "sensor/publish/html.h"
@@ -30,18 +31,18 @@ static bool both_frames(RecordFrame *expected, RecordFrame *got, const CaseResul
 
 /* ---- a channel that failed -------------------------------------------------------------------- */
 
-/* The largest difference that is none. */
+/* The tolerance of a channel, as text. */
 static void tolerance_text(char out[96], int channel, const ChannelResult *found)
 {
     const char *unit = found->unit ? found->unit : "", *space = *unit ? " " : "";
-    if (found->picture && frame_plane_is_id(found->plane)) snprintf(out, 96, "the same id");
+    if (found->picture && frame_plane_is_id(found->plane)) snprintf(out, 96, "equal");
     else if (channel == CHANNEL_OPTICAL)
-        snprintf(out, 96, "%.3g %% of it and %.3g %s", 100 * found->relative, found->limit, unit);
-    else if (found->relative > 0) snprintf(out, 96, "%.3g of it", found->relative);
+        snprintf(out, 96, "%.3g %% and %.3g %s", 100 * found->relative, found->limit, unit);
+    else if (found->relative > 0) snprintf(out, 96, "%.3g relative", found->relative);
     else snprintf(out, 96, "%.3g%s%s", found->limit, space, unit);
 }
 
-/* One of both is colder than an apparent temperature goes: the difference is larger than it says. */
+/* One of the two values is at the floor of apparent temperature: the true difference is larger than the one shown. */
 static bool at_floor(int channel, const ChannelResult *found)
 {
     const PlaneVerdict *v = &found->verdict;
@@ -49,7 +50,7 @@ static bool at_floor(int channel, const ChannelResult *found)
            (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
 }
 
-/* How many, how much, where: what the pictures below it cannot say. */
+/* How many pixels, by how much, where. */
 static void put_facts(FILE *page, const ChannelResult *found, int channel)
 {
     const PlaneVerdict *v = &found->verdict;
@@ -60,22 +61,23 @@ static void put_facts(FILE *page, const ChannelResult *found, int channel)
     html_text(page, "Frame %d, %s: %zu of %zu %s (%.3g %%) ", found->frame,
               found->picture ? frame_plane_name(found->plane) : "range profile", v->beyond, v->compared,
               found->picture ? "pixels" : "bins", 100 * v->share);
-    if (ids) html_text(page, "show another id; ");
+    if (ids) html_text(page, "have a different id; ");
     else html_text(page, "differ by more than the tolerance of %s; ", tolerance);
-    if (found->allowed > 0) html_text(page, "%.3g %% may.", 100 * found->allowed);
-    else html_text(page, "none may.");
+    if (found->allowed > 0) html_text(page, "allowed: %.3g %%.", 100 * found->allowed);
+    else html_text(page, "allowed: none.");
     if (v->column < 0) return;
     if (ids) html_text(page, " The first");
     else if (v->unmatched == 0)
         html_text(page, " Rms %.3g%s, largest difference %s%.3g%s", v->rms, unit,
                   at_floor(channel, found) ? "more than " : "", v->max, unit);
     else
-        html_text(page, " Rms %.3g%s; in %zu only one of both has a number, the first", v->rms, unit, v->unmatched);
+        html_text(page, " Rms %.3g%s; in %zu pixels only one of the two is finite, the "
+                        "first", v->rms, unit, v->unmatched);
     if (found->picture) html_text(page, " at column %d, row %d", v->column, v->row);
     else html_text(page, " in bin %d of bounce %d", v->column, found->bounce + 1);
     if (ids) snprintf(was, sizeof was, "%.0f", v->expected), snprintf(is, sizeof is, "%.0f", v->got);
     else channel_value(was, (Channel)channel, v->expected, 6), channel_value(is, (Channel)channel, v->got, 6);
-    html_text(page, ": expected %s, got %s.", was, is);
+    html_text(page, ": expected %s, actual %s.", was, is);
 }
 
 static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, Colours colours, Scale scale,
@@ -83,17 +85,17 @@ static void put_figure(FILE *page, const float *plane, const ChannelPlanes *p, C
 {
     fputs("<figure>", page);
     if (!picture_put(page, &plane, 1, p->width, p->height, colours, scale, shown_width, scratch, caption))
-        fputs("(this picture could not be made)", page);
+        fputs("(image could not be made)", page);
     fputs("<figcaption><b>", page);
     html_text(page, "%s", caption);
     fputs("</b><br>", page);
     if (unit) legend_put(page, colours, scale, unit, scratch);
-    else if (colours == COLOURS_IDS) fputs("a colour for each id; dark: none", page);
-    else fputs("bright pixels", page);
+    else if (colours == COLOURS_IDS) fputs("a colour per id; dark: none", page);
+    else fputs("bright: beyond tolerance", page);
     fputs("</figcaption></figure>\n", page);
 }
 
-/* 1 where the tolerance does not reach, else 0. */
+/* 1 where the difference is beyond the tolerance, else 0. */
 static void mark_beyond(float *plane, const ChannelPlanes *p, const ChannelResult *found)
 {
     for (size_t i = 0; i < (size_t)p->width * (size_t)p->height; i++) {
@@ -108,7 +110,7 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     ChannelPlanes p;
     char          scratch[path_size], was[64], is[64];
     snprintf(was, sizeof was, "expected: %s, frame %d", frame_plane_name(found->plane), found->frame);
-    snprintf(is, sizeof is, "got: %s, frame %d", frame_plane_name(found->plane), found->frame);
+    snprintf(is, sizeof is, "actual: %s, frame %d", frame_plane_name(found->plane), found->frame);
     scratch_file(scratch, r);
     if (!channel_planes(&p, found, expected, got, &r->c.tolerance)) return;
     const size_t  count   = (size_t)p.width * (size_t)p.height;
@@ -119,10 +121,10 @@ static void put_pictures(FILE *page, const CaseResult *r, const ChannelResult *f
     const char   *unit    = ids ? NULL : found->unit;
     put_figure(page, p.expected, &p, colours, scale, scratch, unit, was);
     put_figure(page, p.got, &p, colours, scale, scratch, unit, is);
-    if (!ids) put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, unit, "got - expected");
+    if (!ids) put_figure(page, p.difference, &p, COLOURS_SIGNED, change, scratch, unit, "actual - expected");
     mark_beyond(p.got, &p, found);
     put_figure(page, p.got, &p, COLOURS_HEAT, (Scale){0, 1}, scratch, NULL, "beyond tolerance");
-    if (!ids) fputs("<p class=\"dim\">Beyond the ends of a scale: as at its ends. Violet: no number.</p>\n", page);
+    if (!ids) fputs("<p class=\"dim\">Values beyond the ends of a scale are clipped. Violet: not finite.</p>\n", page);
     free(p.expected);
     free(p.got);
     free(p.difference);
@@ -159,14 +161,14 @@ static void put_profile(FILE *page, const CaseResult *r, const ChannelResult *fo
     put_line(page, db + bins, bins, span_db, "stroke=\"#c0392b\" stroke-width=\"1\"");
     fputs("</svg><figcaption>", page);
     html_text(page,
-              "bounce %d: expected green and thick, got red and thin; %.1f .. %.1f m from left to right, 0 dB at the "
-              "top, -%.0f dB below",
+              "bounce %d: expected thick green, actual thin red; %.1f .. %.1f m from left to right, 0 dB at the "
+              "top, -%.0f dB at the bottom",
               b + 1, got->near_m, got->near_m + (bins - 1) * got->bin_m, span_db);
     fputs("</figcaption></figure>\n", page);
     free(db);
 }
 
-/* open: at once, not when it is asked for. */
+/* open: expanded from the start. */
 static void put_channel(FILE *page, const CaseResult *r, int channel, bool open)
 {
     const ChannelResult *found = &r->verdict.channel[channel];
@@ -210,7 +212,7 @@ static void put_numbers(FILE *page, const CaseResult *r)
                     floor(c->allowed * (double)v->compared));
             html_text(page, "%s", tolerance);
             if (c->picture && frame_plane_is_id(c->plane)) fputs("</td><td></td>", page);
-            else if (v->unmatched > 0) fputs("</td><td class=\"n\">a number in one only</td>", page);
+            else if (v->unmatched > 0) fputs("</td><td class=\"n\">only one is finite</td>", page);
             else
                 fprintf(page, "</td><td class=\"n\">%s%.3g %s</td>", at_floor(k, c) ? "more than " : "", v->max,
                         c->unit ? c->unit : "");
@@ -245,10 +247,10 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     fputs("</p>\n<p class=\"bad\">", page);
     html_text(page, "%s", r->line);
     fputs("</p>\n", page);
-    put_block(page, "What is other than when it was recorded", r->compared ? r->verdict.remarks : "");
+    put_block(page, "Inputs that differ from those of the baseline", r->compared ? r->verdict.remarks : "");
     if (r->compared) put_numbers(page, r);
-    /* the cause, and what it looks like; the rest follows from it */
-    if (r->compared) fputs("<h3>What failed, in the order in which the data is made</h3>\n", page);
+    /* expanded: the probable cause, and the first channel with an image */
+    if (r->compared) fputs("<h3>Failed channels, in the order of the data path</h3>\n", page);
     bool pictured = false;
     for (int k = 0; k < CHANNEL_COUNT && r->compared; k++) {
         const ChannelResult *c = &r->verdict.channel[k];
@@ -257,7 +259,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
         pictured |= c->picture;
     }
     put_block(page, "Last lines of the run", r->said);
-    put_block(page, "By hand", r->command);
+    put_block(page, "To reproduce", r->command);
 }
 
 /* One picture a band, of the first frame. */
@@ -313,8 +315,8 @@ static void put_passed(FILE *page, const CaseResult *r, int number)
     if (r->compared) {
         put_thumbnails(page, r);
         put_numbers(page, r);
-        put_block(page, "What is other than when it was recorded", r->verdict.remarks);
-        put_block(page, "By hand", r->command);
+        put_block(page, "Inputs that differ from those of the baseline", r->verdict.remarks);
+        put_block(page, "To reproduce", r->command);
     }
     fputs("</details>\n", page);
 }
@@ -330,10 +332,9 @@ static void put_summary(FILE *page, const CaseResult *const *result, int count)
     }
     fprintf(page,
             "<p>pitviper " PITVIPER_VERSION
-            ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each shows a "
-            "recorded exercise again and is held against what it showed when it was found right. Of what failed, the "
-            "channel "
-            "nearest to the source of the data is named: it is the probable cause of those after it.</p>\n",
+            ": %d case%s, <span class=\"%s\">%d failed</span>, %d skipped. Each case "
+            "re-renders a recorded exercise and compares it with its approved baseline. The first failed channel along "
+            "the data path is named: it is the probable cause of those after it.</p>\n",
             count, count == 1 ? "" : "s", failed ? "bad" : "good", failed, skipped);
     fputs("<table><tr><th>case</th><th>result</th><th>what</th><th class=\"n\">s</th></tr>\n", page);
     for (int i = 0; i < count; i++) {

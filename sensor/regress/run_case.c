@@ -1,7 +1,8 @@
+/* sensor/regress/run_case.c: runs one case: its log, settings and replay, then the comparison or the update. */
 #include "sensor/regress/run_case.h"
 
 #include "sensor/settings/config.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/node/stop.h"
 #include "sensor/regress/child.h"
 #include "sensor/regress/update.h"
@@ -14,7 +15,7 @@
 
 enum { path_size = case_path_size + 64, tail_size = 3000 };
 
-/* ---- what is said ---------------------------------------------------------------------------- */
+/* ---- messages ---------------------------------------------------------------------------- */
 
 static _Thread_local CaseResult *case_here;
 
@@ -37,14 +38,14 @@ void run_case_log(void *user, LogLevel level, const char *line)
     say(case_here, "\n");
 }
 
-/* The last error that was said: the reason. */
+/* The last error in the output of the processes. */
 static void last_error(char *out, size_t out_size, const char *said)
 {
     const char *found = NULL;
     for (const char *at = said; (at = strstr(at, "error: ")); at++)
         if (at == said || at[-1] == '\n') found = at + 7;
     if (found) snprintf(out, out_size, "%.*s", (int)strcspn(found, "\n"), found);
-    else snprintf(out, out_size, "it said nothing");
+    else snprintf(out, out_size, "no error message");
 }
 
 __attribute__((format(printf, 3, 4))) static bool end_case(CaseResult *r, CaseState state, const char *format, ...)
@@ -59,7 +60,7 @@ __attribute__((format(printf, 3, 4))) static bool end_case(CaseResult *r, CaseSt
 
 /* ---- children -------------------------------------------------------------------------------- */
 
-/* False when it did not end well; the case has ended then. */
+/* False when the process failed; the result of the case is set then. */
 static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
 {
     char     out_path[path_size], error_path[path_size], tail[tail_size], reason[512];
@@ -78,13 +79,13 @@ static bool run_child(CaseResult *r, const ChildLine *line, const char *name)
     if (end.stopped) return end_case(r, CASE_BROKEN, "stopped");
     if (end.timed_out)
         return end_case(r, CASE_BROKEN,
-                        "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs longer", name,
+                        "`pitviper %s` was ended after %g s (timeout_s); it hangs, or the case needs more time", name,
                         r->c.timeout_s);
     if (end.signal)
         return end_case(r, CASE_BROKEN, "`pitviper %s` crashed: %s", name, strsignal(end.signal));
     if (end.code) {
         last_error(reason, sizeof reason, tail);
-        return end_case(r, CASE_BROKEN, "`pitviper %s` could not do it: %s", name, reason);
+        return end_case(r, CASE_BROKEN, "`pitviper %s` failed: %s", name, reason);
     }
     return true;
 }
@@ -112,21 +113,22 @@ static bool make_log(char log[path_size], CaseResult *r)
 
 static bool find_log(char log[path_size], CaseResult *r, const CaseHow *how)
 {
-    static const char next[] = "; give it, or allow this (log_may_be_absent: true in case.yaml, or --allow-missing)";
+    static const char next[] = "; provide it, or allow its absence (log_may_be_absent: true in case.yaml, or "
+                               "--allow-missing)";
     char              path[case_path_size], reason[256];
     const bool        allowed = r->c.log_may_be_absent || how->allow_missing;
     const CaseState   state   = allowed ? CASE_SKIPPED : CASE_BROKEN;
     if (!case_path(path, reason, &r->c, r->c.log))
-        return end_case(r, state, "log absent: %s%s", reason, allowed ? "" : next);
+        return end_case(r, state, "log missing: %s%s", reason, allowed ? "" : next);
     if (access(path, R_OK) != 0)
-        return end_case(r, state, "log absent: %.400s: %s%s", path, strerror(errno), allowed ? "" : next);
+        return end_case(r, state, "log missing: %.400s: %s%s", path, strerror(errno), allowed ? "" : next);
     snprintf(log, path_size, "%s", path);
     return true;
 }
 
-/* Paths in the lines of a case are relative to the case, and the file lies elsewhere: they are made absolute. What
- * cannot be read stays as it is: the run says what is wrong with it. */
-static bool settle_paths(const char *config, const CaseResult *r)
+/* Paths in the settings of a case are relative to its folder, but config.yaml is in the work folder: they are made
+ * absolute. A file that cannot be parsed is left as it is: the run reports what is wrong with it. */
+static bool make_paths_absolute(const char *config, const CaseResult *r)
 {
     char    in_case[path_size];
     Config *read = malloc(sizeof *read);
@@ -144,7 +146,7 @@ static bool settle_paths(const char *config, const CaseResult *r)
     return ok;
 }
 
-/* config.yaml of the work folder, from the lines of the case; or the file that it names. */
+/* config.yaml of the work folder, from `config` of the case; or the file that `config_file` names. */
 static bool find_config(char config[path_size], CaseResult *r)
 {
     char path[case_path_size], reason[256];
@@ -158,7 +160,7 @@ static bool find_config(char config[path_size], CaseResult *r)
         FILE *file = fopen(config, "w");
         bool  ok   = file && fputs(r->c.config, file) >= 0;
         if (file && fclose(file) != 0) ok = false;
-        ok = ok && settle_paths(config, r);
+        ok = ok && make_paths_absolute(config, r);
         if (!ok)
             return end_case(r, CASE_BROKEN, "cannot write %.300s: %s; choose another place with --work", config,
                             strerror(errno));
@@ -166,7 +168,7 @@ static bool find_config(char config[path_size], CaseResult *r)
     return true;
 }
 
-static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const char *config)
+static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, const char *config)
 {
     char      out[path_size], only[8 * case_frames_max], threads[16];
     size_t    n    = 0;
@@ -188,7 +190,7 @@ static bool show_again(CaseResult *r, const CaseHow *how, const char *log, const
         child_add(&line, "--isa");
         child_add(&line, how->isa);
     }
-    frame_files_clear(out); /* of an earlier run in the same --work: nothing of it may be taken for this one's */
+    frame_files_clear(out); /* products of an earlier run in the same --work must not be compared */
     return run_child(r, &line, "replay");
 }
 
@@ -200,15 +202,16 @@ static bool has_record(CaseResult *r)
     snprintf(path, sizeof path, "%.4080s/record/run.json", r->c.folder);
     if (access(path, F_OK) != 0)
         return end_case(r, CASE_NO_RECORD,
-                        "no record yet: look at what it shows, then `pitviper regress --update %.300s --why "
+                        "no baseline yet: inspect the output, then approve it with `pitviper regress --update %.300s "
+                        "--why "
                         "TEXT`",
                         r->c.folder);
     for (int i = 0; i < r->c.frames.count; i++) {
         snprintf(path, sizeof path, "%.4000s/record/%06.0f.exr", r->c.folder, r->c.frames.number[i]);
         if (access(path, F_OK) != 0)
             return end_case(r, CASE_BROKEN,
-                            "the record has no frame %.0f: `pitviper regress --update %.300s --why TEXT` makes "
-                            "it anew",
+                            "the baseline has no frame %.0f: `pitviper regress --update %.300s --why TEXT` writes "
+                            "it again",
                             r->c.frames.number[i], r->c.folder);
     }
     return true;
@@ -240,12 +243,12 @@ static void compare_case(CaseResult *r)
     if (others)
         n += (size_t)snprintf(r->line + n, sizeof r->line - n, " (and %d channel%s after it)", others,
                               others > 1 ? "s" : "");
-    if (r->verdict.other_log) snprintf(r->line + n, sizeof r->line - n, "; and the log is not that of the record");
+    if (r->verdict.other_log) snprintf(r->line + n, sizeof r->line - n, "; and the log is not that of the baseline");
 }
 
 bool make_folder(const char *path) { return frame_files_folder(path) == STATUS_OK; }
 
-static void run_it(CaseResult *r, const CaseHow *how)
+static void run_steps(CaseResult *r, const CaseHow *how)
 {
     char log[path_size], config[path_size];
     if (*r->c.log && !find_log(log, r, how)) return;
@@ -255,7 +258,7 @@ static void run_it(CaseResult *r, const CaseHow *how)
         return;
     }
     if (!*r->c.log && !make_log(log, r)) return;
-    if (!find_config(config, r) || !show_again(r, how, log, config)) return;
+    if (!find_config(config, r) || !replay_case(r, how, log, config)) return;
     if (how->update) update_case(r, how->why);
     else compare_case(r);
 }
@@ -268,7 +271,7 @@ void run_case(CaseResult *r, const CaseHow *how)
         return;
     }
     case_here = r;
-    run_it(r, how);
+    run_steps(r, how);
     case_here  = NULL;
     r->seconds = wall_clock_s() - begun_s;
 }

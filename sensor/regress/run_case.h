@@ -6,10 +6,10 @@
 
 typedef enum CaseState {
     CASE_OK,
-    CASE_FAILED,   /* beyond its record */
+    CASE_FAILED,   /* beyond tolerance of its baseline */
     CASE_BROKEN,   /* could not be run, or read */
     CASE_NO_RECORD,
-    CASE_SKIPPED,  /* its log is not here, and may be absent */
+    CASE_SKIPPED,  /* its log is missing, which is allowed */
     CASE_STATES
 } CaseState;
 
@@ -17,18 +17,18 @@ typedef struct CaseResult {
     Case      c;
     CaseState state;
     bool      compared, updated;
-    char      line[700];         /* what the terminal says behind the name */
-    char      chosen[8192];      /* of an update: host, aim and other choices of the run, lines */
+    char      line[700];         /* printed behind the name */
+    char      chosen[8192];      /* of an update: lines with host, aim and other automatic choices */
     double    seconds;
     Verdict   verdict;
-    char      work[case_path_size]; /* what was made; out/ is replay's */
-    char      command[16384];    /* to repeat it by hand, lines */
-    char      said[8192];        /* the last lines of its processes, and ours of it */
+    char      work[case_path_size]; /* work folder; out/ holds the products of replay */
+    char      command[16384];    /* lines: the commands that reproduce it */
+    char      said[8192];        /* last lines of its processes, and log messages about it */
 } CaseResult;
 
 typedef struct CaseHow {
     int         threads;         /* of a child */
-    const char *isa;             /* of its tracer; NULL: as replay has it */
+    const char *isa;             /* of the ray tracer; NULL: the default of replay */
     bool        update, allow_missing; /* allow_missing: of logs */
     const char *why;
 } CaseHow;

@@ -1,8 +1,9 @@
 /* sensor/regress/truth_diff.c: fields of truth.jsonl and run.json, each by its own tolerance. */
 #include "sensor/regress/verdict.h"
 
-/* By the last word of the path. Products say angles to what a seeker could use; what follows from pixels (how many, how
- * bright) has the tolerances of the pictures. A field that is not here may come, but not go or change beyond 1e-6. */
+/* Tolerances by the last key of the path. Angles: the resolution of a seeker; what follows from pixels (number,
+ * radiance): the tolerances of the planes. A field that is not listed may be added, but not removed or changed beyond
+ * 1e-6. */
 static const struct Field {
     const char *name;
     double      absolute, relative;
@@ -11,7 +12,7 @@ static const struct Field {
     {"ecef_m", 1e-3, 0},           {"lat_deg", 1e-8, 0},          {"lon_deg", 1e-8, 0},   /* 1 mm */
     {"height_m", 1e-3, 0},         {"psi_deg", 1e-4, 0},          {"theta_deg", 1e-4, 0},
     {"phi_deg", 1e-4, 0},          {"speed_mps", 1e-3, 0},        {"azimuth_deg", 0.005, 0},
-    {"elevation_deg", 0.005, 0}, /* a hundredth of the sun's disc: the air's refraction, not the sun, is beyond */
+    {"elevation_deg", 0.005, 0}, /* a hundredth of the sun's disc: below the variation of refraction */
       {"hfov_deg", 1e-6, 0},         {"vfov_deg", 1e-6, 0},
     {"ecef_from_cam", 2e-6, 0},    /* 1e-4 degree */
     {"range_m", 1e-3, 1e-6},       {"closing_mps", 1e-3, 1e-6},   {"aspect_deg", 1e-3, 0},
@@ -21,7 +22,7 @@ static const struct Field {
     {"box_px", 0, 0},              {"age_s", 1e-5, 0},            {"position_error_m", 1e-3, 1e-3},
     {"contrast_k", 0.05, 0.01},    {"dt_rss_k", 0.05, 0.01},      {"contrast", 0.01, 0.01},
     {"snr", 0.05, 0.02},           {"veil_transmittance", 0.002, 0}, {"intensity_w_sr", 1e-4, 0.01},
-    {"intensity_error_w_sr", 1e-4, 0.05}, /* of an error: its size */
+    {"intensity_error_w_sr", 1e-4, 0.05}, /* an estimate: only its size */
     {"sampling", 1e-3, 0.05},      {"level_of_detail", 1e-3, 0.05}, {"table", 1e-3, 0.05},
     {"dead_reckoning", 1e-3, 0.05},{"total", 1e-3, 0.05},
     {"sampling_k", 0.05, 0.05},    {"level_of_detail_k", 0.05, 0.05}, {"table_k", 0.05, 0.05},
@@ -32,7 +33,7 @@ static const struct Field {
     {"scene_rate_px_s", 0.01, 1e-5},
 };
 
-/* The word that names a value: the last without a place in a list. */
+/* The last key of the path, without its index in a list. */
 static const struct Field *field_of(const char *path)
 {
     const char *dot = NULL;
@@ -54,7 +55,8 @@ static bool ends_with(const char *path, const char *word)
     return found && (!found[strlen(word)] || found[strlen(word)] == '[');
 }
 
-/* Of a target: what pictures of ids tell, what those of radiance tell, and the rest, which is known before any ray. */
+/* Fields of a target: from planes of ids, from planes of radiance, and the rest, which is known before any ray is
+ * traced. */
 static Channel channel_of_target(const char *path)
 {
     static const char *const seen[] = {"].pixels", "].visible_fraction", "].box_px", "].amodal_box_px",
@@ -71,7 +73,7 @@ static Channel channel_of(const char *path)
     if (strncmp(path, "sun", 3) == 0) return CHANNEL_SUN;
     if (strncmp(path, "targets", 7) == 0) return channel_of_target(path);
     if (strncmp(path, "error", 5) == 0) return CHANNEL_ERROR;
-    if (ends_with(path, "].scene_rate_px_s")) return CHANNEL_TARGETS; /* by the range of what the axis meets */
+    if (ends_with(path, "].scene_rate_px_s")) return CHANNEL_TARGETS; /* depends on the range along the boresight */
     return CHANNEL_POSE;
 }
 
@@ -82,7 +84,7 @@ static void value_text(char out[96], const JsonValue *value)
     else snprintf(out, 96, "%.10g", value->number);
 }
 
-/* The first of each channel is said; the others are counted. */
+/* The first difference of each channel is reported, the others are counted. */
 static void differs(ChannelResult *result, int frame, const char *path, const JsonValue *expected, const JsonValue *got)
 {
     char was[96], is[96], place[40] = "";
@@ -104,7 +106,7 @@ static bool equal(const JsonValue *expected, const JsonValue *got, const struct 
     return fabs(got->number - expected->number) <= limit;
 }
 
-/* Both lists are sorted: side by side. */
+/* Both lists are sorted by path: merges them. */
 static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,
                  double factor, Channel (*of)(const char *), bool (*concerns)(const char *), bool exact)
 {
@@ -121,13 +123,13 @@ static void walk(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValue
         if (!concerns(path)) continue;
         const struct Field *field = exact ? NULL : field_of(path);
         result[of(path)].there = true;
-        if (!was && !field && !exact) continue; /* a field that is new */
+        if (!was && !field && !exact) continue; /* a new field */
         const bool same = was && is && (exact ? was->number == is->number : equal(was, is, field, factor));
         if (!same) differs(&result[of(path)], frame, path, was, is);
     }
 }
 
-/* Hashes are looked at apart. */
+/* Hashes are compared separately. */
 static bool is_truth(const char *path) { return strcmp(path, "frame_sha256") != 0; }
 
 void verdict_truth(ChannelResult result[CHANNEL_COUNT], int frame, const JsonValues *expected, const JsonValues *got,

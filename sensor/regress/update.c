@@ -1,3 +1,4 @@
+/* sensor/regress/update.c: approves the output of a run: writes the baseline (record/) and card.md. */
 #include "sensor/regress/update.h"
 
 #include <dirent.h>
@@ -33,7 +34,7 @@ static Status copy_file(const char *from_folder, const char *to_folder, const ch
     return status;
 }
 
-/* run.json without what is other in every run, so that the same again is the same file. */
+/* run.json without what differs in every run, so that an equal run gives an equal file. */
 static Status copy_run(const char *from_folder, const char *to_folder)
 {
     static const char *const other[] = {"timings_ms", "threads"};
@@ -50,7 +51,7 @@ static Status copy_run(const char *from_folder, const char *to_folder)
     return status;
 }
 
-/* NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json: what a record is made of. */
+/* NNNNNN.exr, NNNNNN.profile.exr, truth.jsonl, run.json: the files of a baseline. */
 static bool is_of_record(const char *name)
 {
     if (strcmp(name, "truth.jsonl") == 0 || strcmp(name, "run.json") == 0) return true;
@@ -59,7 +60,7 @@ static bool is_of_record(const char *name)
     return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".profile.exr") == 0;
 }
 
-/* Its own files only; into another folder, or away (NULL). */
+/* Moves the files of a baseline, and no others, to another folder; NULL: deletes them. */
 static bool move_files(const char *folder, const char *to)
 {
     char from_path[path_size + 300], to_path[path_size + 300];
@@ -91,7 +92,7 @@ static Status write_products(const CaseResult *r, const char *out, const char *t
     return status;
 }
 
-/* What is in the card already, from its first paragraph on; NULL: nothing. */
+/* The present content of card.md, from its first entry on; NULL: none. */
 static char *old_card(const char *path)
 {
     char  *text;
@@ -108,11 +109,11 @@ static void put_line(FILE *to, const char *text)
     for (; *text; text++) fputc((unsigned char)*text < ' ' ? ' ' : *text, to);
 }
 
-/* What the update changes: each channel that the old record would fail. */
+/* What the update changes: each channel that fails against the old baseline. */
 static void put_changes(FILE *to, const CaseResult *r)
 {
     if (!r->compared) {
-        fputs("- what: the first record\n", to);
+        fputs("- what: first baseline\n", to);
         return;
     }
     int count = 0;
@@ -167,7 +168,7 @@ static Status read_run(JsonValues *out, const char *folder)
     return status;
 }
 
-/* Octets of the record, for the line. */
+/* Size of the baseline. */
 static double record_octets(const char *folder)
 {
     char        path[path_size + 300];
@@ -182,14 +183,14 @@ static double record_octets(const char *folder)
     return sum;
 }
 
-/* What replay prints of its run: host, aim, ground, time. */
+/* The automatic choices that replay printed: host, aim, terrain, time. */
 static void take_choices(CaseResult *r, const JsonValues *run)
 {
     const JsonValue *host = json_values_find(run, "hosts[0]"), *aim = json_values_find(run, "settings.exercise.aim");
     char             all[sizeof r->chosen] = "";
     size_t           n = 0;
     bool             said_host = false, said_aim = false;
-    for (int i = 0; i < 1000 && n < sizeof all; i++) { /* the list is in the order of its places as text: 10 before 2 */
+    for (int i = 0; i < 1000 && n < sizeof all; i++) { /* values are sorted by path as text: 10 before 2 */
         char path[32];
         snprintf(path, sizeof path, "choices[%d]", i);
         const JsonValue *choice = json_values_find(run, path);
@@ -214,7 +215,7 @@ void update_case(CaseResult *r, const char *why)
     snprintf(record, sizeof record, "%.4080s/record", r->c.folder);
     snprintf(fresh, sizeof fresh, "%.4080s/record.part", r->c.folder);
 
-    /* an old record that cannot be read is no reason to keep it */
+    /* an unreadable old baseline does not prevent the update */
     char kept[sizeof r->said];
     memcpy(kept, r->said, sizeof kept);
     if (access(record, F_OK) == 0) r->compared = verdict_of(&r->verdict, &r->c, record, out) == STATUS_OK;
@@ -234,13 +235,13 @@ void update_case(CaseResult *r, const char *why)
     r->updated = status == STATUS_OK;
     r->state   = r->updated ? CASE_OK : CASE_BROKEN;
     if (!r->updated) {
-        snprintf(r->line, sizeof r->line, "the record was not written: %s", status_name(status));
+        snprintf(r->line, sizeof r->line, "the baseline was not written: %s", status_name(status));
         return;
     }
     if (r->compared && r->verdict.first >= 0)
-        snprintf(r->line, sizeof r->line, "recorded, %.0f kB; was %s: %.500s", record_octets(record) / 1000,
+        snprintf(r->line, sizeof r->line, "approved, %.0f kB; was %s: %.500s", record_octets(record) / 1000,
                  channel_name((Channel)r->verdict.first), r->verdict.channel[r->verdict.first].line);
     else
-        snprintf(r->line, sizeof r->line, "recorded, %.0f kB%s", record_octets(record) / 1000,
-                 r->compared ? "; nothing beyond tolerance of the one before" : "");
+        snprintf(r->line, sizeof r->line, "approved, %.0f kB%s", record_octets(record) / 1000,
+                 r->compared ? "; within tolerance of the previous baseline" : "");
 }

@@ -1,3 +1,4 @@
+/* sensor/regress/verdict.c: compares a run with its baseline: sizes, inputs, counters, truth, planes, range profile. */
 #include "sensor/regress/verdict.h"
 
 #include "sensor/detector/preset.h"
@@ -12,30 +13,32 @@ static const struct ChannelRow {
     FramePlane  plane[4];
     int         planes;
 } rows[CHANNEL_COUNT] = {
-    [CHANNEL_SIZE] = {"size", "of the pictures, and of the range profile", "", {0}, 0},
-    [CHANNEL_COUNTERS] = {"counters", "PDUs, what was dropped, entities and effects, over the whole log", "", {0}, 0},
-    [CHANNEL_TIME] = {"time", "which frames there are, and when", "", {0}, 0},
-    [CHANNEL_POSE] = {"pose", "where the eye is, and where it looks", "", {0}, 0},
-    [CHANNEL_SUN] = {"sun", "where the sun stands, seen from the eye", "", {0}, 0},
-    [CHANNEL_MOTION] = {"motion", "who is there, and where by dead reckoning", "", {0}, 0},
-    [CHANNEL_ENTITY] = {"entity", "which entity a pixel shows", "", {FRAME_ENTITY}, 1},
-    [CHANNEL_PART] = {"part", "which part of its model a pixel shows", "", {FRAME_PART}, 1},
-    [CHANNEL_RANGE] = {"range", "how far a pixel's surface is from the eye", "m", {FRAME_RANGE}, 1},
-    [CHANNEL_NORMAL] = {"normal", "where a pixel's surface faces", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
-    [CHANNEL_TARGETS] = {"targets", "how much of each target is seen, in which box, and what hides it", "", {0}, 0},
-    [CHANNEL_MATERIAL] = {"material", "which material a pixel shows", "", {FRAME_MATERIAL}, 1},
-    [CHANNEL_TEMP] = {"temperature", "of a pixel's surface", "K", {FRAME_TEMP}, 1},
+    [CHANNEL_SIZE] = {"size", "size of the images and of the range profile", "", {0}, 0},
+    [CHANNEL_COUNTERS] = {"counters", "PDUs, drops, entities and effects, over the whole log", "", {0}, 0},
+    [CHANNEL_TIME] = {"time", "number and time of the frames", "", {0}, 0},
+    [CHANNEL_POSE] = {"pose", "position and attitude of the sensor", "", {0}, 0},
+    [CHANNEL_SUN] = {"sun", "direction of the sun, from the sensor", "", {0}, 0},
+    [CHANNEL_MOTION] = {"motion", "which entities there are, and their dead-reckoned positions", "", {0}, 0},
+    [CHANNEL_ENTITY] = {"entity", "entity of each pixel", "", {FRAME_ENTITY}, 1},
+    [CHANNEL_PART] = {"part", "part of the model of each pixel", "", {FRAME_PART}, 1},
+    [CHANNEL_RANGE] = {"range", "range of the surface of each pixel", "m", {FRAME_RANGE}, 1},
+    [CHANNEL_NORMAL] = {"normal", "normal of the surface of each pixel", "", {FRAME_NX, FRAME_NY, FRAME_NZ}, 3},
+    [CHANNEL_TARGETS] = {"targets", "visible fraction and box of each target, and what occludes it", "", {0}, 0},
+    [CHANNEL_MATERIAL] = {"material", "material of each pixel", "", {FRAME_MATERIAL}, 1},
+    [CHANNEL_TEMP] = {"temperature", "temperature of the surface of each pixel", "K", {FRAME_TEMP}, 1},
     [CHANNEL_OPTICAL] = {"optical",
-                         "radiance at the eye, visible light",
+                         "radiance at the sensor",
                          "W/(m2 sr)",
                          {FRAME_OPTICAL_R, FRAME_OPTICAL_G, FRAME_OPTICAL_B, FRAME_OPTICAL_Y},
                          4},
-    [CHANNEL_MWIR] = {"mwir", "radiance at the eye as apparent temperature, middle infrared", "K", {FRAME_MWIR}, 1},
-    [CHANNEL_LWIR] = {"lwir", "radiance at the eye as apparent temperature, thermal infrared", "K", {FRAME_LWIR}, 1},
-    [CHANNEL_RADAR] = {"radar", "radar power of a pixel, below the brightest expected", "dB", {FRAME_RADAR}, 1},
-    [CHANNEL_PROFILE] = {"radar profile", "radar power over range, below the largest expected", "dB", {0}, 0},
-    [CHANNEL_SIGNALS] = {"target signals", "contrast, signal to noise and intensity of each target", "", {0}, 0},
-    [CHANNEL_ERROR] = {"error budget", "what the run says of its own error", "", {0}, 0},
+    [CHANNEL_MWIR] = {"mwir", "radiance at the sensor as apparent temperature, 3.4-4.8 um", "K", {FRAME_MWIR}, 1},
+    [CHANNEL_LWIR] = {"lwir", "radiance at the sensor as apparent temperature, 8-12 um", "K", {FRAME_LWIR}, 1},
+    [CHANNEL_RADAR] = {"radar", "radar power of each pixel, relative to the brightest of the "
+                       "baseline", "dB", {FRAME_RADAR}, 1},
+    [CHANNEL_PROFILE] = {"radar profile", "radar power over range, relative to the largest of the "
+                         "baseline", "dB", {0}, 0},
+    [CHANNEL_SIGNALS] = {"target signals", "contrast, signal-to-noise ratio and intensity of each target", "", {0}, 0},
+    [CHANNEL_ERROR] = {"error budget", "the run's estimate of its own error", "", {0}, 0},
 };
 
 const char *channel_name(Channel channel) { return rows[channel].name; }
@@ -45,15 +48,15 @@ void channel_value(char out[64], Channel channel, double value, int digits)
 {
     const char *unit    = rows[channel].unit, *space = *unit ? " " : "";
     const bool  thermal = channel == CHANNEL_MWIR || channel == CHANNEL_LWIR;
-    if (isnan(value)) snprintf(out, 64, "no number");
-    else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "beyond all numbers");
+    if (isnan(value)) snprintf(out, 64, "not a number");
+    else if (isinf(value)) snprintf(out, 64, channel == CHANNEL_RANGE && value > 0 ? "no surface" : "out of range");
     else if (thermal && value <= apparent_floor_k) snprintf(out, 64, "below %.0f K", apparent_floor_k);
     else snprintf(out, 64, "%.*g%s%s", digits, value, space, unit);
 }
 
 /* ---- units ----------------------------------------------------------------------------------- */
 
-/* Largest finite value: what dB are counted from. */
+/* Largest finite value: the reference of dB. */
 static double largest(const float *value, size_t count)
 {
     double most = 0;
@@ -62,7 +65,7 @@ static double largest(const float *value, size_t count)
     return most;
 }
 
-/* A plane of numbers in the unit it is judged in. full: of the expected plane, for dB. */
+/* A plane in the unit of its tolerance. full: largest value of the expected plane, the reference of dB. */
 static void to_unit(float *out, const float *value, size_t count, FramePlane plane, double full, const Tolerance *t)
 {
     double low_m, high_m;
@@ -97,7 +100,7 @@ static void limits_of(double *absolute, double *relative, FramePlane plane, cons
         break;
     default: break;
     }
-    /* both were rounded to floats: what is exactly at the limit is within */
+    /* both were rounded to floats: a difference of exactly the limit is accepted */
     *absolute *= 1 + 1e-6;
     *relative *= 1 + 1e-6;
 }
@@ -114,19 +117,19 @@ static void keep_worse(ChannelResult *result, const ChannelResult *found)
     if (worse) *result = *found;
 }
 
-/* Of a plane that only one of them has. */
+/* A plane that only the baseline (recorded) or only the run has. */
 static void one_sided(ChannelResult *result, Channel channel, FramePlane plane, int frame, bool recorded)
 {
     ChannelResult found = {.there = true, .failed = true, .frame = frame, .plane = plane,
                            .verdict = {.share = 1, .max = INFINITY}};
     snprintf(found.line, sizeof found.line, "%s of frame %d is %s", plane < FRAME_PLANES ? frame_plane_name(plane)
-             : rows[channel].name, frame, recorded ? "in the record and not in the run" : "not in the record");
+             : rows[channel].name, frame, recorded ? "in the baseline and not in the run" : "not in the baseline");
     keep_worse(result, &found);
 }
 
 static bool is_geometry(Channel channel) { return channel == CHANNEL_RANGE || channel == CHANNEL_NORMAL; }
 
-static void say_number(ChannelResult *r, Channel channel)
+static void write_line(ChannelResult *r, Channel channel)
 {
     const PlaneVerdict *v = &r->verdict;
     char                limit[64], worst[160], plane[24] = "", was[64], is[64];
@@ -135,7 +138,7 @@ static void say_number(ChannelResult *r, Channel channel)
                        (v->expected <= apparent_floor_k || v->got <= apparent_floor_k);
     channel_value(was, channel, v->expected, 4);
     channel_value(is, channel, v->got, 4);
-    if (channel == CHANNEL_RANGE) snprintf(limit, sizeof limit, "%.3g of it", r->relative);
+    if (channel == CHANNEL_RANGE) snprintf(limit, sizeof limit, "%.3g relative", r->relative);
     else if (channel == CHANNEL_OPTICAL) snprintf(limit, sizeof limit, "%.3g %%", 100 * r->relative);
     else snprintf(limit, sizeof limit, "%.3g%s%s", r->limit, space, unit);
     if (channel == CHANNEL_OPTICAL && isfinite(v->max) && v->expected > 0)
@@ -147,15 +150,15 @@ static void say_number(ChannelResult *r, Channel channel)
              100 * v->share, limit, worst, r->frame, v->column, v->row);
 }
 
-typedef struct Held {
+typedef struct FramePair {
     const RecordFrame *expected, *got;
     const Tolerance   *tolerance;
-    uint8_t           *edge, *other;  /* NULL: ids must be the same */
+    uint8_t           *edge, *other;  /* NULL: ids must be equal */
     float             *scratch;       /* [3][count] */
     size_t             count, edges;
-} Held;
+} FramePair;
 
-static void hold_numbers(ChannelResult *result, const Held *h, Channel channel, FramePlane plane)
+static void compare_plane(ChannelResult *result, const FramePair *h, Channel channel, FramePlane plane)
 {
     const float *was = h->expected->number_plane[plane], *is = h->got->number_plane[plane];
     if (!was && !is) return;
@@ -173,11 +176,11 @@ static void hold_numbers(ChannelResult *result, const Held *h, Channel channel, 
                     found.relative, h->other);
     found.allowed = is_geometry(channel) ? 0 : h->tolerance->share;
     found.failed  = found.verdict.share > found.allowed;
-    if (found.verdict.column >= 0) say_number(&found, channel);
+    if (found.verdict.column >= 0) write_line(&found, channel);
     keep_worse(result, &found);
 }
 
-static void hold_ids(ChannelResult *result, const Held *h, Channel channel, FramePlane plane)
+static void compare_id_plane(ChannelResult *result, const FramePair *h, Channel channel, FramePlane plane)
 {
     const uint32_t *was = h->expected->id_plane[plane], *is = h->got->id_plane[plane];
     size_t          at_edges = 0;
@@ -192,22 +195,23 @@ static void hold_ids(ChannelResult *result, const Held *h, Channel channel, Fram
     found.failed = v->beyond > 0 || (double)at_edges > h->tolerance->edge_share * (double)h->edges;
     if (v->beyond > 0)
         snprintf(found.line, sizeof found.line,
-                 "%.3g %% of pixels show another %s, first at frame %d (%d, %d): %.0f, was "
+                 "%.3g %% of pixels have a different %s, first at frame %d (%d, %d): %.0f, was "
                  "%.0f",
                  100 * v->share, rows[channel].name, found.frame, v->column, v->row, v->got, v->expected);
     else if (at_edges > 0)
-        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels show another %s in frame %d, allowed %.3g %%",
+        snprintf(found.line, sizeof found.line, "%zu of %zu edge pixels have a different %s in frame %d, allowed %.3g "
+                                                "%%",
                  at_edges, h->edges, rows[channel].name, found.frame, 100 * h->tolerance->edge_share);
     for (size_t i = 0; h->other && i < h->count; i++) h->other[i] |= was[i] != is[i];
     keep_worse(result, &found);
 }
 
 /* Sum of the bounces: a profile's bins share one scale. */
-static void hold_profile(ChannelResult *result, const Held *h)
+static void compare_profile(ChannelResult *result, const FramePair *h)
 {
     const RecordFrame *was = h->expected, *is = h->got;
     if (was->bins == 0 && is->bins == 0) return;
-    if (was->bins > 0 && is->bins > 0 && was->bins != is->bins) return; /* CHANNEL_SIZE says so */
+    if (was->bins > 0 && is->bins > 0 && was->bins != is->bins) return; /* reported by CHANNEL_SIZE */
     if (was->bins != is->bins) {
         one_sided(result, CHANNEL_PROFILE, FRAME_PLANES, is->number, was->bins > 0);
         return;
@@ -242,7 +246,7 @@ void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expec
                    const Tolerance *tolerance, bool edges_allowed)
 {
     const size_t count = (size_t)got->width * (size_t)got->height;
-    Held         h = {.expected = expected, .got = got, .tolerance = tolerance, .count = count};
+    FramePair    h = {.expected = expected, .got = got, .tolerance = tolerance, .count = count};
     h.scratch = malloc(2 * count * sizeof *h.scratch);
     if (edges_allowed) {
         h.edge  = calloc(count, 1);
@@ -252,16 +256,16 @@ void verdict_frame(ChannelResult result[CHANNEL_COUNT], const RecordFrame *expec
         for (int p = 0; p < FRAME_PLANES && h.edge; p++)
             if (expected->id_plane[p] && got->id_plane[p])
                 h.edges = mark_edges(h.edge, expected->id_plane[p], got->id_plane[p], got->width, got->height);
-        /* ids first: pixels that show another thing are not asked how far it is */
+        /* ids first: pixels of different entities are left out of the comparison of numbers */
         for (int pass = 0; pass < 2; pass++)
             for (int c = 0; c < CHANNEL_COUNT; c++)
                 for (int i = 0; i < rows[c].planes; i++) {
                     const FramePlane plane = rows[c].plane[i];
                     if (frame_plane_is_id(plane) != (pass == 0)) continue;
-                    if (pass == 0) hold_ids(&result[c], &h, (Channel)c, plane);
-                    else hold_numbers(&result[c], &h, (Channel)c, plane);
+                    if (pass == 0) compare_id_plane(&result[c], &h, (Channel)c, plane);
+                    else compare_plane(&result[c], &h, (Channel)c, plane);
                 }
-        hold_profile(&result[CHANNEL_PROFILE], &h);
+        compare_profile(&result[CHANNEL_PROFILE], &h);
     } else {
         one_sided(&result[CHANNEL_TIME], CHANNEL_TIME, FRAME_PLANES, got->number, true);
         snprintf(result[CHANNEL_TIME].line, sizeof result->line, "out of memory at frame %d", got->number);
@@ -336,7 +340,7 @@ static const char *text_of(const JsonValues *values, const char *path)
 
 static bool begins(const char *text, const char *head) { return strncmp(text, head, strlen(head)) == 0; }
 
-/* Each value below `head` that is not the same in both: tables by their hash, settings by their text. */
+/* Each value below `head` that differs: tables by their hash, settings by their text. */
 static int remark_group(Verdict *v, const JsonValues *was, const JsonValues *is, const char *head, bool hashes)
 {
     const char *const what = hashes ? "table" : "setting";
@@ -349,14 +353,15 @@ static int remark_group(Verdict *v, const JsonValues *was, const JsonValues *is,
         count++;
         if (!then) remark(v, "%s %s is new", what, now->path + skip);
         else if (hashes)
-            remark(v, "%s %s is another: SHA-256 %.8s..., was %.8s...", what, now->path + skip, now->text,
+            remark(v, "%s %s: SHA-256 %.8s..., was %.8s...", what, now->path + skip, now->text,
                    then->text ? then->text : "?");
         else
-            remark(v, "%s %s is '%.200s', was '%.200s'", what, now->path + skip, now->text, then->text ? then->text : "?");
+            remark(v, "%s %s is '%.200s', was "
+                      "'%.200s'", what, now->path + skip, now->text, then->text ? then->text : "?");
     }
     for (int i = 0; i < was->count; i++)
         if (begins(was->value[i].path, head) && !json_values_find(is, was->value[i].path)) {
-            remark(v, "%s %s is gone", what, was->value[i].path + skip);
+            remark(v, "%s %s was removed", what, was->value[i].path + skip);
             count++;
         }
     return count;
@@ -369,35 +374,35 @@ static bool has_group(const JsonValues *values, const char *head)
     return false;
 }
 
-/* What goes in: tables, settings, log. */
-static void look_at_inputs(Verdict *v, const JsonValues *was, const JsonValues *is)
+/* Inputs: tables, settings, log. */
+static void remark_inputs(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
     int settings = 0;
     if (has_group(was, "tables_sha256.")) remark_group(v, was, is, "tables_sha256.", true);
     if (has_group(was, "settings.")) settings = remark_group(v, was, is, "settings.", false);
     if (settings == 0 && strcmp(text_of(was, "config_sha256"), text_of(is, "config_sha256")) != 0)
-        remark(v, "settings are not those of the record (config_sha256), which does not say which");
+        remark(v, "settings are not those of the baseline (config_sha256), which does not list them");
     v->other_log = strcmp(text_of(was, "log_sha256"), text_of(is, "log_sha256")) != 0;
-    if (v->other_log) remark(v, "the log is not that of the record (log_sha256)");
+    if (v->other_log) remark(v, "the log is not that of the baseline (log_sha256)");
 }
 
-/* Version, ISA, libraries; and what else explains a difference. */
-static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is)
+/* Version, ISA, libraries, automatic choices. */
+static void remark_runs(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
-    look_at_inputs(v, was, is);
+    remark_inputs(v, was, is);
     static const char *const build[] = {"pitviper", "isa"};
     v->same_build = true;
     for (int i = 0; i < 2; i++)
         if (strcmp(text_of(was, build[i]), text_of(is, build[i])) != 0) {
             v->same_build = false;
-            remark(v, "%s is %s, the record's was %s", build[i], text_of(is, build[i]), text_of(was, build[i]));
+            remark(v, "%s is %s, was %s in the baseline", build[i], text_of(is, build[i]), text_of(was, build[i]));
         }
     for (int i = 0; i < is->count; i++) {
         const char *path = is->value[i].path;
         if (strncmp(path, "libraries.", 10) != 0 || !is->value[i].text) continue;
         if (strcmp(text_of(was, path), is->value[i].text) == 0) continue;
         v->same_build = false;
-        remark(v, "%s is %s, the record's was %s", path + 10, is->value[i].text, text_of(was, path));
+        remark(v, "%s is %s, was %s in the baseline", path + 10, is->value[i].text, text_of(was, path));
     }
     for (int i = 0; i < is->count; i++) {
         const char *path = is->value[i].path;
@@ -407,7 +412,7 @@ static void look_at_runs(Verdict *v, const JsonValues *was, const JsonValues *is
     }
 }
 
-static void look_at_hashes(Verdict *v, const JsonValues *was, const JsonValues *is)
+static void remark_hashes(Verdict *v, const JsonValues *was, const JsonValues *is)
 {
     int differ = 0, count = 0;
     for (int i = 0; i < is->count; i++) {
@@ -449,12 +454,13 @@ static Status truth_of(JsonValues *out, const char *folder, int frame)
         }
         at += length + (at[length] == '\n');
     }
-    if (status == STATUS_IO) log_error("regress: %s: holds no line of frame %d", path, frame);
+    if (status == STATUS_IO) log_error("regress: %s: has no line of frame %d", path, frame);
     free(text);
     return status;
 }
 
-/* False: the record's pictures or profiles are of another size, which has been said; or cannot be read. */
+/* False: images or profiles differ in size, which is reported in the result; or the baseline cannot be read
+ * (*status). */
 static bool same_size(Status *status, Verdict *v, const char *record, const RecordFrame *got)
 {
     ChannelResult *r = &v->channel[CHANNEL_SIZE];
@@ -468,17 +474,19 @@ static bool same_size(Status *status, Verdict *v, const char *record, const Reco
     r->frame = got->number;
     if (!r->failed && !picture)
         snprintf(r->line, sizeof r->line,
-                 "expected %d x %d pixels, got %d x %d, from frame %d on (sensor.width_px, sensor.height_px); nothing "
+                 "expected %d x %d pixels, actual %d x %d, from frame %d on (sensor.width_px, sensor.height_px); "
+                 "nothing "
                  "else is compared in such a frame", size.width, size.height, got->width, got->height, got->number);
     else if (!r->failed)
         snprintf(r->line, sizeof r->line,
-                 "expected %d range bins, got %d, from frame %d on (radar.bins); nothing else is compared in such a frame",
+                 "expected %d range bins, actual %d, from frame %d on (radar.bins); nothing else is compared in such "
+                 "a frame",
                  size.bins, got->bins, got->number);
     r->failed = true;
     return false;
 }
 
-static Status hold_frame(Verdict *v, const Case *c, const char *record, const char *run, int number)
+static Status compare_frame(Verdict *v, const Case *c, const char *record, const char *run, int number)
 {
     RecordFrame expected = {0}, got = {0};
     JsonValues  was = {0}, is = {0};
@@ -508,7 +516,7 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
     Status status = read_json(&was, record, "run.json");
     if (status == STATUS_OK) status = read_json(&is, run, "run.json");
     if (status == STATUS_OK) {
-        look_at_runs(out, &was, &is);
+        remark_runs(out, &was, &is);
         verdict_counters(out->channel, &was, &is);
         if (strcmp(text_of(&was, "hosts[0]"), text_of(&is, "hosts[0]")) != 0) {
             out->channel[CHANNEL_POSE] = (ChannelResult){.there = true, .failed = true, .diffs = 1, .frame = -1};
@@ -518,7 +526,7 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
         out->channel[CHANNEL_TIME].there = true;
     }
     for (int i = 0; i < c->frames.count && status == STATUS_OK; i++)
-        status = hold_frame(out, c, record, run, (int)c->frames.number[i]);
+        status = compare_frame(out, c, record, run, (int)c->frames.number[i]);
     for (int k = 0; k < CHANNEL_COUNT; k++) {
         ChannelResult *r = &out->channel[k];
         if (r->diffs > 1) {
@@ -527,7 +535,7 @@ Status verdict_of(Verdict *out, const Case *c, const char *record, const char *r
         }
         if (r->failed && out->first < 0) out->first = k;
     }
-    if (status == STATUS_OK) look_at_hashes(out, &was, &is);
+    if (status == STATUS_OK) remark_hashes(out, &was, &is);
     json_values_free(&was);
     json_values_free(&is);
     return status;

@@ -1,5 +1,5 @@
-/* sensor/settings/options.c: the options of replay and run: their table, their help, how a line of them is read, and how
- * those of a sweep reach its variants. */
+/* sensor/settings/options.c: the options of replay and run: their table, help and parsing, and how those of a sweep are
+ * passed to its variants. */
 #include "sensor/settings/options.h"
 
 #include "sensor/commands/next_option.h"
@@ -13,61 +13,70 @@ enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP,
 
 static const char *const names[] = {"replay", "run"};
 
-/* In the order of the help. key: the setting that the option is short for; of one without an argument with its value.
- * What changes settings alone reaches the variants of a sweep in their settings file (in_settings), and all else that is not
- * the sweep's own (of_sweep) as it was given, on their command lines. */
+/* In the order of the help. key: the setting that the option sets; with its value for an option without an argument.
+ * Options that only change settings are passed to the variants of a sweep in their settings file (in_settings), all
+ * others but the sweep's own (of_sweep) on their command lines. */
 static const struct Row {
     const char *name;
     int         what, where;
     const char *key, *argument, *help;
 } rows[] = {
     {"address", KEY, IN_RUN, "network.address", "ADDRESS",
-     "of the exercise, in numbers: a multicast group, a broadcast or a host\n(default: hear all, send to 255.255.255.255)"},
+     "numeric address of the exercise: multicast group, broadcast or host\n"
+     "(default: receive on all, send to 255.255.255.255)"},
     {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
     {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
-    {"out", OUT, IN_BOTH, NULL, "DIR", "where the products go (default: out)"},
-    {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL, "let go what an earlier run left in DIR, or a recording of that name; otherwise\nit is kept and nothing is done"},
-    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "any of optical,mwir,lwir,radar (default: all)"},
-    {"size", SIZE, IN_BOTH, NULL, "WxH", "picture size in pixels (default: 720x486)"},
+    {"out", OUT, IN_BOTH, NULL, "DIR", "folder for the products (default: out)"},
+    {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL,
+     "replace the products of an earlier run in DIR, or a recording of that\nname; without it that is an error"},
+    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "bands to render: any of optical,mwir,lwir,radar (default: all)"},
+    {"size", SIZE, IN_BOTH, NULL, "WxH", "image size in pixels (default: 720x486)"},
     {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
-     "frames a second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
+     "frames per second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
     {"from", KEY, IN_REPLAY, "exercise.from_s", "S", NULL},
     {"to", KEY, IN_REPLAY, "exercise.to_s", "S",
-     "only this span: exercise time in seconds as `pitviper inspect` shows it, or\n+12: after the recording's beginning, -5: before its end; frames keep the\nnumbers they have in the whole"},
+     "time span to render: exercise time in seconds as `pitviper inspect` shows\n"
+     "it, or +12: after the start of the recording, -5: before its end; frames\n"
+     "keep the numbers they have without a span"},
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
-     "these frames alone, by their numbers; each is what it is in the whole,\n"
-     "but for a display's automatic level (detector.agc_s)"},
+     "render only these frames, by number; the same as in a full replay, except\n"
+     "for the automatic level of display images (detector.agc_s)"},
     {"save-frame", SAVE, IN_REPLAY, NULL, "N,N,...",
-     "these frames also as DIR/frame_NNNNNN.pvf: all that `pitviper frame` needs\nto render one again without the log"},
+     "save these frames to DIR/frame_NNNNNN.pvf, for `pitviper frame`, which\nre-renders one without the log"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
-     "site:application:entity that carries the sensor, or observer; may be\n"
-     "given several times; munition, alone: those that fly, guided ones\nfirst, one after the other"},
+     "entity that carries the sensor: site:application:entity, or observer; may\n"
+     "be repeated; or once, munition: munitions in flight, guided ones first,\none after the other"},
     {"host", HOST, IN_RUN, NULL, "ID",
-     "site:application:entity that carries the sensor, now or later; observer;\n"
-     "munition: those that appear, guided ones first, one after the other\n(default: chosen)"},
-    {"samples", KEY, IN_BOTH, "sensor.samples", "N", "N x N rays a pixel (default: 1)"},
-    {"config", CONFIG, IN_BOTH, NULL, "FILE", "or -c: a YAML file of settings; options here override it"},
-    {"set", SET, IN_BOTH, NULL, "KEY=VALUE", "one setting, as the printed choices name them; may be given several\ntimes"},
-    {"threads", THREADS, IN_BOTH, NULL, "N", "default: one for each processor"},
-    {"seed", KEY, IN_BOTH, "seed", "N", "of everything random (default: 1)"},
-    {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds a second, or max (default: max)"},
+     "entity that carries the sensor, present now or later:\n"
+     "site:application:entity; observer; munition: munitions as they appear,\n"
+     "guided ones first, one after the other (default: chosen)"},
+    {"samples", KEY, IN_BOTH, "sensor.samples", "N", "N x N rays per pixel (default: 1)"},
+    {"config", CONFIG, IN_BOTH, NULL, "FILE", "or -c: a YAML file of settings; options override it"},
+    {"set", SET, IN_BOTH, NULL, "KEY=VALUE", "one setting (`pitviper check --default` prints all); may be repeated"},
+    {"threads", THREADS, IN_BOTH, NULL, "N", "number of threads (default: one per processor)"},
+    {"seed", KEY, IN_BOTH, "seed", "N", "seed of all random numbers (default: 1)"},
+    {"speed", SPEED, IN_REPLAY, NULL, "X", "exercise seconds per second, or max (default: max)"},
     {"causal", KEY, IN_REPLAY, "exercise.causal=true", NULL,
-     "use only what had been received by each frame and by each choice: the\nframes that `pitviper run` makes of it, to the bit"},
-    {"for", FOR, IN_RUN, NULL, "S", "stop after so many seconds (default: never)"},
-    {"frames", FRAMES, IN_RUN, NULL, "N", "stop after so many frames (default: never)"},
-    {"record", KEY, IN_RUN, "record.path", "LOG", "all that is heard, into a pcapng file that `replay --causal` shows again"},
-    {"no-skip", NO_SKIP, IN_BOTH, NULL, NULL, "compute what is known to change nothing; the pictures stay the same to\nthe bit"},
-    {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the tracer: avx2 (default), sse4.2, avx512"},
-    {"no-png", KEY, IN_BOTH, "publish.png=false", NULL, "no display pictures, only EXR"},
-    {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no pictures in files: truth.jsonl and run.json alone"},
+     "use only what had been received by the time of each frame and each\n"
+     "choice: the frames of `pitviper run`, to the bit"},
+    {"for", FOR, IN_RUN, NULL, "S", "stop after S seconds (default: never)"},
+    {"frames", FRAMES, IN_RUN, NULL, "N", "stop after N frames (default: never)"},
+    {"record", KEY, IN_RUN, "record.path", "LOG",
+     "record all received datagrams to a pcapng file, for `replay --causal`"},
+    {"no-skip", NO_SKIP, IN_BOTH, NULL, NULL, "disable skipping; same output, slower"},
+    {"isa", ISA, IN_BOTH, NULL, "NAME", "instruction set of the ray tracer: avx2 (default), sse4.2, avx512"},
+    {"no-png", KEY, IN_BOTH, "publish.png=false", NULL, "no display images, only EXR"},
+    {"no-files", KEY, IN_BOTH, "publish.files=false", NULL, "no image files: only truth.jsonl and run.json"},
     {"planes", KEY, IN_BOTH, "publish.planes", "LIST",
-     "truth per pixel in files: none, or any of range,entity,part,material,\ntemperature,normal (default: all); truth.jsonl is written in any case"},
+     "truth planes to write: none, or any of range,entity,part,material,\n"
+     "temperature,normal (default: all); truth.jsonl is always written"},
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
-     "target or all: each frame also without what it looks at, or without any\nentity, and both without noise, in DIR/pairs"},
+     "target or all: each frame also without its target, or without any\nentity, and both without noise, in DIR/pairs"},
     {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
-     "one run for each combination of the settings in a YAML file, in folders\nof DIR, with manifest.jsonl and manifest.html; again: goes on"},
-    {"help", HELP, IN_BOTH, NULL, NULL, "this"},
+     "one run for each combination of the settings in a YAML file, in folders\n"
+     "of DIR, with manifest.jsonl and manifest.html; resumes when repeated"},
+    {"help", HELP, IN_BOTH, NULL, NULL, "print this help"},
 };
 enum { row_count = sizeof rows / sizeof rows[0] };
 
@@ -81,18 +90,20 @@ static void print_help(CommandName command)
     static const char *const about[] = {
         "usage: pitviper replay LOG [options]\n"
         "\n"
-        "Shows what the seeker of the missile in a recorded DIS exercise (pcap, pcapng) saw: pictures per band,\n"
-        "truth per pixel and per target. Needs no configuration; what was chosen is printed, with its key. LOG may be\n"
-        "compressed (gzip, zstd, bzip2, xz). Stopped by Ctrl-C (exit code 130) or SIGTERM (143) it finishes its frame, and\n"
-        "run.json says so. A video of a band, at --rate 5:\n"
+        "Renders what a seeker sees in a recorded DIS exercise (pcap, pcapng): images per band, ground truth per "
+        "pixel\n"
+        "and per target. Needs no configuration; automatic choices are printed with the key that changes them. LOG "
+        "may\n"
+        "be compressed (gzip, zstd, bzip2, xz). When stopped by Ctrl-C (exit code 130) or SIGTERM (143) the frame is\n"
+        "finished, and run.json says `stopped`. A video of a band, at --rate 5:\n"
         "    ffmpeg -framerate 5 -pattern_type glob -i 'out/frames/lwir/*.png' -pix_fmt yuv420p lwir.mp4\n\n",
         "usage: pitviper run [-c FILE] [options]\n"
         "\n"
-        "The same, live: a node that listens to a DIS exercise on UDP, makes its choices from what it heard at first\n"
-        "(exercise.listen_s), and shows frame after frame until it is told to stop (Ctrl-C). It sends nothing unless asked\n"
-        "(--set publish.dis=sensor, or truth). What --record kept shows the same pictures again, to the bit. It says why it\n"
-        "is silent, once when the reason changes. It ends with 1 when it made no frame, or of what it was told to publish\n"
-        "nothing could be sent or written, and says why.\n\n"};
+        "Renders a live DIS exercise: a node that listens on UDP, makes its automatic choices from what it receives\n"
+        "first (exercise.listen_s), and renders frames until it is stopped (Ctrl-C). It sends nothing unless told to\n"
+        "(--set publish.dis=sensor, or truth). A recording made with --record replays to the same images, to the bit.\n"
+        "While there is no output the reason is reported, once each time it changes. Exit code 1 when no frame was\n"
+        "rendered, or when nothing that was to be published could be sent or written; the reason is printed.\n\n"};
     fputs(about[command], stdout);
     for (int i = 0; i < row_count; i++) {
         const struct Row *row = &rows[i];
@@ -100,7 +111,7 @@ static void print_help(CommandName command)
         if (!(row->where >> command & 1)) continue;
         snprintf(left, sizeof left, "  --%s%s%s%s", row->name, row->argument ? " " : "",
                  row->argument ? row->argument : "", row->help ? "" : ",");
-        if (!row->help) { /* a pair on one line */
+        if (!row->help) { /* two options with one help text, on one line */
             printf("%s", left);
             continue;
         }
@@ -156,7 +167,7 @@ static bool whole(int *out, const char *name, const char *text, long long low, l
 static bool add_host(Options *o, const char *text)
 {
     if (o->host_count == (o->command == COMMAND_RUN ? 1 : options_hosts_max)) {
-        log_error(o->command == COMMAND_RUN ? "options: --host: a live node has %d; start another node for another"
+        log_error(o->command == COMMAND_RUN ? "options: --host: a live node has %d; start another node for another host"
                                             : "options: --host: more than %d hosts", o->host_count);
         return false;
     }
@@ -170,7 +181,7 @@ static int compare_ints(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* 3,7,12: in order, each once. */
+/* 3,7,12: sorted, without duplicates. */
 static bool parse_frames(int out[options_only_max], int *out_count, const char *name, const char *text)
 {
     char      one[16];
@@ -228,7 +239,7 @@ static bool take(Options *o, const struct Row *row, const char *text)
     case SAVE: return parse_frames(o->save, &o->save_count, row->name, text);
     case SWEEP: o->sweep = text; return true;
     case OVERWRITE: o->overwrite = true; return true;
-    default: return true; /* CONFIG was read before */
+    default: return true; /* CONFIG has been read already */
     }
 }
 
@@ -244,18 +255,19 @@ static bool of_sweep(const struct Row *row)
     return row->what == OUT || row->what == OVERWRITE || row->what == SWEEP || row->what == HELP;
 }
 
-/* To the bit, whatever they say: a variant that was made with another is kept. */
+/* Options that change no product: a variant made with another value is kept. */
 static bool same_products(const struct Row *row)
 {
     return row->what == THREADS || row->what == SPEED || row->what == NO_SKIP || row->what == ISA;
 }
 
-/* What a variant is told on its command line. A new option is among it until its row says otherwise. */
+/* Notes an option for the command line of a variant: every one that neither changes only settings nor is the sweep's
+ * own. */
 static bool note_given(Options *o, const struct Row *row, const char *text)
 {
     if (in_settings(row) || of_sweep(row)) return true;
     if (o->given_count == options_given_max) {
-        log_error("options: --%s: the %dth option that is no setting; there is room for %d", row->name,
+        log_error("options: --%s: too many options that are not settings: %d, at most %d", row->name,
                   options_given_max + 1, options_given_max);
         return false;
     }
@@ -279,7 +291,7 @@ void options_variant(const char *argv[options_variant_argv], const Options *o, c
     argv[n]   = NULL;
 }
 
-/* ---- the line -------------------------------------------------------------------------------- */
+/* ---- the command line -------------------------------------------------------------------------------- */
 
 int options_count(void) { return row_count; }
 
@@ -306,15 +318,15 @@ static const struct Row *row_of(int option)
     return option > KEY ? &rows[option - KEY - 1] : NULL;
 }
 
-/* The configuration file first, whatever its place on the line: options override it. */
+/* The configuration file first, wherever it is on the command line: options override it. */
 static Status read_config(Config *config, const struct option *list, int argc, char **argv)
 {
     Status status = STATUS_OK;
-    char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long moves what it is given about */
+    char **copy = calloc((size_t)argc + 1, sizeof *copy); /* getopt_long permutes its argument */
     if (!copy) return STATUS_NO_MEMORY;
     memcpy(copy, argv, (size_t)argc * sizeof *copy);
-    optind = 0; /* start anew */
-    opterr = 0; /* the pass over all options speaks */
+    optind = 0; /* restart getopt */
+    opterr = 0; /* errors are reported by the pass over all options */
     for (int option; status == STATUS_OK && (option = getopt_long(argc, copy, "c:", list, NULL)) != -1;) {
         const struct Row *row = row_of(option);
         if (row && row->what == CONFIG) status = config_read(config, optarg);
@@ -335,7 +347,7 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     if (status != STATUS_OK) return 1 + (status == STATUS_NO_MEMORY ? 1 : 2);
     optind = 0;
     for (int option; (option = next_option(argc, argv, "c:", list)) != -1;) {
-        const struct Row *row = row_of(option); /* NULL: getopt has said which */
+        const struct Row *row = row_of(option); /* NULL: already reported by next_option */
         if (row && row->what == HELP) {
             print_help(command);
             return 1 + 0;
@@ -347,19 +359,19 @@ int options_parse(Options *o, CommandName command, int argc, char **argv)
     }
     if (optind + (command == COMMAND_REPLAY) != argc) {
         if (command == COMMAND_RUN)
-            log_error("options: '%s' is no option; a node listens, it is `replay` that takes a log", argv[optind]);
+            log_error("options: '%s' is not an option; a live node takes no log, `replay` does", argv[optind]);
         fprintf(stderr, "usage: pitviper %s [options]; see `pitviper %s --help`\n",
                 command == COMMAND_REPLAY ? "replay LOG" : "run [-c FILE]", name);
         return 1 + 2;
     }
     if (command == COMMAND_REPLAY) o->log = argv[optind];
     if (o->host_count == 1 && config_set(&o->config, "exercise.host", o->host[0], "--host") != STATUS_OK) return 1 + 2;
-    if (o->host_count == 1) o->host_count = 0; /* one host is a setting like any other */
+    if (o->host_count == 1) o->host_count = 0; /* a single host is kept as a setting */
     if (command == COMMAND_RUN && (strcmp(o->config.publish.pairs, "off") != 0 || o->config.publish.coco)) {
-        log_error("options: publish.%s: is made by `replay`; --record what is heard, and replay it --causal",
+        log_error("options: publish.%s: only made by `replay`; use --record, then `replay --causal`",
                   o->config.publish.coco ? "coco" : "pairs");
         return 1 + 2;
     }
-    if (o->sweep) return 0; /* its axes are settings too: what must go together is checked of each variant */
+    if (o->sweep) return 0; /* its axes are settings too: combinations are checked for each variant */
     return config_check(&o->config) == STATUS_OK ? 0 : 1 + 2;
 }

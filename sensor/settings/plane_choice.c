@@ -1,4 +1,4 @@
-/* sensor/settings/plane_choice.c: names of the truth's planes, out of a list. */
+/* sensor/settings/plane_choice.c: parses a list of names of truth planes. */
 #include "sensor/settings/plane_choice.h"
 
 const char *const plane_choice_name[PLANE_CHOICES] = {"range", "entity", "part", "material", "temperature", "normal"};

@@ -1,5 +1,5 @@
-/* sensor/settings/plane_choice.h: which planes of truth go into files (publish.planes, --planes). All are computed in any case:
- * truth.jsonl, coco.json and the hash of a frame say the same whatever is kept. */
+/* sensor/settings/plane_choice.h: truth planes written to files (publish.planes, --planes). All are computed in any
+ * case: truth.jsonl, coco.json and the hash of a frame do not depend on the choice. */
 #ifndef SENSOR_SETTINGS_PLANE_CHOICE_H
 #define SENSOR_SETTINGS_PLANE_CHOICE_H
 

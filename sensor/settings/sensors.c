@@ -1,3 +1,4 @@
+/* sensor/settings/sensors.c: assigns sensors to bands from sensor.preset and sensor.table, and sets the lens. */
 #include "sensor/settings/sensors.h"
 
 #include "render/frame/render.h"
@@ -63,7 +64,7 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
     return STATUS_OK;
 }
 
-/* The first one says what the picture is. */
+/* The first preset decides raster and field of view. */
 static Status take_sensor(Sensors *s, int *first_band, Config *config, const char *name, unsigned bands)
 {
     const Status status = add_sensor(s, config, name, bands);
@@ -73,14 +74,14 @@ static Status take_sensor(Sensors *s, int *first_band, Config *config, const cha
     return status;
 }
 
-/* Noise that a sensor makes itself is not set beside it. */
+/* Refuses a noise setting for a band whose sensor has its own noise. */
 static Status one_noise(const Sensors *s, const Config *config)
 {
     static const char *const key[BAND_COUNT] = {"detector.noise_optical", "detector.netd_mwir_k", "detector.netd_lwir_k"};
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->has[b] && key[b] && config_given(config, key[b])) {
-            log_error("replay: %s: the noise of %s is that of its sensor, %s; leave one of them out (detector.noise is a "
-                      "factor of both)", key[b], band_name((Band)b), s->preset[b].name);
+            log_error("replay: %s: the noise of %s is set by its sensor, %s; remove one of them (detector.noise is a "
+                      "factor on both)", key[b], band_name((Band)b), s->preset[b].name);
             return STATUS_BAD_VALUE;
         }
     return STATUS_OK;
@@ -101,8 +102,9 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
     memcpy(s->lateral, value + 5, sizeof s->lateral);
     if (lens_make(&s->lens, value, value + 3, half) != STATUS_OK) {
         log_error(
-            "replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) folds within a picture of %.4g x "
-            "%.4g degrees, or squeezes it tenfold; give smaller sensor.lens_k1 .. sensor.lens_p2",
+            "replay: the distortion of the lens (k1=%g, k2=%g, k3=%g, p1=%g, p2=%g) is not invertible within a field "
+            "of view of %.4g x "
+            "%.4g degrees, or compresses it tenfold; give smaller sensor.lens_k1 .. sensor.lens_p2",
             value[0], value[1], value[2], value[3], value[4], 2 * atan(half[0]) / rad_per_deg,
             2 * atan(half[1]) / rad_per_deg);
         return STATUS_BAD_VALUE;
@@ -116,7 +118,7 @@ static Status choose_lens(Sensors *s, Choices *choices, const Config *config, co
                    100 * (hypot(half[0], half[1]) / hypot(corner[0], corner[1]) - 1));
     if (value[5] != 0 || value[6] != 0)
         choice_add(choices,
-                   "lateral colour: R %+.3g px and B %+.3g px against G at the picture's side (sensor.lateral_r)",
+                   "lateral colour: R %+.3g px and B %+.3g px against G at the edge of the image (sensor.lateral_r)",
                    0.5 * config->sensor.width_px * value[5], 0.5 * config->sensor.width_px * value[6]);
     return STATUS_OK;
 }
@@ -137,7 +139,7 @@ Status sensors_choose(Sensors *out, Choices *choices, Config *config, unsigned b
         status = take_sensor(&s, &first_band, config, name, bands);
     if (status != STATUS_OK) return status;
     if (first_band < 0) {
-        log_error("replay: sensor.preset: '%s' names no sensor; `none` or names of etc/sensors.csv",
+        log_error("replay: sensor.preset: '%s' is empty; `none` or names of etc/sensors.csv",
                   config->sensor.preset);
         return STATUS_BAD_VALUE;
     }

@@ -1,7 +1,7 @@
-/* sensor/settings/span.h: a moment of a recording as people give it: 3471.5, +12 or -5.
+/* sensor/settings/span.h: a time in a recording as given by the user: 3471.5, +12 or -5.
  *
- * A plain number is exercise time, as `pitviper inspect` shows it; with a + it is seconds after the recording's beginning,
- * with a - seconds before its end. */
+ * A plain number is exercise time, as `pitviper inspect` shows it; with a + it is seconds after the start of the
+ * recording, with a - seconds before its end. */
 #ifndef SENSOR_SETTINGS_SPAN_H
 #define SENSOR_SETTINGS_SPAN_H
 
@@ -9,9 +9,9 @@
 
 enum { span_text_size = 32 };
 
-/* Empty: no moment at all, which is good. */
+/* Empty is valid: no limit. */
 bool   span_good(const char *text);
-/* NaN: empty, or no such text. */
+/* NaN: empty, or not a time. */
 double span_time_s(const char *text, double first_s, double last_s);
 /* Whether `from` is after `to` in every recording: both are of one kind. */
 bool   span_backward(const char *from, const char *to);

@@ -20,7 +20,7 @@ static Status add(TablesUsed *out, const char *name, const char *path)
     return status == STATUS_NO_MEMORY ? status : STATUS_OK;
 }
 
-/* scandir's own failures but these are of a folder that is not there. */
+/* Other failures of scandir mean that the folder does not exist. */
 static Status scanned(int count) { return count < 0 && errno == ENOMEM ? STATUS_NO_MEMORY : STATUS_OK; }
 
 static int is_csv(const struct dirent *entry)
@@ -47,7 +47,7 @@ static Status add_csv_of(TablesUsed *out, const char *folder, const char *prefix
 
 static int is_plain(const struct dirent *entry) { return entry->d_name[0] != '.'; }
 
-/* Path and hash of every *.csv below folder, a line each, in the order of their names. */
+/* Path and hash of every *.csv below folder, a line each, sorted by name. */
 static Status list_files(FILE *to, const char *folder, const char *below, int depth)
 {
     struct dirent **entry;
@@ -72,7 +72,7 @@ static Status list_files(FILE *to, const char *folder, const char *below, int de
     return status;
 }
 
-/* Some sixty files, as one table. */
+/* A folder of some sixty files as one entry. */
 static Status add_folder(TablesUsed *out, const char *name)
 {
     char       folder[path_size], *text = NULL;
@@ -94,7 +94,7 @@ static Status add_folder(TablesUsed *out, const char *name)
     return status;
 }
 
-/* Files of the column `model`, beside the catalog, and what lies beside each of them with the ending .yaml. */
+/* Model files of the catalog, relative to it, and the sidecar of each. */
 static Status add_models(TablesUsed *out, const char *catalog)
 {
     Table       table;

@@ -1,5 +1,5 @@
-/* sensor/settings/tables_used.h: SHA-256 of the tables and models that a run reads, for run.json: what `pitviper regress`
- * compares before any picture. */
+/* sensor/settings/tables_used.h: SHA-256 of the tables and models that a run reads, for run.json; `pitviper regress`
+ * compares them before any channel. */
 #ifndef SENSOR_SETTINGS_TABLES_USED_H
 #define SENSOR_SETTINGS_TABLES_USED_H
 
@@ -20,8 +20,8 @@ typedef struct TablesUsed {
 } TablesUsed;
 
 /* Every *.csv of etc/, the configured atmosphere's folder, the data sheet of sensor.table, and each model file of the
- * catalog with its sidecar. 4 MB and some 10 ms. A file that cannot be read is left out: the room that reads it says so.
- * STATUS_NO_MEMORY; what table_open says of the catalog. */
+ * catalog with its sidecar. 4 MB and some 10 ms. A file that cannot be read is left out: its reader reports it.
+ * STATUS_NO_MEMORY, or the status of table_open for the catalog. */
 Status tables_used(TablesUsed *out, const Config *config, const char *catalog);
 
 #endif

@@ -1,3 +1,4 @@
+/* sensor/truth/frame_error.c: a frame's error budget from the render's estimates and the node's own shares. */
 #include "sensor/truth/frame_error.h"
 
 #include "dis/enumerations.h"

@@ -1,3 +1,4 @@
+/* sensor/truth/truth.c: truth of each target of a frame: place, size, visibility, contrast. */
 #include "sensor/truth/truth.h"
 
 #include "terrain/earth/geodesy.h"

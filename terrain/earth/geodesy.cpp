@@ -1,4 +1,4 @@
-// terrain/earth/geodesy.cpp: the only file that knows GeographicLib. Degrees, exceptions and std:: end here.
+/* terrain/earth/geodesy.cpp: the only file that knows GeographicLib. Degrees, exceptions and std:: end here. */
 #include "terrain/earth/geodesy.h"
 
 #include <GeographicLib/Geocentric.hpp>

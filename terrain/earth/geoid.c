@@ -48,7 +48,8 @@ static bool read_header(Geoid *g, const uint8_t header[header_octets])
     g->step_lat_deg = read_f64(header + 16);
     g->step_lon_deg = read_f64(header + 24);
     const uint32_t rows = read_u32(header + 32), columns = read_u32(header + 36);
-    if (rows < 4 || columns < 4 || rows > 65535 || columns > 65535 || (uint64_t)rows * columns > most_posts) return false;
+    if (rows < 4 || columns < 4 || rows > 65535 || columns > 65535 || (uint64_t)rows * columns > most_posts)
+        return false;
     g->rows    = (int)rows;
     g->columns = (int)columns;
     if (!(g->south_deg >= -90 && g->west_deg >= -360 && g->west_deg <= 360)) return false;
@@ -90,8 +91,8 @@ static Status read_posts(Geoid *g, FILE *file, const char *path)
     Status status = row_octets && g->n_m ? STATUS_OK : STATUS_NO_MEMORY;
     for (int row = 0; status == STATUS_OK && row < g->rows; row++) {
         if (fread(row_octets, 4 * (size_t)g->columns, 1, file) != 1) {
-            log_error("geoid: %s ends in row %d of %d; install it anew: apt-get install --reinstall proj-data", path, row,
-                      g->rows);
+            log_error("geoid: %s ends in row %d of %d; install it anew: apt-get install --reinstall proj-data", path,
+                      row, g->rows);
             status = STATUS_TRUNCATED;
             break;
         }
@@ -121,8 +122,10 @@ Status geoid_open(Geoid *out, const char *path)
     Geoid   geoid = {0};
     if (!path || !*path) {
         if (!find_file(found, sizeof found)) {
-            log_error("geoid: no %s in $PROJ_DATA, $PROJ_LIB or /usr/share/proj; apt-get install proj-data, or name one "
-                      "with terrain.geoid", file_name);
+            log_error(
+                "geoid: no %s in $PROJ_DATA, $PROJ_LIB or /usr/share/proj; apt-get install proj-data, or name one "
+                "with terrain.geoid",
+                file_name);
             return STATUS_IO;
         }
         path = found;

@@ -1,3 +1,4 @@
+/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and halved into levels. */
 #include "terrain/elevation/patch.h"
 
 #include <stdlib.h>
@@ -57,7 +58,8 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
 
 /* Voids of one mip: first what the coarser one says, then relaxed towards the mean of the neighbours, so that the
  * filling meets the rim without a step and has no extremum of its own (a membrane; Laplace's equation). */
-static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx, int coarse_ny, uint8_t *hole, long *voids)
+static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx, int coarse_ny, uint8_t *hole,
+                   long *voids)
 {
     enum { sweeps = 24 };
     const size_t posts = (size_t)nx * (size_t)ny;
@@ -107,7 +109,8 @@ static Status read_posts(Patch *p, const Raster *raster, int band, int width, in
             if (!(strip[n] >= low && strip[n] <= high)) strip[n] = NAN;
         for (int r = 0; r < here; r += p->factor)
             average_row(p->v[0] + (size_t)((y + r) / p->factor) * (size_t)p->nx[0], p->nx[0],
-                        strip + (size_t)r * (size_t)width, width, here - r < p->factor ? here - r : p->factor, p->factor);
+                        strip + (size_t)r * (size_t)width, width, here - r < p->factor ? here - r : p->factor,
+                        p->factor);
     }
     free(strip);
     return status;
@@ -146,7 +149,8 @@ Status patch_read(Patch *out, const Raster *raster, int band, int x0, int y0, in
         return STATUS_OK;
     }
     for (k = p.mips - 2; status == STATUS_OK && k >= 0; k--)
-        status = fill(p.v[k], p.nx[k], p.ny[k], p.v[k + 1], p.nx[k + 1], p.ny[k + 1], k ? NULL : p.hole, k ? NULL : &p.voids);
+        status = fill(p.v[k], p.nx[k], p.ny[k], p.v[k + 1], p.nx[k + 1], p.ny[k + 1], k ? NULL : p.hole,
+                      k ? NULL : &p.voids);
     if (status != STATUS_OK) goto fail;
     *out = p;
     return STATUS_OK;

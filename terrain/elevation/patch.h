@@ -1,5 +1,5 @@
-/* terrain/elevation/patch.h: a window of one raster in memory: averaged to a coarser posting where that is enough, its voids
- * filled from their surroundings, and halved again and again for whoever looks from afar. */
+/* terrain/elevation/patch.h: a window of one raster in memory: averaged to a coarser posting where that is enough,
+ * its voids filled from their surroundings, and halved again and again for whoever looks from afar. */
 #ifndef TERRAIN_ELEVATION_PATCH_H
 #define TERRAIN_ELEVATION_PATCH_H
 

@@ -1,4 +1,5 @@
-/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what to do. */
+/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what
+ * to do. */
 #include "terrain/elevation/raster.h"
 
 #include <strings.h>
@@ -51,10 +52,27 @@ static double metres_of_unit(const char *unit)
     static const struct {
         const char *name;
         double      metres;
-    } units[] = {{"", 1}, {"m", 1}, {"metre", 1}, {"metres", 1}, {"meter", 1}, {"meters", 1},
-                 {"dm", 0.1}, {"decimetre", 0.1}, {"decimeter", 0.1}, {"cm", 0.01}, {"centimetre", 0.01}, {"centimeter", 0.01},
-                 {"km", 1000}, {"kilometre", 1000}, {"kilometer", 1000}, {"ft", 0.3048}, {"foot", 0.3048}, {"feet", 0.3048},
-                 {"us-ft", 1200.0 / 3937}, {"ftUS", 1200.0 / 3937}, {"US survey foot", 1200.0 / 3937}};
+    } units[] = {{"", 1},
+                 {"m", 1},
+                 {"metre", 1},
+                 {"metres", 1},
+                 {"meter", 1},
+                 {"meters", 1},
+                 {"dm", 0.1},
+                 {"decimetre", 0.1},
+                 {"decimeter", 0.1},
+                 {"cm", 0.01},
+                 {"centimetre", 0.01},
+                 {"centimeter", 0.01},
+                 {"km", 1000},
+                 {"kilometre", 1000},
+                 {"kilometer", 1000},
+                 {"ft", 0.3048},
+                 {"foot", 0.3048},
+                 {"feet", 0.3048},
+                 {"us-ft", 1200.0 / 3937},
+                 {"ftUS", 1200.0 / 3937},
+                 {"US survey foot", 1200.0 / 3937}};
     for (size_t i = 0; i < sizeof units / sizeof *units; i++)
         if (strcasecmp(unit, units[i].name) == 0) return units[i].metres;
     return 0;
@@ -62,17 +80,18 @@ static double metres_of_unit(const char *unit)
 
 static Status describe(Opened *out, GDALDatasetH file, const char *path, const char *key)
 {
-    Opened o = {.width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file), .bands = GDALGetRasterCount(file)};
+    Opened o = {
+        .width = GDALGetRasterXSize(file), .height = GDALGetRasterYSize(file), .bands = GDALGetRasterCount(file)};
     const OGRSpatialReferenceH crs = GDALGetSpatialRef(file);
     double inverse[6];
     if (o.bands < 1 || o.width < 2 || o.height < 2) {
-        log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands, o.width,
-                  o.height);
+        log_error("%s: %s holds %d bands of %d x %d pixels; a sheet needs a band and 2 x 2", key, path, o.bands,
+                  o.width, o.height);
         return STATUS_BAD_VALUE;
     }
     if (o.width > most_side || o.height > most_side) {
-        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key, path,
-                  o.width, o.height, (int)most_side);
+        log_error("%s: %s has %d x %d pixels, more than %d a side; gdal_translate -srcwin cuts out what is needed", key,
+                  path, o.width, o.height, (int)most_side);
         return STATUS_BAD_VALUE;
     }
     if (!crs) {
@@ -80,7 +99,8 @@ static Status describe(Opened *out, GDALDatasetH file, const char *path, const c
         return STATUS_BAD_VALUE;
     }
     if (GDALGetGeoTransform(file, o.transform) != CE_None || !GDALInvGeoTransform(o.transform, inverse)) {
-        log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path, path);
+        log_error("%s: %s does not say where its corners are; gdal_translate -a_ullr W N E S %s OUT.tif", key, path,
+                  path);
         return STATUS_BAD_VALUE;
     }
     o.crs             = OSRClone(crs);
@@ -142,7 +162,8 @@ static Status start_raster(Raster *raster, Opened *o)
         OSRSetAxisMappingStrategy(earth, OAMS_TRADITIONAL_GIS_ORDER);
         raster->crs_from_earth = OCTNewCoordinateTransformation(earth, raster->crs);
         raster->earth_from_crs = OCTNewCoordinateTransformation(raster->crs, earth);
-        if (raster->crs_from_earth && raster->earth_from_crs && GDALInvGeoTransform(raster->crs_from_px, raster->px_from_crs))
+        if (raster->crs_from_earth && raster->earth_from_crs &&
+            GDALInvGeoTransform(raster->crs_from_px, raster->px_from_crs))
             status = STATUS_OK;
     }
     if (earth) OSRDestroySpatialReference(earth);
@@ -156,7 +177,8 @@ static Status add_sheet(RasterSet *set, const char *path, const char *key)
     double at_px[2] = {0, 0};
     GDALDatasetH file = GDALOpen(path, GA_ReadOnly);
     if (!file) {
-        log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"), path);
+        log_error("%s: cannot read %s: %s; gdalinfo %s says what it is", key, path, reason("not a raster GDAL knows"),
+                  path);
         return STATUS_IO;
     }
     status = describe(&o, file, path, key);
@@ -189,7 +211,8 @@ static Status add_sheet(RasterSet *set, const char *path, const char *key)
         goto done;
     }
     raster->sheet = sheets;
-    sheets[raster->sheet_count] = (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height};
+    sheets[raster->sheet_count] =
+        (RasterSheet){strdup(path), (int)lrint(at_px[0]), (int)lrint(at_px[1]), o.width, o.height};
     if (sheets[raster->sheet_count].path) raster->sheet_count++;
     else status = STATUS_NO_MEMORY;
 done:
@@ -403,10 +426,12 @@ static Status read_sheet(float *out, const RasterSheet *s, int number, int x0, i
     if (!has_offset || !isfinite(offset)) offset = 0;
     for (int y = wy0; y < wy1; y += strip) {
         const int rows = wy1 - y < strip ? wy1 - y : strip;
-        if (GDALRasterIO(band, GF_Read, wx0 - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) != CE_None ||
-            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, wx0 - s->x0, y - s->y0, w, rows, mask, w, rows, GDT_Byte,
-                                    0, 0) != CE_None)) {
-            log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path, reason("rows are missing"));
+        if (GDALRasterIO(band, GF_Read, wx0 - s->x0, y - s->y0, w, rows, value, w, rows, GDT_Float32, 0, 0) !=
+                CE_None ||
+            (masked && GDALRasterIO(GDALGetMaskBand(band), GF_Read, wx0 - s->x0, y - s->y0, w, rows, mask, w, rows,
+                                    GDT_Byte, 0, 0) != CE_None)) {
+            log_error("%s: %s is damaged: %s; fetch it anew, or leave it out", key, s->path,
+                      reason("rows are missing"));
             goto done;
         }
         for (int r = 0; r < rows; r++) {

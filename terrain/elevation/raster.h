@@ -1,9 +1,9 @@
-/* terrain/elevation/raster.h: georeferenced pixels of anything GDAL reads (GeoTIFF, DTED, HGT, VRT ...); with the elevation,
- * cover and photographs that are made of them, the only files that know it: raster.c.
+/* terrain/elevation/raster.h: georeferenced pixels of anything GDAL reads (GeoTIFF, DTED, HGT, VRT ...); with the
+ * elevation, cover and photographs that are made of them, the only files that know it: raster.c.
  *
- * Sheets of one grid (same CRS, same pixel size, a whole number of pixels apart) are one Raster, as tiles of a survey
- * are. Pixel (i, j) covers [i, i+1) x [j, j+1), row 0 northernmost as a rule; its post, or centre, is at (i + 0.5,
- * j + 0.5), whether the file calls itself pixel-is-point or area: GDAL places the corners accordingly. */
+ * Sheets of one grid (same CRS, same pixel size, a whole number of pixels apart) are one Raster, as tiles of a
+ * survey are. Pixel (i, j) covers [i, i+1) x [j, j+1), row 0 northernmost as a rule; its post, or centre, is at (i +
+ * 0.5, j + 0.5), whether the file calls itself pixel-is-point or area: GDAL places the corners accordingly. */
 #ifndef TERRAIN_ELEVATION_RASTER_H
 #define TERRAIN_ELEVATION_RASTER_H
 
@@ -39,7 +39,8 @@ typedef struct RasterSet {
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
 
-/* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has none. */
+/* In place, count places: longitude and latitude (rad) to column and row, and back. NaN where the projection has
+ * none. */
 void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, double *lat_to_y);
 void raster_earth_from_px(const Raster *raster, int count, double *x_to_lon, double *y_to_lat);
 

@@ -23,89 +23,88 @@ static double slope_about(const Elevation *elevation, double x_m, double y_m)
 /* Places in a level's own cells; far off and NaN: outside. */
 static Lattice level_cells(const double x_m[8], double x0_m, double per_m)
 {
-    const __m256d x0 = _mm256_set1_pd(x0_m), most = _mm256_set1_pd(1 << 20), least = _mm256_set1_pd(-(1 << 20));
+    const F64x4 x0 = f64x4_set(x0_m), most = f64x4_set(1 << 20), least = f64x4_set(-(1 << 20));
     double        cells[8];
     for (int k = 0; k < 8; k += 4) {
-        const __m256d g = (_mm256_loadu_pd(x_m + k) - x0) * _mm256_set1_pd(per_m);
-        _mm256_storeu_pd(cells + k, _mm256_min_pd(_mm256_max_pd(g, least), most));
+        const F64x4 g = (f64x4_loadu(x_m + k) - x0) * f64x4_set(per_m);
+        f64x4_storeu(cells + k, f64x4_min(f64x4_max(g, least), most));
     }
     return lattice_of(cells, 1);
 }
 
 /* Moved by some of a cell. */
-static Lattice moved(Lattice at, Eight by)
+static Lattice moved(Lattice at, F32x8 by)
 {
-    const Eight share = at.share + by, whole = eight_floor(share);
-    return (Lattice){_mm256_add_epi32(at.cell, eight_to_ints(whole)), share - whole};
+    const F32x8 share = at.share + by, whole = f32x8_floor(share);
+    return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
 }
 
 /* Heights in the level's own steps, of lanes that lie in one of its cells. Two posts of a row come with one look. */
-static Eight level_heights(const ElevationLevel *level, Lattice x, Lattice y, Eight lanes)
+static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes)
 {
-    const EightInt post = _mm256_set1_epi32(0xffff), none = eight_int(0), mask = _mm256_castps_si256(lanes);
-    const EightInt at = _mm256_add_epi32(_mm256_mullo_epi32(y.cell, eight_int(level->nx)), x.cell);
-    const EightInt south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->post, at, mask, 2);
-    const EightInt north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at,
+    const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
+    const I32x8 at = i32x8_add(i32x8_mul(y.cell, i32x8_set(level->nx)), x.cell);
+    const I32x8 south = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)level->post, at, mask, 2);
+    const I32x8 north = _mm256_mask_i32gather_epi32(none, (const int *)(const void *)(level->post + level->nx), at,
                                                        mask, 2);
-    const Eight    sw = eight_of_ints(_mm256_and_si256(south, post)), se = eight_of_ints(_mm256_srli_epi32(south, 16));
-    const Eight    nw = eight_of_ints(_mm256_and_si256(north, post)), ne = eight_of_ints(_mm256_srli_epi32(north, 16));
-    const Eight    south_east = eight_fma(x.share, se - sw, y.share * (ne - se));
-    const Eight    north_west = eight_fma(x.share, ne - nw, y.share * (nw - sw));
-    return sw + eight_pick(eight_less(x.share, y.share), north_west, south_east);
+    const F32x8    sw = f32x8_of_ints(i32x8_and(south, post)), se = f32x8_of_ints(i32x8_shift_right(south, 16));
+    const F32x8    nw = f32x8_of_ints(i32x8_and(north, post)), ne = f32x8_of_ints(i32x8_shift_right(north, 16));
+    const F32x8    south_east = f32x8_fma(x.share, se - sw, y.share * (ne - se));
+    const F32x8    north_west = f32x8_fma(x.share, ne - nw, y.share * (nw - sw));
+    return sw + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
 }
 
 /* Slope about eight places, of those whose arms end on one level together; the others' are asked for one by one. Within
  * 1e-5 of slope_about. */
-static Eight slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
-    const EightInt outside = eight_int(-1);
-    Eight          slope = eight_all(0);
+    const I32x8 outside = i32x8_set(-1);
+    F32x8          slope = f32x8_set(0);
     unsigned       left = lanes, alone = 0; /* not yet found; on the seam of two levels */
     for (int n = 0; n < elevation->level_count && left; n++) {
         const ElevationLevel *level = &elevation->level[n];
         const double          per_m = 1 / level->spacing_m;
-        const Eight           arm = eight_all(arm_m * per_m), back = eight_all(-arm_m * per_m);
+        const F32x8           arm = f32x8_set(arm_m * per_m), back = f32x8_set(-arm_m * per_m);
         const Lattice         x = level_cells(x_m, level->x0_m, per_m), y = level_cells(y_m, level->y0_m, per_m);
         const Lattice         west = moved(x, back), east = moved(x, arm);
         const Lattice         south = moved(y, back), north = moved(y, arm);
-        const EightInt        nx = eight_int(level->nx), ny = eight_int(level->ny), one = eight_int(1);
+        const I32x8        nx = i32x8_set(level->nx), ny = i32x8_set(level->ny), one = i32x8_set(1);
         /* cells 0 .. n - 2; about them and the outline */
-        EightInt in = _mm256_and_si256(_mm256_cmpgt_epi32(west.cell, outside), _mm256_cmpgt_epi32(south.cell, outside));
-        in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(nx, one), east.cell));
-        in = _mm256_and_si256(in, _mm256_cmpgt_epi32(_mm256_sub_epi32(ny, one), north.cell));
-        EightInt by = _mm256_and_si256(_mm256_cmpgt_epi32(east.cell, eight_int(-2)),
-                                       _mm256_cmpgt_epi32(north.cell, eight_int(-2)));
-        by = _mm256_and_si256(by, _mm256_cmpgt_epi32(nx, west.cell));
-        by = _mm256_and_si256(by, _mm256_cmpgt_epi32(ny, south.cell));
-        const unsigned here = eight_bits(_mm256_castsi256_ps(in)) & left;
-        const unsigned near = eight_bits(_mm256_castsi256_ps(by)) & left;
+        F32x8 in = f32x8_and(i32x8_greater(west.cell, outside), i32x8_greater(south.cell, outside));
+        in = f32x8_and(in, i32x8_greater(i32x8_sub(nx, one), east.cell));
+        in = f32x8_and(in, i32x8_greater(i32x8_sub(ny, one), north.cell));
+        F32x8 by = f32x8_and(i32x8_greater(east.cell, i32x8_set(-2)), i32x8_greater(north.cell, i32x8_set(-2)));
+        by = f32x8_and(by, i32x8_greater(nx, west.cell));
+        by = f32x8_and(by, i32x8_greater(ny, south.cell));
+        const unsigned here = f32x8_bits(in) & left;
+        const unsigned near = f32x8_bits(by) & left;
         alone |= near & ~here;
         left &= ~(near | here);
         if (!here) continue;
-        const Eight found = eight_mask(here);
-        const Eight dx = level_heights(level, east, y, found) - level_heights(level, west, y, found);
-        const Eight dy = level_heights(level, x, north, found) - level_heights(level, x, south, found);
-        const Eight rise = eight_sqrt(eight_fma(dx, dx, dy * dy)) * eight_all(level->step_m / (2 * arm_m));
-        slope = eight_pick(found, rise, slope);
+        const F32x8 found = f32x8_mask(here);
+        const F32x8 dx = level_heights(level, east, y, found) - level_heights(level, west, y, found);
+        const F32x8 dy = level_heights(level, x, north, found) - level_heights(level, x, south, found);
+        const F32x8 rise = f32x8_sqrt(f32x8_fma(dx, dx, dy * dy)) * f32x8_set(level->step_m / (2 * arm_m));
+        slope = f32x8_select(found, rise, slope);
     }
     if (alone) {
         float one[8];
-        eight_store(one, slope);
+        f32x8_store(one, slope);
         for (; alone; alone &= alone - 1) {
             const int k = __builtin_ctz(alone);
             one[k] = (float)slope_about(elevation, x_m[k], y_m[k]);
         }
-        slope = eight_load(one);
+        slope = f32x8_load(one);
     }
     return slope;
 }
 
 /* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there. */
-static Eight slopes_of_country(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+static F32x8 slopes_of_country(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
-    const Eight x = eight_of_doubles(x_m), y = eight_of_doubles(y_m);
-    const Eight lean = eight_sqrt(eight_fma(x, x, y * y)) * eight_all(1 / 6371e3);
-    return eight_max(slopes_about(elevation, x_m, y_m, lanes) - lean, eight_all(0));
+    const F32x8 x = f32x8_of_doubles(x_m), y = f32x8_of_doubles(y_m);
+    const F32x8 lean = f32x8_sqrt(f32x8_fma(x, x, y * y)) * f32x8_set(1 / 6371e3);
+    return f32x8_max(slopes_about(elevation, x_m, y_m, lanes) - lean, f32x8_set(0));
 }
 
 /* ---- invented cover ------------------------------------------------------------------------- */
@@ -136,40 +135,40 @@ static SurfaceClass border_surface(const PlotCell *cell, uint64_t seed, int site
 }
 
 /* Lanes within reach of a border to another field than their own. */
-static unsigned near_border(const PlotCell *cell, Eight x, Eight y, EightInt site, Eight least)
+static unsigned near_border(const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, F32x8 least)
 {
-    const Eight    own_x = eight_gather(cell->x_m, site), own_y = eight_gather(cell->y_m, site);
-    const EightInt own = plot_look(cell->field, site);
-    const Eight    reach = eight_all(track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
-    Eight          near = eight_all(0);
+    const F32x8    own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
+    const I32x8 own = plot_look(cell->field, site);
+    const F32x8    reach = f32x8_set(track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
+    F32x8          near = f32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
-        const Eight sx = _mm256_set1_ps(cell->x_m[n]), sy = _mm256_set1_ps(cell->y_m[n]);
-        const Eight dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
-        const Eight more = eight_fma(dx, dx, dy * dy) - least, apart = eight_fma(ax, ax, ay * ay);
-        const Eight same = _mm256_castsi256_ps(_mm256_cmpeq_epi32(own, eight_int(cell->field[n])));
-        near = eight_or(near, eight_but(eight_less(more * more, reach * eight_all(4) * apart), same));
+        const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
+        const F32x8 dx = x - sx, dy = y - sy, ax = sx - own_x, ay = sy - own_y;
+        const F32x8 more = f32x8_fma(dx, dx, dy * dy) - least, apart = f32x8_fma(ax, ax, ay * ay);
+        const F32x8 same = i32x8_equal(own, i32x8_set(cell->field[n]));
+        near = f32x8_or(near, f32x8_and_not(f32x8_less(more * more, reach * f32x8_set(4) * apart), same));
     }
-    return eight_bits(near);
+    return f32x8_bits(near);
 }
 
 static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells *cells, const double x_m[8],
-                              const double y_m[8], Eight slope, unsigned lanes)
+                              const double y_m[8], F32x8 slope, unsigned lanes)
 {
     const uint64_t seed = cover->seed;
     /* wild patches, wider where it is steep; rock shows through in their hearts */
-    Eight wild = noise_eight(seed + 10, 310, x_m, y_m);
-    wild = eight_fma(eight_all(0.5), noise_eight(seed + 11, 83, x_m, y_m), wild);
-    wild = eight_fma(eight_all(0.2), noise_eight(seed + 12, 17, x_m, y_m), wild);
-    wild = eight_fma(eight_all(4), slope, wild);
-    const Eight    rock = eight_more(wild, eight_all(1.24) - eight_all(0.12) * eight_clamp(slope * eight_all(5), 0, 1));
-    const Eight    scrub = eight_more(wild, eight_all(0.88)), dry = eight_more(wild, eight_all(0.78));
-    const unsigned is_rock = eight_bits(rock), is_scrub = eight_bits(scrub);
+    F32x8 wild = noise_eight(seed + 10, 310, x_m, y_m);
+    wild = f32x8_fma(f32x8_set(0.5), noise_eight(seed + 11, 83, x_m, y_m), wild);
+    wild = f32x8_fma(f32x8_set(0.2), noise_eight(seed + 12, 17, x_m, y_m), wild);
+    wild = f32x8_fma(f32x8_set(4), slope, wild);
+    const F32x8 rock = f32x8_greater(wild, f32x8_set(1.24) - f32x8_set(0.12) * f32x8_clamp(slope * f32x8_set(5), 0, 1));
+    const F32x8    scrub = f32x8_greater(wild, f32x8_set(0.88)), dry = f32x8_greater(wild, f32x8_set(0.78));
+    const unsigned is_rock = f32x8_bits(rock), is_scrub = f32x8_bits(scrub);
 
     double   i[8], j[8];
     float    in_x[8], in_y[8];
     int32_t  site_of[8];
-    Eight    x, y;
-    EightInt class = eight_int(SURFACE_NONE);
+    F32x8    x, y;
+    I32x8 class = i32x8_set(SURFACE_NONE);
     plot_cells_of(i, j, &x, &y, x_m, y_m);
     SurfaceClass on_border[8];
     unsigned     bordered = 0;
@@ -177,24 +176,24 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);
         const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
-        EightInt        site;
-        const Eight     least = plot_nearest(&site, cell, x, y);
-        class = _mm256_blendv_epi8(class, plot_look(cell->crop, site), _mm256_castps_si256(eight_mask(same)));
+        I32x8        site;
+        const F32x8     least = plot_nearest(&site, cell, x, y);
+        class = i32x8_select(f32x8_mask(same), plot_look(cell->crop, site), class);
         unsigned near = near_border(cell, x, y, site, least) & same & ~is_rock;
         if (!near) continue;
-        _mm256_storeu_si256((EightInt *)site_of, site);
-        eight_store(in_x, x), eight_store(in_y, y);
+        i32x8_store(site_of, site);
+        f32x8_store(in_x, x), f32x8_store(in_y, y);
         for (; near; near &= near - 1) {
             const int k = __builtin_ctz(near);
             on_border[k] = border_surface(cell, seed, site_of[k], in_x[k], in_y[k], is_scrub >> k & 1);
             if (on_border[k] != SURFACE_NONE) bordered |= 1u << k;
         }
     }
-    class = _mm256_blendv_epi8(class, eight_int(SURFACE_DRY_GRASS), _mm256_castps_si256(dry));
-    class = _mm256_blendv_epi8(class, eight_int(SURFACE_SCRUB), _mm256_castps_si256(scrub));
-    class = _mm256_blendv_epi8(class, eight_int(SURFACE_ROCK), _mm256_castps_si256(rock));
+    class = i32x8_select(dry, i32x8_set(SURFACE_DRY_GRASS), class);
+    class = i32x8_select(scrub, i32x8_set(SURFACE_SCRUB), class);
+    class = i32x8_select(rock, i32x8_set(SURFACE_ROCK), class);
     int32_t found[8];
-    _mm256_storeu_si256((EightInt *)found, class);
+    i32x8_store(found, class);
     for (; bordered; bordered &= bordered - 1)
         found[__builtin_ctz(bordered)] = (int32_t)on_border[__builtin_ctz(bordered)];
     for (int k = 0; k < 8; k++)
@@ -233,16 +232,16 @@ static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const do
     if (!cover->grid[0].surface && !cover->grid[1].surface) return lanes;
     /* borders of coarse cells wander by half a cell, as nothing in the country runs in stairs of 30 m */
     const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
-    Eight        dx = eight_all(0), dy = eight_all(0);
+    F32x8        dx = f32x8_set(0), dy = f32x8_set(0);
     for (int octave = 0; away_m > 0 && octave < 3; octave++) {
         const double wave_m = cell_m * exp2(-octave);
-        const Eight  share = eight_all(away_m * 0.57 * exp2(-octave));
-        dx = eight_fma(share, noise_eight(cover->seed + 40 + (uint64_t)octave, wave_m, x_m, y_m), dx);
-        dy = eight_fma(share, noise_eight(cover->seed + 50 + (uint64_t)octave, wave_m, x_m, y_m), dy);
+        const F32x8  share = f32x8_set(away_m * 0.57 * exp2(-octave));
+        dx = f32x8_fma(share, noise_eight(cover->seed + 40 + (uint64_t)octave, wave_m, x_m, y_m), dx);
+        dy = f32x8_fma(share, noise_eight(cover->seed + 50 + (uint64_t)octave, wave_m, x_m, y_m), dy);
     }
     float    off_x[8], off_y[8];
     unsigned none = 0;
-    eight_store(off_x, dx), eight_store(off_y, dy);
+    f32x8_store(off_x, dx), f32x8_store(off_y, dy);
     for (int k = 0; k < 8; k++) {
         if (!(lanes >> k & 1)) continue;
         surface[k] = (int32_t)cover_grid_at(cover->grid, x_m[k] + (double)off_x[k], y_m[k] + (double)off_y[k]);
@@ -258,14 +257,14 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCe
     const uint64_t seed = cover->seed;
     lanes = mapped_surfaces(surface, cover, x_m, y_m, lanes);
     if (!lanes) return;
-    const Eight slopes = slopes_of_country(&landscape->elevation, x_m, y_m, lanes);
-    Eight       patches = noise_eight(seed + 14, 700, x_m, y_m);
-    patches = eight_fma(eight_all(0.6), noise_eight(seed + 15, 190, x_m, y_m), patches);
-    patches = eight_fma(eight_all(0.3), noise_eight(seed + 16, 41, x_m, y_m), patches);
+    const F32x8 slopes = slopes_of_country(&landscape->elevation, x_m, y_m, lanes);
+    F32x8       patches = noise_eight(seed + 14, 700, x_m, y_m);
+    patches = f32x8_fma(f32x8_set(0.6), noise_eight(seed + 15, 190, x_m, y_m), patches);
+    patches = f32x8_fma(f32x8_set(0.3), noise_eight(seed + 16, 41, x_m, y_m), patches);
     float    slope[8], patchy[8], woods[8];
     unsigned invented = 0;
-    eight_store(slope, slopes), eight_store(patchy, patches);
-    eight_store(woods, noise_eight(seed + 17, 2300, x_m, y_m));
+    f32x8_store(slope, slopes), f32x8_store(patchy, patches);
+    f32x8_store(woods, noise_eight(seed + 17, 2300, x_m, y_m));
     for (int k = 0; k < 8; k++) {
         if (!(lanes >> k & 1)) continue;
         const double z_m = elevation_height(&landscape->elevation, x_m[k], y_m[k], NULL);

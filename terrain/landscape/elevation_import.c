@@ -1,50 +1,13 @@
-/* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every grid, find
- * its posts, bend and join; at the end measure what came of it against the files. */
-#include "terrain/landscape/elevation_import.h"
-
-#include "terrain/earth/geoid.h"
-#include "terrain/landscape/landscape_private.h"
-#include "terrain/elevation/patch.h"
+/* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every
+ * grid, find its posts, bend and join; at the end measure what came of it against the files. */
+#include "terrain/landscape/elevation_import_private.h"
 
 #include <stdlib.h>
 
 static const char key[] = "terrain.elevation";
 static const double lowest_m = -12500, highest_m = 9500; /* below the deepest trench or above Everest: a void */
 static const double rise_m = 4000; /* between the two heights at which places are looked up exactly */
-enum { most_grids = 16, most_posts_0 = 36 << 20, outer_half_posts = 1024, last_half_posts = 2048, join_band = 24 };
-
-/* Where the posts of a level lie in one grid: exact on a lattice, at two heights, linear between. */
-typedef struct Sight {
-    double *x, *y;   /* [lattice] pixels at the ellipsoid */
-    double *dx, *dy; /* [lattice] more, per metre of height */
-} Sight;
-
-typedef struct Grid {
-    const Raster *raster;
-    bool          ellipsoidal;
-    double        short_m, long_m; /* beyond its edge it fades out over this: into another grid, into nothing */
-    double        units[2];      /* metres a pixel, x and y */
-    Patch         patch;
-    Sight         sight;
-} Grid;
-
-typedef struct Import {
-    const ElevationFiles *files;
-    const LocalFrame     *frame;
-    Curve      curve;
-    Geoid      geoid;
-    RasterSet  set;
-    int        grids;            /* finest first */
-    Grid       grid[most_grids];
-    int        main;             /* grid of level 0 */
-    double     base_h_m;         /* beyond all data */
-    int        level_count;
-    double     spacing_m[elevation_max_levels];
-    WorkLevel  level[elevation_max_levels];
-    /* lattice of the level in work */
-    int        stride, lattice_nx, lattice_ny;
-    double    *n_m;              /* [lattice] geoid */
-} Import;
+enum { most_posts_0 = 36 << 20, outer_half_posts = 1024, last_half_posts = 2048 };
 
 /* ---- plan ----------------------------------------------------------------------------------- */
 
@@ -84,8 +47,8 @@ static Status choose_main(Import *m, ElevationReport *report)
     }
     if (m->main >= 0) return STATUS_OK;
     if (!(best_m > -nearest_m)) {
-        log_error("%s: the action is at %.4f, %.4f degrees, %.0f km from the nearest data; name sheets that hold it", key,
-                  m->frame->origin.lat_rad / rad_per_deg, m->frame->origin.lon_rad / rad_per_deg, -best_m * 1e-3);
+        log_error("%s: the action is at %.4f, %.4f degrees, %.0f km from the nearest data; name sheets that hold it",
+                  key, m->frame->origin.lat_rad / rad_per_deg, m->frame->origin.lon_rad / rad_per_deg, -best_m * 1e-3);
         return STATUS_BAD_VALUE;
     }
     for (int k = 0; k < m->grids; k++) {
@@ -160,7 +123,8 @@ static Status lattice_places(double *lon, double *lat, const Import *m, const Fi
 {
     for (int b = 0; b < m->lattice_ny; b++)
         for (int a = 0; a < m->lattice_nx; a++) {
-            double p_enu[3] = {(z->i0 + a * m->stride) * z->spacing_m, (z->j0 + b * m->stride) * z->spacing_m, 0}, p_ecef[3];
+            double p_enu[3] = {(z->i0 + a * m->stride) * z->spacing_m, (z->j0 + b * m->stride) * z->spacing_m, 0},
+                   p_ecef[3];
             double z_m, dz_per_h;
             curve_at(&m->curve, p_enu[0], p_enu[1], &z_m, &dz_per_h);
             p_enu[2] = z_m + h_m * dz_per_h;
@@ -262,8 +226,8 @@ static Status read_patches(Import *m, const Field *z)
         int factor = 1;
         while (2 * factor * fmax(g->units[0], g->units[1]) <= z->spacing_m * 1.001) factor *= 2;
         const double unit = g->raster->metres_per_unit;
-        const Status status = patch_read(&g->patch, g->raster, 1, from[0], from[1], to[0], to[1], factor, lowest_m / unit,
-                                         highest_m / unit, key);
+        const Status status = patch_read(&g->patch, g->raster, 1, from[0], from[1], to[0], to[1], factor,
+                                         lowest_m / unit, highest_m / unit, key);
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
@@ -295,7 +259,7 @@ static bool grid_at(double *h_m, double *out_m, const Grid *g, double x, double 
  * them the edges, the nearest first, and farther out the plain. */
 static double composed(const Import *m, const double *x, const double *y, double n_m)
 {
-    double h_m[most_grids], out_m[most_grids], sum = 0, left = 1, weights = 0, cover = 0;
+    double h_m[import_most_grids], out_m[import_most_grids], sum = 0, left = 1, weights = 0, cover = 0;
     int    at = 0;
     for (; at < m->grids; at++) {
         if (!grid_at(&h_m[at], &out_m[at], &m->grid[at], x[at], y[at], n_m)) out_m[at] = INFINITY;
@@ -312,7 +276,8 @@ static double composed(const Import *m, const double *x, const double *y, double
     }
     for (int k = 0; k < m->grids; k++) {
         if (!(out_m[k] < m->grid[k].long_m)) continue;
-        const double share = 1 - smooth_step(0, m->grid[k].long_m, out_m[k]), near = out_m[k] + 0.1 * m->grid[k].units[0];
+        const double share = 1 - smooth_step(0, m->grid[k].long_m, out_m[k]),
+                     near = out_m[k] + 0.1 * m->grid[k].units[0];
         weights += share / (near * near);
         sum += share / (near * near) * h_m[k];
         cover = fmax(cover, share);
@@ -321,13 +286,13 @@ static double composed(const Import *m, const double *x, const double *y, double
 }
 
 /* Where the vertical line of the ENU plane, which leans against the grids' own verticals, meets them. */
-static double height_at(const Import *m, const double *x0, const double *y0, const double *dx, const double *dy, double n_m,
-                        double guess_m)
+static double height_at(const Import *m, const double *x0, const double *y0, const double *dx, const double *dy,
+                        double n_m, double guess_m)
 {
     double h_m = guess_m, lean = 0;
     for (int k = 0; k < m->grids; k++) lean = fmax(lean, fmax(fabs(dx[k]), fabs(dy[k])));
     for (int iteration = 0; iteration < 8; iteration++) {
-        double x[most_grids], y[most_grids];
+        double x[import_most_grids], y[import_most_grids];
         for (int k = 0; k < m->grids; k++) {
             x[k] = x0[k] + h_m * dx[k];
             y[k] = y0[k] + h_m * dy[k];
@@ -355,7 +320,8 @@ static void find_posts(const Import *m, Field *z)
             const int    li = i / m->stride;
             const double a = (double)(i % m->stride) / m->stride;
             const size_t node = (size_t)lj * (size_t)m->lattice_nx + (size_t)li;
-            double       x0[most_grids] = {0}, y0[most_grids] = {0}, dx[most_grids] = {0}, dy[most_grids] = {0};
+            double x0[import_most_grids] = {0}, y0[import_most_grids] = {0}, dx[import_most_grids] = {0},
+                   dy[import_most_grids] = {0};
             for (int k = 0; k < m->grids; k++) {
                 const Sight *s = &m->grid[k].sight;
                 if (m->grid[k].patch.mips == 0) continue;
@@ -397,152 +363,15 @@ static bool measure_edges(Import *m, double geoid_m)
     return any;
 }
 
-/* ---- correction to fixes -------------------------------------------------------------------- */
-
-/* A smooth field through what the fixes say over what the levels have, pulled in from wide waves to those of some
- * posts, and added to every level. */
-static Status correct(Import *m, const GroundFix *fix, int fix_count, double *largest_m)
-{
-    enum { margin = 6 };
-    static const double widest_m = 16384;
-    FixSet    set = {0};
-    FieldAim *aim = NULL;
-    Field     spline = {0};
-    int       count = 0;
-    Status    status = fix_set_create(&set, m->frame, fix, fix_count, m->files->horizon_m);
-    if (status != STATUS_OK) return status;
-    status = STATUS_NO_MEMORY;
-    aim    = malloc(((size_t)set.count + 1) * sizeof *aim);
-    if (!aim) goto done;
-    double reach_m = 0;
-    for (int n = 0; n < set.count; n++) {
-        const FixRow *row = &set.row[n];
-        int           corner[3];
-        double        weight[3], h_m = NAN;
-        if (row->dropped) continue;
-        for (int k = 0; k < m->level_count && !isfinite(h_m); k++) h_m = posts_at(&m->level[k].z, row->x_m, row->y_m, corner, weight);
-        if (!isfinite(h_m)) continue;
-        aim[count++] = (FieldAim){row->x_m, row->y_m, row->h_m - h_m, false};
-        reach_m = fmax(reach_m, fmax(fabs(row->x_m), fabs(row->y_m)));
-    }
-    status = STATUS_OK;
-    if (count == 0) goto done;
-
-    const double least_m = fmax(8, 4 * m->spacing_m[0]), half_m = fmin(reach_m + 2 * widest_m, m->files->horizon_m);
-    double       spacing_m = widest_m;
-    int          half = (int)ceil(half_m / spacing_m) + margin;
-    status = field_create(&spline, spacing_m, -half, -half, 2 * half + 1, 2 * half + 1);
-    for (;;) {
-        if (status == STATUS_OK) status = field_pull(&spline, aim, count);
-        if (status != STATUS_OK) goto done;
-        half = (int)ceil((reach_m + 8 * spacing_m) / spacing_m) * 2 + margin;
-        if (half > spline.nx - 1 - 8) half = spline.nx - 1 - 8;
-        if (spacing_m / 2 < least_m || (double)half * half > 4e6) break;
-        Field fine;
-        status = field_refine(&fine, &spline, -half, -half, 2 * half + 1, 2 * half + 1);
-        if (status != STATUS_OK) goto done;
-        field_destroy(&spline);
-        spline = fine;
-        spacing_m /= 2;
-    }
-    /* beyond the finest window nothing is known: led out to nothing over its last eighth */
-    const double edge_m = (half - margin) * spline.spacing_m;
-    for (int k = 0; k < m->level_count; k++) {
-        Field *z = &m->level[k].z;
-        for (int j = 0; j < z->ny; j++)
-            for (int i = 0; i < z->nx; i++) {
-                const double x_m = (z->i0 + i) * z->spacing_m, y_m = (z->j0 + j) * z->spacing_m;
-                const double out_m = fmax(fabs(x_m), fabs(y_m));
-                if (out_m >= edge_m) continue;
-                const double by_m = field_spline_at(&spline, x_m, y_m) * (1 - smooth_step(0.875 * edge_m, edge_m, out_m));
-                if (!isfinite(by_m)) continue;
-                z->v[(size_t)j * (size_t)z->nx + (size_t)i] += (float)by_m;
-                *largest_m = fmax(*largest_m, fabs(by_m));
-            }
-    }
-done:
-    field_destroy(&spline);
-    free(aim);
-    fix_set_destroy(&set);
-    return status;
-}
-
-/* ---- what it cost --------------------------------------------------------------------------- */
-
-static int by_value(const void *a, const void *b)
-{
-    const float x = *(const float *)a, y = *(const float *)b;
-    return x < y ? -1 : x > y;
-}
-
-/* Signed distance of the surface below or above one place of the main grid; NaN off level 0 or where it is joined. */
-static double off_m(const Import *m, const Elevation *elevation, double lon_rad, double lat_rad, double h_m)
-{
-    const ElevationLevel *level = &elevation->level[0];
-    Geodetic place = {.lat_rad = lat_rad, .lon_rad = lon_rad, .h_m = h_m};
-    double   p_ecef[3], p_enu[3];
-    if (!m->grid[m->main].ellipsoidal) place.h_m += geoid_height_m(&m->geoid, lat_rad, lon_rad);
-    if (ecef_from_geodetic(p_ecef, NULL, &place) != STATUS_OK) return NAN;
-    enu_from_ecef(p_enu, m->frame, p_ecef);
-    const double fx = (p_enu[0] - level->x0_m) / level->spacing_m, fy = (p_enu[1] - level->y0_m) / level->spacing_m;
-    if (!(fx >= join_band && fy >= join_band && fx <= level->nx - 1 - join_band && fy <= level->ny - 1 - join_band)) return NAN;
-    return elevation_height(elevation, p_enu[0], p_enu[1], NULL) - p_enu[2];
-}
-
-/* Places of the grid drawn at random, each taken to ENU by the exact way and held against the stored surface; and as
- * many posts of it, where a peak between our own posts is cut off most. */
-static Status measure(ElevationReport *report, const Import *m, const Elevation *elevation, const Patch *patch)
-{
-    enum { places = 100000, block = 1000 };
-    const Grid *g = &m->grid[m->main];
-    float      *error = malloc(places * sizeof *error);
-    double      sum = 0, worst_m = 0, x[block], y[block], h[block];
-    int         count = 0;
-    if (!error) return STATUS_NO_MEMORY;
-    const double w = patch->nx[0] - 1, d = patch->ny[0] - 1;
-    for (int first = 0; first < 2 * places; first += block) {
-        const bool at_posts = first >= places;
-        int        drawn = 0;
-        for (int n = 0; n < block; n++) {
-            double u = w * random_uniform(20, 1, 0, (uint64_t)(first + n)), v = d * random_uniform(20, 2, 0, (uint64_t)(first + n));
-            if (at_posts) u = floor(u), v = floor(v);
-            const uint8_t *hole = patch->hole + (size_t)v * (size_t)patch->nx[0] + (size_t)u;
-            if (hole[0] || hole[1] || hole[patch->nx[0]] || hole[patch->nx[0] + 1]) continue;
-            x[drawn] = patch->x0 + u + 0.5;
-            y[drawn] = patch->y0 + v + 0.5;
-            h[drawn] = patch_at(patch, x[drawn], y[drawn], 0) * g->raster->metres_per_unit;
-            drawn++;
-        }
-        raster_earth_from_px(g->raster, drawn, x, y);
-        for (int n = 0; n < drawn; n++) {
-            const double off = fabs(off_m(m, elevation, x[n], y[n], h[n]));
-            if (!isfinite(off)) continue;
-            worst_m = fmax(worst_m, off);
-            if (at_posts) continue;
-            error[count++] = (float)off;
-            sum += off * off;
-        }
-    }
-    report->places = count;
-    if (count > 0) {
-        qsort(error, (size_t)count, sizeof *error, by_value);
-        report->error_rms_m = sqrt(sum / count);
-        report->error_p99_m = (double)error[(int)(0.99 * (count - 1))];
-        report->error_max_m = worst_m;
-    }
-    free(error);
-    return STATUS_OK;
-}
-
 /* ---- the whole ------------------------------------------------------------------------------ */
 
 static Status open_files(Import *m)
 {
     Status status = raster_set_open(&m->set, m->files->paths, key);
     if (status != STATUS_OK) return status;
-    if (m->set.count > most_grids) {
+    if (m->set.count > import_most_grids) {
         log_error("%s: the files lie on %d different grids, more than %d; gdalbuildvrt joins them", key, m->set.count,
-                  (int)most_grids);
+                  (int)import_most_grids);
         return STATUS_BAD_VALUE;
     }
     bool wants_geoid = false;
@@ -553,10 +382,12 @@ static Status open_files(Import *m)
         g->raster      = raster;
         g->units[0]    = raster->posting_m[0];
         g->units[1]    = raster->posting_m[1];
-        g->ellipsoidal = m->files->vertical == ELEVATION_BY_FILE ? raster->ellipsoidal : m->files->vertical == ELEVATION_ELLIPSOID;
+        g->ellipsoidal =
+            m->files->vertical == ELEVATION_BY_FILE ? raster->ellipsoidal : m->files->vertical == ELEVATION_ELLIPSOID;
         wants_geoid |= !g->ellipsoidal;
         /* into the coarser grid around: some of its posts */
-        g->short_m = k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
+        g->short_m =
+            k + 1 < m->grids ? 8 * fmax(m->set.raster[k + 1].posting_m[0], m->set.raster[k + 1].posting_m[1]) : 0;
         g->long_m  = 30000; /* until its edge has been seen */
     }
     return wants_geoid ? geoid_open(&m->geoid, m->files->geoid_path) : STATUS_OK;
@@ -600,15 +431,17 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
     if (status != STATUS_OK) goto done;
     plan_levels(&m);
     r.geoid_m = m.geoid.n_m ? geoid_height_m(&m.geoid, frame->origin.lat_rad, frame->origin.lon_rad) : 0;
-    for (int k = m.level_count - 1; status == STATUS_OK && k >= 0; k--) status = make_level(&m, k, r.geoid_m, &patch, &r.voids);
-    if (status == STATUS_OK && fix_count > 0) status = correct(&m, fix, fix_count, &r.correction_m);
+    for (int k = m.level_count - 1; status == STATUS_OK && k >= 0; k--)
+        status = make_level(&m, k, r.geoid_m, &patch, &r.voids);
+    if (status == STATUS_OK && fix_count > 0) status = elevation_import_correct(&m, fix, fix_count, &r.correction_m);
     for (int k = m.level_count - 1; status == STATUS_OK && k >= 0; k--) {
         status = levels_bend(&m.level[k].z, &m.curve);
-        if (status == STATUS_OK && !m.level[k].outermost) levels_join(&m.level[k], &m.level[k + 1], join_band);
+        if (status == STATUS_OK && !m.level[k].outermost) levels_join(&m.level[k], &m.level[k + 1], import_join_band);
     }
     if (status == STATUS_OK) status = levels_store(&elevation, m.level, m.level_count);
-    if (status == STATUS_OK && patch.mips > 0 && r.correction_m == 0 && patch.factor == 1 && patch.nx[0] > 1 && patch.ny[0] > 1)
-        status = measure(&r, &m, &elevation, &patch);
+    if (status == STATUS_OK && patch.mips > 0 && r.correction_m == 0 && patch.factor == 1 && patch.nx[0] > 1 &&
+        patch.ny[0] > 1)
+        status = elevation_import_measure(&r, &m, &elevation, &patch);
     if (status != STATUS_OK) goto done;
 
     const Grid *main_grid = &m.grid[m.main];

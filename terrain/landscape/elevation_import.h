@@ -1,9 +1,9 @@
 /* terrain/landscape/elevation_import.h: the ground from elevation files, as nested levels in ENU.
  *
- * Every post is curved into ENU: the vertical line of the ENU plane through (x, y) is followed to where the file's own
- * surface, bilinear between its posts and raised by the geoid at that latitude and longitude, crosses it. Beyond the
- * data the surface leads over, within blend_m, to their edge's mean height above the ellipsoid; where a finer grid ends within
- * a coarser one, within eight of the coarser's posts. Inside a grid nothing is blended. */
+ * Every post is curved into ENU: the vertical line of the ENU plane through (x, y) is followed to where the file's
+ * own surface, bilinear between its posts and raised by the geoid at that latitude and longitude, crosses it. Beyond
+ * the data the surface leads over, within blend_m, to their edge's mean height above the ellipsoid; where a finer
+ * grid ends within a coarser one, within eight of the coarser's posts. Inside a grid nothing is blended. */
 #ifndef TERRAIN_LANDSCAPE_ELEVATION_IMPORT_H
 #define TERRAIN_LANDSCAPE_ELEVATION_IMPORT_H
 

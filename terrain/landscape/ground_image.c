@@ -1,113 +1,12 @@
+/* terrain/landscape/ground_image.c: rasters of cover classes and of a photograph, resampled into ENU, and read at
+ * points. */
 #include "terrain/landscape/ground_image.h"
 
-#include "terrain/elevation/raster.h"
+#include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>
 
 static const char cover_key[] = "terrain.cover", photo_key[] = "terrain.orthophoto";
-
-/* ---- from ENU to pixels --------------------------------------------------------------------- */
-
-/* A window of square cells, and where the corners of blocks of them lie in a raster. */
-typedef struct Window {
-    double x0_m, y0_m, cell_m;
-    int    nx, ny;
-} Window;
-
-enum { block_cells = 32 };
-
-/* Pixel of the raster under each cell's centre, a row of blocks at a time: exact at the corners of blocks on the
- * surface itself, linear between (over 32 cells of 1 m the lean of a 100 m cliff 8 km out would show as 0.1 m). */
-typedef struct Finder {
-    const Raster    *raster;
-    const Elevation *elevation;
-    const LocalFrame *frame;
-    Window           window;
-    double          *x, *y; /* [2][blocks + 1] */
-    int              blocks, row; /* row of blocks that is loaded */
-} Finder;
-
-static Status finder_create(Finder *f, const Raster *raster, const Elevation *elevation, const LocalFrame *frame,
-                            const Window *window)
-{
-    *f = (Finder){.raster = raster, .elevation = elevation, .frame = frame, .window = *window, .row = -1};
-    f->blocks = (window->nx - 1) / block_cells + 1;
-    f->x = malloc(4 * (size_t)(f->blocks + 1) * sizeof *f->x);
-    if (!f->x) return STATUS_NO_MEMORY;
-    f->y = f->x + 2 * (f->blocks + 1);
-    return STATUS_OK;
-}
-
-static void finder_load(Finder *f, int row)
-{
-    const int corners = f->blocks + 1;
-    for (int side = 0; side < 2; side++)
-        for (int c = 0; c < corners; c++) {
-            double p_enu[3] = {f->window.x0_m + c * block_cells * f->window.cell_m,
-                               f->window.y0_m + (row + side) * block_cells * f->window.cell_m, 0}, p_ecef[3];
-            Geodetic place = {NAN, NAN, 0};
-            const double z_m = elevation_height(f->elevation, p_enu[0], p_enu[1], NULL);
-            p_enu[2] = isfinite(z_m) ? z_m : 0;
-            ecef_from_enu(p_ecef, f->frame, p_enu);
-            (void)geodetic_from_ecef(&place, p_ecef);
-            f->x[side * corners + c] = place.lon_rad;
-            f->y[side * corners + c] = place.lat_rad;
-        }
-    raster_px_from_earth(f->raster, 2 * corners, f->x, f->y);
-    f->row = row;
-}
-
-static void finder_at(double px[2], Finder *f, int i, int j)
-{
-    if (j / block_cells != f->row) finder_load(f, j / block_cells);
-    const int    corners = f->blocks + 1, c = i / block_cells;
-    const double u = (i % block_cells + 0.5) / block_cells, v = (j % block_cells + 0.5) / block_cells;
-    const double *of[2] = {f->x, f->y};
-    for (int k = 0; k < 2; k++) {
-        const double *a = of[k] + c, *b = a + corners;
-        const double  south = a[0] + u * (a[1] - a[0]), north = b[0] + u * (b[1] - b[0]);
-        px[k] = south + v * (north - south);
-    }
-}
-
-static void finder_free(Finder *f) { free(f->x); }
-
-/* Pixels of the raster that one row of blocks can touch; false: none. Reading row by row keeps memory small. */
-static bool finder_bounds(int box[4], Finder *f, int row)
-{
-    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-    finder_load(f, row);
-    for (int c = 0; c < 2 * (f->blocks + 1); c++) {
-        if (!isfinite(f->x[c]) || !isfinite(f->y[c])) continue;
-        low[0]  = fmin(low[0], f->x[c]);
-        high[0] = fmax(high[0], f->x[c]);
-        low[1]  = fmin(low[1], f->y[c]);
-        high[1] = fmax(high[1], f->y[c]);
-    }
-    if (!(high[0] > 0 && high[1] > 0 && low[0] < f->raster->width && low[1] < f->raster->height)) return false;
-    box[0] = (int)fmax(floor(low[0]) - 2, 0);
-    box[1] = (int)fmax(floor(low[1]) - 2, 0);
-    box[2] = (int)fmin(ceil(high[0]) + 3, f->raster->width);
-    box[3] = (int)fmin(ceil(high[1]) + 3, f->raster->height);
-    return box[2] - box[0] > 1 && box[3] - box[1] > 1;
-}
-
-/* ENU rectangle of a raster about the origin, no wider than `half_m` each way, in whole blocks. */
-static bool window_of(Window *out, const Raster *raster, const LocalFrame *frame, double cell_m, double half_m)
-{
-    double low[2], high[2];
-    raster_enu_box(low, high, raster, frame, 0);
-    const double margin_m = 0.01 * (high[0] - low[0]) + 10 * cell_m; /* heights lean outwards */
-    int n[2];
-    for (int c = 0; c < 2; c++) {
-        low[c]  = floor(fmax(low[c] - margin_m, -half_m) / cell_m) * cell_m;
-        high[c] = fmin(high[c] + margin_m, half_m);
-        if (!(high[c] > low[c])) return false;
-        n[c] = ((int)((high[c] - low[c]) / cell_m) / block_cells + 1) * block_cells;
-    }
-    *out = (Window){low[0], low[1], cell_m, n[0], n[1]};
-    return true;
-}
 
 /* ---- cover ---------------------------------------------------------------------------------- */
 
@@ -151,8 +50,10 @@ static Status cover_table_read(CoverTable *out, const char *path)
         if (table_number(&code, &table, row, code_column, 1, most_codes - 1) != STATUS_OK) goto done;
         const SurfaceClass surface = surface_find(name);
         if (code != floor(code) || t.known[(int)code] || (surface == SURFACE_NONE && strcmp(name, "none") != 0)) {
-            log_error("cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
-                      "etc/surfaces.csv list them", path, table.line[row + 1], code, name);
+            log_error(
+                "cover: %s:%d: code %g is not whole, given twice, or its surface '%s' unknown; terrain/surface.h and "
+                "etc/surfaces.csv list them",
+                path, table.line[row + 1], code, name);
             goto done;
         }
         t.known[(int)code]   = true;
@@ -202,8 +103,8 @@ static Status choose_table(CoverTable *out, const char **name, const char *asked
     return STATUS_OK;
 }
 
-static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band, const Elevation *elevation,
-                          const LocalFrame *frame)
+static Status cover_codes(uint8_t *code, const Window *window, const Raster *raster, int band,
+                          const Elevation *elevation, const LocalFrame *frame)
 {
     Finder f;
     Status status = finder_create(&f, raster, elevation, frame, window);
@@ -229,8 +130,8 @@ static Status cover_codes(uint8_t *code, const Window *window, const Raster *ras
     return status;
 }
 
-Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table, int band,
-                       const Elevation *elevation, const LocalFrame *frame)
+Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
+                       int band, const Elevation *elevation, const LocalFrame *frame)
 {
     static const double most_cells[cover_windows] = {16e6, 4e6};
     RasterSet   set = {0};
@@ -389,8 +290,8 @@ static Status white_of(double *white, const Raster *raster, int bands)
     for (int b = 1; status == STATUS_OK && b <= bands; b++) {
         size_t kept = 0;
         for (int r = 0; status == STATUS_OK && r < rows; r++)
-            status = raster_read(some + (size_t)r * w, raster, b, 0, (int)((int64_t)r * raster->height / rows), raster->width, 1,
-                                 photo_key);
+            status = raster_read(some + (size_t)r * w, raster, b, 0, (int)((int64_t)r * raster->height / rows),
+                                 raster->width, 1, photo_key);
         for (size_t n = 0; status == STATUS_OK && n < rows * w; n++)
             if (isfinite(some[n])) some[kept++] = some[n];
         if (status != STATUS_OK || kept == 0) continue;
@@ -403,7 +304,8 @@ static Status white_of(double *white, const Raster *raster, int bands)
 }
 
 /* One cell: bilinear between pixel centres, in linear light, held at the rim. px: the bands of a box w x h. */
-static void photo_cell(uint8_t to[4], float *const px[3], int bands, bool bytes, double white, int w, int h, double x, double y)
+static void photo_cell(uint8_t to[4], float *const px[3], int bands, bool bytes, double white, int w, int h, double x,
+                       double y)
 {
     const Codes *c = codes();
     x = clamp(x - 0.5, 0, w - 1);
@@ -497,7 +399,8 @@ Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevat
         p.nx[k + 1] = (p.nx[k] + 1) / 2;
         p.ny[k + 1] = (p.ny[k] + 1) / 2;
     }
-    for (int k = 0; status == STATUS_OK && k < set.count; k++) status = photo_pixels(&p, &set.raster[k], elevation, frame);
+    for (int k = 0; status == STATUS_OK && k < set.count; k++)
+        status = photo_pixels(&p, &set.raster[k], elevation, frame);
     if (status != STATUS_OK) goto done;
     for (int k = 1; k < p.mips; k++) halve(&p, k);
     *out = p;

@@ -1,4 +1,5 @@
-/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a photograph. */
+/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a
+ * photograph. */
 #ifndef TERRAIN_LANDSCAPE_GROUND_IMAGE_H
 #define TERRAIN_LANDSCAPE_GROUND_IMAGE_H
 
@@ -26,8 +27,8 @@ typedef struct CoverReport {
 /* table: a CSV (code, surface, note), a name such as worldcover, nlcd or fbfm40 for etc/cover_NAME.csv, or empty: the
  * one of these three that knows the most of the codes met. band 0: the only one, or FBFM's fourth where there are eight
  * or more, as in landscape files. Failures are logged. */
-Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table, int band,
-                       const Elevation *elevation, const LocalFrame *frame);
+Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
+                       int band, const Elevation *elevation, const LocalFrame *frame);
 /* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */
 Status cover_table_check(const char *path);
 void   cover_grid_free(CoverGrid grid[cover_windows]);
@@ -45,7 +46,8 @@ typedef struct Photo {
 } Photo;
 
 /* Three bands or one, octets (taken as sRGB) or wider (taken as linear, brightest thousandth cut). */
-Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation, const LocalFrame *frame);
+Status photo_read(Photo *out, double *posting_m, const char *paths, const Elevation *elevation,
+                  const LocalFrame *frame);
 void   photo_free(Photo *photo);
 /* Linear light averaged over the footprint, and how much of it the photograph covers (0 .. 1). */
 double photo_at(double linear[photo_channels], const Photo *photo, double x_m, double y_m, double footprint_m);

@@ -1,5 +1,6 @@
-/* terrain/landscape/landscape.h: the ground: of files (terrain/landscape/landscape_import.h), or when nobody gave any an invented landscape
- * fitted to what the exercise says of it. Surface, texture and albedo are asked here for both.
+/* terrain/landscape/landscape.h: the ground: of files (terrain/landscape/landscape_import.h), or when nobody gave
+ * any an invented landscape fitted to what the exercise says of it. Surface, texture and albedo are asked here for
+ * both.
  *
  * The invented one:
  *

@@ -1,3 +1,4 @@
+/* terrain/landscape/landscape_import.c: elevation, cover and photograph files made into one landscape. */
 #include "terrain/landscape/landscape_import.h"
 
 #include "terrain/landscape/landscape_private.h"
@@ -30,8 +31,8 @@ Status landscape_import(Landscape *out, LandscapeReport *report, const Landscape
     cover->treeline_m = treeline_m(frame->origin.lat_rad);
     curve_of_frame(&cover->curve, frame);
     if (*files->cover)
-        status = cover_grid_read(cover->grid, &r.cover, files->cover, files->cover_table, files->cover_band, &landscape.elevation,
-                                 frame);
+        status = cover_grid_read(cover->grid, &r.cover, files->cover, files->cover_table, files->cover_band,
+                                 &landscape.elevation, frame);
     if (status == STATUS_OK && *files->photo)
         status = photo_read(&cover->photo, &r.photo_posting_m, files->photo, &landscape.elevation, frame);
     if (status != STATUS_OK) goto fail;

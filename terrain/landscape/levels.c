@@ -155,7 +155,8 @@ static void quantise(Elevation *elevation, const WorkLevel *levels, int count, c
             for (int m = 0; m < n; m++) {
                 const int    i = along_x ? m : far_side ? z->nx - 1 : 0, j = along_x ? far_side ? z->ny - 1 : 0 : m;
                 const int    c = m / level_ratio, part = m % level_ratio;
-                const size_t a = (size_t)(oj + (along_x ? j / level_ratio : c)) * outer->nx + oi + (along_x ? c : i / level_ratio);
+                const size_t a =
+                    (size_t)(oj + (along_x ? j / level_ratio : c)) * outer->nx + oi + (along_x ? c : i / level_ratio);
                 const size_t b = part ? a + (along_x ? 1 : (size_t)outer->nx) : a;
                 const double za = outer->z0_m + outer->step_m * outer->post[a];
                 const double zb = outer->z0_m + outer->step_m * outer->post[b];

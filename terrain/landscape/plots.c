@@ -49,7 +49,7 @@ static void find_cell(PlotCell *cell, uint64_t seed, int64_t ci, int64_t cj)
         cell->across_x[n] = (float)(dx / length), cell->across_y[n] = (float)(dy / length);
     }
     float arable[16];
-    for (int n = 0; n < 16; n += 8) eight_store(arable + n, noise_eight(seed + 13, 1900, whole_x + n, whole_y + n));
+    for (int n = 0; n < 16; n += 8) f32x8_store(arable + n, noise_eight(seed + 13, 1900, whole_x + n, whole_y + n));
     for (int n = 0; n < plot_sites; n++) cell->crop[n] = (int32_t)crop_of_field(cell->id[n], arable[n] > -0.15f);
 }
 

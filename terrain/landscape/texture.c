@@ -30,40 +30,40 @@ static const float amplitude[SURFACE_COUNT][octave_count] = {
 };
 
 /* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
-static Eight fade(double wavelength_m, Eight footprint_m)
+static F32x8 fade(double wavelength_m, F32x8 footprint_m)
 {
-    const Eight t = eight_clamp((footprint_m * eight_all(1 / wavelength_m) - eight_all(0.25)) * eight_all(4), 0, 1);
-    return eight_all(1) - t * t * (eight_all(3) - eight_all(2) * t);
+    const F32x8 t = f32x8_clamp((footprint_m * f32x8_set(1 / wavelength_m) - f32x8_set(0.25)) * f32x8_set(4), 0, 1);
+    return f32x8_set(1) - t * t * (f32x8_set(3) - f32x8_set(2) * t);
 }
 
 /* Rows of the fields that eight places lie in, along directions of their own; a smooth wave of mean 0. */
-static Eight rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const double y_m[8], double apart_m,
+static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const double y_m[8], double apart_m,
                      unsigned lanes)
 {
     double i[8], j[8];
     float  across_x[8] = {0}, across_y[8] = {0}, wave[8];
-    Eight  x, y;
+    F32x8  x, y;
     plot_cells_of(i, j, &x, &y, x_m, y_m);
     for (unsigned left = lanes, same; left; left &= ~same) {
         same = plot_cell_lanes(i, j, left);
         const int       first = __builtin_ctz(left);
         const PlotCell *cell = plot_cell_at(cells, seed, (int64_t)i[first], (int64_t)j[first]);
-        EightInt        site;
+        I32x8        site;
         (void)plot_nearest(&site, cell, x, y);
-        const Eight mask = eight_mask(same);
-        eight_store(across_x, eight_pick(mask, eight_gather(cell->across_x, site), eight_load(across_x)));
-        eight_store(across_y, eight_pick(mask, eight_gather(cell->across_y, site), eight_load(across_y)));
+        const F32x8 mask = f32x8_mask(same);
+        f32x8_store(across_x, f32x8_select(mask, f32x8_gather(cell->across_x, site), f32x8_load(across_x)));
+        f32x8_store(across_y, f32x8_select(mask, f32x8_gather(cell->across_y, site), f32x8_load(across_y)));
     }
     for (int k = 0; k < 8; k++) { /* in double: rows of a metre, tens of kilometres out */
         const double f = (x_m[k] * (double)across_x[k] + y_m[k] * (double)across_y[k]) * (1 / apart_m);
         const float  t = fabsf(2 * (float)(f - floor(f)) - 1); /* 1 .. 0 .. 1 */
         wave[k] = 2 * t * t * (3 - 2 * t) - 1;
     }
-    return eight_load(wave);
+    return f32x8_load(wave);
 }
 
 /* Finest features that the photograph leaves to be invented: those of two of its pixels are on it. */
-static Eight photo_fineness(const Photo *photo, const double x_m[8], const double y_m[8], unsigned lanes)
+static F32x8 photo_fineness(const Photo *photo, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     float seen_m[8];
     for (int k = 0; k < 8; k++) {
@@ -72,39 +72,39 @@ static Eight photo_fineness(const Photo *photo, const double x_m[8], const doubl
         if (photo->mips > 0 && lanes >> k & 1 && photo_at(linear, photo, x_m[k], y_m[k], photo->cell_m) > 0.5)
             seen_m[k] = (float)(2 * photo->cell_m);
     }
-    return eight_load(seen_m);
+    return f32x8_load(seen_m);
 }
 
 /* One eight of places; lanes: those of a known class. */
-static Eight textures(const Cover *cover, PlotCells *cells, EightInt class, const double x_m[8], const double y_m[8],
-                      Eight footprint_m, unsigned lanes)
+static F32x8 textures(const Cover *cover, PlotCells *cells, I32x8 class, const double x_m[8], const double y_m[8],
+                      F32x8 footprint_m, unsigned lanes)
 {
     static const double crop_rows_m = 0.75, furrows_m = 1.1;
     const uint64_t      seed = cover->seed + 20;
-    const Eight         seen_m = photo_fineness(&cover->photo, x_m, y_m, lanes), known = eight_mask(lanes);
-    const EightInt      row = _mm256_mullo_epi32(class, eight_int(octave_count));
-    Eight               sum = eight_all(1);
+    const F32x8         seen_m = photo_fineness(&cover->photo, x_m, y_m, lanes), known = f32x8_mask(lanes);
+    const I32x8      row = i32x8_mul(class, i32x8_set(octave_count));
+    F32x8               sum = f32x8_set(1);
     for (int n = octave_count - 1; n >= 0; n--) {
-        Eight share = fade(octave_m[n], footprint_m);
-        share = eight_and(eight_and(share, known), eight_less(eight_all(octave_m[n]), seen_m));
-        if (!eight_bits(eight_more(share, eight_all(0)))) continue;
-        const Eight strength = _mm256_mask_i32gather_ps(eight_all(0), &amplitude[0][n], row, known, 4);
-        sum = eight_fma(share * strength, noise_eight(seed + (uint64_t)n, octave_m[n], x_m, y_m), sum);
+        F32x8 share = fade(octave_m[n], footprint_m);
+        share = f32x8_and(f32x8_and(share, known), f32x8_less(f32x8_set(octave_m[n]), seen_m));
+        if (!f32x8_bits(f32x8_greater(share, f32x8_set(0)))) continue;
+        const F32x8 strength = _mm256_mask_i32gather_ps(f32x8_set(0), &amplitude[0][n], row, known, 4);
+        sum = f32x8_fma(share * strength, noise_eight(seed + (uint64_t)n, octave_m[n], x_m, y_m), sum);
     }
     const struct {
         SurfaceClass class;
         double       apart_m;
     } rows[] = {{SURFACE_CROP, crop_rows_m}, {SURFACE_PLOUGHED, furrows_m}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        const Eight ours = _mm256_castsi256_ps(_mm256_cmpeq_epi32(class, eight_int(rows[k].class)));
-        Eight       share = fade(rows[k].apart_m, footprint_m);
-        share = eight_and(eight_and(share, eight_and(ours, known)), eight_less(eight_all(rows[k].apart_m), seen_m));
-        const unsigned some = eight_bits(eight_more(share, eight_all(0)));
+        const F32x8 ours = i32x8_equal(class, i32x8_set(rows[k].class));
+        F32x8       share = fade(rows[k].apart_m, footprint_m);
+        share = f32x8_and(f32x8_and(share, f32x8_and(ours, known)), f32x8_less(f32x8_set(rows[k].apart_m), seen_m));
+        const unsigned some = f32x8_bits(f32x8_greater(share, f32x8_set(0)));
         if (!some) continue;
-        const Eight wave = rows_of(cells, cover->seed, x_m, y_m, rows[k].apart_m, some);
-        sum = eight_fma(eight_all(0.08) * share, wave, sum);
+        const F32x8 wave = rows_of(cells, cover->seed, x_m, y_m, rows[k].apart_m, some);
+        sum = f32x8_fma(f32x8_set(0.08) * share, wave, sum);
     }
-    return eight_pick(known, eight_clamp(sum, 0.6, 1.4), eight_all(1));
+    return f32x8_select(known, f32x8_clamp(sum, 0.6, 1.4), f32x8_set(1));
 }
 
 void landscape_textures(float *texture, const Landscape *landscape, int count, const uint8_t *surface,
@@ -129,8 +129,8 @@ void landscape_textures(float *texture, const Landscape *landscape, int count, c
             for (int k = 0; k < some; k++) texture[first + k] = 1;
             continue;
         }
-        const Eight wide = eight_max(eight_load(footprint), eight_all(0)); /* NaN: 0 */
-        eight_store(out, textures(cover, &cells, _mm256_loadu_si256((const EightInt *)class), x, y, wide, lanes));
+        const F32x8 wide = f32x8_max(f32x8_load(footprint), f32x8_set(0)); /* NaN: 0 */
+        f32x8_store(out, textures(cover, &cells, i32x8_load(class), x, y, wide, lanes));
         memcpy(texture + first, out, (size_t)some * sizeof *out);
     }
 }

@@ -44,6 +44,85 @@ static const Setting box_rows[] = {
 static const SettingTable table = {.module = "test", .row = box_rows, .count = 7, .list = lists, .list_count = 1,
                                    .all_keys = "ask"};
 
+/* What a table reads itself: a text, a list as words, each of several, a map. */
+typedef struct Own {
+    char said[128];
+    int  deep, lines;
+} Own;
+
+static Status own(const char **complaint, void *out, const Setting *row, SettingValue *value)
+{
+    Own         *o = out;
+    const size_t n = strlen(o->said);
+    o->lines += value->line;
+    if (strcmp(value->text, "odd") == 0) *complaint = "odd";
+    if (value->key && strcmp(value->key, "no") == 0) value->wrong_key = true;
+    snprintf(o->said + n, sizeof o->said - n, "%s:%s%s%s;", row->name, value->key ? value->key : "",
+             value->key ? "=" : "", value->text);
+    return strcmp(value->text, "bad") == 0 || *complaint || value->wrong_key ? STATUS_BAD_VALUE : STATUS_OK;
+}
+
+static const Setting own_rows[] = {
+    {"one", SETTING_OWN, SETTING_AT(Own, said), 0, 0, "a good word", "", "of one"},
+    {"each", SETTING_EACH, SETTING_AT(Own, said), 0, 0, "a word or several", "", ""},
+    {"map", SETTING_MAP, SETTING_AT(Own, said), 0, 0, "`word: word`", "", ""},
+    {"a.b.deep", SETTING_INT, SETTING_AT(Own, deep), 0, 9, NULL, "", ""},
+};
+static const SettingTable own_table = {.module = "test", .row = own_rows, .count = 4, .prefix = "own.", .own = own,
+                                       .all_keys = "ask"};
+
+static Status parse_own(Own *o, const char *text)
+{
+    *o = (Own){.deep = 0};
+    check_said[0] = 0;
+    log_set_sink(check_listen, NULL);
+    const Status status = settings_parse(o, NULL, &own_table, "own.yaml", text, strlen(text));
+    log_set_sink(NULL, NULL);
+    return status;
+}
+
+static void what_a_table_reads_itself(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *said;
+    } bad[] = {
+        {"one: bad\n", "test: own.yaml:1: own.one: 'bad' is not a good word"},
+        {"one: odd\n", "own.one: 'odd' is odd"},
+        {"one: {a: b}\n", "own.one: '{...}' is not a good word"},
+        {"one: [a, [b]]\n", "own.one: '[...]' is not a good word"},
+        {"one: [a, b c]\n", "own.one: '[...]' is not a good word"},
+        {"one: \"a\\0\"\n", "is not a good word"},
+        {"each:\n  - a\n  - bad\n", "own.yaml:3: own.each: 'bad' is not a word or several"},
+        {"each: [[a]]\n", "own.each: '[...]' is not"},
+        {"each: {a: b}\n", "own.each: '{...}' is not"},
+        {"map: [a]\n", "own.map: '[...]' is not `word: word`"},
+        {"map: a\n", "own.map: 'a' is not `word: word`"},
+        {"map:\n  a: b\n  no: c\n", "own.yaml:3: own.map: 'no' is not"},
+        {"map: {[a]: b}\n", "own.map: '[...]' is not"},
+        {"map: {\"a\\0\": b}\n", "own.map: "},
+        {"one: a\none: b\n", "own.one is given twice"},
+        {"a: {b: {deep: 1, deep: 2}}\n", "own.a.b.deep is given twice"},
+        {"a: {b: {depe: 1}}\n", "no such key: own.a.b.depe; did you mean own.a.b.deep?"},
+        {"a: {c: {deep: 1}}\n", "no such key: own.a.c"},
+        {"nothing: 1\n", "no such key: own.nothing; all keys: ask"},
+    };
+    Own o;
+    assert_int_equal(parse_own(&o, "one: [1, 2.5, -3]\neach: [x y, z]\nmap: {k: v, '*': w}\na:\n  b: {deep: 4}\n"),
+                     STATUS_OK);
+    assert_string_equal(o.said, "one:1 2.5 -3;each:x y;each:z;map:k=v;map:*=w;");
+    CHECK(o.deep == 4 && o.lines == 1 + 2 + 2 + 3 + 3);
+    assert_int_equal(parse_own(&o, "each: x\n"), STATUS_OK);
+    assert_string_equal(o.said, "each:x;");
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        if (parse_own(&o, bad[i].text) == STATUS_OK) fail_msg("accepted: %s", bad[i].text);
+        if (!strstr(check_said, bad[i].said)) fail_msg("said '%s' where '%s' was wanted", check_said, bad[i].said);
+    }
+    log_set_sink(check_listen, NULL);
+    assert_int_equal(settings_set(&o, NULL, &own_table, "one", "a", "--set"), STATUS_BAD_VALUE); /* in files alone */
+    log_set_sink(NULL, NULL);
+}
+
 static Status read_text(Box *box, bool *given, const char *text)
 {
     char path[text_file_size];
@@ -105,7 +184,7 @@ static void what_is_wrong_is_said_with_its_line(void **state)
         {"[1]: 2\n", "a key must be a word"},
         {"a: &x [*x]\n", "no such key"},
         {"things: &x [*x]\n", "things: expected `- key: value`"},
-        {"- a\n", "expected `section:`"},
+        {"- a\n", "expected `key: value` lines"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
         Box box = {0};
@@ -195,6 +274,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sections_lists_and_numbers),
         cmocka_unit_test(what_is_wrong_is_said_with_its_line),
+        cmocka_unit_test(what_a_table_reads_itself),
         cmocka_unit_test(written_settings_read_back),
         cmocka_unit_test(paths_are_relative_to_their_file),
     };

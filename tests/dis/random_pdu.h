@@ -2,9 +2,7 @@
 #ifndef TESTS_DIS_RANDOM_PDU_H
 #define TESTS_DIS_RANDOM_PDU_H
 
-#include "dis/entity_state.h"
-#include "dis/simulation_management.h"
-#include "dis/warfare.h"
+#include "dis/decode.h"
 
 /* Random words in order. */
 typedef struct Dice {
@@ -54,45 +52,6 @@ static inline size_t random_pdu(uint8_t out[random_pdu_octets], Dice *d, int kin
     for (int i = 0; i < records; i++)
         if (roll(d) % 4) out[random_pdu_fixed[kind] + 16 * i] = (uint8_t)(roll(d) % 2);
     return length;
-}
-
-/* Any decoded PDU; big, so static in its users. */
-typedef union AnyPdu {
-    DisEntityState       entity_state;
-    DisEntityStateUpdate update;
-    DisFire              fire;
-    DisDetonation        detonation;
-    DisRemoveEntity      remove;
-    DisStartResume       start;
-    DisStopFreeze        stop;
-} AnyPdu;
-
-static inline Status decode_any(AnyPdu *out, uint8_t type, const uint8_t *pdu, size_t octets)
-{
-    switch (type) {
-    case dis_pdu_entity_state: return dis_decode_entity_state(&out->entity_state, pdu, octets);
-    case dis_pdu_entity_state_update: return dis_decode_entity_state_update(&out->update, pdu, octets);
-    case dis_pdu_fire: return dis_decode_fire(&out->fire, pdu, octets);
-    case dis_pdu_detonation: return dis_decode_detonation(&out->detonation, pdu, octets);
-    case dis_pdu_remove_entity: return dis_decode_remove_entity(&out->remove, pdu, octets);
-    case dis_pdu_start_resume: return dis_decode_start_resume(&out->start, pdu, octets);
-    case dis_pdu_stop_freeze: return dis_decode_stop_freeze(&out->stop, pdu, octets);
-    default: return STATUS_UNSUPPORTED;
-    }
-}
-
-static inline size_t encode_any(uint8_t *out, size_t capacity, uint8_t type, const AnyPdu *pdu)
-{
-    switch (type) {
-    case dis_pdu_entity_state: return dis_encode_entity_state(out, capacity, &pdu->entity_state);
-    case dis_pdu_entity_state_update: return dis_encode_entity_state_update(out, capacity, &pdu->update);
-    case dis_pdu_fire: return dis_encode_fire(out, capacity, &pdu->fire);
-    case dis_pdu_detonation: return dis_encode_detonation(out, capacity, &pdu->detonation);
-    case dis_pdu_remove_entity: return dis_encode_remove_entity(out, capacity, &pdu->remove);
-    case dis_pdu_start_resume: return dis_encode_start_resume(out, capacity, &pdu->start);
-    case dis_pdu_stop_freeze: return dis_encode_stop_freeze(out, capacity, &pdu->stop);
-    default: return 0;
-    }
 }
 
 #endif

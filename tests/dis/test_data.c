@@ -3,13 +3,13 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/data.h"
 #include "dis/log.h"
 #include "dis/reader.h"
 
 enum { most_octets = 65535 };
 
-static DisData data, again;
+static DisPdu         first, second;
+static DisData *const data = &first.data, *const again = &second.data;
 static uint8_t built[most_octets + 1], back[most_octets + 1];
 
 /* Any header, datums of random size and content under true counts; returns the length. */
@@ -43,17 +43,17 @@ static void fields_are_where_the_standard_says(void **state)
         0, 0, 0, 11, 0, 0, 0, 12,                         /* fixed */
         0, 0, 0, 13, 0, 0, 0, 76,                         /* variable: 76 bits in 10 octets of 16 */
         1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 0xF1, 0xF2, 0xF3, 0xF4, 0xF5, 0xF6};
-    CHECK(sizeof pdu == 72 && dis_decode_data(&data, pdu, sizeof pdu) == STATUS_OK);
-    CHECK(data.originating.entity == 3 && data.receiving.site == 4 && data.request == 0x01020304);
-    CHECK(data.padding == 0x05060708 && data.fixed_count == 1 && data.variable_count == 1);
-    CHECK(data.fixed[0].id == 11 && data.fixed[0].value == 12);
-    CHECK(data.variable[0].id == 13 && data.variable[0].bits == 76);
-    CHECK(data.variable[0].value == pdu + 56 && data.variable[0].padding == pdu + 66);
-    CHECK(dis_encode_data(back, sizeof back, &data) == sizeof pdu && memcmp(back, pdu, sizeof pdu) == 0);
-    data.variable[0].padding = NULL;
-    CHECK(dis_encode_data(back, sizeof back, &data) == sizeof pdu && memcmp(back, pdu, 66) == 0);
+    CHECK(sizeof pdu == 72 && dis_decode(&first, pdu, sizeof pdu) == STATUS_OK);
+    CHECK(data->originating.entity == 3 && data->receiving.site == 4 && data->request == 0x01020304);
+    CHECK(data->padding == 0x05060708 && data->fixed_count == 1 && data->variable_count == 1);
+    CHECK(data->fixed[0].id == 11 && data->fixed[0].value == 12);
+    CHECK(data->variable[0].id == 13 && data->variable[0].bits == 76);
+    CHECK(data->variable[0].value == pdu + 56 && data->variable[0].padding == pdu + 66);
+    CHECK(dis_encode_data(back, sizeof back, data) == sizeof pdu && memcmp(back, pdu, sizeof pdu) == 0);
+    data->variable[0].padding = NULL;
+    CHECK(dis_encode_data(back, sizeof back, data) == sizeof pdu && memcmp(back, pdu, 66) == 0);
     for (int k = 66; k < 72; k++) CHECK(back[k] == 0);
-    CHECK(dis_encode_data(back, sizeof pdu - 1, &data) == 0);
+    CHECK(dis_encode_data(back, sizeof pdu - 1, data) == 0);
 }
 
 /* How many Data and Set Data there are, as tshark 4.0.17 counts them (README of the data). */
@@ -74,10 +74,10 @@ static void real_ones_come_back_octet_for_octet(void **state)
             const uint8_t *at = log.datagram[k].bytes, *end = at + log.datagram[k].octets, *pdu;
             DisHeader      header;
             while (dis_next_pdu(&header, &pdu, &at, end, &counters)) {
-                if (header.type != dis_pdu_data && header.type != 19) continue;
-                CHECK(dis_decode_data(&data, pdu, header.length) == STATUS_OK);
-                CHECK(data.variable_count >= 1 && data.variable[0].bits > 0);
-                CHECK(dis_encode_data(back, sizeof back, &data) == header.length);
+                if (header.type != dis_pdu_data && header.type != dis_pdu_set_data) continue;
+                CHECK(dis_decode(&first, pdu, header.length) == STATUS_OK);
+                CHECK(data->variable_count >= 1 && data->variable[0].bits > 0);
+                CHECK(dis_encode_data(back, sizeof back, data) == header.length);
                 CHECK(memcmp(back, pdu, header.length) == 0);
                 count++;
             }
@@ -95,10 +95,10 @@ static void any_data_come_back(void **state)
         const int    fixed = (int)(roll(&d) % 4 ? roll(&d) % 4 : roll(&d) % 65);
         const int    variable = (int)(roll(&d) % 4 ? roll(&d) % 4 : roll(&d) % 65);
         const size_t length = random_data(&d, fixed, variable);
-        CHECK(dis_decode_data(&data, built, length) == STATUS_OK);
-        CHECK(data.fixed_count == fixed && data.variable_count == variable);
-        CHECK(dis_encode_data(back, sizeof back, &data) == length && memcmp(back, built, length) == 0);
-        CHECK(dis_encode_data(back, length - 1, &data) == 0);
+        CHECK(dis_decode(&first, built, length) == STATUS_OK);
+        CHECK(data->fixed_count == fixed && data->variable_count == variable);
+        CHECK(dis_encode_data(back, sizeof back, data) == length && memcmp(back, built, length) == 0);
+        CHECK(dis_encode_data(back, length - 1, data) == 0);
     }
 }
 
@@ -108,10 +108,10 @@ static Status decode_exactly(size_t octets)
     uint8_t *heap = malloc(octets ? octets : 1);
     CHECK(heap != NULL);
     memcpy(heap, built, octets);
-    again = (DisData){.request = 77};
-    const Status status = dis_decode_data(&again, heap, octets);
-    if (status != STATUS_OK) CHECK(again.request == 77 && again.fixed_count == 0); /* untouched */
-    if (status == STATUS_OK) CHECK(dis_encode_data(back, sizeof back, &again) <= octets);
+    *again = (DisData){.request = 77};
+    const Status status = dis_decode(&second, heap, octets);
+    if (status != STATUS_OK) CHECK(again->request == 77 && again->fixed_count == 0); /* untouched */
+    if (status == STATUS_OK) CHECK(dis_encode_data(back, sizeof back, again) <= octets);
     free(heap);
     return status;
 }
@@ -167,19 +167,19 @@ static void what_no_length_can_say_is_not_encoded(void **state)
 {
     (void)state;
     static const uint8_t large[70000];
-    data = (DisData){.header = {.version = 7, .type = dis_pdu_data}, .variable_count = 1};
-    data.variable[0] = (DisVariableDatum){1, 8 * 65480, large, NULL};
-    CHECK(dis_encode_data(back, sizeof back, &data) == 40 + 8 + 65480);
-    data.variable[0].bits = 8 * 65488; /* 65536 in all */
-    CHECK(dis_encode_data(back, sizeof back, &data) == 0);
-    data.variable[0].bits = UINT32_MAX;
-    CHECK(dis_encode_data(back, sizeof back, &data) == 0);
-    data = (DisData){.fixed_count = 65};
-    CHECK(dis_encode_data(back, sizeof back, &data) == 0);
-    data = (DisData){.variable_count = -1};
-    CHECK(dis_encode_data(back, sizeof back, &data) == 0);
-    data = (DisData){.variable_count = 1}; /* a datum of no bits needs no octets */
-    CHECK(dis_encode_data(back, sizeof back, &data) == 48);
+    *data = (DisData){.header = {.version = 7, .type = dis_pdu_data}, .variable_count = 1};
+    data->variable[0] = (DisVariableDatum){1, 8 * 65480, large, NULL};
+    CHECK(dis_encode_data(back, sizeof back, data) == 40 + 8 + 65480);
+    data->variable[0].bits = 8 * 65488; /* 65536 in all */
+    CHECK(dis_encode_data(back, sizeof back, data) == 0);
+    data->variable[0].bits = UINT32_MAX;
+    CHECK(dis_encode_data(back, sizeof back, data) == 0);
+    *data = (DisData){.fixed_count = 65};
+    CHECK(dis_encode_data(back, sizeof back, data) == 0);
+    *data = (DisData){.variable_count = -1};
+    CHECK(dis_encode_data(back, sizeof back, data) == 0);
+    *data = (DisData){.variable_count = 1}; /* a datum of no bits needs no octets */
+    CHECK(dis_encode_data(back, sizeof back, data) == 48);
 }
 
 int main(void)

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
-static AnyPdu decoded, again;
+static DisPdu decoded, again;
 
 /* ---- layouts: octet k holds k, so a field says where it was read ------------------------------- */
 
@@ -66,7 +66,7 @@ static void entity_state_fields(void **state)
     staircase[144] = dis_variable_articulated;
     staircase[160] = dis_variable_attached;
     DisEntityState *es = &decoded.entity_state;
-    CHECK(dis_decode_entity_state(es, staircase, 176) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 176) == STATUS_OK);
     CHECK(is_id_at(es->id, 12) && es->force == 18 && es->variable_count == 2);
     CHECK(is_type_at(es->type, 20) && is_type_at(es->alternative_type, 28));
     for (int i = 0; i < 3; i++) {
@@ -93,7 +93,7 @@ static void entity_state_update_fields(void **state)
     staircase[19] = 1;
     staircase[72] = dis_variable_articulated;
     DisEntityStateUpdate *update = &decoded.update;
-    CHECK(dis_decode_entity_state_update(update, staircase, 88) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 88) == STATUS_OK);
     CHECK(is_id_at(update->id, 12) && update->padding == 18 && update->variable_count == 1);
     for (int i = 0; i < 3; i++) {
         CHECK(is_f32_at(&update->velocity_mps[i], 20 + 4 * i));
@@ -109,7 +109,7 @@ static void fire_fields(void **state)
     (void)state;
     build_staircase(2, 96);
     DisFire *fire = &decoded.fire;
-    CHECK(dis_decode_fire(fire, staircase, 96) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 96) == STATUS_OK);
     CHECK(is_id_at(fire->firing, 12) && is_id_at(fire->target, 18) && is_id_at(fire->munition, 24));
     CHECK(fire->event.site == u16_at(30) && fire->event.application == u16_at(32) && fire->event.number == u16_at(34));
     CHECK(fire->fire_mission == u32_at(36) && is_type_at(fire->descriptor.type, 64));
@@ -128,7 +128,7 @@ static void detonation_fields(void **state)
     build_staircase(3, 120);
     staircase[101] = 1;
     DisDetonation *d = &decoded.detonation;
-    CHECK(dis_decode_detonation(d, staircase, 120) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 120) == STATUS_OK);
     CHECK(is_id_at(d->firing, 12) && is_id_at(d->target, 18) && is_id_at(d->munition, 24));
     CHECK(d->event.number == u16_at(34) && is_type_at(d->descriptor.type, 72) && d->descriptor.rate == u16_at(86));
     for (int i = 0; i < 3; i++) {
@@ -144,18 +144,18 @@ static void simulation_management_fields(void **state)
 {
     (void)state;
     build_staircase(12, 28);
-    CHECK(dis_decode_remove_entity(&decoded.remove, staircase, 28) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 28) == STATUS_OK);
     CHECK(is_id_at(decoded.remove.originating, 12) && is_id_at(decoded.remove.receiving, 18));
     CHECK(decoded.remove.request == u32_at(24));
 
     build_staircase(13, 44);
-    CHECK(dis_decode_start_resume(&decoded.start, staircase, 44) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 44) == STATUS_OK);
     CHECK(decoded.start.real_world.hour == u32_at(24) && decoded.start.real_world.past_hour == u32_at(28));
     CHECK(decoded.start.simulation.hour == u32_at(32) && decoded.start.simulation.past_hour == u32_at(36));
     CHECK(decoded.start.request == u32_at(40));
 
     build_staircase(14, 40);
-    CHECK(dis_decode_stop_freeze(&decoded.stop, staircase, 40) == STATUS_OK);
+    CHECK(dis_decode(&decoded, staircase, 40) == STATUS_OK);
     CHECK(decoded.stop.real_world.hour == u32_at(24) && decoded.stop.real_world.past_hour == u32_at(28));
     CHECK(decoded.stop.reason == 32 && decoded.stop.frozen_behaviour == 33 && decoded.stop.padding[1] == 35);
     CHECK(decoded.stop.request == u32_at(36));
@@ -171,11 +171,11 @@ static void random_pdus_come_back_octet_for_octet(void **state)
     for (int round = 0; round < 20000; round++) {
         const int    kind = (int)(roll(&d) % random_pdu_kinds);
         const size_t length = random_pdu(wire, &d, kind);
-        CHECK(decode_any(&decoded, wire[2], wire, length) == STATUS_OK);
-        CHECK(encode_any(back, sizeof back, wire[2], &decoded) == length);
+        CHECK(dis_decode(&decoded, wire, length) == STATUS_OK);
+        CHECK(dis_encode(back, sizeof back, &decoded) == length);
         CHECK(memcmp(wire, back, length) == 0);
-        CHECK(encode_any(back, length, wire[2], &decoded) == length);
-        CHECK(encode_any(back, length - 1, wire[2], &decoded) == 0);
+        CHECK(dis_encode(back, length, &decoded) == length);
+        CHECK(dis_encode(back, length - 1, &decoded) == 0);
     }
 }
 
@@ -198,7 +198,7 @@ static void float_patterns_survive(void **state)
                 for (int k = 0; k < 4; k++) wire[f32_at[i] + k] = (uint8_t)(f32[a] >> (24 - 8 * k));
             for (int i = 0; i < 3; i++)
                 for (int k = 0; k < 8; k++) wire[48 + 8 * i + k] = (uint8_t)(f64[b] >> (56 - 8 * k));
-            CHECK(dis_decode_entity_state(&decoded.entity_state, wire, 160) == STATUS_OK);
+            CHECK(dis_decode(&decoded, wire, 160) == STATUS_OK);
             again.entity_state = decoded.entity_state; /* a copy of the struct must not quieten either */
             CHECK(dis_encode_entity_state(back, 160, &again.entity_state) == 160);
             CHECK(memcmp(wire, back, 160) == 0);
@@ -217,7 +217,7 @@ static void failure_leaves_the_output_alone(void **state)
         for (size_t octets = 0; octets < length; octets++) {
             memset(&decoded, 0xA5, sizeof decoded);
             memset(&again, 0xA5, sizeof again);
-            CHECK(decode_any(&decoded, wire[2], wire, octets) != STATUS_OK);
+            CHECK(dis_decode(&decoded, wire, octets) != STATUS_OK);
             CHECK(memcmp(&decoded, &again, sizeof again) == 0);
         }
         /* the same with a length field that admits it */
@@ -225,7 +225,7 @@ static void failure_leaves_the_output_alone(void **state)
             wire[8] = (uint8_t)(octets >> 8);
             wire[9] = (uint8_t)octets;
             memset(&decoded, 0xA5, sizeof decoded);
-            const Status status = decode_any(&decoded, wire[2], wire, length);
+            const Status status = dis_decode(&decoded, wire, length);
             CHECK(status == (octets < (size_t)random_pdu_fixed[kind] ? STATUS_TRUNCATED : STATUS_BAD_VALUE));
             CHECK(memcmp(&decoded, &again, sizeof again) == 0);
         }
@@ -242,7 +242,7 @@ static void surplus_octets_are_ignored(void **state)
     wire[8] = 0;
     wire[9] = 170; /* one record announced, room for one and ten octets more */
     wire[19] = 1;
-    CHECK(dis_decode_entity_state(&decoded.entity_state, wire, 170) == STATUS_OK);
+    CHECK(dis_decode(&decoded, wire, 170) == STATUS_OK);
     CHECK(decoded.entity_state.variable_count == 1 && decoded.entity_state.header.length == 170);
     CHECK(dis_encode_entity_state(back, sizeof back, &decoded.entity_state) == 160);
     CHECK(back[9] == 160 && memcmp(back + 10, wire + 10, 150) == 0);

@@ -8,7 +8,7 @@
 static const char *const captures[] = {"dis/vrf-dis5-tow-vs-armor", "dis/vrf-dis7-gaz69-blocks",
                                        "dis/vrf-dis7-gaz69-straight", "dis/singles"};
 
-static AnyPdu decoded;
+static DisPdu decoded;
 
 /* Opens a capture by its name without ending; false when the reference data is absent. */
 static bool open_capture(DisLog *log, const char *name)
@@ -71,10 +71,10 @@ static void every_recorded_pdu_comes_back_octet_for_octet(void **state)
         const uint8_t *pdu, *at = NULL;
         int            checked = 0;
         for (int datagram = 0; next(&header, &pdu, &log, &datagram, &at, &counters);) {
-            const Status status = decode_any(&decoded, header.type, pdu, header.length);
+            const Status status = dis_decode(&decoded, pdu, header.length);
             if (status == STATUS_UNSUPPORTED) continue;
             CHECK(status == STATUS_OK);
-            CHECK(encode_any(back, sizeof back, header.type, &decoded) == header.length); /* no surplus octets */
+            CHECK(dis_encode(back, sizeof back, &decoded) == header.length); /* no surplus octets */
             CHECK(memcmp(back, pdu, header.length) == 0);
             checked++;
         }
@@ -118,7 +118,7 @@ static void entity_states_read_as_tshark_reads_them(void **state)
             CHECK(datagram < log.count && log.datagram[datagram].packet == packet);
             const DisDatagram *d = &log.datagram[datagram];
             DisEntityState    *es = &decoded.entity_state;
-            CHECK(dis_decode_entity_state(es, d->bytes, d->octets) == STATUS_OK); /* tshark shows the first PDU only */
+            CHECK(dis_decode(&decoded, d->bytes, d->octets) == STATUS_OK); /* tshark shows the first PDU only */
 
             const double integer[] = {es->header.version, es->header.exercise};
             for (int k = 0; k < 2; k++) check_text(field[1 + k], "%.0f", integer[k], line, 1 + k);
@@ -159,7 +159,7 @@ static void shots_are_those_of_the_scenario(void **state)
     for (int datagram = 0; next(&header, &pdu, &log, &datagram, &at, &counters);) {
         if (header.type == dis_pdu_fire) {
             DisFire *fire = &decoded.fire;
-            CHECK(dis_decode_fire(fire, pdu, header.length) == STATUS_OK);
+            CHECK(dis_decode(&decoded, pdu, header.length) == STATUS_OK);
             CHECK(fire->munition.entity == 81 + fires); /* 81 .. 95, in order */
             CHECK(fire->firing.entity == 66 || fire->firing.entity == 68 || fire->firing.entity == 69);
             CHECK(fire->descriptor.type.kind == 2 && fire->descriptor.type.country == 225);
@@ -167,7 +167,7 @@ static void shots_are_those_of_the_scenario(void **state)
         }
         if (header.type != dis_pdu_detonation) continue;
         DisDetonation *d = &decoded.detonation;
-        CHECK(dis_decode_detonation(d, pdu, header.length) == STATUS_OK);
+        CHECK(dis_decode(&decoded, pdu, header.length) == STATUS_OK);
         if (d->result == dis_result_entity_impact) {
             CHECK(d->target.entity == (d->munition.entity == 82 ? 72 : 74));
             CHECK(d->munition.entity == 82 || d->munition.entity == 88 || d->munition.entity == 90);

@@ -3,7 +3,7 @@
 #define TESTS_ENTITIES_ENTITY_FIXTURE_H
 
 #include "tests/check.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 
 typedef struct Fixture {
@@ -61,6 +61,18 @@ static inline const SnapshotEntity *seen_at(Fixture *f, int entity, double t_s)
     CHECK(f->snapshot.t_s == t_s);
     const int at = snapshot_find(&f->snapshot, entity_id(entity));
     return at < 0 ? NULL : f->snapshot.entity + at;
+}
+
+/* One node of an entity of the snapshot. */
+static inline NodePose node_of(const Fixture *f, const SnapshotEntity *e, int node)
+{
+    enum { most_nodes = 64 };
+    const Model *model = catalog_model(f->catalog, e->model);
+    NodePose     pose[most_nodes];
+    double       joint_value[most_nodes];
+    CHECK(node < model->node_count && model->node_count <= most_nodes);
+    snapshot_pose(pose, joint_value, &f->snapshot, (int)(e - f->snapshot.entity), model);
+    return pose[node];
 }
 
 static inline void hear(Fixture *f, const DisEntityState *pdu, double t_s)

@@ -1,6 +1,6 @@
 /* tests/entities/test_catalog.c: which row wins, and what a bad table says. */
 #include "tests/check.h"
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 
 static char last_error[512];
 

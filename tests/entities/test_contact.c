@@ -1,6 +1,6 @@
 /* tests/entities/test_contact.c: land vehicles set onto the ground: on planes, where every answer is on paper, and far
  * from the origin, where the local vertical leans. */
-#include "entities/models/contact.h"
+#include "entities/table/contact.h"
 #include "tests/entities/entity_fixture.h"
 
 /* One level of 2 m posts, z = base + slope_x x + slope_y y; slopes in eighths are exact in steps of 1/64 m. */

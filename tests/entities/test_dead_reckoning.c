@@ -1,10 +1,10 @@
 /* tests/entities/test_dead_reckoning.c: the nine algorithms against paper, against an integration in 64-bit
  * mantissa that knows none of the closed forms, and against real senders' own thresholds. */
 #include "tests/check.h"
-#include "dis/entity_state.h"
+#include "dis/decode.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 
 /* ---- the reference ------------------------------------------------------------------------ */
 
@@ -331,9 +331,10 @@ static void real_senders_keep_their_thresholds(void **state)
         const uint8_t *at = log.datagram[d].bytes, *octets;
         DisHeader header;
         while (dis_next_pdu(&header, &octets, &at, log.datagram[d].bytes + log.datagram[d].octets, &counters)) {
-            DisEntityState pdu;
+            static DisPdu decoded;
             if (header.type != dis_pdu_entity_state) continue;
-            CHECK(dis_decode_entity_state(&pdu, octets, header.length) == STATUS_OK);
+            CHECK(dis_decode(&decoded, octets, header.length) == STATUS_OK);
+            const DisEntityState pdu = decoded.entity_state;
             for (int e = 0; e < 7; e++) {
                 Follow *f = follow + e;
                 if (pdu.id.entity != entity[e]) continue;

@@ -503,16 +503,16 @@ static void wrecked_guns_droop(void **state)
     for (int n = 0; n < model->node_count; n++)
         if (model->node[n].dis_class == 4416 && model->node[n].dis_metric == 13) gun = n;
     CHECK(gun >= 0);
-    const double level = f.snapshot.node[e->first_node + gun].r_body_from_node[6];
+    const double level = node_of(&f, e, gun).r_body_from_node[6];
     tank.appearance = destroyed_bits;
     hear(&f, &tank, 2);
     e = seen_at(&f, 1, 3);
-    CHECK(f.snapshot.node[e->first_node + gun].r_body_from_node[6] > level + 0.03); /* x of the gun turned to +z: down */
+    CHECK(node_of(&f, e, gun).r_body_from_node[6] > level + 0.03); /* x of the gun turned to +z: down */
     tank.variable_count = 1;
     tank.variable[0] = articulated(4416 + 13, 0.2f);
     hear(&f, &tank, 4);
     e = seen_at(&f, 1, 5);
-    CHECK(f.snapshot.node[e->first_node + gun].r_body_from_node[6] < level - 0.15);
+    CHECK(node_of(&f, e, gun).r_body_from_node[6] < level - 0.15);
     fixture_close(&f);
 }
 

@@ -136,9 +136,9 @@ static void a_full_table_refuses_and_recovers(void **state)
     entity_table_focus(f.table, entity_id(1), entity_id(0));
     fourth.p_ecef[0] += 1e6;
     CHECK(entity_table_entity_state(f.table, &fourth, 1) == STATUS_UNSUPPORTED && entity_table_count(f.table) == 3);
-    uint8_t octets[256];
-    fourth.header.length = (uint16_t)dis_encode_entity_state(octets, sizeof octets, &fourth);
-    entity_table_pdu(f.table, &fourth.header, octets, 1, &f.counters);
+    static DisPdu decoded = {.type = dis_pdu_entity_state};
+    decoded.entity_state = fourth;
+    entity_table_pdu(f.table, &decoded, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_TABLE_FULL] == 1);
     DisEntityState gone = report(2, tank_type);
     gone.appearance = deactivated_bit;
@@ -283,10 +283,10 @@ static void frozen_stands_still(void **state)
     const SnapshotEntity *e = seen_at(&f, 1, 5);
     CHECK(e->p_ecef[1] == 0 && v3_length(e->v_ecef_mps) == 0 && v3_length(e->w_body_rps) == 0 &&
           e->position_error_m == 0);
-    Snapshot at_5 = f.snapshot;
-    NodePose turret = f.snapshot.node[at_5.entity[0].first_node + 1];
+    const NodePose turret = node_of(&f, e, 1);
     e = seen_at(&f, 1, 9);
-    CHECK(memcmp(&turret, &f.snapshot.node[e->first_node + 1], sizeof turret) == 0);
+    const NodePose later = node_of(&f, e, 1);
+    CHECK(memcmp(&turret, &later, sizeof turret) == 0);
     pdu.appearance = 0;
     hear(&f, &pdu, 10);
     CHECK_NEAR(seen_at(&f, 1, 11)->p_ecef[1], 10, 1e-12);
@@ -392,11 +392,20 @@ static size_t check_sorted_and_exact(NodePose **poses, Pool *pool)
     Snapshot again;
     CHECK(entity_table_snapshot(&again, f.table, 3, other_arena) == STATUS_OK);
     CHECK(memcmp(again.entity, f.snapshot.entity, sizeof *again.entity * many) == 0);
-    CHECK(memcmp(again.node, f.snapshot.node, sizeof *again.node * (size_t)nodes) == 0);
     CHECK(entity_table_snapshot(&again, f.table, NAN, other_arena) == STATUS_BAD_VALUE && again.count == many);
     *poses = malloc((size_t)nodes * sizeof **poses);
     CHECK(*poses);
-    memcpy(*poses, f.snapshot.node, (size_t)nodes * sizeof **poses);
+    for (int e = 0; e < many; e++) {
+        const SnapshotEntity *one = again.entity + e;
+        const Model          *model = catalog_model(f.catalog, one->model);
+        NodePose             *pose = *poses + one->first_node;
+        double                joint_value[64];
+        snapshot_pose(pose, joint_value, &again, e, model);
+        for (int n = 0; e % 16 == 0 && n < model->node_count; n++) {
+            const NodePose same = node_of(&f, f.snapshot.entity + e, n);
+            CHECK(memcmp(&same, pose + n, sizeof same) == 0);
+        }
+    }
     arena_destroy(other_arena);
     fixture_close(&f);
     return (size_t)nodes;
@@ -445,7 +454,7 @@ static NodePose node_at(Fixture *f, int entity, bool rolls, double t_s)
 {
     const SnapshotEntity *e = seen_at(f, entity, t_s);
     CHECK(e != NULL);
-    return f->snapshot.node[e->first_node + node_with(catalog_model(f->catalog, e->model), rolls)];
+    return node_of(f, e, node_with(catalog_model(f->catalog, e->model), rolls));
 }
 
 /* Wheels turn by way over radius, backwards too, and a report that corrects the place by a metre jerks nothing. */
@@ -512,7 +521,7 @@ static void landing_gear_needs_no_report(void **state)
         int wheels = 0;
         for (int n = 0; n < model->node_count; n++) {
             if (!(model->node[n].roll_radius_m > 0)) continue;
-            const double hub_m = -f.snapshot.node[e->first_node + n].p_body[2];
+            const double hub_m = -node_of(&f, e, n).p_body[2];
             CHECK(fast ? hub_m > 1.2 : fabs(hub_m - model->node[n].roll_radius_m) < 1e-9);
             wheels++;
         }
@@ -539,8 +548,8 @@ static void articulation_and_heat_reach_the_snapshot(void **state)
     const Model *tank = catalog_model(f.catalog, e->model);
     for (int n = 0; n < tank->node_count; n++)
         if (tank->node[n].dis_class == 4096)
-            CHECK_NEAR(atan2(f.snapshot.node[e->first_node + n].r_body_from_node[3],
-                             f.snapshot.node[e->first_node + n].r_body_from_node[0]), 0.4, 1e-7);
+            CHECK_NEAR(atan2(node_of(&f, e, n).r_body_from_node[3],
+                             node_of(&f, e, n).r_body_from_node[0]), 0.4, 1e-7);
     entity_table_fire(f.table, &(DisFire){.firing = entity_id(1), .munition = entity_id(50)}, 3);
     CHECK(seen_at(&f, 1, 5)->heat[HEAT_GUN] > 2);
     /* another type under the same id: another model, its joints at rest */
@@ -573,41 +582,37 @@ static void what_has_no_shape_is_not_in_the_scene(void **state)
     fixture_close(&f);
 }
 
-/* ---- octets ------------------------------------------------------------------------------- */
+/* ---- any PDU ------------------------------------------------------------------------------ */
 
-static void octets_are_checked_and_counted(void **state)
+static void pdus_are_checked_and_counted(void **state)
 {
     (void)state;
     Fixture f = fixture_open(NULL);
-    uint8_t octets[512];
-    DisEntityState pdu = report(1, tank_type);
+    static DisPdu pdu;
+    DisEntityState *report_1 = &pdu.entity_state;
+    pdu.type = dis_pdu_entity_state;
+    *report_1 = report(1, tank_type);
 
-    pdu.header.length = (uint16_t)dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 0, &f.counters);
+    entity_table_pdu(f.table, &pdu, NAN, &f.counters); /* no instant: as if it had not come */
+    CHECK(entity_table_count(f.table) == 0);
+    entity_table_pdu(f.table, &pdu, 0, &f.counters);
     CHECK(entity_table_count(f.table) == 1);
-    octets[19] = 9; /* records that are not there */
-    entity_table_pdu(f.table, &pdu.header, octets, 0, &f.counters);
-    CHECK(f.counters.dropped[DIS_DROP_BAD_COUNT] == 1);
-
-    pdu.p_ecef[0] = NAN;
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->p_ecef[0] = NAN;
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_NOT_FINITE] == 1);
-    pdu.p_ecef[0] = 1;
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->p_ecef[0] = 1;
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_BAD_POSITION] == 1);
-    pdu.id = (DisEntityId){0};
-    dis_encode_entity_state(octets, sizeof octets, &pdu);
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    report_1->id = (DisEntityId){0};
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(f.counters.dropped[DIS_DROP_NO_IDENTITY] == 1);
-    pdu.header.type = 23; /* not for the table */
-    entity_table_pdu(f.table, &pdu.header, octets, 1, &f.counters);
+    pdu.type = dis_pdu_data; /* not for the table */
+    entity_table_pdu(f.table, &pdu, 1, &f.counters);
     CHECK(entity_table_count(f.table) == 1 && seen_at(&f, 1, 1)->p_ecef[0] == earth_radius_m);
 
-    DisRemoveEntity remove = {.header = {.version = 5, .type = dis_pdu_remove_entity}, .receiving = entity_id(1)};
-    remove.header.length = (uint16_t)dis_encode_remove_entity(octets, sizeof octets, &remove);
-    entity_table_pdu(f.table, &remove.header, octets, 2, &f.counters);
+    pdu.type = dis_pdu_remove_entity;
+    pdu.remove = (DisRemoveEntity){.header = {.version = 5, .type = dis_pdu_remove_entity}, .receiving = entity_id(1)};
+    entity_table_pdu(f.table, &pdu, 2, &f.counters);
     CHECK(entity_table_count(f.table) == 0);
     fixture_close(&f);
 }
@@ -641,10 +646,11 @@ static void mutated_octets_do_no_harm(void **state)
             const uint32_t at = 12 + dice(&index, (uint32_t)length - 12); /* the header is dis_next_pdu's to check */
             octets[at] = dice(&index, 2) ? nasty[dice(&index, sizeof nasty)] : (uint8_t)dice(&index, 256);
         }
-        const DisHeader header = {.version = (uint8_t)(5 + n % 3), .type = n % 7 ? 1 : (uint8_t)(dice(&index, 68)),
-                                  .length = (uint16_t)length};
+        octets[0] = (uint8_t)(5 + n % 3);
+        octets[2] = n % 7 ? 1 : (uint8_t)(dice(&index, 68));
         const double t_s = 0.01 * n;
-        entity_table_pdu(f.table, &header, octets, t_s, &f.counters);
+        static DisPdu decoded;
+        if (dis_decode(&decoded, octets, length) == STATUS_OK) entity_table_pdu(f.table, &decoded, t_s, &f.counters);
         if (n % 50) continue;
         entity_table_expire(f.table, t_s);
         seen_at(&f, 1, t_s + dice(&index, 20));
@@ -656,10 +662,12 @@ static void mutated_octets_do_no_harm(void **state)
             m3_tmul(product, s->r_ecef_from_body, s->r_ecef_from_body);
             for (int i = 0; i < 9; i++) CHECK_NEAR(product[i], i % 4 == 0, 1e-14);
             for (int role = 0; role < HEAT_ROLE_COUNT; role++) CHECK(s->heat[role] >= 0 && s->heat[role] < 2000);
+            for (int p = 0; p < catalog_model(f.catalog, s->model)->node_count; p++) {
+                const NodePose pose = node_of(&f, s, p);
+                CHECK(v3_is_finite(pose.p_body) && isfinite(pose.r_body_from_node[0]));
+            }
             seen++;
         }
-        for (int p = 0; p < f.snapshot.node_count; p++)
-            CHECK(v3_is_finite(f.snapshot.node[p].p_body) && isfinite(f.snapshot.node[p].r_body_from_node[0]));
     }
     CHECK(seen > 4000);
     fixture_close(&f);
@@ -676,12 +684,14 @@ static void a_recorded_exercise(void **state)
     Fixture f = fixture_open(NULL);
     int most = 0;
     double t_s = 0;
+    static DisPdu decoded;
     for (int d = 0; d < log.count; d++) {
         const uint8_t *at = log.datagram[d].bytes, *octets;
         DisHeader header;
         t_s = log.datagram[d].capture_s;
         while (dis_next_pdu(&header, &octets, &at, log.datagram[d].bytes + log.datagram[d].octets, &f.counters))
-            entity_table_pdu(f.table, &header, octets, t_s, &f.counters);
+            if (dis_decode(&decoded, octets, header.length) == STATUS_OK)
+                entity_table_pdu(f.table, &decoded, t_s, &f.counters);
         if (entity_table_count(f.table) > most) most = entity_table_count(f.table);
     }
     for (int drop = 0; drop < DIS_DROP_COUNT; drop++) CHECK(f.counters.dropped[drop] == 0);
@@ -724,7 +734,7 @@ int main(void)
         cmocka_unit_test(articulation_and_heat_reach_the_snapshot),
         cmocka_unit_test(what_has_no_shape_is_not_in_the_scene),
         cmocka_unit_test(landing_gear_needs_no_report),
-        cmocka_unit_test(octets_are_checked_and_counted),
+        cmocka_unit_test(pdus_are_checked_and_counted),
         cmocka_unit_test(mutated_octets_do_no_harm),
         cmocka_unit_test(a_recorded_exercise),
     };

@@ -35,13 +35,15 @@ static bool hear_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
         pdus++;
         h->updates += update;
         if (state || update) {
-            const int entity = pdu[16] << 8 | pdu[17];
+            const int entity = dis_pdu_entity(&header, pdu);
             if (entity < 64) {
                 if (h->reports[entity]++) h->longest_s[entity] = fmax(h->longest_s[entity], t_s - h->last_s[entity]);
                 h->last_s[entity] = t_s;
             }
         }
-        if (h->fixture) entity_table_pdu(h->fixture->table, &header, pdu, t_s, &counters);
+        static DisPdu decoded;
+        if (h->fixture && dis_decode(&decoded, pdu, header.length) == STATUS_OK)
+            entity_table_pdu(h->fixture->table, &decoded, t_s, &counters);
     }
     h->bundles += pdus > 1;
     return true;
@@ -176,7 +178,8 @@ static void keeps_its_promise(const char *set)
             for (int n = 0; n < model->node_count; n++) {
                 double turn[9];
                 if (model->node[n].dis_class != 4096 && model->node[n].dis_class != 4416) continue;
-                m3_tmul(turn, f.snapshot.node[seen->first_node + n].r_body_from_node, want[n].r_body_from_node);
+                const NodePose seen_node = node_of(&f, seen, n);
+                m3_tmul(turn, seen_node.r_body_from_node, want[n].r_body_from_node);
                 const double angle_rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
                 worst_joint_rad = fmax(worst_joint_rad, angle_rad);
                 /* 0.6 rad/s2 in a tick, as above; a gun turns with its turret and has both errors */

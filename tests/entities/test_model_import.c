@@ -6,7 +6,7 @@
 #include <sys/stat.h>
 #include <zlib.h>
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/import/model_import.h"
 
 static char folder[64];

@@ -4,7 +4,7 @@
 #include "tests/entities/model_fixture.h"
 
 #include "entities/models/articulation.h"
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/effects/heat.h"
 
 /* ---- the common types -------------------------------------------------------------------------- */

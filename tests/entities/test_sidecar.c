@@ -1,7 +1,7 @@
 /* The sidecar: what is wrong is refused with file, line, key, value and what is accepted. */
 #include "tests/check.h"
 
-#include "entities/models/sidecar.h"
+#include "entities/import/sidecar.h"
 
 static Status parse(Sidecar *s, const char *text)
 {
@@ -65,13 +65,14 @@ static void what_is_wrong_is_said(void **state)
     static const struct {
         const char *text, *said;
     } bad[] = {
-        {"scale: 1\nscael: 2\n", "tank.yaml:2: no such key: scael; there are file, name, scale, axes"},
+        {"scale: 1\nscael: 2\n", "tank.yaml:2: no such key: scael; did you mean scale?"},
         {"scale: 1\nscale: 2\n", "tank.yaml:2: scale is given twice"},
-        {"scale: 0\n", "tank.yaml:1: scale: '0' is not a number in 1e-06 .. 1e+06 metres a unit"},
+        {"scale: 0\n", "tank.yaml:1: scale: '0' is not a number in 1e-06 .. 1000000 metres a unit"},
         {"scale: 1,5\n", "scale: '1,5' is not a number"},
         {"scale: nan\n", "scale: 'nan' is not"},
-        {"scale: [1]\n", NULL}, /* a list of one number is one number */
-        {"scale: {a: 1}\n", "scale: '{...}' is not"},
+        {"scale: [1]\n", "tank.yaml:1: scale needs one value"},
+        {"origin: [1, 2, 3]\n", NULL}, /* a list of numbers is as good as numbers */
+        {"scale: {a: 1}\n", "tank.yaml:1: scale needs one value"},
         {"axes: +x -x\n", "axes: '+x -x' is not two different of"},
         {"axes: forward up\n", "is not two different of"},
         {"axes: +x\n", "is not two different of"},
@@ -81,16 +82,16 @@ static void what_is_wrong_is_said(void **state)
         {"drop: {a: b}\n", "drop: '{...}' is not a pattern or a list"},
         {"drop: ['']\n", "is not a pattern of 1 .. 95 characters"},
         {"materials: [a]\n", "materials: '[...]' is not `pattern: name`"},
-        {"materials: {a: b, a: c}\n", "pattern 'a' is given twice"},
+        {"materials: {a: b, a: c}\n", "tank.yaml:1: materials: 'a' is given twice"},
         {"materials: {a: 01234567890123456789012345678901}\n", "is not a name of 1 .. 31 characters"},
         {"roles:\n  a: hot\n", "tank.yaml:2: roles: 'hot' is not one of passive, hull, turret"},
-        {"damage: {ruined: {}}\n", "damage: 'ruined' is not one of slight, moderate, destroyed"},
-        {"damage: {slight: {burn: a}}\n", "damage.slight: 'burn' is not hide or materials"},
-        {"damage: {slight: {}, slight: {}}\n", "damage.slight is given twice"},
-        {"joints: {a: b}\n", "joints: '{...}' is not a list"},
-        {"joints:\n  - 3\n", "tank.yaml:2: joints: '3' is not a joint"},
+        {"damage: {ruined: {}}\n", "tank.yaml:1: no such key: damage.ruined; all keys: `pitviper model --keys`"},
+        {"damage: {slight: {burn: a}}\n", "no such key: damage.slight.burn; all keys"},
+        {"damage: {slight: {hide: a}, slight: {hide: b}}\n", "damage.slight.hide is given twice"},
+        {"joints: {a: b}\n", "tank.yaml:1: joints: expected a list"},
+        {"joints:\n  - 3\n", "tank.yaml:2: joints: expected `- key: value`"},
         {"joints:\n  - {class: 4096, metric: azimuth}\n", "tank.yaml:2: joints: nodes: is missing"},
-        {"joints:\n  - {nodes: a, hinge: 3}\n", "no such key: joints.hinge; there are name, nodes"},
+        {"joints:\n  - {nodes: a, hinge: 3}\n", "tank.yaml:2: no such key: joints.hinge; all keys: `pitviper model --keys`"},
         {"joints:\n  - {nodes: a, class: 4097, metric: azimuth}\n",
          "joints.class: '4097' is not primary_ or secondary_"},
         {"joints:\n  - {nodes: a, class: primary_turret_11, metric: azimuth}\n", "'primary_turret_11' is not"},
@@ -103,7 +104,7 @@ static void what_is_wrong_is_said(void **state)
         {"joints:\n  - {nodes: a, spin_rpm: 3}\n", "axis: is missing: about what spin_rpm turns"},
         {"joints:\n  - {nodes: a, each: yes}\n", "'yes' is not true or false"},
         {"joints:\n  - {nodes: a, each: true, pivot: 0 0 0}\n", "one place for each of many joints"},
-        {"joints:\n  - {nodes: [], axis: yaw}\n", "is not 1 .. 16 patterns"},
+        {"joints:\n  - {nodes: [], axis: yaw}\n", "tank.yaml:2: joints: nodes: is missing"},
         {"joints:\n  - {nodes: a, roll_radius: 0}\n", "'0' is not auto or a number in 0.01 .. 10 m"},
         {"scale: &a [*a]\n", "tank.yaml:1: "},
         {"- a\n", "expected `key: value` lines"},

@@ -1,7 +1,7 @@
 /* tests/entities/test_survey.c: tracks, shots and clocks out of logs made here, and out of real ones. */
 #include "tests/check.h"
 #include "dis/simulation_management.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/survey/survey.h"
 
 /* ---- a log in memory ---------------------------------------------------------------------- */

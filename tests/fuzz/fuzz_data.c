@@ -3,8 +3,6 @@
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
 
-#include "dis/data.h"
-
 #include <stdlib.h>
 
 const int fuzz_rounds = 40000;
@@ -34,17 +32,17 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static DisData  decoded;
+    static DisPdu   decoded;
     static uint8_t  back[1 << 16];
     static volatile unsigned sum; /* so that every octet is read */
     const uint8_t *at = data, *pdu;
     DisHeader      header;
     DisCounters    counters = {0};
     while (dis_next_pdu(&header, &pdu, &at, data + size, &counters)) {
-        if (header.type != dis_pdu_data || dis_decode_data(&decoded, pdu, header.length) != STATUS_OK) continue;
-        for (int i = 0; i < decoded.variable_count; i++)
-            for (size_t k = 0; k < ((size_t)decoded.variable[i].bits + 7) / 8; k++) sum += decoded.variable[i].value[k];
-        const size_t length = dis_encode_data(back, sizeof back, &decoded);
+        if (header.type != dis_pdu_data || dis_decode(&decoded, pdu, header.length) != STATUS_OK) continue;
+        for (int i = 0; i < decoded.data.variable_count; i++)
+            for (size_t k = 0; k < ((size_t)decoded.data.variable[i].bits + 7) / 8; k++) sum += decoded.data.variable[i].value[k];
+        const size_t length = dis_encode(back, sizeof back, &decoded);
         if (length < dis_header_octets || length > header.length) abort();
         if (memcmp(back, pdu, 8) != 0 || memcmp(back + 10, pdu + 10, length - 10) != 0) abort();
     }

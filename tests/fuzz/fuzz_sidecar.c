@@ -1,7 +1,7 @@
 /* tests/fuzz/fuzz_sidecar.c: any octets as a model's sidecar. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/models/sidecar.h"
+#include "entities/import/sidecar.h"
 
 #include <stdlib.h>
 

@@ -3,7 +3,7 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
 #include "entities/effects/heat.h"
 #include "render/light/materials.h"

@@ -54,10 +54,11 @@ static int open_stage(void **state)
         stage.part[k] = &stage.row_of[k];
     }
     stage.materials = (Materials){.count = 3, .material = stage.rows, .part = stage.part, .model_count = model_count};
-    return visibility_create(&stage.visibility, stage.tracer, NULL, &stage.frame, &stage.snapshot, false,
-                             stage.arena) == STATUS_OK
-               ? 0
-               : -1;
+    if (visibility_create(&stage.visibility, stage.tracer, NULL, &stage.frame, &stage.snapshot, false, stage.arena) !=
+        STATUS_OK)
+        return -1;
+    visibility_materials(stage.visibility, &stage.materials);
+    return 0;
 }
 
 static int close_stage(void **state)
@@ -133,9 +134,11 @@ static void sphere_over_a_plane(void **state)
 
     const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
     uint8_t shadow[hits_capacity] = {0};
+    float arrives[hits_capacity];
     float texture[hits_capacity], out[2][hits_capacity];
     uint16_t material[hits_capacity];
     visibility_shadow(shadow, stage.visibility, &hits, sun, &counters);
+    for (int i = 0; i < hits.count; i++) arrives[i] = !shadow[i];
     for (int i = 0; i < points; i++) {
         CHECK(hits.entity[i] > 0);
         material[i] = (uint16_t)hits.entity[i];
@@ -145,7 +148,7 @@ static void sphere_over_a_plane(void **state)
     for (int run = 0; run < 2; run++) {
         gather_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
         optical_shade(out[run], optical_channel_pan, &stage.air, &stage.materials, &hits, &rays, material, texture,
-                      shadow, gathered.w_m2[AIR_PAN], NULL, NULL);
+                      arrives, gathered.w_m2[AIR_PAN], NULL, NULL);
     }
     for (int i = 0; i < points; i++)
         print_message("%-13s %8.3f with 64, %8.3f with 4096; Cycles %.3f, Radiance %.3f\n", point[i].name,

@@ -12,7 +12,7 @@ typedef struct Scene {
     Rays      rays;
     uint16_t  material[hits_capacity];
     float     texture[hits_capacity], out[hits_capacity];
-    uint8_t   shadow[hits_capacity];
+    float     sun[hits_capacity];
     Material  rows[8];
     Materials materials;
 } Scene;
@@ -57,7 +57,7 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
     scene.hits.range_m[i] = range_m;
     scene.material[i]     = (uint16_t)material;
     scene.texture[i]      = 1;
-    scene.shadow[i]       = shadow;
+    scene.sun[i]          = !shadow;
     return i;
 }
 
@@ -69,7 +69,7 @@ static int add_sky(double x, double y, double z)
 static void shade(const Air *air, int channel)
 {
     optical_shade(scene.out, channel, air, &scene.materials, &scene.hits, &scene.rays, scene.material, scene.texture,
-                  scene.shadow, NULL, NULL, NULL);
+                  scene.sun, NULL, NULL, NULL);
 }
 
 static void set_material(int row, double rho, double gloss, double roughness)

@@ -453,32 +453,48 @@ static void company_does_not_show_on_a_truck(void **state)
     company_does_not_show_on("models/brlcad/truck.obj.gz", 20);
 }
 
-/* More triangles in one place than are kept: the lowest of all, found by looking at each. */
-static void a_crowd_is_asked_again(void **state)
+/* Sheets of this size one behind the other, the highest number nearest, the last dozen within 0.1 mm of it. Distance and
+ * triangle that a ray through all of them meets first. */
+static double first_of_sheets(uint32_t *triangle, double size_m)
 {
-    (void)state;
     enum { sheets = 40 };
     Model   model;
     Tracer *tracer;
     hand_model(&model, 1, 3 * sheets, sheets);
-    for (int k = 0; k < sheets; k++) { /* the highest number nearest, the last dozen within 0.1 mm of it */
+    for (int k = 0; k < sheets; k++) {
         const double x = k < sheets - 12 ? 0.01 * (sheets - k) : -1e-6 * k;
-        const int    a = hand_vertex(&model, x, -1, 0), b = hand_vertex(&model, x, 1, 0), c = hand_vertex(&model, x, 0, -2);
+        const int    a = hand_vertex(&model, x, -size_m, 0), b = hand_vertex(&model, x, size_m, 0),
+                  c = hand_vertex(&model, x, 0, -2 * size_m);
         hand_triangle(&model, 0, a, b, c);
     }
     const Model   *models = &model;
     const NodePose pose = at_rest();
     PosedNode      node[1];
     PosedEntity    entity = {.node = node};
+    PartHit        hit = {0};
     assert_int_equal(tracer_create_models(&tracer, &models, 1, ""), STATUS_OK);
     parts_pose(&entity, tracer, 0, &pose, (const double[3]){0, 0, 0}, (const double[9]){1, 0, 0, 0, 1, 0, 0, 0, 1}, 0);
-    PartHit      hit;
-    const double want_m = 5 - 1e-6 * (sheets - 12);
-    CHECK_NEAR(parts_first_hit(&hit, &entity, (const double[3]){-5, 0, -0.5}, (const double[3]){1, 0, 0}, INFINITY, false),
-               want_m, 1e-14);
-    assert_int_equal(hit.triangle, sheets - 12);
+    const double range_m = parts_first_hit(&hit, &entity, (const double[3]){-5 * size_m, 0, -0.5 * size_m},
+                                           (const double[3]){1, 0, 0}, INFINITY, false);
     tracer_destroy(tracer);
     hand_free(&model);
+    *triangle = hit.triangle;
+    return range_m;
+}
+
+/* More triangles in one place than are kept: the lowest of all, found by looking at each. At any size of model some
+ * triangle of them is the answer. */
+static void a_crowd_is_asked_again(void **state)
+{
+    (void)state;
+    uint32_t triangle;
+    CHECK_NEAR(first_of_sheets(&triangle, 1), 5 - 1e-6 * (40 - 12), 1e-14);
+    assert_int_equal(triangle, 40 - 12);
+    static const double size_m[] = {1e-2, 10, 1e3, 1e5, 1e7};
+    for (int k = 0; k < 5; k++) {
+        CHECK_NEAR(first_of_sheets(&triangle, size_m[k]), 5 * size_m[k], 1e-4 + 1e-14 * size_m[k]);
+        CHECK(triangle >= 40 - 12 && triangle < 40);
+    }
 }
 
 static void a_wrong_instruction_set_is_refused(void **state)

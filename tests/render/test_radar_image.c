@@ -134,6 +134,7 @@ static void pose_world(void)
     arena_reset(bench.arena);
     CHECK(visibility_create(&bench.visibility, bench.tracer, NULL, &bench.frame, &bench.snapshot, false, bench.arena) ==
           STATUS_OK);
+    visibility_materials(bench.visibility, &bench.materials);
 }
 
 typedef struct Sum {
@@ -145,7 +146,6 @@ typedef struct Sum {
 static Rays         rays;
 static Hits         hits;
 static RadarReturns returns;
-static uint16_t     material[hits_capacity];
 
 /* Looks from towards_eye at `aim`, over a square wide enough for any shape here, n rays a side. */
 static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int hidden)
@@ -174,10 +174,8 @@ static Sum look(const double towards_eye[3], const double aim_enu[3], int n, int
         rays.far_m[k] = INFINITY;
         if (rays.count < hits_capacity && i + 1 < n * n) continue;
         visibility_first_hit(&hits, bench.visibility, &rays, NULL, -1, hidden, &counters);
-        for (int h = 0; h < hits.count; h++)
-            material[h] = (uint16_t)(hits.entity[h] ? bench.part[hits.model[h]][hits.part[h] - 1] : 0);
         memset(&returns, 0xff, sizeof returns); /* NaN: whatever is left unwritten is found */
-        radar_shade(&returns, &config, bench.visibility, &bench.materials, &hits, &rays, material, hidden, &counters);
+        radar_shade(&returns, &config, bench.visibility, &bench.materials, &hits, &rays, hidden, &counters);
         for (int h = 0; h < hits.count; h++) {
             sum.first_hits += hits.range_m[h] < INFINITY;
             for (int b = 0; b < radar_bounces; b++) {

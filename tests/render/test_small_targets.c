@@ -239,6 +239,32 @@ static void overlap_occlusion_and_the_picture_s_edge(void **state)
     CHECK_NEAR(hand_irradiance(&picture, &view, picture_lwir, 0) * 4000 * 4000 / (hand_emitted(BAND_LWIR) * 2), 1, 0.01);
 }
 
+/* Every pair of target and occluder counts, however many a tile of pixels holds: 24 walls, one behind the other. */
+static void all_that_is_hidden_names_what_hides_it(void **state)
+{
+    enum { walls = 24 };
+    (void)state;
+    const View          view    = east();
+    const RenderRequest request = hand_request(&view);
+    double              r[9], p_enu[3];
+    hand_air_off(sun_enu);
+    hand_attitude(r, pi_rad, 0);
+    hand_clear();
+    for (int k = 0; k < walls; k++) {
+        place_at(p_enu, &view, 80 - k, 0.2, 0.3);
+        p_enu[2] -= 1;
+        hand_add(hand_plate_model, p_enu, r);
+    }
+    arena_reset(hand.arena);
+    const Picture       picture = hand_render(&request, hand.pool);
+    const TargetPixels *t = picture.target;
+    for (int k = 0; k < walls - 1; k++) {
+        CHECK(!t[k].small && t[k].visible == 0 && t[k].occluded_entity == t[k].amodal);
+        assert_int_equal(t[k].occluder, walls - 1);
+    }
+    assert_int_equal(t[walls - 1].occluder, -1);
+}
+
 /* Planes of ids hold the target where it covers more than half of a pixel; areas hold it always. */
 static void a_pixel_is_whose_most_of_it_is(void **state)
 {
@@ -312,6 +338,7 @@ int main(void)
         cmocka_unit_test(without_footprints_it_flickers),
         cmocka_unit_test(the_background_gives_way_by_as_much),
         cmocka_unit_test(overlap_occlusion_and_the_picture_s_edge),
+        cmocka_unit_test(all_that_is_hidden_names_what_hides_it),
         cmocka_unit_test(a_pixel_is_whose_most_of_it_is),
         cmocka_unit_test(the_profile_holds_the_picture),
     };

@@ -11,7 +11,7 @@ static Hits     hits;
 static Rays     rays;
 static Veils    veils[AIR_BAND_COUNT];
 static uint16_t material[hits_capacity];
-static uint8_t  shadow[hits_capacity];
+static float    arrives[hits_capacity];
 static float    texture[hits_capacity], temp_k[hits_capacity], around[hits_capacity];
 
 static int open_world(void **state)
@@ -56,7 +56,7 @@ static void random_hits(const double sun_enu[3], bool ground)
         hits.surface[i] = (uint8_t)(1 + (i < 500 ? i / 8 : (int)hand_uniform(0, 1e4)) % (SURFACE_COUNT - 1));
         material[i] = (uint16_t)(ground ? hand.world.materials.surface[hits.surface[i]]
                                         : (i < 500 ? i / 8 : (int)hand_uniform(0, 1e4)) % hand.world.materials.count);
-        shadow[i]  = hand_uniform(0, 1) < 0.3;
+        arrives[i] = (float)fmax(0, fmin(1, hand_uniform(-0.5, 2))); /* none, some or all of the sun */
         texture[i] = (float)hand_uniform(0.6, 1.4);
         around[i]  = (float)hand_uniform(1, 100);
     }
@@ -97,7 +97,7 @@ static void compare(bool ground, double least_rad, double limit)
         thermal_temperature(temp_k, &hand.air, m, hand.catalog, &hand.snapshot, &hits, material, texture);
         air_veils_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
         float       *out[AIR_BAND_COUNT];
-        SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .shadow = shadow, .veils = veils};
+        SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             out[b] = quick[b];
             block.texture[b] = texture;
@@ -107,11 +107,11 @@ static void compare(bool ground, double least_rad, double limit)
         double most = 0;
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < optical_channel_count)
-                optical_shade(plain, b, &hand.air, m, &hits, &rays, material, texture, shadow, block.around_w_m2[b],
+                optical_shade(plain, b, &hand.air, m, &hits, &rays, material, texture, arrives, block.around_w_m2[b],
                               &veils[b], NULL);
             else
                 thermal_shade(plain, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, &hand.air, m, &hits, &rays, material, temp_k,
-                              shadow, block.around_w_m2[b], &veils[b], NULL);
+                              arrives, block.around_w_m2[b], &veils[b], NULL);
             const double here = worst((AirBand)b, quick[b], plain, least_rad, limit);
             if (!(here <= most)) most = here;
         }
@@ -143,7 +143,7 @@ static void company_changes_no_bit(void **state)
     static Rays        few_rays;
     static Veils       few_veils[AIR_BAND_COUNT];
     float              few_texture[hits_capacity], few_temp_k[hits_capacity];
-    uint8_t            few_shadow[hits_capacity];
+    float              few_arrives[hits_capacity];
     uint16_t           few_material[hits_capacity];
     const double       sun_enu[3] = {-0.48, 0.36, 0.8};
     float             *out[AIR_BAND_COUNT];
@@ -154,7 +154,7 @@ static void company_changes_no_bit(void **state)
     assert_int_equal(surface_light_prepare(&light, &hand.air, &hand.world.materials, hand.air_arena), STATUS_OK);
     thermal_temperature(temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &hits, material, texture);
     air_veils_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
-    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .shadow = shadow, .veils = veils};
+    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = all[b], block.texture[b] = texture;
     surface_light_shade(out, &light, &block);
 
@@ -170,13 +170,13 @@ static void company_changes_no_bit(void **state)
             few.p_enu[c][k] = hits.p_enu[c][i];
             few.n_enu[c][k] = few.n_geo[c][k] = hits.n_enu[c][i];
         }
-        few_texture[k] = texture[i], few_shadow[k] = shadow[i], few_material[k] = material[i];
+        few_texture[k] = texture[i], few_arrives[k] = arrives[i], few_material[k] = material[i];
     }
     thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &few, few_material, few_texture);
     air_veils_of(few_veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &few, &few_rays, few_temp_k);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         float      *alone[AIR_BAND_COUNT] = {NULL};
-        SurfaceBlock some = {.hits = &few, .rays = &few_rays, .material = few_material, .temp_k = few_temp_k, .shadow = few_shadow, .veils = few_veils};
+        SurfaceBlock some = {.hits = &few, .rays = &few_rays, .material = few_material, .temp_k = few_temp_k, .sun = few_arrives, .veils = few_veils};
         alone[b] = one;
         some.texture[b] = few_texture;
         surface_light_shade(alone, &light, &some);

@@ -11,7 +11,7 @@ typedef struct Scene {
     Rays      rays;
     uint16_t  material[hits_capacity];
     float     texture[hits_capacity], temp_k[hits_capacity], out[hits_capacity];
-    uint8_t   shadow[hits_capacity];
+    float     sun[hits_capacity];
     Material  rows[64];
     Materials materials;
 } Scene;
@@ -56,7 +56,7 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
     scene.hits.range_m[i] = range_m;
     scene.hits.surface[i] = SURFACE_GRASS;
     scene.material[i]     = (uint16_t)material;
-    scene.texture[i]      = 1;
+    scene.texture[i]      = scene.sun[i] = 1;
     scene.temp_k[i]       = (float)temp_k;
     return i;
 }
@@ -64,7 +64,7 @@ static int add(const double d_enu[3], const double n_enu[3], double range_m, int
 static void shade(const Air *air, Band band)
 {
     thermal_shade(scene.out, band, air, &scene.materials, &scene.hits, &scene.rays, scene.material, scene.temp_k,
-                  scene.shadow, NULL, NULL, NULL);
+                  scene.sun, NULL, NULL, NULL);
 }
 
 static Air air_when(const Weather *weather, double elevation_deg)
@@ -159,7 +159,7 @@ static void sun_shows_in_mwir_only_and_not_in_shadow(void **state)
     const int away = add(glint, n, 0, 2, 300), toward = add((double[3]){0, -cos(e), -sin(e)}, n, 0, 2, 300);
     const int facing = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
     const int facing_dark = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
-    scene.shadow[dark] = scene.shadow[away] = scene.shadow[facing_dark] = 1;
+    scene.sun[dark] = scene.sun[away] = scene.sun[facing_dark] = 0;
     shade(&air, BAND_MWIR);
     CHECK_NEAR(scene.out[lit] - scene.out[dark], 0.15 / pi_rad * air.sun_w_m2[AIR_MWIR] * sin(e), 1e-6);
     /* the eye looks towards -y, where the sun stands: glint; towards +y: none */
@@ -259,7 +259,7 @@ static void temperatures_are_those_of_a_day(void **state)
         const int belly = add_part(&m, tank, hull, down), exhaust = add_part(&m, tank, hot, side);
         const int cold = add_part(&m, tank, hot, side);
         scene.hits.entity[cold] = 2;
-        scene.shadow[roof] = 1; /* no instant thermal shadows: nobody asks */
+        scene.sun[roof] = 0; /* no instant thermal shadows: not asked for */
         thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
         const float *t = scene.temp_k;
         CHECK(isnan(t[sky]));

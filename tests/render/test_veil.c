@@ -59,6 +59,25 @@ static void even_ball_is_exact(void **state)
     CHECK(!out.any);
 }
 
+/* More volumes than are composed together: none is lost, whether one behind the other or all in one place. */
+static void no_volume_is_lost(void **state)
+{
+    (void)state;
+    enum { count = 250 };
+    static VeilVolume row[count];
+    for (int apart = 0; apart < 2; apart++) {
+        for (int i = 0; i < count; i++) row[i] = ball(100 + apart * 5.0 * i, 2, true, 0.005, 30);
+        one_ray(0, 0, INFINITY);
+        look(row, count);
+        const double tau = exp(-count * 4 * 0.005);
+        CHECK_NEAR(out.transmittance[0][0], tau, 1e-6);
+        CHECK_NEAR(out.added[veil_bands - 1][0], 30 * (1 - tau), 30 * 1e-6);
+    }
+    one_ray(0, 0, 100 + 5.0 * 100 + 2.5); /* a wall behind the first 101 */
+    look(row, count);
+    CHECK_NEAR(out.transmittance[0][0], exp(-101 * 4 * 0.005), 1e-6);
+}
+
 /* The quartic: 16/15 a through the centre, and a stretched one along its axis against numbers by Simpson's rule. */
 static void soft_column_is_exact(void **state)
 {
@@ -275,6 +294,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(even_ball_is_exact),
+        cmocka_unit_test(no_volume_is_lost),
         cmocka_unit_test(soft_column_is_exact),
         cmocka_unit_test(order_is_by_depth),
         cmocka_unit_test(solids_cut_it_off),

@@ -6,7 +6,7 @@
 
 #include "render/parts/parts.h"
 
-enum { model_box, model_plate, model_sphere, model_count, most_entities = 32 };
+enum { model_box, model_plate, model_sphere, model_count, most_entities = 240 };
 
 static const double sphere_radius_m = 2, plate_half_y_m = 1.5, plate_half_z_m = 1;
 
@@ -525,6 +525,64 @@ static void skipping_changes_no_bit(void **state)
     CHECK(stage.counters.skipped_parts > stage.counters.rays_parts);
 }
 
+/* Many through each other, some in exactly one place, one far and one nowhere: by the tree as by looking at all. */
+static void a_crowd_is_met_as_without_the_tree(void **state)
+{
+    (void)state;
+    static uint8_t shadow[hits_capacity], other_shadow[hits_capacity];
+    const double   sun[3] = {0.6, 0, 0.8};
+    int            seen = 0, shaded = 0;
+    for (int scene = 0; scene < 4; scene++) {
+        clear_stage();
+        for (int k = 0; k < most_entities; k++) {
+            double       r[9];
+            const double wide_m = scene == 1 ? 4 : 25;
+            double       p[3] = {hand_uniform(-wide_m, wide_m), hand_uniform(-wide_m, wide_m), 0};
+            p[2] = ground_at(p[0], p[1]) + hand_uniform(-1, 6);
+            hand_rotation(r);
+            if (k % 10 == 1) p[0] = 1, p[1] = 2, p[2] = ground_at(1, 2) + 2, m3_identity(r); /* ties, to the bit */
+            if (k == 100) p[0] = 9e6;
+            add_entity(k % 10 == 1 ? model_box : k % model_count, p, r);
+            if (k == 101) stage.pose[k].p_body[1] = NAN;
+        }
+        const double eye[3] = {-30, -90, ground_at(-30, -90) + hand_uniform(5, 30)};
+        const double to[3] = {0, 0, ground_at(0, 0)};
+        const View   view = view_towards(eye, to, 64, 32, 90);
+        Visibility  *tree = see(scene % 2, false), *all = see(scene % 2, true);
+        for (int block = 0; block < 2; block++) {
+            static int list[most_entities], some[most_entities];
+            const int  hidden = scene == 2 ? 4 : -1;
+            const int  count = visibility_block_entities(list, tree, &view, 32 * block, 0, 32 * block + 32, 32, hidden, &stage.counters);
+            int        odd = 0;
+            for (int k = 0; k < count; k++) {
+                CHECK(k == 0 || list[k - 1] < list[k]);
+                if (list[k] % 2) some[odd++] = list[k];
+            }
+            block_rays(&rays, &view, 32 * block, 0);
+            if (scene == 3) rays.columns = 32;
+            visibility_first_hit(&hits, tree, &rays, list, count, hidden, &stage.counters);
+            visibility_first_hit(&other_hits, all, &rays, NULL, -1, hidden, &(VisibilityCounters){0});
+            same_hits(&hits, &other_hits);
+            visibility_shadow(shadow, tree, &hits, sun, &stage.counters);
+            visibility_shadow(other_shadow, all, &hits, sun, &(VisibilityCounters){0});
+            assert_memory_equal(shadow, other_shadow, (size_t)rays.count);
+            visibility_first_hit(&other_hits, tree, &rays, NULL, -1, hidden, &stage.counters);
+            same_hits(&hits, &other_hits);
+            for (int i = 0; i < hits.count; i++) {
+                seen += hits.entity[i] > 0, shaded += shadow[i];
+                CHECK(hits.entity[i] % 10 != 2 || hits.entity[i] == 2); /* of those in one place the first */
+            }
+            /* those of a list alone */
+            visibility_first_hit(&hits, tree, &rays, some, odd, hidden, &stage.counters);
+            visibility_first_hit(&other_hits, all, &rays, some, odd, hidden, &(VisibilityCounters){0});
+            same_hits(&hits, &other_hits);
+            for (int i = 0; i < hits.count; i++) CHECK(hits.entity[i] % 2 == 0);
+        }
+    }
+    CHECK(seen > 1000 && shaded > 300);
+    CHECK(stage.counters.skipped[SKIP_TREE] > 0);
+}
+
 /* A ray's answer does not depend on its company. */
 static void a_block_is_the_sum_of_its_rays(void **state)
 {
@@ -562,6 +620,7 @@ int main(void)
         cmocka_unit_test(a_plate_shades_what_lies_behind_it),
         cmocka_unit_test(a_sphere_is_lit_on_one_side),
         cmocka_unit_test(skipping_changes_no_bit),
+        cmocka_unit_test(a_crowd_is_met_as_without_the_tree),
         cmocka_unit_test(a_block_is_the_sum_of_its_rays),
     };
     thread_flush_denormals();

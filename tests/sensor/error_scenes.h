@@ -3,8 +3,8 @@
 #ifndef TESTS_SENSOR_ERROR_SCENES_H
 #define TESTS_SENSOR_ERROR_SCENES_H
 
-#include "entities/table/dead_reckoning.h"
-#include "sensor/bench/scene.h"
+#include "entities/motion/dead_reckoning.h"
+#include "sensor/quality/trial.h"
 #include "sensor/truth/frame_error.h"
 #include "tests/check.h"
 
@@ -80,12 +80,12 @@ static inline int lab_close(void **state)
     return 0;
 }
 
-static void open_scene(BenchScene *scene, const Landscape *ground, const ErrorScene *of)
+static void open_scene(TrialScene *scene, const Landscape *ground, const ErrorScene *of)
 {
     static const DisEntityType types[] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 2, 1, 0, 0}, {1, 1, 222, 28, 1, 0, 0}};
     char catalog[512];
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
-    assert_int_equal(bench_scene_open(scene, ground, catalog, types, 3, of->vehicles), STATUS_OK);
+    assert_int_equal(trial_scene_open(scene, ground, catalog, types, 3, of->vehicles), STATUS_OK);
     for (int k = 0; of->smoke && k < 20; k++) { /* one that smokes, for twenty seconds */
         const double   p_enu[3] = {8, -10, elevation_height(&ground->elevation, 8, -10, NULL)};
         DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
@@ -105,11 +105,11 @@ static void open_scene(BenchScene *scene, const Landscape *ground, const ErrorSc
     }
 }
 
-static RenderRequest request_of(const BenchScene *scene, const ErrorScene *of)
+static RenderRequest request_of(const TrialScene *scene, const ErrorScene *of)
 {
     RenderRequest request = {.bands = 7, .truth = true, .optical = OPTICAL_RGB, .samples = 1, .edge_samples = 4,
                              .target_samples = 48, .hidden_entity = -1, .budget = true};
-    request.view = bench_view(scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width_px, height_px);
+    request.view = trial_view(scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width_px, height_px);
     const double c = cos(of->pitch_deg * rad_per_deg), s = sin(of->pitch_deg * rad_per_deg),
                  *m = request.view.r_enu_from_cam;
     double       turned[9];
@@ -122,10 +122,10 @@ static RenderRequest request_of(const BenchScene *scene, const ErrorScene *of)
     return request;
 }
 
-static BenchFrame frame_of(const BenchScene *scene, const RenderRequest *request, int arena)
+static TrialFrame frame_of(const TrialScene *scene, const RenderRequest *request, int arena)
 {
-    BenchFrame f = {.scene = scene, .request = *request, .pool = lab.pool, .arena = lab.arena[arena]};
-    bench_frame(&f);
+    TrialFrame f = {.scene = scene, .request = *request, .pool = lab.pool, .arena = lab.arena[arena]};
+    trial_frame(&f);
     assert_int_equal(f.status, STATUS_OK);
     return f;
 }
@@ -146,7 +146,7 @@ static double apart(const Picture *a, const Picture *b, Band band)
     return sqrt(shares);
 }
 
-static FrameError error_of(BenchFrame *f)
+static FrameError error_of(TrialFrame *f)
 {
     FrameError error;
     Target    *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
@@ -191,54 +191,54 @@ static void judge(Tally *tally, const char *scene, const char *source, Band band
 /* Rays: against 16 x 16 in every pixel. */
 static inline void judge_sampling(Tally *tally, const ErrorScene *of)
 {
-    BenchScene scene;
+    TrialScene scene;
     open_scene(&scene, &lab.ground, of);
     RenderRequest    request = request_of(&scene, of);
-    BenchFrame       frame = frame_of(&scene, &request, 0);
+    TrialFrame       frame = frame_of(&scene, &request, 0);
     const FrameError error = error_of(&frame);
     request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
-    const BenchFrame better = frame_of(&scene, &request, 1);
+    const TrialFrame better = frame_of(&scene, &request, 1);
     for (int b = 0; b < radiance_bands; b++)
         judge(tally, of->name, "sampling", (Band)b, error.share[b][ERROR_SAMPLING],
               apart(&frame.picture, &better.picture, (Band)b));
-    bench_scene_close(&scene);
+    trial_scene_close(&scene);
 }
 
 /* Posts: 4 m apart against 1 m, both of 4 x 4 rays, so that rays are not what differs. */
 static inline void judge_ground(Tally *tally, const ErrorScene *of)
 {
-    BenchScene coarse, fine;
+    TrialScene coarse, fine;
     open_scene(&coarse, &lab.ground, of);
     open_scene(&fine, &lab.fine, of);
     RenderRequest request = request_of(&coarse, of);
-    BenchFrame    plain = frame_of(&coarse, &request, 0);
+    TrialFrame    plain = frame_of(&coarse, &request, 0);
     const FrameError error = error_of(&plain);
     request.samples = 4, request.edge_samples = 0, request.budget = false;
-    const BenchFrame a = frame_of(&coarse, &request, 0), b = frame_of(&fine, &request, 1);
+    const TrialFrame a = frame_of(&coarse, &request, 0), b = frame_of(&fine, &request, 1);
     for (int band = 0; band < radiance_bands; band++)
         judge(tally, of->name, "level_of_detail", (Band)band, error.share[band][ERROR_LEVEL_OF_DETAIL],
               apart(&a.picture, &b.picture, (Band)band));
-    bench_scene_close(&coarse);
-    bench_scene_close(&fine);
+    trial_scene_close(&coarse);
+    trial_scene_close(&fine);
 }
 
 /* Rays and posts together, on a ground of every post with 16 x 16 rays: whether the sources add up as squares do. */
 static inline void judge_sum(Tally *tally, const ErrorScene *of)
 {
-    BenchScene coarse, fine;
+    TrialScene coarse, fine;
     open_scene(&coarse, &lab.ground, of);
     open_scene(&fine, &lab.fine, of);
     RenderRequest    request = request_of(&coarse, of);
-    BenchFrame       frame = frame_of(&coarse, &request, 0);
+    TrialFrame       frame = frame_of(&coarse, &request, 0);
     const FrameError error = error_of(&frame);
     request.samples = 16, request.edge_samples = request.target_samples = 0, request.budget = false;
-    const BenchFrame better = frame_of(&fine, &request, 1);
+    const TrialFrame better = frame_of(&fine, &request, 1);
     for (int b = 0; b < radiance_bands; b++)
         judge(tally, of->name, "rays and posts", (Band)b,
               hypot(error.share[b][ERROR_SAMPLING], error.share[b][ERROR_LEVEL_OF_DETAIL]),
               apart(&frame.picture, &better.picture, (Band)b));
-    bench_scene_close(&coarse);
-    bench_scene_close(&fine);
+    trial_scene_close(&coarse);
+    trial_scene_close(&fine);
 }
 
 /* Air: every pixel with the atmosphere asked for its path alone (atmosphere_path, which makes no tables of a frame).
@@ -249,11 +249,11 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
     static Hits  hits;
     static Rays  rays;
     static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
-    BenchScene scene;
+    TrialScene scene;
     open_scene(&scene, &lab.ground, of);
     RenderRequest request = request_of(&scene, of);
     request.edge_samples = request.target_samples = 0; /* one ray: what a pixel shows is its truth's */
-    BenchFrame       frame = frame_of(&scene, &request, 0);
+    TrialFrame       frame = frame_of(&scene, &request, 0);
     const FrameError error = error_of(&frame);
     const Picture   *p = &frame.picture;
     const Air       *air = &frame.air;
@@ -308,7 +308,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
     }
     for (int band = 0; band < radiance_bands; band++)
         judge(tally, of->name, "tables", (Band)band, error.share[band][ERROR_TABLES], sqrt(shares[band]));
-    bench_scene_close(&scene);
+    trial_scene_close(&scene);
 }
 
 #endif

@@ -7,7 +7,7 @@
 #include "tests/sensor/attitude.h"
 
 #include "dis/entity_state.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "sensor/node/session.h"
 
 enum { lab_most_reports = 512, lab_most_frames = 512, lab_octets = 256 };

@@ -2,7 +2,7 @@
 #ifndef TESTS_SENSOR_OPEN_CATALOG_H
 #define TESTS_SENSOR_OPEN_CATALOG_H
 
-#include "entities/models/catalog.h"
+#include "entities/catalog/catalog.h"
 
 static Catalog *catalog;
 

@@ -7,7 +7,7 @@
 #include "sensor/detector/chain.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/node/frame_files.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/publish/image_file.h"
 
 /* ---- colorimetry, which the program has none of --------------------------------------------------- */
@@ -185,7 +185,6 @@ static void ground_sends(double w[3], const float rho[3])
     static Hits            hits;
     static Rays            rays;
     static const uint16_t  material[hits_capacity];
-    static const uint8_t   shadow[hits_capacity];
     static float           texture[hits_capacity], out[hits_capacity];
     Material               row = {.gloss = 0};
     const Materials        materials = {.count = 1, .material = &row};
@@ -196,7 +195,7 @@ static void ground_sends(double w[3], const float rho[3])
     texture[0] = 1;
     for (int c = 0; c < 3; c++) {
         row.rho[channel[c]] = rho[c];
-        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, shadow, NULL, NULL,
+        optical_shade(out, channel[c], &hand.air, &materials, &hits, &rays, material, texture, NULL, NULL, NULL,
                       NULL);
         w[c] = out[0];
     }

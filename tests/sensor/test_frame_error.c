@@ -89,16 +89,16 @@ static void dead_reckoning_is_near_the_truth(void **state)
     for (int k = 0; k < 3; k++) {
         double estimates[radiance_bands] = {0}, truths[radiance_bands] = {0};
         for (int n = 0; n < times; n++) {
-            BenchScene heard, truth;
+            TrialScene heard, truth;
             Driver     driver[drivers];
             open_scene(&heard, &lab.ground, &scenes[k]);
             open_scene(&truth, &lab.ground, &scenes[k]);
             place_drivers(driver, heard.table, truth.table, times_s[n]);
-            heard.sun_now_s = truth.sun_now_s = 60 + times_s[n] - 0.5; /* bench_frame looks half a second later */
+            heard.sun_now_s = truth.sun_now_s = 60 + times_s[n] - 0.5; /* trial_frame looks half a second later */
             RenderRequest request = request_of(&heard, &scenes[k]);
-            BenchFrame    a = frame_of(&heard, &request, 0);
+            TrialFrame    a = frame_of(&heard, &request, 0);
             const FrameError error = error_of(&a);
-            BenchFrame    b = frame_of(&truth, &request, 1);
+            TrialFrame    b = frame_of(&truth, &request, 1);
             char          name[64];
             snprintf(name, sizeof name, "%s %.1f s", scenes[k].name, times_s[n]);
             for (int band = 0; band < radiance_bands; band++) {
@@ -107,8 +107,8 @@ static void dead_reckoning_is_near_the_truth(void **state)
                 judge(&tally, name, "dead_reckoning", (Band)band, estimate, true_one);
                 estimates[band] += estimate * estimate / times, truths[band] += true_one * true_one / times;
             }
-            bench_scene_close(&heard);
-            bench_scene_close(&truth);
+            trial_scene_close(&heard);
+            trial_scene_close(&truth);
         }
         for (int band = 0; band < radiance_bands; band++)
             judge(&pooled, scenes[k].name, "all eight", (Band)band, sqrt(estimates[band]), sqrt(truths[band]));

@@ -2,7 +2,7 @@
 #include "tests/check.h"
 
 #include "dis/enumerations.h"
-#include "entities/models/contact.h"
+#include "entities/table/contact.h"
 #include "sensor/node/choices.h"
 #include "sensor/node/ground_evidence.h"
 

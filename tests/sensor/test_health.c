@@ -191,6 +191,20 @@ static void show(Health *h, double now_s)
     h->sample.frame_s = h->sample.in_view_s = h->sample.visible_s = now_s;
 }
 
+/* Nothing of it while no sender exceeds its rate. */
+static void the_line_counts_what_is_over_the_rate(void **state)
+{
+    (void)state;
+    Health h;
+    char   line[health_line_size];
+    health_begin(&h, 0);
+    health_line(line, &h, 5, NAN);
+    CHECK(strstr(line, "over rate") == NULL);
+    h.sample.over_rate = 1234;
+    health_line(line, &h, 5, NAN);
+    CHECK(strstr(line, "  1234 over rate") != NULL);
+}
+
 static void each_change_is_said_once(void **state)
 {
     (void)state;
@@ -270,6 +284,7 @@ int main(void)
         cmocka_unit_test(what_is_sent_lost_and_late),
         cmocka_unit_test(why_there_was_no_frame_at_all),
         cmocka_unit_test(every_reason_has_a_next_step),
+        cmocka_unit_test(the_line_counts_what_is_over_the_rate),
         cmocka_unit_test(each_change_is_said_once),
         cmocka_unit_test(what_flickers_is_said_once_a_minute),
         cmocka_unit_test(malformed_and_other_pdus_are_told_apart),

@@ -122,6 +122,31 @@ static void exr_round_trip_is_exact(void **state)
     }
 }
 
+/* Chunks that shrink and chunks that do not, in one file: noise below a constant sky, and a sky again; the last chunk is
+ * not whole. The sky costs next to nothing, noise no more than its size. */
+static void chunks_shrink_or_stay(void **state)
+{
+    (void)state;
+    enum { columns = 64, rows = 16 * 37 + 5, noisy_from = 16 * 3, noisy_to = 16 * 20 };
+    static float plane_in[rows * columns], plane_out[rows * columns];
+    uint32_t     seed = 1;
+    for (int i = 0; i < rows * columns; i++) {
+        const int y = i / columns;
+        seed        = seed * 1664525u + 1013904223u;
+        memcpy(&plane_in[i], &seed, sizeof seed);
+        if (y < noisy_from || y >= noisy_to || !isfinite(plane_in[i])) plane_in[i] = 273.15f;
+    }
+    const Plane plane = plane_f32("Y", columns, rows, plane_in);
+    const char *path = in_folder("chunks.exr");
+    struct stat about;
+    assert_int_equal(image_write_exr(path, &plane, 1, NULL, NULL, 0), STATUS_OK);
+    assert_int_equal(image_read_f32(plane_out, path, "Y"), STATUS_OK);
+    assert_memory_equal(plane_out, plane_in, sizeof plane_in);
+    assert_int_equal(stat(path, &about), 0);
+    const int noise = (noisy_to - noisy_from) * columns * 4, untried = 8 * 16 * columns * 4;
+    CHECK(about.st_size > noise * 9 / 10 && about.st_size < noise + untried + 4000);
+}
+
 /* No silent conversion: the wrong type or name is refused and the output stays. */
 static void reading_never_converts(void **state)
 {
@@ -319,6 +344,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_round_trip_is_exact),
+        cmocka_unit_test(chunks_shrink_or_stay),
         cmocka_unit_test(reading_never_converts),
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(file_bytes_repeat),

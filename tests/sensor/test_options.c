@@ -169,7 +169,7 @@ static void a_sweep_may_bring_what_a_setting_needs(void **state)
     CHECK(config_given(&o->config, "detector.smear"));
     char *alone[] = {(char[]){"replay"}, (char[]){"--set"}, (char[]){"detector.smear=false"}, (char[]){"log.pcap"}, NULL};
     assert_int_equal(options_parse(o, COMMAND_REPLAY, 4, alone), 3);
-    CHECK(strstr(check_said, "needs a sensor"));
+    CHECK(strstr(check_said, "overrides a sensor preset"));
     free(o);
 }
 

@@ -1,7 +1,7 @@
 /* Settings by what they are asked to keep: the pick over a table made by hand, tables that are broken, what is said,
  * and whether what is promised holds in scenes and on a ground that the table of etc/ was not measured on.
  * labels: slow */
-#include "sensor/settings/quality.h"
+#include "sensor/quality/quality.h"
 #include "tests/sensor/error_scenes.h"
 
 static const char good[] = "# by hand\n"
@@ -183,12 +183,12 @@ static void promises_hold_elsewhere(void **state)
     CHECK(etc_path(path, sizeof path, "quality.csv"));
     assert_int_equal(quality_open(&table, path), STATUS_OK);
     for (int s = 0; s < 4; s++) {
-        BenchScene scene;
+        TrialScene scene;
         open_scene(&scene, &lab.ground, &scenes[s]);
         RenderRequest request = request_of(&scene, &scenes[s]);
         request.budget = false;
         request.samples = 16, request.edge_samples = request.target_samples = 0;
-        const BenchFrame true_one = frame_of(&scene, &request, 0);
+        const TrialFrame true_one = frame_of(&scene, &request, 0);
         for (int k = 0; k < 3; k++) {
             bool                reached;
             const QualityTarget target = {asked_percent[k], NAN, NAN, 1, 1, 7};
@@ -196,7 +196,7 @@ static void promises_hold_elsewhere(void **state)
             CHECK(reached);
             request.samples = r->samples, request.edge_samples = r->edge_samples,
             request.target_samples = r->target_samples;
-            const BenchFrame f = frame_of(&scene, &request, 1);
+            const TrialFrame f = frame_of(&scene, &request, 1);
             for (int b = 0; b < radiance_bands; b++) {
                 const double percent = 100 * apart(&f.picture, &true_one.picture, (Band)b);
                 print_message(
@@ -206,7 +206,7 @@ static void promises_hold_elsewhere(void **state)
                 cases++, held += percent <= asked_percent[k];
             }
         }
-        bench_scene_close(&scene);
+        trial_scene_close(&scene);
     }
     print_message("kept: %d of %d\n", held, cases);
     CHECK(held == cases);

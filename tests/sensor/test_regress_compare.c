@@ -232,10 +232,10 @@ static void what_has_no_number_is_said_in_words(void **state)
     CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 10, 0), "K became below 100 K at frame 7 (3, 0)"));
     CHECK(strstr(line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 10), "worst below 100 K became "));
     CHECK(!*line_of(said, FRAME_LWIR, CHANNEL_LWIR, 0, 1e-20f)); /* both colder than anything seen */
-    CHECK(strstr(line_of(said, FRAME_MWIR, CHANNEL_MWIR, 10, NAN), "K became no number"));
+    CHECK(strstr(line_of(said, FRAME_MWIR, CHANNEL_MWIR, 10, NAN), "K became not a number"));
     CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, INFINITY, 500), "no surface became 500 m"));
-    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, 500, NAN), "500 m became no number"));
-    CHECK(strstr(line_of(said, FRAME_OPTICAL_G, CHANNEL_OPTICAL, 10, INFINITY), "10 W/(m2 sr) became beyond all numbers"));
+    CHECK(strstr(line_of(said, FRAME_RANGE, CHANNEL_RANGE, 500, NAN), "500 m became not a number"));
+    CHECK(strstr(line_of(said, FRAME_OPTICAL_G, CHANNEL_OPTICAL, 10, INFINITY), "10 W/(m2 sr) became out of range"));
     for (int c = 0; c < CHANNEL_COUNT; c++) {
         const double odd[] = {INFINITY, -INFINITY, NAN, 0, 1};
         for (int i = 0; i < 5; i++) {

@@ -1,7 +1,7 @@
 /* The gimbal: limits, rate, lag; the camera: upright, right is right. */
 #include "tests/check.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "sensor/node/seeker.h"
 #include "terrain/earth/local_frame.h"
 #include "tests/sensor/attitude.h"

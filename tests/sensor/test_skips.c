@@ -2,15 +2,15 @@
  * labels: slow */
 #include "tests/check.h"
 
-#include "sensor/bench/scene.h"
-#include "sensor/bench/quick_landscape.h"
+#include "sensor/quality/trial.h"
+#include "terrain/landscape/quick_landscape.h"
 
 enum { scenes = 10, most_entities = 24 };
 
 static struct {
     LocalFrame frame;
     Landscape  landscape;
-    BenchScene scene;
+    TrialScene scene;
     Pool      *pool;
     Arena     *arena;
     uint64_t   skipped[SKIP_COUNT];
@@ -31,7 +31,7 @@ static int open_stage(void **state)
     double         times_s[2];
     stage.arena = arena_create();
     return stage.arena && pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
-                   bench_ground_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
+                   quick_landscape_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
                ? 0 : -1;
 }
 
@@ -50,17 +50,17 @@ static void place_all(int n)
     const int entities = 1 + (int)dice(n, 1, 0, most_entities);
     char      catalog[512];
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
-    assert_int_equal(bench_scene_open(&stage.scene, &stage.landscape, catalog, types, 1, 0), STATUS_OK);
+    assert_int_equal(trial_scene_open(&stage.scene, &stage.landscape, catalog, types, 1, 0), STATUS_OK);
     stage.scene.unix_s += 3600 * dice(n, 2, 0, 9);
     for (int later = 0; later < 2; later++) {
         for (int k = 0; k < entities; k++) {
             const int        d = 100 + 10 * k;
             const double     spread_m = dice(n, 3, 5, 150);
-            const BenchPlace place = {.type = types[(int)dice(n, d, 0, sizeof types / sizeof *types)], .number = k + 1,
+            const TrialPlace place = {.type = types[(int)dice(n, d, 0, sizeof types / sizeof *types)], .number = k + 1,
                                       .east_m = dice(n, d + 1, -spread_m, spread_m), .north_m = dice(n, d + 2, -spread_m, spread_m),
                                       .above_m = dice(n, d + 3, 0, 1) < 0.3 ? dice(n, d + 4, 0, 40) : 0,
                                       .turn_rad = dice(n, d + 5, 0, 6), .appearance = (uint32_t)dice(n, d + 6, 0, 4) << 5};
-            assert_int_equal(bench_scene_place(&stage.scene, &place), STATUS_OK);
+            assert_int_equal(trial_scene_place(&stage.scene, &place), STATUS_OK);
         }
         if (!later) stage.scene.sun_now_s += 8; /* for the smoke to rise */
     }
@@ -69,7 +69,7 @@ static void place_all(int n)
 static RenderRequest request_of(int n)
 {
     const double back_m = exp(dice(n, 4, log(15), log(900)));
-    View view = bench_view(&stage.scene, back_m, dice(n, 5, 1, 0.5 * back_m), dice(n, 6, 3, 60) * rad_per_deg,
+    View view = trial_view(&stage.scene, back_m, dice(n, 5, 1, 0.5 * back_m), dice(n, 6, 3, 60) * rad_per_deg,
                            33 + (int)dice(n, 7, 0, 40), 33 + (int)dice(n, 8, 0, 30));
     RenderRequest request = {.view = view, .bands = 1 + (unsigned)dice(n, 9, 0, 15), .truth = true, .optical = OPTICAL_RGB,
                              .samples = dice(n, 10, 0, 1) < 0.25 ? 2 : 1, .edge_samples = dice(n, 11, 0, 1) < 0.7 ? 4 : 0,
@@ -99,25 +99,25 @@ static void test_each_skip_keeps_the_bits(void **state)
         static TargetPixels target[most_entities];
         char                hash[sha256_text_size], other[sha256_text_size], what[64];
         place_all(n);
-        BenchFrame frame = {.scene = &stage.scene, .request = request_of(n), .pool = stage.pool, .arena = stage.arena};
-        bench_frame(&frame);
+        TrialFrame frame = {.scene = &stage.scene, .request = request_of(n), .pool = stage.pool, .arena = stage.arena};
+        trial_frame(&frame);
         assert_int_equal(frame.status, STATUS_OK);
-        assert_int_equal(bench_frame_hash(hash, &frame), STATUS_OK);
+        assert_int_equal(trial_frame_hash(hash, &frame), STATUS_OK);
         memcpy(target, frame.picture.target, (size_t)frame.snapshot.count * sizeof *target);
         for (int k = 0; k < SKIP_COUNT; k++) stage.skipped[k] += frame.picture.counters.visibility.skipped[k];
         for (int k = 0; k <= SKIP_COUNT; k++) {
             frame.request.skips_off = k < SKIP_COUNT ? 1u << k : skips_all_off;
             snprintf(what, sizeof what, "scene %d without skip %s", n, k < SKIP_COUNT ? skip_name((Skip)k) : "all");
-            bench_frame(&frame);
+            trial_frame(&frame);
             assert_int_equal(frame.status, STATUS_OK);
-            assert_int_equal(bench_frame_hash(other, &frame), STATUS_OK);
+            assert_int_equal(trial_frame_hash(other, &frame), STATUS_OK);
             if (strcmp(hash, other) != 0) fail_msg("%s: other planes", what);
             check_targets(target, frame.picture.target, frame.snapshot.count, what);
             for (int j = 0; j < SKIP_COUNT; j++)
                 if (!skips(frame.request.skips_off, (Skip)j) && frame.picture.counters.visibility.skipped[j] != 0)
                     fail_msg("%s: still skips %s", what, skip_name((Skip)j));
         }
-        bench_scene_close(&stage.scene);
+        trial_scene_close(&stage.scene);
     }
 }
 

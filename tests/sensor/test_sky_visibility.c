@@ -3,8 +3,8 @@
  * suns and all bands. And the same bits whichever bands are asked for, on however many threads. labels: slow */
 #include "tests/check.h"
 
-#include "sensor/bench/scene.h"
-#include "sensor/bench/quick_landscape.h"
+#include "sensor/quality/trial.h"
+#include "terrain/landscape/quick_landscape.h"
 
 enum { width = 160, height = 108, block_px = 5, reference_samples = 64 };
 
@@ -25,7 +25,7 @@ static int open_stage(void **state)
     for (int k = 0; k < 3; k++)
         if (!(stage.arena[k] = arena_create())) return -1;
     return pool_create(&stage.pool, 2) == STATUS_OK && local_frame_at(&stage.frame, &origin) == STATUS_OK &&
-                   bench_ground_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
+                   quick_landscape_create(&stage.landscape, times_s, &stage.frame, 2000, 2000, stage.pool) == STATUS_OK
                ? 0 : -1;
 }
 
@@ -110,13 +110,13 @@ static void test_near_the_exact(void **state)
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
     for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
         const Case *of = &cases[c];
-        BenchScene  scene;
-        BenchFrame  frame[3];
-        assert_int_equal(bench_scene_open(&scene, &stage.landscape, catalog, of->type, 1, 0), STATUS_OK);
+        TrialScene  scene;
+        TrialFrame  frame[3];
+        assert_int_equal(trial_scene_open(&scene, &stage.landscape, catalog, of->type, 1, 0), STATUS_OK);
         scene.unix_s += 3600 * of->hours;
-        const BenchPlace place = {.type = *of->type, .number = 1, .turn_rad = of->turn_rad};
-        assert_int_equal(bench_scene_place(&scene, &place), STATUS_OK);
-        View view = bench_view(&scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width, height);
+        const TrialPlace place = {.type = *of->type, .number = 1, .turn_rad = of->turn_rad};
+        assert_int_equal(trial_scene_place(&scene, &place), STATUS_OK);
+        View view = trial_view(&scene, of->back_m, of->above_m, of->hfov_deg * rad_per_deg, width, height);
         if (of->k1 != 0) {
             const double half[2] = {0.5 * width / view.focal_px, 0.5 * height / view.focal_px};
             const double k[3] = {of->k1}, p[2] = {0};
@@ -128,10 +128,10 @@ static void test_near_the_exact(void **state)
             .samples = 1, .hidden_entity = -1};
         double s[3];
         for (int k = 0; k < 3; k++) {
-            frame[k] = (BenchFrame){.scene = &scene, .request = request, .pool = stage.pool, .arena = stage.arena[k]};
+            frame[k] = (TrialFrame){.scene = &scene, .request = request, .pool = stage.pool, .arena = stage.arena[k]};
             frame[k].request.sky_samples = k == 0 ? reference_samples : 0;
             frame[k].request.sky_visibility = k == 2;
-            bench_frame(&frame[k]);
+            trial_frame(&frame[k]);
             assert_int_equal(frame[k].status, STATUS_OK);
             s[k] = frame[k].stage_s[STAGE_FRAME];
         }
@@ -162,7 +162,7 @@ static void test_near_the_exact(void **state)
                     judged[r]++;
                 }
         }
-        bench_scene_close(&scene);
+        trial_scene_close(&scene);
     }
     for (int r = 0; r < REGION_COUNT; r++) assert_true(judged[r] > 0);
 }
@@ -171,20 +171,20 @@ static void test_any_company(void **state)
 {
     (void)state;
     char       catalog[512];
-    BenchScene scene;
+    TrialScene scene;
     Pool      *one;
     CHECK(etc_path(catalog, sizeof catalog, "catalog.csv"));
     assert_int_equal(pool_create(&one, 1), STATUS_OK);
-    assert_int_equal(bench_scene_open(&scene, &stage.landscape, catalog, &tank, 1, 4), STATUS_OK);
-    BenchFrame frame[3];
+    assert_int_equal(trial_scene_open(&scene, &stage.landscape, catalog, &tank, 1, 4), STATUS_OK);
+    TrialFrame frame[3];
     for (int k = 0; k < 3; k++) {
-        frame[k] = (BenchFrame){.scene = &scene, .pool = k == 1 ? one : stage.pool, .arena = stage.arena[k]};
+        frame[k] = (TrialFrame){.scene = &scene, .pool = k == 1 ? one : stage.pool, .arena = stage.arena[k]};
         frame[k].request = (RenderRequest){
-            .view = bench_view(&scene, 150, 15, 12 * rad_per_deg, width, height),
+            .view = trial_view(&scene, 150, 15, 12 * rad_per_deg, width, height),
             .bands = k == 2 ? 1 << BAND_LWIR : 1 << BAND_OPTICAL | 1 << BAND_LWIR, .truth = true,
             .optical = OPTICAL_RGB, .samples = 1, .edge_samples = 4, .target_samples = 32, .hidden_entity = -1,
             .sky_visibility = true, .skips_off = k == 1 ? skips_all_off : 0};
-        bench_frame(&frame[k]);
+        trial_frame(&frame[k]);
         assert_int_equal(frame[k].status, STATUS_OK);
     }
     const size_t bytes = sizeof(float) * width * height;
@@ -193,7 +193,7 @@ static void test_any_company(void **state)
     assert_memory_equal(frame[0].picture.lwir, frame[1].picture.lwir, bytes);
     assert_memory_equal(frame[0].picture.lwir, frame[2].picture.lwir, bytes);
     pool_destroy(one);
-    bench_scene_close(&scene);
+    trial_scene_close(&scene);
 }
 
 int main(void)

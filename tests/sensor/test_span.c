@@ -29,8 +29,8 @@ static void what_lies_outside_states_the_span(void **state)
     static const struct {
         const char *from, *to, *why;
     } outside[] = {{"+31", "", "--from +31 is after its end"},      {"99999", "", "--from 99999 is after its end"},
-                   {"", "5", "--to 5 is before its beginning"},     {"", "-40", "--to -40 is before its beginning"},
-                   {"-1", "+1", "--from -1 is after --to +1"},      {"12", "20", "--to 20 is before its beginning"},
+                   {"", "5", "--to 5 is before its start"},     {"", "-40", "--to -40 is before its start"},
+                   {"-1", "+1", "--from -1 is after --to +1"},      {"12", "20", "--to 20 is before its start"},
                    {"+99", "+100", "--from +99 is after its end"}},
       inside[] = {{"", "", ""}, {"+30", "", ""}, {"", "+0", ""}, {"+12", "-5", ""}, {"0", "99999", ""}, {"-99", "+99", ""},
                   {"+31", "+32", ""}};

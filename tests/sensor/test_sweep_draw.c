@@ -74,7 +74,7 @@ static void draws_differ(void **state)
         sweep_close(six);
         snprintf(text, sizeof text, "mode: random\ncount: 7\naxes: %s\n", axes[i]);
         assert_int_equal(read_text(sweep, text), STATUS_BAD_VALUE);
-        CHECK(strstr(check_said, ":2: count: 7 different draws are asked for, but the axes have 6 combinations"));
+        CHECK(strstr(check_said, ":2: count: 7 different draws are requested, but the axes have 6 combinations"));
     }
     CHECK(read_text(six, "mode: random\ncount: 4\naxes: {weather.visibility_m: [5000, 5e3, 23000.0, 23000], seed: [1, 2]}"
                          "\n") == STATUS_OK);

@@ -66,7 +66,7 @@ run check "$tmp/work/node.yaml"
 sed -i 's/models.materials.*//; /materials:/d' "$tmp/work/node.yaml"
 run check "$tmp/work/node.yaml"
 check "material: without its row it is said" complained "hovercraft.yaml:3: materials: 'paint_orange' is not a row"
-check "material: and where that came from" complained 'node.yaml:2: models.catalog: see above'
+check "material: and where that came from" complained 'node.yaml:2: models.catalog: see the error above'
 
 # ---- a sensor
 recipe sensor
@@ -74,7 +74,7 @@ check "sensor: it is what was chosen" grep -q '^lwir: my_camera, F/2' "$tmp/stdo
 run replay "$tmp/work/exercise.pcap" --set sensor.table="$tmp/work/sensors.csv" --set sensor.preset=nobodys --out "$tmp/o"
 check "sensor: one that neither table has" complained "no sensor named 'nobodys' \(nor in .*sensors.csv\); there are: staring_lwir"
 run replay "$tmp/work/exercise.pcap" --set sensor.table="$tmp/work/sensors.csv" --out "$tmp/o"
-check "sensor: a table and no name" complained 'sensors.csv is a table of sensors; sensor.preset says which'
+check "sensor: a table and no name" complained 'sensors.csv is a table of sensors; choose one'
 
 # ---- a shape
 blocks 'c shape' >"$tmp/parametric_kiosk.c"
@@ -90,8 +90,8 @@ done
 
 # ---- a band: what is listed is there, and what names a band is listed
 # shellcheck disable=SC2016
-for path in $(grep -oE '`(etc|render|sensor|entities|tests)/[a-z0-9_./]+`' etc/ADDING.md | tr -d '`' | sort -u); do
-    case $path in */parametric_kiosk.c|*/) continue ;; esac
+for path in $(grep -oE '`(etc|dis|terrain|render|sensor|entities|tests)/[a-z0-9_./]+`' etc/ADDING.md | tr -d '`' | sort -u); do
+    case $path in */kiosk.c|*/) continue ;; esac
     check "listed and there: $path" [ -e "$path" ]
 done
 for file in $(grep -rlE 'BAND_LWIR|AIR_LWIR|picture_lwir|rho_lwir|netd_lwir' --include='*.c' --include='*.h' render sensor | grep -v bench); do

@@ -150,7 +150,7 @@ fi
 replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}"
 check "an earlier run's coco.json goes" [ ! -e "$tmp/c/coco.json" ]
 replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco --no-files
-check "without files: refused" complained "publish.coco: needs pictures in files"
+check "without files: refused" complained "publish.coco: needs image files"
 for bad in coco_min_pixels=0 coco_min_visible=1.5; do
     replay "$tmp/demo.pcap" "$tmp/c" "${few[@]}" --coco --set publish.$bad
     check "$bad: refused, with its range" complained "publish.${bad%=*}: '${bad#*=}' is not a .*number in [01] .. "

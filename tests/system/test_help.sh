@@ -15,6 +15,12 @@ for command in $commands; do
     check "$command --help ends well" [ $code = 0 ]
     check "$command --help shows its usage" grep -qi "usage: pitviper $command" "$tmp/stdout"
 done
+# the terms of etc/reference/glossary.md, and no others for the same things
+for each in replay run regress check exercise record; do "$pitviper" $each --help; done >"$tmp/words"
+{ "$pitviper" --help; "$pitviper" check --default; "$pitviper" regress --keys; "$pitviper" help --markdown; } >>"$tmp/words"
+grep -nwiE 'nobody|somebody|anybody|everybody|whoever|whom|invented|knobs?|graves?|veils?|even air|held against|a pixel|pictures?' \
+    "$tmp/words" | grep -v 'of a pixel' >"$tmp/old_words"
+check "help in the glossary's terms" [ ! -s "$tmp/old_words" ] || head -n 5 "$tmp/old_words"
 run replay --help
 for option in --bands --size --rate --from --to --host --threads --seed --speed --isa --no-png --config --out --causal \
               --no-skip --samples --only; do

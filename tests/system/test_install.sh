@@ -50,7 +50,7 @@ check "alone: neither do the defaults" [ $code = 0 ]
 cp -r "$tmp/prefix/share" "$tmp/alone/"
 hidden "$tmp/alone/bin/pitviper" replay "$tmp/demo.pcap" --out "$tmp/out2" --size 64x48 --only 0 --threads 2
 check "alone, share put beside it: replay" [ $code = 0 ]
-# uninstalled as README says
+# uninstalled as etc/reference/commands.md says
 xargs rm -f <"$real/install_manifest.txt"
 check "uninstalled" [ -z "$(find "$tmp/prefix" -type f)" ]
 cd "$source" || exit 1

@@ -17,7 +17,7 @@ touch "$tmp/a/mine.txt" "$tmp/a/frames/lwir/mine.png"
 before=$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)
 shown "$tmp/a" --only 1
 check "again: refused" [ $code = 1 ]
-check "with the name of the option" complained 'truth.jsonl is there from an earlier run.*--overwrite'
+check "with the name of the option" complained 'truth.jsonl exists from an earlier run.*--overwrite'
 run run --out "$tmp/a" --for 1
 check "of a live node too" [ $code = 1 ]
 check "nothing is touched" [ "$before" = "$(cd "$tmp/a" && find . -type f | sort | xargs sha256sum)" ]
@@ -26,7 +26,7 @@ check "--overwrite: one frame" [ "$code $(find "$tmp/a/frames/lwir" -name '0*.ex
 check "--overwrite: what is not of a run stays" [ -e "$tmp/a/mine.txt" -a -e "$tmp/a/frames/lwir/mine.png" ]
 rm "$tmp/a/truth.jsonl" "$tmp/a/run.json"
 shown "$tmp/a"
-check "pictures without their records: refused" complained 'frames/(lwir|truth)/000001.(png|exr) is there'
+check "pictures without their records: refused" complained 'frames/(lwir|truth)/000001.(png|exr) exists'
 mkdir -p "$tmp/b" && : >"$tmp/b/truth.jsonl"
 shown "$tmp/b" --only 1
 check "a run that never came to a frame is no loss" [ $code = 0 ]
@@ -35,7 +35,7 @@ check "a run that never came to a frame is no loss" [ $code = 0 ]
 cp "$tmp/demo.pcap" "$tmp/log.pcap"
 run exercise demo -o "$tmp/log.pcap"
 check "exercise -o: refused" [ $code = 1 ]
-check "exercise -o: said" complained 'log.pcap is there already.*--overwrite'
+check "exercise -o: said" complained 'log.pcap exists already.*--overwrite'
 run record -o "$tmp/log.pcap" --for 1
 check "record -o: refused" [ $code = 1 ]
 run run --out "$tmp/c" --record "$tmp/log.pcap" --for 1

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # A network of its own, where an interface is deleted and made anew under who listens and who sends: each says so once,
 # and once that it is back, and goes on. And nodes that have nothing to show, or cannot send: each ends with 1 and says
-# why. Two nodes on one exercise, as README has them.
+# why. Two nodes on one exercise, as etc/reference/network.md has them.
 if [ -z "${PITVIPER_OWN_NETWORK:-}" ]; then
     { command -v unshare && command -v ip; } >/dev/null || { echo "skipped: needs unshare and ip"; exit 77; }
     unshare -rn true 2>/dev/null || { echo "skipped: this user may not make a network of their own"; exit 77; }

@@ -100,7 +100,7 @@ replay "$tmp/demo.pcap" "$tmp/bad" --pairs some
 check "some: refused" [ "$code" != 0 ]
 check "some: what there is" complained "publish.pairs: 'some' is not one of off.target.all"
 replay "$tmp/demo.pcap" "$tmp/bad" --pairs all --no-files
-check "without files: refused" complained "publish.pairs: needs pictures in files"
+check "without files: refused" complained "publish.pairs: needs image files"
 run run --out "$tmp/bad" --for 1 --set publish.pairs=all
 check "live: refused" complained "publish.pairs: is made by .replay."
 finish

@@ -39,7 +39,7 @@ cp "$tmp/stdout" "$tmp/verbose.out"; cp "$tmp/stderr" "$tmp/verbose.err"
 check "--set: from the current folder" seen "$tmp/o3"
 check "and it is the same configuration" [ "$(hash_of "$tmp/o1")" = "$(hash_of "$tmp/o3")" ]
 show --set models.catalog=data/c.csv --out "$tmp/o4" --size 64x48
-check "--set: not from another" [ $code = 1 ] && check "said, with the rule" complained 'models.catalog: cannot read data/c.csv: .*on the command line to the folder you are in'
+check "--set: not from another" [ $code = 1 ] && check "said, with the rule" complained 'models.catalog: cannot read data/c.csv: .*on the command line to the current folder'
 check "a pipe has no folder: as the command line" eval '"$pitviper" check <(printf "models:\n  catalog: a/data/c.csv\n") >/dev/null 2>&1'
 
 # ---- a sweep
@@ -100,7 +100,7 @@ check "verbose: tables" grep -qE 'table: .*/materials.csv: [0-9]+ rows' "$tmp/ve
 check "verbose: models" grep -qE 'model: .*box.obj: .*sidecar: .*wedge.yaml' "$tmp/verbose.err"
 check "verbose: times" grep -qE 'replay: shade: .* ms a frame' "$tmp/verbose.err"
 run replay "$tmp/demo.pcap" -q -v
-check "both: refused" [ $code = 2 ] && check "said" complained 'quiet and --verbose are both given'
+check "both: refused" [ $code = 2 ] && check "said" complained 'quiet and --verbose exclude each other'
 for command in replay run check model regress inspect exercise record probe bench; do
     run "$command" --help
     check "$command --help has both" [ "$(grep -cE '^  -(q, --quiet|v, --verbose) ' "$tmp/stdout")" = 2 ]

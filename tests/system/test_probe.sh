@@ -73,6 +73,6 @@ check "mrtd grows with frequency" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cel
 check "row noise hides horizontal bars" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cell 1 mrtd_h_bars_k)" 'BEGIN { exit !(b > 2 * a) }'
 probe mrtd < <(printf 'preset,f_cyc_px\nhubble,0.1\ntv,0.1\n')
 check "mrtd: an unknown sensor is named in its row" grep -q 'preset is no sensor' "$tmp/stdout"
-check "mrtd: a camera of daylight sees no warmth" grep -q 'sees no warmth' "$tmp/stdout"
+check "mrtd: a camera of daylight sees no warmth" grep -q 'is not thermal' "$tmp/stdout"
 
 finish

@@ -14,7 +14,7 @@ done
 run help truth.jsonl
 check "help: a file's name is a topic" grep -q 'targets\[\]\.los_rate_dps' "$tmp/stdout"
 run help nonsense
-check "help nonsense" [ $code = 2 ] && complained 'no topic: nonsense.*--help'
+check "help nonsense" [ $code = 2 ] && complained 'no such command or topic: nonsense.*--help'
 run help truth run
 check "help of two words" [ $code = 2 ] && complained 'not also `run`'
 run help --markdown

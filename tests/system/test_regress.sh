@@ -7,7 +7,7 @@
 # ---- a record is made, and passes -------------------------------------------------------------
 new_case good
 echo "mine" >"$tmp/good/notes.txt"
-fails good 'no record yet: .*--update'
+fails good 'no baseline yet: .*--update'
 run regress --update "$tmp/good"
 check "--update without --why: exit code" [ $code = 2 ]
 check "--update without --why: what to do" complained 'why TEXT'
@@ -47,9 +47,9 @@ changed noisy 's/^  seed: 1/  seed: 1\n  detector: {noise: 50}/'; fails noisy 't
 changed bent "s/^    width_px/    hfov_deg: 6.2\n    width_px/"; fails bent '(pose|entity|part): '
 
 changed other_size 's/width_px: 64/width_px: 80/'
-fails other_size 'size: expected 64 x 48 pixels, got 80 x 48'
+fails other_size 'size: expected 64 x 48 pixels, actual 80 x 48'
 changed other_bins 's/^  seed: 1/  seed: 1\n  radar: {bins: 100}/'
-fails other_bins 'size: expected [0-9]+ range bins, got 100'
+fails other_bins 'size: expected [0-9]+ range bins, actual 100'
 
 # other tables: each column by a factor, in every material
 spoil_table() { # spoil_table COLUMN FACTOR
@@ -64,7 +64,7 @@ while read -r column factor named; do
     spoil_table "$column" "$factor"
     PITVIPER_ETC=$tmp/etc run regress "$tmp/good" --report "$tmp/report.html" --work "$tmp/work"
     check "materials, $column: the changed table comes first" \
-        [ "$(head -n 1 "$tmp/stdout" | grep -cE '^good +changed: table materials.csv is another: SHA-256 [0-9a-f]{8}')" = 1 ]
+        [ "$(head -n 1 "$tmp/stdout" | grep -cE '^good +changed: table materials.csv: SHA-256 [0-9a-f]{8}')" = 1 ]
     check "materials, $column: no other table" [ "$(grep -c 'changed: table' "$tmp/stdout")" = 1 ]
     check "materials, $column: it heads the report" test "$(grep -nm1 'table materials.csv' "$tmp/report.html" | cut -d: -f1)" \
         -lt "$(grep -nm1 '<th>channel</th>' "$tmp/report.html" | cut -d: -f1)"
@@ -88,8 +88,8 @@ run regress "$tmp"/{good,absent,absent_file,bad_config,bad_set,beyond,slow} --ju
     --work "$tmp/work" --jobs 3
 check "among others: exit code" [ $code = 1 ]
 check "among others: the good one" grep -qE '^good +ok' "$tmp/stdout"
-check "a variable that is not set" grep -qE '^absent +skipped: log absent: PITVIPER_NOWHERE is not set' "$tmp/stdout"
-check "a log that is not there" grep -qE '^absent_file +FAILED: log absent: .*a.pcap.*log_may_be_absent: true.*--allow-missing' "$tmp/stdout"
+check "a variable that is not set" grep -qE '^absent +skipped: log missing: PITVIPER_NOWHERE is not set' "$tmp/stdout"
+check "a log that is not there" grep -qE '^absent_file +FAILED: log missing: .*a.pcap.*log_may_be_absent: true.*--allow-missing' "$tmp/stdout"
 check "settings that are bad" grep -qE '^bad_config +FAILED: .*config.yaml:2: sensor.width_px' "$tmp/stdout"
 check "a scenario's setting" grep -qE '^bad_set +FAILED: .*nobodys' "$tmp/stdout"
 check "a frame that is not there" grep -qE '^beyond +FAILED: .*there is no frame 5000' "$tmp/stdout"
@@ -97,7 +97,7 @@ check "one that hangs" grep -qE '^slow +FAILED: .*ended after 0.1 s \(timeout_s\
 check "in the order given" [ "$(awk '/ (ok|FAILED:|skipped:) / { printf "%s ", $1 }' "$tmp/stdout")" = "good absent absent_file bad_config bad_set beyond slow " ]
 
 run regress "$tmp/absent_file" --allow-missing
-check "--allow-missing: skipped" [ $code = 0 ] && grep -qE '^absent_file +skipped: log absent' "$tmp/stdout"
+check "--allow-missing: skipped" [ $code = 0 ] && grep -qE '^absent_file +skipped: log missing' "$tmp/stdout"
 
 # without `causal`: the user's own replay
 changed plain '/^causal/d'
@@ -152,10 +152,10 @@ else
     echo "skipped in part: no python3"
 fi
 run regress "$tmp/another_hour" --report "$tmp/report.html" --work "$tmp/work"
-for what in 'the probable cause' 'got - expected' 'By hand' 'pitviper replay' 'temperature' 'scale of colours'; do
+for what in 'the probable cause' 'actual - expected' 'To reproduce' 'pitviper replay' 'temperature' 'scale of colours'; do
     check "the report holds: $what" grep -q -- "$what" "$tmp/report.html"
 done
-bash -c "$(awk '/By hand/ { on = 1; next } on' "$tmp/report.html" | sed -n 's/^<pre[^>]*><code>//; /pitviper/p' | tail -n 1)" >"$tmp/stdout" 2>&1
+bash -c "$(awk '/To reproduce/ { on = 1; next } on' "$tmp/report.html" | sed -n 's/^<pre[^>]*><code>//; /pitviper/p' | tail -n 1)" >"$tmp/stdout" 2>&1
 check "the command by hand does it" grep -q '2 frames in' "$tmp/stdout" || cat "$tmp/stdout"
 
 finish

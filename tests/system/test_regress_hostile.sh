@@ -13,7 +13,7 @@ changed cut_exr 's/x/x/'
 head -c 3000 "$tmp/good/record/000003.exr" >"$tmp/cut_exr/record/000003.exr"
 fails cut_exr 'image: cannot read .*000003.exr'
 changed no_frame 's/frames: .*/frames: [3, 4, 20]/'
-fails no_frame 'the record has no frame 20: .*--update'
+fails no_frame 'the baseline has no frame 20: .*--update'
 changed bad_truth 's/x/x/'
 sed -i '2s/:/;/' "$tmp/bad_truth/record/truth.jsonl"
 fails bad_truth '.*truth.jsonl:2: not JSON'
@@ -21,7 +21,7 @@ changed bad_run 's/x/x/'
 echo '[1]' >"$tmp/bad_run/record/run.json"
 fails bad_run '.*run.json: not JSON'
 changed other_size 's/width_px: 24/width_px: 32/'
-fails other_size 'size: expected 24 x 16 pixels, got 32 x 16'
+fails other_size 'size: expected 24 x 16 pixels, actual 32 x 16'
 changed moved 's/x/x/'
 sed -i 's/"datagrams": *[0-9]*/"datagrams": 7/' "$tmp/moved/record/run.json"
 fails moved 'counters: counters.datagrams is [0-9]+, was 7'
@@ -57,7 +57,7 @@ scenario: demo\nframes: [1]|purpose: is missing
 purpose: p\nframes: [1]|log: or scenario: is missing
 purpose: p\nscenario: demo\nlog: a\nframes: [1]|both given
 purpose: p\nscenario: demo|frames: is missing
-purpose: p\nscenario: demo\nframes: [1]\nlog_may_be_absent: true|log_may_be_absent: is of a log
+purpose: p\nscenario: demo\nframes: [1]\nlog_may_be_absent: true|log_may_be_absent: applies to a log
 purpose: p\nscenario: demo\nframes: [2, 1]|ascend
 purpose: p\nscenario: demo\nframes: [1.5]|whole
 purpose: p\nscenario: demo\nframes: [1]\ntolerance: {lwir_k: -1}|tolerance.lwir_k: '-1'

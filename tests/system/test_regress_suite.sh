@@ -10,7 +10,7 @@ cases=(tests/regress/*/case.yaml)
 # passes WHAT COUNT: code 0, and a line a case that says ok, or skipped for want of a log
 passes() {
     check "$1: exit code" [ $code = 0 ]
-    check "$1: a line for each of $2 cases" [ "$(grep -cE '^[a-z0-9_]+ +(ok|skipped: log absent)' "$tmp/stdout")" = "$2" ]
+    check "$1: a line for each of $2 cases" [ "$(grep -cE '^[a-z0-9_]+ +(ok|skipped: log missing)' "$tmp/stdout")" = "$2" ]
     [ $code = 0 ] || cat "$tmp/stdout"
 }
 
@@ -32,7 +32,7 @@ passes "many threads, sse4.2, elsewhere" 4
 
 # without its log a case says so, and none has failed
 PITVIPER_DATA='' run regress tests/regress/recorded
-check "without the log: skipped" grep -qE '^recorded +skipped: log absent: PITVIPER_DATA is not set' "$tmp/stdout"
+check "without the log: skipped" grep -qE '^recorded +skipped: log missing: PITVIPER_DATA is not set' "$tmp/stdout"
 check "without the log: exit code" [ $code = 0 ]
 check "without the log: its line and the sum" [ "$(wc -l <"$tmp/stdout")" = 2 ]
 

@@ -110,9 +110,9 @@ slip "two of a band" "staring_lwir and scanning_flir are both for lwir" --set se
 slip "band not shown" "tv is for optical, which sensor.bands does not name" --set sensor.preset=tv --bands lwir
 slip "key of no sensor" "detector.f_number: needs a sensor" --set detector.f_number=2
 slip "noise beside a sensor's" "detector.netd_lwir_k: the noise of lwir is that of its sensor, staring_lwir" --set sensor.preset=staring_lwir --set detector.netd_lwir_k=0.1
-slip "empty list" "names no sensor" --set sensor.preset=,
+slip "empty list" "is empty" --set sensor.preset=,
 slip "out of range" "detector.bad_share: '0.9' is not a number in 0 .. 0.2" --set sensor.preset=tv --set detector.bad_share=0.9
-slip "a lens that folds" "folds within a picture" --set sensor.hfov_deg=20 --set sensor.lens_k1=-60
+slip "a lens that folds" "is not invertible within" --set sensor.hfov_deg=20 --set sensor.lens_k1=-60
 slip "a lens out of range" "sensor.lateral_r: '0.5' is not a number in -0.02 .. 0.02" --set sensor.lateral_r=0.5
 slip "no such sheet" "cannot read $tmp/none.sheet" --set sensor.table="$tmp/none.sheet"
 sed 's/^f_number .*/f_number 0/' etc/sensors/example_flir2.sheet >"$tmp/bad.sheet"

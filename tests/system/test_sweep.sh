@@ -104,7 +104,7 @@ check "zip: the same counts of the sensor, and truth" [ "$(cd "$tmp/flags" && ca
     "$(cd "$zipped" && cat raw/lwir/*.png truth.jsonl | sha256sum)" ]
 check "zip: the frame of --only, raw counts, no display" [ "$(cd "$zipped" && find frames raw -type f | sort | xargs)" = \
     "frames/lwir/000014.exr frames/truth/000014.exr raw/lwir/000014.png" ]
-check "zip: how it is made again" grep -qx '# Again: pitviper replay LOG --config THIS --only 14' "$zipped/settings.yaml"
+check "zip: how it is made again" grep -qx '# To reproduce: pitviper replay LOG --config THIS --only 14' "$zipped/settings.yaml"
 check "zip: side by side" grep -q '"seed":"2","sensor.hfov_deg":"6","weather.visibility_m":"9000",' "$tmp/z/manifest.jsonl"
 check "no pictures: words" grep -q 'sensor.hfov_deg=6' "$tmp/z/manifest.html"
 
@@ -120,7 +120,7 @@ sweep "$tmp/other.yaml" "$tmp/r" --no-files
 check "random: another seed, other draws" [ "$(statuses "$tmp/r")" = ' 2 "status":"made" ' ]
 printf 'axes: {weather.visibility_m: [9000, 9000]}\n' >"$tmp/same.yaml"
 sweep "$tmp/same.yaml" "$tmp/same" --no-files
-check "a value said twice is run once" said '1 variant repeats others'
+check "a value said twice is run once" said '1 variant left out: equal to others'
 
 slip() { # slip WHAT PATTERN TEXT
     printf "$3" >"$tmp/slip.yaml"
@@ -133,19 +133,19 @@ slip "unknown key" 'slip.yaml:3: no such key: weather.visibilty_m; did you mean 
 slip "out of range" "slip.yaml:4: weather.visibility_m: '50' is not a number in 100 .. 300000 m" 'axes:\n  weather.visibility_m:\n    - 5000\n    - 50\n'
 slip "not a word of the key's" "slip.yaml:1: sensor.optical: 'red' is not one of rgb.pan.nir" 'axes: {sensor.optical: [rgb, red]}\n'
 slip "given twice" 'slip.yaml:3: sensor.hfov_deg:.*twice' 'axes:\n  sensor.hfov_deg: [3]\n  sensor: {hfov_deg: [4]}\n'
-slip "together wrong" 'that is of variant 2, exercise.from_s=1400' 'axes: {exercise.from_s: [1366, 1400]}\n'
+slip "together wrong" 'in variant 2, exercise.from_s=1400' 'axes: {exercise.from_s: [1366, 1400]}\n'
 slip "a time that is none" "exercise.utc: 'noon'" 'axes: {exercise.utc: [noon]}\n'
 slip "an unknown sensor" "no sensor named 'hubble'" 'axes: {sensor.preset: [none, hubble]}\n'
 slip "mode" "slip.yaml:1: mode: 'dance' is not one of grid.zip.random" 'mode: dance\naxes: {seed: [1]}\n'
 slip "a stray key" "slip.yaml:1: no such key: 'seed'" 'seed: [1, 2]\n'
 slip "unequal lists" 'slip.yaml:4: sensor.hfov_deg: has 3 values, but seed has 2' 'mode: zip\naxes:\n  seed: [1, 2]\n  sensor.hfov_deg: [3, 4, 5]\n'
-slip "random without count" 'count: how many' 'mode: random\naxes: {seed: [1, 2]}\n'
-slip "more draws than there are" 'slip.yaml:2: count: 7 different draws are asked for, but the axes have 6 combinations' \
+slip "random without count" 'count: is missing' 'mode: random\naxes: {seed: [1, 2]}\n'
+slip "more draws than there are" 'slip.yaml:2: count: 7 different draws are requested, but the axes have 6 combinations' \
     'mode: random\ncount: 7\naxes: {seed: [1, 2, 3], weather.visibility_m: [5000, 23000]}\n'
 slip "count out of range" "count: '0' is not a whole number in 1 .. 10000" 'mode: random\ncount: 0\naxes: {seed: [1]}\n'
-slip "count without random" 'count: .*is for `mode: random`' 'count: 3\naxes: {seed: [1]}\n'
+slip "count without random" 'count: .*applies to `mode: random`' 'count: 3\naxes: {seed: [1]}\n'
 slip "a range in a grid" 'slip.yaml:1: seed: only `mode: random` draws' 'axes: {seed: {from: 1, to: 9}}\n'
-slip "a range of words" 'is no number' 'mode: random\ncount: 2\naxes: {sensor.optical: {from: rgb, to: pan}}\n'
+slip "a range of words" 'is not a number' 'mode: random\ncount: 2\naxes: {sensor.optical: {from: rgb, to: pan}}\n'
 slip "a range upside down" 'from is above to' 'mode: random\ncount: 2\naxes: {seed: {from: 9, to: 1}}\n'
 slip "too many" 'more than 10000 variants' "axes: {seed: [$(seq -s, 1 101)], weather.pressure_mbar: [$(seq -s, 900 1000)]}\n"
 slip "overflow" 'more than 10000 variants' "axes: {$(for k in sensor.width_px sensor.height_px seed radar.bins weather.visibility_m detector.level; do echo "$k: [$(seq -s, 100 2000)],"; done | sed '$d')}\n"
@@ -161,9 +161,9 @@ check "no such file" [ "$code" != 0 ]
 sweep "$tmp/grid.yaml" "$tmp/slip" --host 1:3001:41 --host 1:3001:42
 check "several hosts: an axis" complained 'make exercise.host an axis'
 sweep "$tmp/same.yaml" "$tmp/odd" --set record.path=$'a\nb'
-check "a setting that no file holds: said, not lost" complained 'variant 1, .*its settings cannot be written, or not be read back'
+check "a setting that no file holds: said, not lost" complained 'variant 1, .*its settings cannot be written or read back'
 sweep "$tmp/grid.yaml" "$tmp/slip" --coco --no-files
-check "what does not go together, in no variant" complained 'publish.coco: needs pictures in files'
+check "what does not go together, in no variant" complained 'publish.coco: needs image files'
 # bytes of no sense end in a line, not in a crash (run counts exit codes above 123 as failures)
 for seed in 1 2 3 4 5 6; do
     awk -v s=$seed 'BEGIN { srand(s) } { line = $0; for (i = 0; i < 2; i++) { at = int(rand() * (length(line) + 1)); line = substr(line, 1, at) substr("[]{}:,&*-\x27\"%!", int(rand() * 13) + 1, 1) substr(line, at + 2) } print line }' "$tmp/grid.yaml" >"$tmp/noise.yaml"

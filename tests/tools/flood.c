@@ -4,6 +4,7 @@
  * ids=N how many entities; from_s, for_s when, from the first datagram on; senders=K their sites; reports=R of each, one
  * round after the other; reach_m how far about the recording's first entity; parts=P articulation parameters of each;
  * category=C guided munitions of category C instead of tanks. */
+#include "dis/decode.h"
 #include "dis/entity_state.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
@@ -21,13 +22,16 @@ typedef struct Flood {
 
 static bool first_state(Flood *f, const DisLog *log)
 {
+    static DisPdu decoded;
     for (int i = 0; i < log->count; i++) {
         DisCounters    ignored = {0};
         const uint8_t *at = log->datagram[i].bytes, *pdu;
         DisHeader      header;
         while (dis_next_pdu(&header, &pdu, &at, log->datagram[i].bytes + log->datagram[i].octets, &ignored))
-            if (header.type == dis_pdu_entity_state && dis_decode_entity_state(&f->like, pdu, header.length) == STATUS_OK)
+            if (header.type == dis_pdu_entity_state && dis_decode(&decoded, pdu, header.length) == STATUS_OK) {
+                f->like = decoded.entity_state;
                 return true;
+            }
     }
     return false;
 }

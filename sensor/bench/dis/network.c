@@ -1,9 +1,10 @@
-/* sensor/bench/dis/network.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they are
- * recorded.
+/* sensor/bench/dis/network.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they
+ * are recorded.
  *
- * A thread sends so many in each millisecond; what is received is compared octet by octet with what its number says. It
- * stops after the time that was set, whatever the network does. Sender and receiver share the machine: beyond some rate
- * it is the sender that is measured. On quick rounds, which run beside other work, loss is shown and not judged. */
+ * A thread sends so many in each millisecond; what is received is compared octet by octet with what its number says.
+ * It stops after the time that was set, whatever the network does. Sender and receiver share the machine: beyond
+ * some rate it is the sender that is measured. On quick rounds, which run beside other work, loss is shown and not
+ * judged. */
 #include "sensor/bench/dis/network.h"
 
 #include "dis/log.h"
@@ -252,7 +253,8 @@ static void record(void *user)
     r->status = dis_recorder_open(&recorder, r->path, NULL);
     for (int i = 0; i < r->count && r->status == STATUS_OK; i++) {
         fill(octet, pdu_octets, (uint64_t)i);
-        r->status = dis_recorder_add(recorder, 1000000000000000000 + 1000 * (int64_t)i, NULL, dis_port, octet, pdu_octets);
+        r->status =
+            dis_recorder_add(recorder, 1000000000000000000 + 1000 * (int64_t)i, NULL, dis_port, octet, pdu_octets);
     }
     const Status closed = dis_recorder_close(recorder);
     if (r->status == STATUS_OK) r->status = closed;

@@ -1,12 +1,12 @@
-/* sensor/bench/dis/rows.c: octets to PDUs and back, bundles, and a capture from the disk. The PDUs are random octets under true
- * headers, from a counter; each row's error is octets that do not come back. */
+/* sensor/bench/dis/rows.c: octets to PDUs and back, bundles, and a capture from the disk. The PDUs are random octets
+ * under true headers, from a counter; each row's error is octets that do not come back. */
 #include "sensor/bench/dis/rows.h"
 
 #include "sensor/bench/dis/network.h"
 #include "sensor/bench/dis/stability.h"
+#include "dis/decode.h"
 #include "dis/log.h"
 #include "dis/reader.h"
-#include "dis/warfare.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -20,18 +20,12 @@ static const struct {
 } kind_table[kinds] = {{"Entity State", dis_pdu_entity_state, 144, 19}, {"Fire", dis_pdu_fire, 96, 0},
                        {"Detonation", dis_pdu_detonation, 104, 101}};
 
-typedef union Decoded {
-    DisEntityState state;
-    DisFire        fire;
-    DisDetonation  detonation;
-} Decoded;
-
 typedef struct Octets {
     int      pdus, kind;
     size_t   size;
     size_t  *first;  /* [pdus + 1] */
     uint8_t *octet;
-    Decoded *decoded;/* [few]: large, and only so many that they stay in a cache as in a node's loop */
+    DisPdu  *decoded;/* [few]: large, and only so many that they stay in a cache as in a node's loop */
     uint8_t  again[pdu_room];
 } Octets;
 enum { few = 8 };
@@ -85,30 +79,12 @@ static void free_octets(Octets *o)
     free(o->decoded);
 }
 
-static Status decode(Decoded *out, uint8_t type, const uint8_t *pdu, size_t octets)
-{
-    switch (type) {
-    case dis_pdu_entity_state: return dis_decode_entity_state(&out->state, pdu, octets);
-    case dis_pdu_fire: return dis_decode_fire(&out->fire, pdu, octets);
-    default: return dis_decode_detonation(&out->detonation, pdu, octets);
-    }
-}
-
-static size_t encode(uint8_t *out, uint8_t type, const Decoded *pdu)
-{
-    switch (type) {
-    case dis_pdu_entity_state: return dis_encode_entity_state(out, pdu_room, &pdu->state);
-    case dis_pdu_fire: return dis_encode_fire(out, pdu_room, &pdu->fire);
-    default: return dis_encode_detonation(out, pdu_room, &pdu->detonation);
-    }
-}
-
 static void decode_all(void *user)
 {
     Octets *o = user;
     for (int i = 0; i < o->pdus; i++) {
-        const Status status = decode(&o->decoded[i % few], kind_table[o->kind].type, o->octet + o->first[i],
-                                     o->first[i + 1] - o->first[i]);
+        const Status status = dis_decode(&o->decoded[i % few], o->octet + o->first[i],
+                                         o->first[i + 1] - o->first[i]);
         bench_keep(&status);
         bench_keep(&o->decoded[i % few]);
     }
@@ -118,7 +94,7 @@ static void encode_all(void *user)
 {
     Octets *o = user;
     for (int i = 0; i < o->pdus; i++) {
-        const size_t octets = encode(o->again, kind_table[o->kind].type, &o->decoded[i % few]);
+        const size_t octets = dis_encode(o->again, pdu_room, &o->decoded[i % few]);
         bench_keep(&octets);
         bench_keep(o->again);
     }
@@ -135,7 +111,7 @@ static void walk_all(void *user)
         while (last < o->pdus && o->first[last + 1] - o->first[i] <= bundle_octets) last++;
         const uint8_t *const end = o->octet + o->first[last];
         for (const uint8_t *at = o->octet + o->first[i]; dis_next_pdu(&header, &pdu, &at, end, &counters); n++) {
-            const Status status = decode(&o->decoded[n % few], header.type, pdu, header.length);
+            const Status status = dis_decode(&o->decoded[n % few], pdu, header.length);
             bench_keep(&status);
             bench_keep(&o->decoded[n % few]);
         }
@@ -152,7 +128,7 @@ static double lost_octets(const Octets *o)
     for (int i = 0; i < o->pdus; i++) {
         const uint8_t *pdu = o->octet + o->first[i];
         const size_t   octets = o->first[i + 1] - o->first[i];
-        if (decode(&o->decoded[0], pdu[2], pdu, octets) != STATUS_OK || encode(again, pdu[2], &o->decoded[0]) != octets)
+        if (dis_decode(&o->decoded[0], pdu, octets) != STATUS_OK || dis_encode(again, pdu_room, &o->decoded[0]) != octets)
             return INFINITY;
         for (size_t k = 0; k < octets; k++) lost += again[k] != pdu[k];
     }
@@ -294,15 +270,20 @@ static Status bench_dis(Bench *bench)
 }
 
 const BenchSuite dis_benches[] = {
-    {.name = "dis", .help = "PDUs: decode, encode, bundles, a capture",
+    {.name = "dis",
+     .help = "PDUs: decode, encode, bundles, a capture",
      .run = bench_dis,
-     .reads = "Times are of one PDU, datagram or entity on one core; the errors are octets that do not come back, and places "
-     "against a motion integrated step by step: both are 0 but for rounding."},
-    {.name = "network", .help = "loopback: datagrams at stated rates, how late they are taken, the recorder; then a live node",
+     .reads = "Times are of one PDU, datagram or entity on one core; the errors are octets that do not come back, and "
+              "places "
+              "against a motion integrated step by step: both are 0 but for rounding."},
+    {.name = "network",
+     .help = "loopback: datagrams at stated rates, how late they are taken, the recorder; then a live node",
      .run = bench_network,
-     .reads = "Rates are what was received beside the share that was lost on the way, sender and receiver on the same machine; "
-     "latencies run from the kernel's stamp of a datagram."},
-    {.name = "stability", .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
+     .reads = "Rates are what was received beside the share that was lost on the way, sender and receiver on the same "
+              "machine; "
+              "latencies run from the kernel's stamp of a datagram."},
+    {.name = "stability",
+     .help = "time stamps about the hour, clocks over days, fields at the edges of a float",
      .run = dis_bench_stability},
 };
 const int dis_bench_count = sizeof dis_benches / sizeof *dis_benches;

@@ -1,11 +1,11 @@
-/* sensor/bench/dis/stability.c: time stamps about the hour's wrap, clocks over days, and fields at the edges of a float. The
- * judges are whole numbers of ticks, 64 bits wide, and the octets themselves. */
+/* sensor/bench/dis/stability.c: time stamps about the hour's wrap, clocks over days, and fields at the edges of a
+ * float. The judges are whole numbers of ticks, 64 bits wide, and the octets themselves. */
 #include "sensor/bench/dis/stability.h"
 
+#include "dis/decode.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
 #include "dis/reader.h"
-#include "dis/warfare.h"
 
 #include <stdlib.h>
 
@@ -221,29 +221,10 @@ static const uint64_t special_f64[] = {0, UINT64_C(1) << 63, 1, (UINT64_C(1) << 
 
 static double lost_octets(uint8_t *pdu, size_t octets)
 {
-    static DisEntityState       state;
-    static DisEntityStateUpdate update;
-    static DisDetonation        detonation;
-    DisFire fire;
-    uint8_t again[512];
-    size_t  written = 0;
-    double  lost = 0;
-    switch (pdu[2]) {
-    case dis_pdu_entity_state:
-        if (dis_decode_entity_state(&state, pdu, octets) == STATUS_OK)
-            written = dis_encode_entity_state(again, sizeof again, &state);
-        break;
-    case dis_pdu_entity_state_update:
-        if (dis_decode_entity_state_update(&update, pdu, octets) == STATUS_OK)
-            written = dis_encode_entity_state_update(again, sizeof again, &update);
-        break;
-    case dis_pdu_fire:
-        if (dis_decode_fire(&fire, pdu, octets) == STATUS_OK) written = dis_encode_fire(again, sizeof again, &fire);
-        break;
-    default:
-        if (dis_decode_detonation(&detonation, pdu, octets) == STATUS_OK)
-            written = dis_encode_detonation(again, sizeof again, &detonation);
-    }
+    static DisPdu decoded;
+    uint8_t       again[512];
+    double        lost = 0;
+    const size_t  written = dis_decode(&decoded, pdu, octets) == STATUS_OK ? dis_encode(again, sizeof again, &decoded) : 0;
     if (written != octets) return INFINITY;
     for (size_t k = 0; k < octets; k++) lost += again[k] != pdu[k];
     return lost;

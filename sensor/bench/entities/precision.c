@@ -1,7 +1,7 @@
 /* sensor/bench/entities/precision.c: where a body is after its report, and how warm. */
 #include "sensor/bench/entities/rows.h"
 
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/effects/heat.h"
 #include "sensor/bench/turn.h"
 
@@ -119,8 +119,10 @@ static void knob_reckoning(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == 4;
     }
-    bench_turn(bench, &(BenchKnob){"dead reckoning", "entities/table/dead_reckoning.c", "a turning body, 5 s later", "m",
-                                   "largest, about the body; long double", 1e-11}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
+                            "largest, about the body; long double", 1e-11},
+               work, point, settings);
 }
 
 /* ---- heat ----------------------------------------------------------------------------------------- */
@@ -210,8 +212,10 @@ static Status knob_heat(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
-                                   "largest, the exponential in long double", 1e-4}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
+                            "largest, the exponential in long double", 1e-4},
+               work, point, settings);
     return STATUS_OK;
 }
 

@@ -1,9 +1,9 @@
-/* sensor/bench/entities/rows.c: the entity table under load: reports in, snapshots out. Its error is that of places, against the
- * motion of each algorithm integrated step by step. */
+/* sensor/bench/entities/rows.c: the entity table under load: reports in, snapshots out. Its error is that of places,
+ * against the motion of each algorithm integrated step by step. */
 #include "sensor/bench/entities/rows.h"
 
 #include "sensor/bench/entities/stability.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 
 #include <stdlib.h>
@@ -94,10 +94,12 @@ static void update_all(void *user)
     Crowd         *c = user;
     DisHeader      header;
     const uint8_t *pdu;
+    static DisPdu  decoded;
     c->t_s += 0.01;
     for (int k = 0; k < c->count; k++)
         for (const uint8_t *at = c->pdu[k]; dis_next_pdu(&header, &pdu, &at, c->pdu[k] + c->octets[k], &c->counters);)
-            entity_table_pdu(c->table, &header, pdu, c->t_s, &c->counters);
+            if (dis_decode(&decoded, pdu, header.length) == STATUS_OK)
+                entity_table_pdu(c->table, &decoded, c->t_s, &c->counters);
     bench_keep(c->table);
 }
 
@@ -236,7 +238,8 @@ static Status bench_table(Bench *bench)
 
 const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
-    {.name = "stability", .help = "motion and attitude at their edges, every number from outside, models nobody would build",
+    {.name = "stability",
+     .help = "motion and attitude at their edges, every number from outside, models nobody would build",
      .run = entities_bench_stability},
     {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
 };

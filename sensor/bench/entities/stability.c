@@ -1,10 +1,10 @@
-/* sensor/bench/entities/stability.c: motion and attitude at their edges: dead reckoning from hardly turning to spinning, from
- * microseconds to hours; Euler angles straight up and down. The judge of motion is the exponential of the turn's matrix
- * by doubling, in 113 bits where the compiler has them: it knows none of the closed forms. */
+/* sensor/bench/entities/stability.c: motion and attitude at their edges: dead reckoning from hardly turning to
+ * spinning, from microseconds to hours; Euler angles straight up and down. The judge of motion is the exponential of
+ * the turn's matrix by doubling, in 113 bits where the compiler has them: it knows none of the closed forms. */
 #include "sensor/bench/entities/stability.h"
 
 #include "entities/models/articulation.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/survey/survey.h"
 
 #ifdef __SIZEOF_FLOAT128__

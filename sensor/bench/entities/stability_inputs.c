@@ -1,9 +1,9 @@
-/* sensor/bench/entities/stability_inputs.c: every number of a PDU at the ends of floating point. Each must be refused and
- * counted, or every snapshot that follows must be finite. */
+/* sensor/bench/entities/stability_inputs.c: every number of a PDU at the ends of floating point. Each must be
+ * refused and counted, or every snapshot that follows must be finite. */
 #include "sensor/bench/entities/stability.h"
 
 #include "dis/reader.h"
-#include "entities/table/dead_reckoning.h"
+#include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"
 #include "entities/effects/heat.h"
 
@@ -148,10 +148,12 @@ static size_t good_other(uint8_t *out, size_t room, const World *w, uint8_t type
 
 static void tell(World *w, const uint8_t *pdu, size_t octets)
 {
+    static DisPdu  decoded;
     DisHeader      header;
     const uint8_t *found, *at = pdu;
     while (dis_next_pdu(&header, &found, &at, pdu + octets, &w->counters))
-        entity_table_pdu(w->table, &header, found, w->t_s, &w->counters);
+        if (dis_decode(&decoded, found, header.length) == STATUS_OK)
+            entity_table_pdu(w->table, &decoded, w->t_s, &w->counters);
 }
 
 static uint64_t all_refusals(const World *w)

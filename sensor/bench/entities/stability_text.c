@@ -1,8 +1,9 @@
-/* sensor/bench/entities/stability_text.c: every number that somebody writes down, at the ends of floating point and beyond:
- * keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be finite. */
+/* sensor/bench/entities/stability_text.c: every number that somebody writes down, at the ends of floating point and
+ * beyond: keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be
+ * finite. */
 #include "sensor/bench/entities/stability.h"
 
-#include "dis/entity_state.h"
+#include "dis/decode.h"
 #include "entities/effects/effects.h"
 #include "entities/scenario/exercise.h"
 #include "entities/effects/heat.h"
@@ -57,14 +58,13 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
     DisHeader      header;
     const uint8_t *pdu, *at = bytes;
     DisDrop        why;
-    static DisEntityState s;
+    static DisPdu  decoded;
     h->wrong += !isfinite(t_s);
     while (dis_next_pdu(&header, &pdu, &at, bytes + octets, &counters) && ++h->pdus < 200) {
-        if (header.type != dis_pdu_entity_state || dis_decode_entity_state(&s, pdu, header.length) != STATUS_OK)
-            continue;
-        const float euler_rad[3] = {s.psi_rad, s.theta_rad, s.phi_rad};
-        h->wrong += !dis_entity_is_usable(&why, s.id, s.p_ecef, s.velocity_mps, euler_rad);
-        for (int c = 0; c < 3; c++) h->wrong += !isfinite(s.acceleration_mps2[c]) || !isfinite(s.angular_rate_rps[c]);
+        if (header.type != dis_pdu_entity_state || dis_decode(&decoded, pdu, header.length) != STATUS_OK) continue;
+        const DisEntityState *s = &decoded.entity_state;
+        h->wrong += !dis_entity_state_is_usable(&why, s);
+        for (int c = 0; c < 3; c++) h->wrong += !isfinite(s->acceleration_mps2[c]) || !isfinite(s->angular_rate_rps[c]);
     }
     return h->pdus < 200;
 }

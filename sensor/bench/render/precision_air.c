@@ -1,4 +1,5 @@
-/* sensor/bench/render/precision_air.c: the tables that a frame makes of the atmosphere's, against the atmosphere itself. */
+/* sensor/bench/render/precision_air.c: the tables that a frame makes of the atmosphere's, against the atmosphere
+ * itself. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/air/air_private.h"
@@ -219,12 +220,14 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
     seen[0].also_is = "of thermal bands, %", warm[0].also_is = "of visible bands, %";
     const BenchWork making = {make_air, &frame[0].set[1], 1};
     bench_time(&fill, bench, &making, 1);
-    bench_turn(bench, &(BenchKnob){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
-                                   "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 2},
+    bench_turn(bench,
+               &(BenchKnob){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
+                            "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 2},
                work, seen, ways);
     for (int w = 0; w < ways; w++) warm[w].time = seen[w].time;
-    bench_knob(bench, &(BenchKnob){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
-                                   "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 0.5},
+    bench_knob(bench,
+               &(BenchKnob){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
+                            "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 0.5},
                warm, ways - 1);
     BenchRow row = bench_row_of("air before a pixel: to make a frame's tables, one thread", &fill, NULL, 1);
     row.ratio = fill.median_s / (720 * 486 * (seen[0].time.median_s - seen[1].time.median_s));

@@ -1,4 +1,5 @@
-/* sensor/bench/render/precision_light.c: black bodies by table, light on surfaces eight at a time, smoke along a ray. */
+/* sensor/bench/render/precision_light.c: black bodies by table, light on surfaces eight at a time, smoke along a
+ * ray. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/light/optical.h"
@@ -106,8 +107,10 @@ static Status knob_planck(Bench *bench)
                                          : set[k].way == PLANCK_TABLE   ? planck_table_cells * 4.0 * sizeof(double)
                                          : set[k].way == PLANCK_EIGHT   ? planck_table_cells * 4.0 * sizeof(float) : 1};
     }
-    bench_turn(bench, &(BenchKnob){"radiance of a black body", "render/light/planck.c", "a temperature, 3.4-4.8 um", "K",
-                                   "largest, closed form, 180 .. 1500 K", 5e-4}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"radiance of a black body", "render/light/planck.c", "a temperature, 3.4-4.8 um", "K",
+                            "largest, closed form, 180 .. 1500 K", 5e-4},
+               work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;
 }
@@ -173,7 +176,7 @@ typedef struct LightSet {
     Rays              rays;
     Veils             veils[AIR_BAND_COUNT];
     uint16_t          material[hits_capacity];
-    uint8_t           shadow[hits_capacity];
+    float             sun[hits_capacity];
     float             texture[hits_capacity], temp_k[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
 } LightSet;
 
@@ -204,7 +207,7 @@ static void make_hits(LightSet *s)
         }
         s->hits.surface[i] = (uint8_t)(1 + i / 8 % (SURFACE_COUNT - 1));
         s->material[i] = (uint16_t)s->materials->surface[s->hits.surface[i]];
-        s->shadow[i]   = dice(4, i, 0, 1) < 0.3;
+        s->sun[i]      = dice(4, i, 0, 1) < 0.3 ? 0 : 1;
         s->texture[i]  = (float)dice(5, i, 0.6, 1.4);
         s->temp_k[i]   = (float)dice(6, i, 270, 330);
     }
@@ -216,7 +219,7 @@ static void shade(void *user)
     if (s->eight) {
         float       *out[AIR_BAND_COUNT];
         SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->material, .temp_k = s->temp_k,
-                              .shadow = s->shadow, .veils = s->veils};
+                              .sun = s->sun, .veils = s->veils};
         for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = s->out[b], block.texture[b] = s->texture;
         surface_light_shade(out, &s->light, &block);
     } else {
@@ -225,10 +228,10 @@ static void shade(void *user)
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < AIR_MWIR)
                 optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture,
-                              s->shadow, NULL, &s->veils[b], &facing);
+                              s->sun, NULL, &s->veils[b], &facing);
             else
                 thermal_shade(s->out[b], b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, s->air, s->materials, &s->hits,
-                              &s->rays, s->material, s->temp_k, s->shadow, NULL, &s->veils[b], &facing);
+                              &s->rays, s->material, s->temp_k, s->sun, NULL, &s->veils[b], &facing);
         }
     }
     bench_keep(s->out);

@@ -3,7 +3,7 @@
 
 #include "render/ground/ground.h"
 #include "render/parts/parts.h"
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 #include "sensor/bench/turn.h"
 
 #include <embree3/rtcore.h>
@@ -157,7 +157,8 @@ static Status knob_ground(Bench *bench)
     Status            status = pool_create(&pool, bench_threads(bench));
     bench_progress(bench, "ground");
     if (status == STATUS_OK) status = local_frame_at(&frame, &origin);
-    if (status == STATUS_OK) status = bench_ground_create(&landscape, times_s, &frame, east_posts, north_posts, pool);
+    if (status == STATUS_OK)
+        status = quick_landscape_create(&landscape, times_s, &frame, east_posts, north_posts, pool);
     pool_destroy(pool);
     if (status != STATUS_OK) return status;
     rays.elevation = &landscape.elevation;

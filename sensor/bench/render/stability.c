@@ -1,3 +1,4 @@
+/* sensor/bench/render/stability.c: the stress cases of render, in order. */
 #include "sensor/bench/render/stability.h"
 
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should be, and a
- * radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
+/* sensor/bench/render/stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should
+ * be, and a radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
 #include "sensor/bench/render/stability_world.h"
 
 static void level_attitude(double r[9], double turn_rad)
@@ -38,6 +38,56 @@ static double crowd(StressWorld *w, int count)
 
 static double crowd_some(void *user, bool quick) { return crowd(user, quick ? 100 : 400); }
 static double crowd_many(void *user, bool quick) { (void)quick; return crowd(user, stress_entities); }
+
+/* Through each other in a square of 60 m, from 150 m: the request that is drawn and its picture. */
+static bool draw_stack(StressWorld *w, RenderRequest *request, int count)
+{
+    const double d[3] = {0, 1, -0.1}, eye[3] = {0, -150, 18}, sun_enu[3] = {0.3, -0.5, 0.8};
+    const View   view = stress_view(eye, d, 0, 40, 27, 90);
+    Dice         dice = {.stream = 62};
+    *request = stress_request(&view);
+    request->target_samples = 8, request->edge_samples = 2, request->bands = 1 << BAND_OPTICAL | 1 << BAND_LWIR;
+    request->sky_visibility = true;
+    stress_no_air(w, sun_enu);
+    stress_clear(w);
+    for (int k = 0; k < count; k++) {
+        const double p[3] = {dice_uniform(&dice, -30, 30), dice_uniform(&dice, -30, 30), 1};
+        double       r[9];
+        level_attitude(r, dice_uniform(&dice, 0, 6));
+        stress_add(w, p, r);
+    }
+    return stress_render(w, request);
+}
+
+static double stacked_many(void *user, bool quick)
+{
+    StressWorld  *w = user;
+    RenderRequest request;
+    (void)quick;
+    return draw_stack(w, &request, stress_entities) ? stress_bad_values(&w->picture) : INFINITY;
+}
+
+/* By the tree, and by looking at every entity. */
+static double stacked_some(void *user, bool quick)
+{
+    StressWorld  *w = user;
+    RenderRequest request;
+    Arena        *kept = arena_create(), *own = w->arena;
+    if (!kept) return INFINITY;
+    w->arena = kept;
+    bool made = draw_stack(w, &request, quick ? 100 : 300);
+    w->arena = own;
+    const Picture by_tree = w->picture;
+    request.skips_off = skips_all_off;
+    made = made && stress_render(w, &request);
+    double wrong = made ? stress_differences(&by_tree, 0, 0, &w->picture, 0, 0, 40, 27) + stress_bad_values(&by_tree) : INFINITY;
+    for (int k = 0; made && k < w->snapshot.count; k++)
+        wrong += by_tree.target[k].amodal != w->picture.target[k].amodal ||
+                 by_tree.target[k].visible != w->picture.target[k].visible ||
+                 by_tree.target[k].occluder != w->picture.target[k].occluder;
+    arena_destroy(kept);
+    return wrong;
+}
 
 /* Nobody; and those that are nowhere: not a number, behind the Moon, of no model. The picture is that of nobody. */
 static double nobody(void *user, bool quick)
@@ -259,6 +309,7 @@ Status stability_crowd(Bench *bench)
     static const StabilityCase cases[] = {
         {"crowd: 100 (400) in one pixel at 20 km", crowd_some, 0, "values",
             "finite, not below 0; areas within a pixel"},
+        {"crowd: 100 (300) stacked in 60 m", stacked_some, 0, "values", "with nothing skipped, areas and occluders, too"},
         {"crowd: nobody, and six that are nowhere", nobody, 0, "values", "the picture of nobody, to the bit"},
         {"crowd: two in one place", two_in_one_place, 0, "values", "the picture of one, to the bit"},
         {"eye: in a block, edge-on, under ground, 1000 km up; up and down", eyes, 0, "values", "finite, not below 0"},
@@ -269,6 +320,7 @@ Status stability_crowd(Bench *bench)
     };
     static const StabilityCase full[] = {
         {"crowd: 10,000 in one pixel at 20 km", crowd_many, 0, "values", "finite, not below 0; areas within a pixel"},
+        {"crowd: 10,000 stacked in 60 m, 40 x 27", stacked_many, 0, "values", "finite, not below 0"},
     };
     StressWorld world;
     Status      status = stress_world_open(&world, bench_threads(bench));

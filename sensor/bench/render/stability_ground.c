@@ -1,9 +1,9 @@
-/* sensor/bench/render/stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly along its
- * posts, lines and diagonals, from on it and under it.
+/* sensor/bench/render/stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly
+ * along its posts, lines and diagonals, from on it and under it.
  *
- * The judge follows a ray over every line of posts and every diagonal that there is, in long double: over each triangle
- * its height above the surface is a straight line, so a sign at each crossing says all. It skips nothing and orders the
- * crossings by sorting. */
+ * The judge follows a ray over every line of posts and every diagonal that there is, in long double: over each
+ * triangle its height above the surface is a straight line, so a sign at each crossing says all. It skips nothing
+ * and orders the crossings by sorting. */
 #include "sensor/bench/render/stability.h"
 #include "render/ground/ground.h"
 

@@ -1,6 +1,6 @@
-/* sensor/bench/render/stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as thick as a
- * wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy, and the cavity
- * in which everything looks alike. */
+/* sensor/bench/render/stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as
+ * thick as a wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy,
+ * and the cavity in which everything looks alike. */
 #include "sensor/bench/render/stability.h"
 #include "render/light/planck.h"
 #include "render/light/surface_light.h"
@@ -260,7 +260,7 @@ static double cavity(void *user, bool quick)
     static Rays         rays;
     static SurfaceLight surface;
     static uint16_t     material[hits_capacity];
-    static uint8_t      shadow[hits_capacity];
+    static float        arrives[hits_capacity];
     static float        temp_k[hits_capacity], out_mwir[hits_capacity], out_lwir[hits_capacity];
     const Light *light = user;
     Material     row[48];
@@ -291,11 +291,12 @@ static double cavity(void *user, bool quick)
             hits.range_m[i] = dice_log(&dice, 0.1, 2e5);
             material[i] = (uint16_t)(i % 48);
             temp_k[i] = (float)t_k;
+            arrives[i] = 1;
         }
         air_veils_of(veils, &air, 1 << AIR_MWIR | 1 << AIR_LWIR, &hits, &rays, temp_k);
         float *const       out[AIR_BAND_COUNT] = {[AIR_MWIR] = out_mwir, [AIR_LWIR] = out_lwir};
         const SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k,
-            .shadow = shadow, .veils = veils};
+            .sun = arrives, .veils = veils};
         surface_light_shade(out, &surface, &block);
         for (int i = 0; i < hits_capacity; i++)
             for (int b = AIR_MWIR; b <= AIR_LWIR; b++)

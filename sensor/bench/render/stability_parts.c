@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_parts.c: rays against triangles that no modeller would be proud of, and from places that no
- * float can hold. The judge is every triangle by itself, in long double: it knows neither boxes nor Embree. */
+/* sensor/bench/render/stability_parts.c: rays against triangles that no modeller would be proud of, and from places
+ * that no float can hold. The judge is every triangle by itself, in long double: it knows neither boxes nor Embree. */
 #include "sensor/bench/render/stability.h"
 #include "render/parts/parts.h"
 

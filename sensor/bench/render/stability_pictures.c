@@ -1,6 +1,6 @@
-/* sensor/bench/render/stability_pictures.c: whole pictures: a block from 0.1 m to 200 km and at any place on the Earth, every
- * field of view and size. The judges: a rectangle of known size, reflectance and temperature; the same picture
- * elsewhere. */
+/* sensor/bench/render/stability_pictures.c: whole pictures: a block from 0.1 m to 200 km and at any place on the
+ * Earth, every field of view and size. The judges: a rectangle of known size, reflectance and temperature; the same
+ * picture elsewhere. */
 #include "sensor/bench/render/stability_world.h"
 
 #include <stdlib.h>

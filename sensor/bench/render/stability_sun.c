@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. What it lights must change
- * evenly with its height: a jump from frame to frame would be seen, and there is none in nature. */
+/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. What it lights
+ * must change evenly with its height: a jump from frame to frame would be seen, and there is none in nature. */
 #include "sensor/bench/render/stability.h"
 #include "render/light/surface_light.h"
 
@@ -23,7 +23,7 @@ static void light_at(Lit *lit, double elevation_rad)
     static Rays         rays;
     static SurfaceLight surface;
     static uint16_t     material[hits_capacity];
-    static uint8_t      shadow[hits_capacity];
+    static float        arrives[hits_capacity];
     static float        temp_k[hits_capacity], texture[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
     static const double normal[3][3] = {{0, 0, 1}, {0, 1, 0}, {0, -1, 0}},
         look[3][3] = {{0, 0.6, 0.8}, {0, 1, 0}, {-1, 0, 0}};
@@ -46,11 +46,11 @@ static void light_at(Lit *lit, double elevation_rad)
         for (int c = 0; c < 3; c++)
             hits.n_enu[c][i] = hits.n_geo[c][i] = (float)normal[i][c], rays.d_enu[c][i] = way[i][c];
         hits.range_m[i] = 10, hits.surface[i] = SURFACE_GRASS, material[i] = 1, temp_k[i] = 290, texture[i] = 1;
-        shadow[i] = !(v3_dot(normal[i], sun.d_enu) > 0); /* as visibility_shadow has it of what faces away */
+        arrives[i] = v3_dot(normal[i], sun.d_enu) > 0; /* as visibility_shadow has it of what faces away */
     }
     air_veils_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
     float       *to[AIR_BAND_COUNT];
-    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .shadow = shadow,
+    SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives,
         .veils = veils};
     for (int b = 0; b < bands; b++) to[b] = out[b], block.texture[b] = texture;
     surface_light_shade(to, &surface, &block);

@@ -1,3 +1,4 @@
+/* sensor/bench/render/stability_world.c: worlds of blocks, and frames of them, for stress cases. */
 #include "sensor/bench/render/stability_world.h"
 
 #include <stdlib.h>

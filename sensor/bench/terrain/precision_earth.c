@@ -2,7 +2,7 @@
 #include "sensor/bench/terrain/rows.h"
 
 #include "sensor/bench/turn.h"
-#include "terrain/eight.h"
+#include "pitviper_simd.h"
 #include "terrain/earth/geoid.h"
 #include "terrain/earth/local_frame.h"
 #include "terrain/earth/sun.h"
@@ -147,9 +147,10 @@ static void knob_geodetic(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
-                                   "m",
-                                   "largest, back again in long double", 1e-8}, work, point, settings);
+    bench_turn(bench,
+               &(BenchKnob){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
+                            "m", "largest, back again in long double", 1e-8},
+               work, point, settings);
 }
 
 /* ---- geoid ---------------------------------------------------------------------------------------- */
@@ -319,7 +320,7 @@ static void ask_powers(void *user)
     PowerSet *s = user;
     for (int i = 0; i < powers && s->way == 0; i++) s->out[i] = exp2f(s->in[i]);
     for (int i = 0; i < powers && s->way == 1; i++) s->out[i] = (float)exp2((double)s->in[i]);
-    for (int i = 0; i < powers && s->way == 2; i += 8) eight_store(s->out + i, eight_exp2(eight_load(s->in + i)));
+    for (int i = 0; i < powers && s->way == 2; i += 8) f32x8_store(s->out + i, f32x8_exp2(f32x8_load(s->in + i)));
     bench_keep(s->out);
 }
 
@@ -342,7 +343,7 @@ static void knob_powers(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"powers of two", "terrain/eight.h", "a number of -100 .. 100", "%",
+    bench_turn(bench, &(BenchKnob){"powers of two", "pitviper_simd.h", "a number of -100 .. 100", "%",
                                    "largest, long double", 2e-5},
                work, point, settings);
 }

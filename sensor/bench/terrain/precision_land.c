@@ -1,7 +1,7 @@
 /* sensor/bench/terrain/precision_land.c: the ground as posts, and its texture under a pixel. */
 #include "sensor/bench/terrain/rows.h"
 
-#include "sensor/bench/quick_landscape.h"
+#include "terrain/landscape/quick_landscape.h"
 #include "sensor/bench/turn.h"
 
 #include <stdlib.h>
@@ -41,7 +41,7 @@ static double rms_m(const Elevation *got, const Elevation *want, double from_m, 
 static double bytes_of(const Elevation *e)
 {
     size_t posts, pyramids;
-    bench_ground_bytes(&posts, &pyramids, e);
+    quick_landscape_bytes(&posts, &pyramids, e);
     return (double)(posts + pyramids);
 }
 
@@ -121,10 +121,12 @@ static Status knob_reach(Bench *bench, const LocalFrame *frame)
         landscape_destroy(&land);
     }
     if (status == STATUS_OK)
-        bench_turn(bench, &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground", "px",
-                                       quick ? "rms just outside it, the finest level; posts of 16 m"
-                                             : "rms just outside it, the finest level; 720 px across 40 degrees",
-                                                 quick ? 0.5 : 0.05},
+        bench_turn(bench,
+                   &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground",
+                                "px",
+                                quick ? "rms just outside it, the finest level; posts of 16 m"
+                                      : "rms just outside it, the finest level; 720 px across 40 degrees",
+                                quick ? 0.5 : 0.05},
                    work, point, settings);
     landscape_destroy(&fine);
     return status;

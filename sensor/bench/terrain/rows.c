@@ -1,3 +1,4 @@
+/* sensor/bench/terrain/rows.c: the suites of earth, elevation and landscape. */
 #include "sensor/bench/terrain/rows.h"
 
 #include "sensor/bench/terrain/stability.h"

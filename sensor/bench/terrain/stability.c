@@ -1,6 +1,6 @@
-/* sensor/bench/terrain/stability.c: the Earth at its awkward places: poles, date line, trenches and orbits, each with its
- * neighbours in floating point. The judges are WGS 84 written out in long double, ERFA by another of its ways, and
- * symmetry. */
+/* sensor/bench/terrain/stability.c: the Earth at its awkward places: poles, date line, trenches and orbits, each
+ * with its neighbours in floating point. The judges are WGS 84 written out in long double, ERFA by another of its
+ * ways, and symmetry. */
 #include "sensor/bench/terrain/stability.h"
 
 #include "terrain/earth/geoid.h"

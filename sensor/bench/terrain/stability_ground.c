@@ -1,6 +1,6 @@
-/* sensor/bench/terrain/stability_ground.c: ground that no surveyor would sign: cliffs of all the quanta there are, spikes one
- * post wide, voids, grids of one cell and of a billion. The judges are each triangle's plane in long double, every post
- * looked at for the pyramids, and the least and greatest height of the file. */
+/* sensor/bench/terrain/stability_ground.c: ground that no surveyor would sign: cliffs of all the quanta there are,
+ * spikes one post wide, voids, grids of one cell and of a billion. The judges are each triangle's plane in long
+ * double, every post looked at for the pyramids, and the least and greatest height of the file. */
 #include "sensor/bench/terrain/stability.h"
 
 #include "terrain/elevation/elevation.h"

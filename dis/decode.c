@@ -1,0 +1,159 @@
+/* dis/decode.c: the table of PDU types, and through it from octets to a tagged PDU and back. */
+#include "dis/decode_private.h"
+#include "dis/reader.h"
+
+static size_t encode_entity_state(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_entity_state(out, capacity, &pdu->entity_state);
+}
+
+static size_t encode_fire(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_fire(out, capacity, &pdu->fire);
+}
+
+static size_t encode_detonation(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_detonation(out, capacity, &pdu->detonation);
+}
+
+static size_t encode_remove_entity(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_remove_entity(out, capacity, &pdu->remove);
+}
+
+static size_t encode_start_resume(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_start_resume(out, capacity, &pdu->start);
+}
+
+static size_t encode_stop_freeze(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_stop_freeze(out, capacity, &pdu->stop);
+}
+
+static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_data(out, capacity, &pdu->data);
+}
+
+static size_t encode_entity_state_update(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_entity_state_update(out, capacity, &pdu->update);
+}
+
+/* Types of IEEE 1278.1-2012, table of PDU types. Those with functions are decoded; of these, one that is acted upon has
+ * its length judged by the walk through a datagram, and a PDU that cannot be decoded is counted as dropped. Of the others
+ * the length is not judged. */
+typedef struct PduType {
+    const char *name;
+    unsigned    least_octets; /* before variable records; 0: not acted upon */
+    DisDecoder *decode;       /* NULL: not decoded */
+    size_t    (*encode)(uint8_t *out, size_t capacity, const DisPdu *pdu);
+} PduType;
+
+static const PduType pdu_type[256] = {
+    [0] = {"Other"},
+    [1] = {"Entity State", 144, dis_decode_entity_state, encode_entity_state},
+    [2] = {"Fire", 96, dis_decode_fire, encode_fire},
+    [3] = {"Detonation", 104, dis_decode_detonation, encode_detonation},
+    [4] = {"Collision"},
+    [5] = {"Service Request"},
+    [6] = {"Resupply Offer"},
+    [7] = {"Resupply Received"},
+    [8] = {"Resupply Cancel"},
+    [9] = {"Repair Complete"},
+    [10] = {"Repair Response"},
+    [11] = {"Create Entity"},
+    [12] = {"Remove Entity", 28, dis_decode_remove_entity, encode_remove_entity},
+    [13] = {"Start/Resume", 44, dis_decode_start_resume, encode_start_resume},
+    [14] = {"Stop/Freeze", 40, dis_decode_stop_freeze, encode_stop_freeze},
+    [15] = {"Acknowledge"},
+    [16] = {"Action Request"},
+    [17] = {"Action Response"},
+    [18] = {"Data Query"},
+    [19] = {"Set Data", 0, dis_decode_data, encode_data},
+    [20] = {"Data", 0, dis_decode_data, encode_data},
+    [21] = {"Event Report"},
+    [22] = {"Comment"},
+    [23] = {"Electromagnetic Emission"},
+    [24] = {"Designator"},
+    [25] = {"Transmitter"},
+    [26] = {"Signal"},
+    [27] = {"Receiver"},
+    [28] = {"IFF"},
+    [29] = {"Underwater Acoustic"},
+    [30] = {"Supplemental Emission/Entity State"},
+    [31] = {"Intercom Signal"},
+    [32] = {"Intercom Control"},
+    [33] = {"Aggregate State"},
+    [34] = {"IsGroupOf"},
+    [35] = {"Transfer Ownership"},
+    [36] = {"IsPartOf"},
+    [37] = {"Minefield State"},
+    [38] = {"Minefield Query"},
+    [39] = {"Minefield Data"},
+    [40] = {"Minefield Response NACK"},
+    [41] = {"Environmental Process"},
+    [42] = {"Gridded Data"},
+    [43] = {"Point Object State"},
+    [44] = {"Linear Object State"},
+    [45] = {"Areal Object State"},
+    [46] = {"TSPI"},
+    [47] = {"Appearance"},
+    [48] = {"Articulated Parts"},
+    [49] = {"LE Fire"},
+    [50] = {"LE Detonation"},
+    [51] = {"Create Entity-R"},
+    [52] = {"Remove Entity-R"},
+    [53] = {"Start/Resume-R"},
+    [54] = {"Stop/Freeze-R"},
+    [55] = {"Acknowledge-R"},
+    [56] = {"Action Request-R"},
+    [57] = {"Action Response-R"},
+    [58] = {"Data Query-R"},
+    [59] = {"Set Data-R"},
+    [60] = {"Data-R"},
+    [61] = {"Event Report-R"},
+    [62] = {"Comment-R"},
+    [63] = {"Record-R"},
+    [64] = {"Set Record-R"},
+    [65] = {"Record Query-R"},
+    [66] = {"Collision-Elastic"},
+    [67] = {"Entity State Update", 72, dis_decode_entity_state_update, encode_entity_state_update},
+    [68] = {"Directed Energy Fire"},
+    [69] = {"Entity Damage Status"},
+    [70] = {"Information Operations Action"},
+    [71] = {"Information Operations Report"},
+    [72] = {"Attribute"},
+};
+
+const char *dis_pdu_type_name(uint8_t type) { return pdu_type[type].name ? pdu_type[type].name : "unknown type"; }
+
+unsigned dis_least_octets(uint8_t type)
+{
+    return pdu_type[type].least_octets ? pdu_type[type].least_octets : dis_header_octets;
+}
+
+Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    if (octets < dis_header_octets) return STATUS_TRUNCATED;
+    const uint8_t     type   = dis_load_header(pdu).type;
+    DisDecoder *const decode = pdu_type[type].decode;
+    if (!decode) return STATUS_UNSUPPORTED;
+    const Status status = decode(out, pdu, octets);
+    if (status == STATUS_OK) out->type = type;
+    return status;
+}
+
+size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return pdu_type[pdu->type].encode ? pdu_type[pdu->type].encode(out, capacity, pdu) : 0;
+}
+
+void dis_count_refused(DisCounters *counters, uint8_t type, Status status)
+{
+    if (!pdu_type[type].least_octets) return;
+    if (status == STATUS_BAD_VALUE) counters->dropped[DIS_DROP_BAD_COUNT]++;
+    else if (status == STATUS_TRUNCATED) counters->dropped[DIS_DROP_TRUNCATED]++;
+}

@@ -1,0 +1,37 @@
+/* dis/decode.h: the one way from octets to a PDU, and back: a tagged union of the plain structs. */
+#ifndef DIS_DECODE_H
+#define DIS_DECODE_H
+
+#include "dis/data.h"
+#include "dis/entity_state.h"
+#include "dis/simulation_management.h"
+#include "dis/warfare.h"
+
+/* 11 KiB, most of it room for 255 variable records: one to a loop, not one to a PDU. */
+typedef struct DisPdu {
+    uint8_t type; /* which of these: dis_pdu_entity_state, ...; as in the header */
+    union {
+        DisHeader            header; /* every struct begins with it */
+        DisEntityState       entity_state;
+        DisEntityStateUpdate update;
+        DisFire              fire;
+        DisDetonation        detonation;
+        DisRemoveEntity      remove;
+        DisStartResume       start;
+        DisStopFreeze        stop;
+        DisData              data; /* its values stay inside the octets */
+    };
+} DisPdu;
+
+/* pdu: header.length octets from dis_next_pdu. On failure `out` is untouched; when it succeeds, variable records and
+ * datums beyond the counted ones are left alone. Values are not judged here: see dis_entity_is_usable.
+ * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field says.
+ * STATUS_BAD_VALUE: a count that the length cannot hold.
+ * STATUS_UNSUPPORTED: a type that is not decoded, or more datums than there is room for. */
+Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);
+/* Writes header.length as computed. Returns the octets written; 0: capacity is too small, or no such type. */
+size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu);
+/* Counts a PDU that dis_decode refused, by reason; one of a type that is not acted upon is no drop. */
+void   dis_count_refused(DisCounters *counters, uint8_t type, Status status);
+
+#endif

@@ -1,0 +1,425 @@
+/* entities/catalog/catalog.c: entity type -> model, by the longest pattern of etc/catalog.csv. */
+#include "entities/catalog/catalog.h"
+#include "entities/catalog/model_fit.h"
+#include "entities/import/model_import.h"
+#include "entities/parametric/parametric.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+
+enum { type_fields = 7, any = -1, catalog_columns = 7 };
+static const char *const column_name[catalog_columns] = {"type", "model", "origin", "length_m", "width_m", "height_m",
+                                                         "note"};
+
+typedef struct CatalogRow {
+    int    field[type_fields]; /* any: a star */
+    int    length;             /* fields up to the last one named */
+    int    named;              /* fields that are not a star */
+    int    order;              /* in the file */
+    int    model;
+    Origin origin;
+    bool   own;                /* of the user's catalog, which goes first */
+    int    line;
+    ModelSize size;            /* as the row says; of a file: what it should have */
+    char  *note;            /* may be NULL */
+} CatalogRow;
+
+/* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
+ * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
+ * it is built when a type that has it is first asked for: of two hundred models an exercise has ten. */
+typedef struct CatalogModel {
+    char *source;          /* its built-in name, or its file */
+    ModelSize size;        /* zeroes: its own */
+    int shape;             /* index of the one whose `first` this is a size of */
+    int class;             /* index of the first of the same name */
+    ModelImport *import;   /* of a file, else NULL */
+    Model first;           /* of shape == own index alone: coarse, or of a file */
+    _Atomic(Model *) fine; /* NULL: not asked for yet, or of a file */
+    atomic_bool failed;    /* no memory when it was asked for */
+} CatalogModel;
+
+struct Catalog {
+    int row_count, model_count;
+    char *own_path, *path;
+    CatalogRow *row;
+    CatalogModel *model; /* model[0]: unknown */
+    double sag_m;
+    pthread_mutex_t *building;
+};
+
+static const double coarse_sag_m = 0.1;
+
+/* Dotted numbers and stars; what is left out at the end is a star. Fields are 8 bits, the country 16. */
+static bool parse_type(int field[type_fields], const char *text)
+{
+    for (int f = 0; f < type_fields; f++) field[f] = any;
+    for (int f = 0; f < type_fields; f++) {
+        char part[8];
+        const size_t length = strcspn(text, ".");
+        long long value;
+
+        if (length == 0 || length >= sizeof part) return false;
+        memcpy(part, text, length);
+        part[length] = 0;
+        if (strcmp(part, "*") != 0) {
+            if (part[0] < '0' || part[0] > '9') return false; /* no sign, no blank */
+            if (!text_to_long(&value, part) || value > (f == 2 ? 65535 : 255)) return false;
+            field[f] = (int)value;
+        }
+        text += length;
+        if (!*text) return true;
+        text++;
+    }
+    return false; /* an eighth field */
+}
+
+static Status open_file(CatalogModel *model, bool *imported, const char *source, double sag_m)
+{
+    model->import = calloc(1, sizeof *model->import);
+    return model->import ? model_open(&model->first, model->import, imported, source, sag_m) : STATUS_NO_MEMORY;
+}
+
+/* Index of the model of that name or file and size. If it is new a file is read now, and so is a shape that no size of
+ * it has called for yet. Files are beside the catalog at `path`. */
+static Status find_or_add(int *out, Catalog *catalog, const char *name, const ModelSize *size, const char *path)
+{
+    char        source[1024];
+    bool        imported;
+    const char *slash = strrchr(path, '/');
+    const int   folder = model_is_path(name) && name[0] != '/' && slash ? (int)(slash - path) + 1 : 0;
+    if ((size_t)snprintf(source, sizeof source, "%.*s%s", folder, path, name) >= sizeof source) return STATUS_BAD_VALUE;
+    CatalogModel *added = catalog->model + catalog->model_count;
+    added->shape = catalog->model_count;
+    for (int m = catalog->model_count - 1; m >= 0; m--) {
+        const CatalogModel *model = catalog->model + m;
+        if (strcmp(model->source, source) != 0) continue;
+        added->shape = model->shape;
+        if (memcmp(&model->size, size, sizeof *size) != 0) continue;
+        *out = m;
+        return STATUS_OK;
+    }
+    Status status = STATUS_OK;
+    double factor[3];
+    if (added->shape == catalog->model_count)
+        status = parametric_known(source) ? parametric_build(&added->first, source, coarse_sag_m)
+                                          : open_file(added, &imported, source, catalog->sag_m);
+    if (status == STATUS_OK && !model_scale_to(factor, &catalog->model[added->shape].first, size)) {
+        const Model *own = &catalog->model[added->shape].first;
+        log_error("catalog: too far from the shape's own size: model=%s its=%.4g x %.4g x %.4g m range=0.02..50 times",
+                  source, own->length_m, own->width_m, own->height_m);
+        status = STATUS_BAD_VALUE;
+    }
+    if (status == STATUS_OK && !(added->source = strdup(source))) status = STATUS_NO_MEMORY;
+    if (status != STATUS_OK) {
+        if (added->shape == catalog->model_count) model_destroy(&added->first);
+        free(added->import);
+        added->import = NULL;
+        return status;
+    }
+    added->size = *size;
+    added->class = 0;
+    while (added->class < catalog->model_count && strcmp(catalog->model[catalog->model[added->class].shape].first.name,
+                                                         catalog->model[added->shape].first.name) != 0)
+        added->class++;
+    *out = catalog->model_count++;
+    return STATUS_OK;
+}
+
+/* With its own facets and size, once. */
+static void build_fine(const Catalog *catalog, int index)
+{
+    CatalogModel *m = catalog->model + index;
+    if (atomic_load(&m->fine) || atomic_load(&m->failed) || !parametric_known(m->source)) return;
+    pthread_mutex_lock(catalog->building);
+    if (!atomic_load(&m->fine) && !atomic_load(&m->failed)) {
+        Model *fine = calloc(1, sizeof *fine);
+        const Status status =
+            fine ? parametric_build_size(fine, m->source, &m->size, catalog->sag_m) : STATUS_NO_MEMORY;
+        if (status == STATUS_OK) {
+            atomic_store(&m->fine, fine);
+        } else {
+            free(fine);
+            atomic_store(&m->failed, true);
+            log_error("catalog: cannot build a model, its coarse form is shown: model=\"%s\" reason=%s", m->source,
+                      status_name(status));
+        }
+    }
+    pthread_mutex_unlock(catalog->building);
+}
+
+static Status read_size(ModelSize *size, const Table *table, int r, const int column[catalog_columns])
+{
+    double *const figure[3] = {&size->length_m, &size->width_m, &size->height_m};
+    for (int k = 0; k < 3; k++) {
+        *figure[k] = 0;
+        if (column[3 + k] < 0 || !*table_text(table, r, column[3 + k])) continue;
+        const Status status = table_number(figure[k], table, r, column[3 + k], 0.001, 2000);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+static Status read_row(CatalogRow *row, Catalog *catalog, const Table *table, int r, const int column[catalog_columns])
+{
+    static const ModelSize own_size = {0};
+    const char *type = table_text(table, r, column[0]), *model = table_text(table, r, column[1]);
+    const char *origin = table_text(table, r, column[2]);
+    const int line = row->line = table->line[r + 1];
+
+    if (!parse_type(row->field, type)) {
+        log_error("catalog: not an entity type: file=%s line=%d type=\"%s\" want=kind.domain.country... of 0 .. 255 "
+                  "(country 0 .. 65535) or *", table->path, line, type);
+        return STATUS_BAD_VALUE;
+    }
+    row->length = row->named = 0;
+    for (int f = 0; f < type_fields; f++) {
+        if (row->field[f] == any) continue;
+        row->named++;
+        row->length = f + 1;
+    }
+    if (strcmp(origin, "base") == 0) row->origin = ORIGIN_BASE;
+    else if (strcmp(origin, "centre") == 0) row->origin = ORIGIN_CENTRE;
+    else {
+        log_error("catalog: not an origin: file=%s line=%d origin=\"%s\" want=base or centre", table->path, line,
+                  origin);
+        return STATUS_BAD_VALUE;
+    }
+    Status status = read_size(&row->size, table, r, column);
+    if (status != STATUS_OK) return status;
+    if (column[6] >= 0 && !(row->note = strdup(table_text(table, r, column[6])))) return STATUS_NO_MEMORY;
+    status = find_or_add(&row->model, catalog, model, model_is_path(model) ? &own_size : &row->size, table->path);
+    if (status != STATUS_OK)
+        log_error("catalog: cannot use this model: file=%s line=%d model=\"%s\" reason=%s; `pitviper model list` lists "
+                  "what is built in, `pitviper model info FILE` says what is in a file", table->path, line, model,
+                  status_name(status));
+    return status == STATUS_UNSUPPORTED ? STATUS_BAD_VALUE : status;
+}
+
+/* The user's own first, then longer, then more fields named, then the order of the file: it is the search order. */
+static int row_order(const void *x, const void *y)
+{
+    const CatalogRow *a = x, *b = y;
+    if (a->own != b->own) return a->own ? -1 : 1;
+    if (a->length != b->length) return a->length > b->length ? -1 : 1;
+    if (a->named != b->named) return a->named > b->named ? -1 : 1;
+    return (a->order > b->order) - (a->order < b->order);
+}
+
+/* ---- sizes of files ------------------------------------------------------------------------------ */
+
+/* The first row of the table of the program, in search order, that has all of this row's types, and a shape of its
+ * own. */
+static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *row)
+{
+    for (int r = 0; r < catalog->row_count; r++) {
+        const CatalogRow *other = catalog->row + r;
+        int f = 0;
+        if (other->own || other == row || !parametric_known(catalog->model[other->model].source)) continue;
+        while (f < type_fields && (other->field[f] == any || other->field[f] == row->field[f])) f++;
+        if (f == type_fields && other->length > 1) return catalog_shows(catalog, other->model) ? other : NULL;
+    }
+    return NULL;
+}
+
+void catalog_size(double size_m[3], const Catalog *catalog, int model)
+{
+    const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
+    const Model *first = &catalog->model[m->shape].first;
+    double factor[3] = {1, 1, 1};
+    if (!m->import) model_scale_to(factor, first, &m->size);
+    size_m[0] = factor[0] * first->length_m;
+    size_m[1] = factor[1] * first->width_m;
+    size_m[2] = factor[2] * (fmax(first->box_high[2], 0) - first->box_low[2]);
+}
+
+/* Says where a model from a file has another size than its row gives it, or, where it gives none, than the type has in
+ * the program's own table. */
+static void warn_sizes(const Catalog *catalog)
+{
+    static const double said = 1.1, usual = 1.6;
+    for (int r = 0; r < catalog->row_count; r++) {
+        const CatalogRow *row = catalog->row + r;
+        const CatalogModel *m = catalog->model + row->model;
+        ModelSize want = row->size;
+        char from[200] = "the row";
+        double size[3];
+        ModelFit fit;
+        if (!m->import) continue;
+        const bool stated = want.length_m > 0 || want.width_m > 0 || want.height_m > 0;
+        const CatalogRow *behind = stated ? NULL : row_behind(catalog, row);
+        if (!stated && !behind) continue;
+        if (behind) {
+            catalog_size(size, catalog, behind->model);
+            want = (ModelSize){size[0], size[1], size[2]};
+            snprintf(from, sizeof from, "etc/catalog.csv:%d (%s%s%.60s), for such types,", behind->line,
+                     catalog->model[behind->model].source, behind->note && *behind->note ? ": " : "",
+                     behind->note ? behind->note : "");
+        }
+        const Model *model = &catalog->model[m->shape].first;
+        model_fit(&fit, model, m->import, &want, behind ? usual : said);
+        if (fit.fits) continue;
+        char text[3][24];
+        const double figure[3] = {want.length_m, want.width_m, want.height_m};
+        for (int k = 0; k < 3; k++) snprintf(text[k], sizeof text[k], figure[k] > 0 ? "%.3g" : "?", figure[k]);
+        log_warn("catalog: %s:%d: %s is %.3g x %.3g x %.3g m (length, width, height), but %s says %s x %s x %s: %s%s",
+                 row->own ? catalog->own_path : catalog->path, row->line, m->source, model->length_m, model->width_m,
+                 fmax(model->box_high[2], 0) - model->box_low[2], from, text[0], text[1], text[2], fit.advice,
+                 behind ? "; if it is right, say so with length_m, width_m, height_m in the row" : "");
+    }
+}
+
+/* ---- the whole ----------------------------------------------------------------------------------- */
+
+/* Which column of the table is which; -1: not there. */
+static Status find_columns(int column[catalog_columns], const Table *table)
+{
+    for (int c = 0; c < catalog_columns; c++) {
+        column[c] = table_column(table, column_name[c]);
+        if (column[c] >= 0 || c >= 3) continue;
+        log_error("catalog: a column is missing: file=%s line=%d column=%s", table->path, table->line[0],
+                  column_name[c]);
+        return STATUS_BAD_VALUE;
+    }
+    return STATUS_OK;
+}
+
+static Status read_table(Catalog *catalog, const Table *table, bool own)
+{
+    int column[catalog_columns];
+    Status status = find_columns(column, table);
+    for (int r = 0; r < table->rows && status == STATUS_OK; r++) {
+        CatalogRow *row = catalog->row + catalog->row_count;
+        row->own = own;
+        status = read_row(row, catalog, table, r, column);
+        row->order = catalog->row_count++;
+    }
+    return status;
+}
+
+Status catalog_open(Catalog **out, const char *path, double sag_m)
+{
+    static const ModelSize own_size = {0};
+    const char *own_path = etc_own("catalog.csv");
+    Table    table = {0}, own = {0};
+    int      unknown;
+    Catalog *catalog = NULL;
+
+    if (!(sag_m >= 1e-5 && sag_m <= 0.1)) {
+        log_error("catalog: sag out of range: sag_m=%g range=1e-5..0.1", sag_m);
+        return STATUS_BAD_VALUE;
+    }
+    Status status = table_open(&table, path);
+    if (status == STATUS_OK && own_path) status = table_open(&own, own_path);
+    if (status != STATUS_OK) goto done;
+    status = STATUS_NO_MEMORY;
+    catalog = calloc(1, sizeof *catalog);
+    if (!catalog) goto done;
+    const size_t rows = (size_t)table.rows + (size_t)own.rows + 1;
+    catalog->row = calloc(rows, sizeof *catalog->row);
+    catalog->model = calloc(rows, sizeof *catalog->model);
+    catalog->building = calloc(1, sizeof *catalog->building);
+    catalog->path = strdup(path);
+    catalog->own_path = strdup(own_path ? own_path : "");
+    if (!catalog->row || !catalog->model || !catalog->building || !catalog->path || !catalog->own_path) goto done;
+    pthread_mutex_init(catalog->building, NULL);
+    catalog->sag_m = sag_m;
+
+    status = find_or_add(&unknown, catalog, "unknown", &own_size, "");
+    if (status != STATUS_OK) log_error("catalog: cannot build the unknown model: %s", status_name(status));
+    if (status == STATUS_OK && own_path) status = read_table(catalog, &own, true);
+    if (status == STATUS_OK) status = read_table(catalog, &table, false);
+    qsort(catalog->row, (size_t)catalog->row_count, sizeof *catalog->row, row_order);
+    if (status == STATUS_OK) warn_sizes(catalog);
+
+done:
+    table_close(&table);
+    table_close(&own);
+    if (status == STATUS_OK) *out = catalog;
+    else catalog_close(catalog);
+    return status;
+}
+
+void catalog_close(Catalog *catalog)
+{
+    if (!catalog) return;
+    for (int m = 0; m < catalog->model_count; m++) {
+        CatalogModel *model = catalog->model + m;
+        Model *fine = atomic_load(&model->fine);
+        if (fine) model_destroy(fine);
+        free(fine);
+        if (model->shape == m) model_destroy(&model->first);
+        free(model->source);
+        free(model->import);
+    }
+    for (int r = 0; r < catalog->row_count; r++) free(catalog->row[r].note);
+    if (catalog->building) pthread_mutex_destroy(catalog->building);
+    free(catalog->building);
+    free(catalog->path);
+    free(catalog->own_path);
+    free(catalog->model);
+    free(catalog->row);
+    free(catalog);
+}
+
+int catalog_row_count(const Catalog *catalog) { return catalog->row_count; }
+
+void catalog_row(CatalogRowInfo *out, const Catalog *catalog, int index)
+{
+    const CatalogRow *row = catalog->row + index;
+    size_t n = 0;
+    *out = (CatalogRowInfo){.model = row->model, .own = row->own, .line = row->line,
+                            .path = row->own ? catalog->own_path : catalog->path,
+                            .note = row->note ? row->note : "", .source = catalog->model[row->model].source};
+    for (int f = 0; f < type_fields; f++) {
+        if (row->field[f] == any) n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s*", f ? "." : "");
+        else n += (size_t)snprintf(out->type + n, sizeof out->type - n, "%s%d", f ? "." : "", row->field[f]);
+    }
+    out->kind = row->field[0], out->domain = row->field[1];
+}
+
+int catalog_model_count(const Catalog *catalog) { return catalog->model_count; }
+
+const Model *catalog_model(const Catalog *catalog, int model)
+{
+    const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
+    const Model *fine = atomic_load(&m->fine);
+    return fine ? fine : &catalog->model[m->shape].first;
+}
+
+bool catalog_is_built(const Catalog *catalog, int model)
+{
+    const CatalogModel *m = catalog->model + (model >= 0 && model < catalog->model_count ? model : 0);
+    return atomic_load(&m->fine) || atomic_load(&m->failed) || !parametric_known(m->source);
+}
+
+bool catalog_shows(const Catalog *catalog, int model)
+{
+    return model < 0 || model >= catalog->model_count || strcmp(catalog->model[model].source, "none") != 0;
+}
+
+int catalog_class(const Catalog *catalog, int model)
+{
+    return catalog->model[model >= 0 && model < catalog->model_count ? model : 0].class;
+}
+
+int catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched)
+{
+    const int field[type_fields] = {type.kind, type.domain, type.country, type.category,
+                                    type.subcategory, type.specific, type.extra};
+
+    for (int r = 0; r < catalog->row_count; r++) {
+        const CatalogRow *row = catalog->row + r;
+        int f = 0;
+        while (f < row->length && (row->field[f] == any || row->field[f] == field[f])) f++;
+        if (f < row->length) continue;
+        if (origin) *origin = row->origin;
+        if (matched) *matched = row->length;
+        build_fine(catalog, row->model);
+        return row->model;
+    }
+    if (origin) *origin = ORIGIN_BASE;
+    if (matched) *matched = 0;
+    build_fine(catalog, 0);
+    return 0;
+}

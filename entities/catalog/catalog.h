@@ -1,0 +1,58 @@
+/* entities/catalog/catalog.h: which model an entity type gets, from etc/catalog.csv by the longest match, and the
+ * models themselves, one of each shape and size. Built-in ones get their facets when a type of theirs is first
+ * looked for. */
+#ifndef ENTITIES_CATALOG_CATALOG_H
+#define ENTITIES_CATALOG_CATALOG_H
+
+#include "dis/pdu.h"
+#include "entities/models/model.h"
+
+/* What the sender's position refers to. */
+typedef enum Origin { ORIGIN_BASE, ORIGIN_CENTRE } Origin;
+
+typedef struct Catalog Catalog;
+
+/* path: a CSV with the columns type, model, origin, and perhaps length_m, width_m, height_m (ModelSize; empty: in
+ * proportion, all empty: the shape's own size; of a file: the size it should have, and a warning when it has another)
+ * and note; type is dotted with `*` for anything, e.g.
+ * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
+ * wins (`1.1.*.1` before `1.1.225`: the category says more of the shape than the country), then the one with fewer
+ * stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
+ * folder), see entities/import/model_import.h; `none`: nothing is seen of the type.
+ * Rows of the user's own catalog (etc_own of catalog.csv) go before all of these: where one agrees, it is taken. Its
+ * files are relative to its own folder.
+ * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
+ * parametric_build. */
+Status catalog_open(Catalog **out, const char *path, double sag_m);
+void   catalog_close(Catalog *catalog);
+/* One model for each shape and size; those of one shape have one name. */
+int    catalog_model_count(const Catalog *catalog);
+/* False: entities of this model are heard and tracked, but there is nothing of them to be seen. */
+bool   catalog_shows(const Catalog *catalog, int model);
+/* The first model of the same name: what a class of targets is called and counted by, whatever their sizes. */
+int    catalog_class(const Catalog *catalog, int model);
+/* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose
+ * nodes and parts are in number, name, material and heat the model's. Either lives as long as the catalog. */
+const Model *catalog_model(const Catalog *catalog, int model);
+/* Whether it is the model. */
+bool   catalog_is_built(const Catalog *catalog, int model);
+/* Length, width and height (ModelSize) that a model has, or will have once it is built. */
+void   catalog_size(double size_m[3], const Catalog *catalog, int model);
+
+/* A row, in search order. */
+typedef struct CatalogRowInfo {
+    char        type[48];         /* 1.1.225.1.*.*.* */
+    int         kind, domain;     /* -1: any */
+    int         model, line;
+    bool        own;
+    const char *path, *note, *source; /* source: of the model: a built-in name, or its file */
+} CatalogRowInfo;
+int    catalog_row_count(const Catalog *catalog);
+void   catalog_row(CatalogRowInfo *out, const Catalog *catalog, int row);
+
+/* Never fails: an unmatched type gets the `unknown` model, model 0. matched (may be NULL): how many leading fields
+ * of the type the row covers, up to the last it names; 0 for unmatched. Builds the model the first time; without
+ * memory its coarse form stays, logged. Any number of threads. */
+int    catalog_find(const Catalog *catalog, DisEntityType type, Origin *origin, int *matched);
+
+#endif

@@ -1,0 +1,79 @@
+/* entities/import/model_files.c: which files a model is read from: its own and its sidecar. */
+#include "entities/import/model_import_private.h"
+
+#include <ctype.h>
+#include <errno.h>
+#include <strings.h>
+#include <sys/stat.h>
+
+void import_split_extension(char out[16], size_t *stem, const char *path)
+{
+    size_t length = strlen(path);
+    out[0] = 0;
+    if (length > 3 && strcasecmp(path + length - 3, ".gz") == 0) length -= 3;
+    *stem = length;
+    for (size_t at = length; at > 0 && path[at - 1] != '/'; at--)
+        if (path[at - 1] == '.') {
+            const size_t count = length - at;
+            if (count >= 16) return;
+            for (size_t i = 0; i < count; i++) out[i] = (char)tolower((unsigned char)path[at + i]);
+            out[count] = 0;
+            *stem = at - 1;
+            return;
+        }
+}
+
+static bool is_file(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISREG(info.st_mode);
+}
+
+bool model_is_path(const char *name) { return strpbrk(name, "/.") != NULL; }
+
+Status import_find_files(ModelImport *report, Sidecar *sidecar, const char *path)
+{
+    char extension[16];
+    size_t stem;
+    if (strlen(path) >= sizeof report->file - 8) {
+        log_error("model: the path is longer than %zu characters: %.60s...", sizeof report->file - 8, path);
+        return STATUS_BAD_VALUE;
+    }
+    import_split_extension(extension, &stem, path);
+    if (strcmp(extension, "yaml") == 0 || strcmp(extension, "yml") == 0) {
+        snprintf(report->sidecar, sizeof report->sidecar, "%s", path);
+        const Status status = sidecar_read(sidecar, path);
+        if (status != STATUS_OK) return status;
+        if (!sidecar->file[0]) {
+            log_error("sidecar: %s: file: is missing: which model it is for (or name the model's file instead)", path);
+            return STATUS_BAD_VALUE;
+        }
+        const char *slash = strrchr(path, '/');
+        const int folder = sidecar->file[0] == '/' || !slash ? 0 : (int)(slash - path) + 1;
+        if ((size_t)snprintf(report->file, sizeof report->file, "%.*s%s", folder, path, sidecar->file) >=
+            sizeof report->file) {
+            log_error("sidecar: %s: file: the path is too long", path);
+            return STATUS_BAD_VALUE;
+        }
+    } else {
+        snprintf(report->file, sizeof report->file, "%s", path);
+        snprintf(report->sidecar, sizeof report->sidecar, "%.*s.yaml", (int)stem, path);
+        if (is_file(report->sidecar)) {
+            const Status status = sidecar_read(sidecar, report->sidecar);
+            if (status != STATUS_OK) return status;
+        } else {
+            report->sidecar[0] = 0;
+        }
+    }
+    struct stat info;
+    if (stat(report->file, &info) != 0) {
+        log_error("model: cannot open: file=%s: %s", report->file, strerror(errno));
+        return STATUS_IO;
+    }
+    if (!S_ISREG(info.st_mode) || info.st_size > import_max_octets) {
+        log_error("model: cannot read: file=%s: %s", report->file,
+                  S_ISREG(info.st_mode) ? "larger than 256 MiB" : "not a file");
+        return S_ISREG(info.st_mode) ? STATUS_BAD_VALUE : STATUS_IO;
+    }
+    return STATUS_OK;
+}

@@ -1,0 +1,163 @@
+/* entities/table/contact.c: entities set onto the ground or the water along the local vertical. */
+#include "entities/table/contact.h"
+
+#include "dis/enumerations.h"
+
+/* Leans with the ground. */
+static bool leans(DisEntityType type)
+{
+    return (type.kind == dis_kind_platform && type.domain == dis_domain_land) ||
+           (type.kind == dis_kind_life_form && type.domain <= dis_domain_land); /* 0: of no domain */
+}
+
+bool contact_applies(DisEntityType type)
+{
+    const bool lies = type.kind == dis_kind_cultural_feature || type.kind == dis_kind_supply ||
+                      type.kind == dis_kind_sensor_emitter;
+    return leans(type) || (lies && type.domain <= dis_domain_land);
+}
+
+bool contact_floats(DisEntityType type)
+{
+    return type.kind == dis_kind_platform && type.domain == dis_domain_surface;
+}
+
+double contact_share(DisEntityType type, double above_m)
+{
+    const double keep_m = contact_floats(type) ? 1.5 : 0.1, set_m = contact_floats(type) ? 3 : 0.5;
+    const double t = clamp((fabs(above_m) - keep_m) / (set_m - keep_m), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+/* Unit normal of the ellipsoid through a place, ECEF. */
+static bool vertical(double up_ecef[3], const double p_ecef[3])
+{
+    Geodetic place;
+    double   same_ecef[3], r_ecef_from_enu[9];
+    if (geodetic_from_ecef(&place, p_ecef) != STATUS_OK || ecef_from_geodetic(same_ecef, r_ecef_from_enu, &place) != STATUS_OK)
+        return false;
+    for (int k = 0; k < 3; k++) up_ecef[k] = r_ecef_from_enu[3 * k + 2];
+    return true;
+}
+
+/* Way up from p to the ground. The vertical leans against ENU, so the ground is asked again where the last answer
+ * leads; each step is smaller by lean times slope, below a hundredth. */
+static double way_up_m(const ContactGround *ground, const double p_enu[3], const double up_enu[3])
+{
+    double way_m = 0;
+    if (!(up_enu[2] > 0.5)) return NAN; /* the far side of the Earth */
+    for (int step = 0; step < 4; step++) {
+        double q_enu[3];
+        v3_add_scaled(q_enu, p_enu, way_m, up_enu);
+        way_m += (elevation_height(ground->elevation, q_enu[0], q_enu[1], NULL) - q_enu[2]) / up_enu[2];
+    }
+    return way_m;
+}
+
+double contact_above_m(const ContactGround *ground, const double p_ecef[3])
+{
+    double up_ecef[3], up_enu[3], p_enu[3];
+    if (!ground->elevation || !vertical(up_ecef, p_ecef)) return NAN;
+    m3_tmul_v3(up_enu, ground->frame->r_ecef_from_enu, up_ecef);
+    enu_from_ecef(p_enu, ground->frame, p_ecef);
+    return -way_up_m(ground, p_enu, up_enu);
+}
+
+/* Carried through the air, or falling through it. */
+static bool is_airborne(const SnapshotEntity *e, const double up_ecef[3])
+{
+    const double v_up = v3_dot(e->v_ecef_mps, up_ecef), v = v3_length(e->v_ecef_mps);
+    const double along = sqrt(fmax(v * v - v_up * v_up, 0));
+    return v > (e->type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
+}
+
+/* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are set on it. */
+static double share_of(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3],
+                       const double up_ecef[3], double way_m)
+{
+    if (!ground->landscape) return 1;
+    const double share = contact_share(e->type, way_m);
+    if (!(share > 0)) return 0;
+    if (contact_floats(e->type)) return share;
+    if (is_airborne(e, up_ecef)) return 0;
+    const bool at_sea = way_m < 0 && landscape_surface(ground->landscape, p_enu[0], p_enu[1]) == SURFACE_WATER;
+    return at_sea ? 0 : share;
+}
+
+/* Clearly on the ground already: the vertical's lean changes nothing in that. */
+static bool stands_near(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3])
+{
+    const double above_m = p_enu[2] - elevation_height(ground->elevation, p_enu[0], p_enu[1], NULL);
+    return ground->landscape && fabs(p_enu[0]) + fabs(p_enu[1]) < 20000 && contact_share(e->type, 1.01 * above_m) == 0;
+}
+
+void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *model)
+{
+    enum { along = 5, across = 3 };
+    static const double steepest = 1; /* tan 45 degrees: a wall of a surface model is not a road */
+    double up_ecef[3], up[3], p[3], r_enu_from_body[9], forward[3], right[3];
+    if (!ground->elevation) return;
+    if (!contact_applies(e->type) && !(ground->landscape && contact_floats(e->type))) return;
+    enu_from_ecef(p, ground->frame, e->p_ecef);
+    if (stands_near(e, ground, p) || !vertical(up_ecef, e->p_ecef)) return;
+    m3_tmul_v3(up, ground->frame->r_ecef_from_enu, up_ecef);
+    m3_tmul(r_enu_from_body, ground->frame->r_ecef_from_enu, e->r_ecef_from_body);
+    const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};
+    const double down[3] = {r_enu_from_body[2], r_enu_from_body[5], r_enu_from_body[8]};
+
+    double way_m = way_up_m(ground, p, up);
+    if (!isfinite(way_m)) return;
+    const double share = share_of(e, ground, p, up_ecef, way_m);
+    if (!(share > 0)) return;
+    v3_add_scaled(forward, nose, -v3_dot(nose, up), up);
+    const bool upright = leans(e->type) && v3_length(forward) > 0.3 && v3_dot(down, up) < -0.3 && v3_normalize(forward, forward);
+    double slope_forward = 0, slope_right = 0;
+    if (upright) {
+        v3_cross(right, forward, up);
+        const double half_length_m = fmax(fmin(-model->box_low[0], model->box_high[0]), 0.2);
+        const double half_width_m = fmax(fmin(-model->box_low[1], model->box_high[1]), 0.2);
+        double sum = 0, sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0;
+        for (int i = 0; i < along; i++)
+            for (int j = 0; j < across; j++) {
+                const double a = half_length_m * (2.0 * i / (along - 1) - 1), b = half_width_m * (2.0 * j / (across - 1) - 1);
+                double q[3];
+                v3_add_scaled(q, p, a, forward);
+                v3_add_scaled(q, q, b, right);
+                const double h_m = way_up_m(ground, q, up);
+                sum += h_m;
+                sum_a += a * h_m;
+                sum_b += b * h_m;
+                sum_aa += a * a;
+                sum_bb += b * b;
+            }
+        if (!isfinite(sum)) return; /* half over the rim of the world */
+        way_m         = sum / (along * across);
+        slope_forward = clamp(sum_a / sum_aa, -steepest, steepest);
+        slope_right   = clamp(sum_b / sum_bb, -steepest, steepest);
+    }
+    v3_add_scaled(e->p_ecef, e->p_ecef, share * way_m, up_ecef);
+    if (!upright) return;
+    if (share < 1) { /* between its own lean and the ground's */
+        const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
+        const double forward_m = v3_dot(nose, forward), right_m = fmax(v3_dot(own, right), 0.1);
+        slope_forward = v3_dot(nose, up) / forward_m + share * (slope_forward - v3_dot(nose, up) / forward_m);
+        slope_right   = v3_dot(own, up) / right_m + share * (slope_right - v3_dot(own, up) / right_m);
+    }
+
+    double x[3], y[3], z[3], v[3];
+    v3_add_scaled(x, forward, slope_forward, up);
+    v3_add_scaled(y, right, slope_right, up);
+    v3_cross(z, x, y);
+    if (!v3_normalize(x, x) || !v3_normalize(z, z)) return;
+    v3_cross(y, z, x);
+    for (int k = 0; k < 3; k++) {
+        r_enu_from_body[3 * k]     = x[k];
+        r_enu_from_body[3 * k + 1] = y[k];
+        r_enu_from_body[3 * k + 2] = z[k];
+    }
+    m3_mul(e->r_ecef_from_body, ground->frame->r_ecef_from_enu, r_enu_from_body);
+    m3_tmul_v3(v, ground->frame->r_ecef_from_enu, e->v_ecef_mps);
+    const double climb = slope_forward * v3_dot(v, forward) + slope_right * v3_dot(v, right) - v3_dot(v, up);
+    v3_add_scaled(v, v, climb, up);
+    m3_mul_v3(e->v_ecef_mps, ground->frame->r_ecef_from_enu, v);
+}

@@ -1,0 +1,206 @@
+/* entities/table/entity_report.c: what an Entity State or its Update means for the entity's slot. */
+#include "entities/table/entity_table_private.h"
+
+/* No launcher uses an id again so soon. */
+static const double after_detonation_s = 1;
+
+/* Faster than anything that leaves the Earth (11.2 km/s), and harder than a gun-launched round once it flies. */
+static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
+
+/* Heartbeats of IEEE 1278.1-2012: 55 or 60 s for land, sea, life forms, the environment and whatever stands; 5 s
+ * for air, space and munitions. Timeout is 2.4 of them. Before version 7 practice is 5 s for all. */
+static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
+{
+    const double *v = slot->reported.v_mps;
+    const bool flies = slot->type.domain == dis_domain_air || slot->type.domain == dis_domain_space;
+    const bool quick = slot->type.kind == dis_kind_munition || (slot->type.kind == dis_kind_platform && flies);
+    const bool stands = v[0] == 0 && v[1] == 0 && v[2] == 0 && slot->type.kind != dis_kind_munition;
+    return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
+}
+
+/* Narrow in, wide out; false and zero when it is not finite or longer than anything real. */
+static bool sanitize(double out[3], const float in[3], double longest)
+{
+    const double v[3] = {in[0], in[1], in[2]};
+    const bool   good = v3_length(v) <= longest; /* false for NaN */
+    for (int i = 0; i < 3; i++) out[i] = good ? v[i] : 0;
+    return good;
+}
+
+/* A report that no longer counts: older than the one we have. */
+static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
+{
+    if (!(t_s < slot->report_s)) return false;
+    table->counters.late++;
+    return true;
+}
+
+/* Whether a report is of an entity that is gone: it is older than the end; or the end was a Detonation, and it comes
+ * right after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates).
+ * Only asked when an entity would be created. */
+static bool has_ended(const EntityTable *table, const DisEntityState *pdu, double t_s)
+{
+    const bool destroyed = (pdu->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
+    return tombstones_ended(table->tombstones, pdu->id, t_s, destroyed ? table->config.timeout_s : after_detonation_s);
+}
+
+/* The focus' own come in at any rate. */
+static bool exceeds_rate(EntityTable *table, DisEntityId id, double t_s)
+{
+    if (dis_entity_id_compare(id, table->focus.host) == 0 || dis_entity_id_compare(id, table->focus.also) == 0)
+        return false;
+    if (entity_rate_take(table->rate, id, t_s)) return false;
+    table->counters.over_rate++;
+    return true;
+}
+
+double entity_slot_spin(const EntitySlot *slot, double t_s)
+{
+    if (entity_slot_frozen(slot) || slot->stopped) return slot->spin_s;
+    return slot->spin_s + fmax(0, fmin(t_s, heat_runs_until(&slot->heat)) - slot->spin_from_s);
+}
+
+/* Chord times mean heading: within 4 % of the arc up to a radian of turn. */
+double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const double r_ecef_from_body[9])
+{
+    const double *r0 = slot->reported.r_ecef_from_body;
+    const double sum[3] = {r0[0] + r_ecef_from_body[0], r0[3] + r_ecef_from_body[3], r0[6] + r_ecef_from_body[6]};
+    double forward[3], moved[3];
+    if (!v3_normalize(forward, sum)) return 0;
+    v3_sub(moved, p_ecef, slot->reported.p_ecef);
+    return v3_dot(moved, forward);
+}
+
+/* Brings what runs on between reports up to t_s, before the next report replaces what it ran on. The way is the
+ * dead-reckoned one, so that a wheel never jumps; its difference from the truth is the position's, a metre. A
+ * static algorithm has no way of its own: there the reports' own displacement counts. */
+static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const double r_next[9], double t_s)
+{
+    Motion motion;
+
+    slot->spin_s = entity_slot_spin(slot, t_s);
+    slot->spin_from_s = t_s;
+    dead_reckon(&motion, &slot->reported, entity_slot_dt(slot, t_s));
+    double missed_m[3], turn[9];
+    v3_sub(missed_m, p_next_ecef, motion.p_ecef);
+    m3_tmul(turn, motion.r_ecef_from_body, r_next);
+    slot->missed_m   = v3_length(missed_m);
+    slot->missed_rad = acos(clamp(0.5 * (turn[0] + turn[4] + turn[8] - 1), -1, 1));
+    slot->missed_s   = fmax(t_s - slot->report_s, 0);
+    if (slot->reported.algorithm == 1) slot->distance_m += entity_slot_forward(slot, p_next_ecef, r_next);
+    else slot->distance_m += entity_slot_forward(slot, motion.p_ecef, motion.r_ecef_from_body);
+    if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
+}
+
+/* Place, velocity and attitude, which both kinds of report carry. */
+static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef[3], const float v_mps[3],
+                       const float euler_rad[3], bool is_first, double t_s)
+{
+    double r[9];
+    r_ecef_from_body_euler(r, euler_rad[0], euler_rad[1], euler_rad[2]);
+    if (is_first) slot->spin_s = slot->spin_from_s = t_s, slot->missed_s = 0;
+    else close_interval(slot, p_ecef, r, t_s);
+
+    memcpy(slot->reported.p_ecef, p_ecef, sizeof slot->reported.p_ecef);
+    memcpy(slot->reported.r_ecef_from_body, r, sizeof r);
+    if (!sanitize(slot->reported.v_mps, v_mps, largest_speed_mps)) table->counters.motion_refused++;
+}
+
+/* Appearance, heat, articulation and times: the end of both kinds of report. */
+static void take_state(EntityTable *table, EntitySlot *slot, uint8_t version, uint32_t appearance,
+                       const DisVariableParameter *record, int record_count, bool is_first, double t_s)
+{
+    slot->appearance = appearance;
+    slot->report_s = t_s;
+    table->stopped_count -= slot->stopped;
+    slot->stopped = false;
+    slot->paused_s = 0;
+    slot->timeout_s = timeout_of(table, slot, version);
+    slot->hold_s = table->config.extrapolation_limit_s * (slot->timeout_s / table->config.timeout_s);
+
+    const HeatEvidence evidence = {.type = slot->type, .appearance = appearance,
+                                   .speed_mps = entity_slot_frozen(slot) ? 0 : v3_length(slot->reported.v_mps)};
+    if (is_first) heat_begin(&slot->heat, &table->heat, &evidence, t_s, table->config.ambient_s);
+    else heat_report(&slot->heat, &table->heat, &evidence, t_s);
+
+    table->counters.unknown_articulation +=
+        (uint64_t)articulation_report(&slot->articulation, record, record_count, t_s, slot->hold_s);
+    entity_effects_report(table, slot, t_s);
+}
+
+static bool same_type(DisEntityType a, DisEntityType b)
+{
+    return a.kind == b.kind && a.domain == b.domain && a.country == b.country && a.category == b.category &&
+           a.subcategory == b.subcategory && a.specific == b.specific && a.extra == b.extra;
+}
+
+Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    EntitySlot *slot = entity_slot_find(table, pdu->id);
+
+    if (slot && is_late(table, slot, t_s)) return STATUS_OK;
+    if (slot && entity_slot_silent(slot, t_s)) {
+        entity_slot_remove(table, slot, t_s, &table->counters.timed_out);
+        slot = NULL;
+    }
+    if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
+        if (slot) entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
+        return STATUS_OK;
+    }
+    const bool is_first = !slot;
+    if (is_first) {
+        if (has_ended(table, pdu, t_s)) {
+            table->counters.late++;
+            return STATUS_OK;
+        }
+        if (exceeds_rate(table, pdu->id, t_s)) return STATUS_OK;
+        slot = entity_slot_new(table, pdu->id, t_s);
+        entity_room_rank(table, slot, pdu->p_ecef, t_s);
+        if (!entity_room_make(table, slot, t_s)) return STATUS_UNSUPPORTED;
+        table->counters.created++;
+    } else {
+        entity_room_rank(table, slot, pdu->p_ecef, t_s);
+    }
+    if (is_first || !same_type(slot->type, pdu->type)) {
+        slot->type = pdu->type;
+        slot->model = catalog_find(table->catalog, pdu->type, &slot->origin, NULL);
+        slot->roles = table->model_roles[slot->model];
+        slot->articulation.count = 0;
+    }
+    slot->force = pdu->force;
+    memcpy(slot->marking, pdu->marking, sizeof pdu->marking);
+
+    take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, is_first, t_s);
+    slot->reported.algorithm = pdu->dead_reckoning >= 1 && pdu->dead_reckoning <= 9 ? pdu->dead_reckoning : 1;
+    if (!sanitize(slot->reported.a_mps2, pdu->acceleration_mps2, largest_acceleration_mps2))
+        table->counters.motion_refused++;
+    if (!sanitize(slot->reported.w_body_rps, pdu->angular_rate_rps, table->config.rate_limit_rps))
+        table->counters.motion_refused++;
+    take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, is_first, t_s);
+    return STATUS_OK;
+}
+
+Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s)
+{
+    const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
+    EntitySlot *slot = entity_slot_find(table, pdu->id);
+
+    if (slot && is_late(table, slot, t_s)) return STATUS_OK;
+    if (slot && entity_slot_silent(slot, t_s)) {
+        entity_slot_remove(table, slot, t_s, &table->counters.timed_out);
+        slot = NULL;
+    }
+    if (!slot) {
+        table->counters.updates_without_entity++;
+        return STATUS_OK;
+    }
+    if (pdu->appearance >> dis_appearance_deactivated_bit & 1) {
+        entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
+        return STATUS_OK;
+    }
+    entity_room_rank(table, slot, pdu->p_ecef, t_s);
+    take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
+    take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
+    return STATUS_OK;
+}

@@ -1,0 +1,440 @@
+/* entities/table/entity_snapshot.c: the table at one instant: everybody extrapolated, in the order of ids.
+ *
+ * Entities go through in chunks whose slots stay in cache; those of one algorithm in a chunk go through
+ * dead_reckon_arrays together. */
+#include "entities/table/entity_table_private.h"
+
+#include <limits.h>
+#include <stddef.h>
+
+static const double timeout_per_heartbeat = 2.4; /* IEEE 1278.1 */
+
+double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps)
+{
+    static const double threshold_m = 1, unreported_mps2 = 1;
+
+    const double age = fmax(age_s, 0), beyond = fmax(fmin(age, fmax(hold_s, heartbeat_s)) - heartbeat_s, 0);
+    return threshold_m * fmin(age / heartbeat_s, 1) + 0.5 * unreported_mps2 * beyond * beyond +
+           speed_mps * fmax(age - hold_s, 0);
+}
+
+void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
+                    double otherwise_m, double heartbeat_s)
+{
+    static const double threshold_rad = 3 * (3.14159265358979323846 / 180);
+    *drift_m   = otherwise_m;
+    *drift_rad = threshold_rad * fmin(fmax(age_s, 0) / heartbeat_s, 1);
+    if (!(missed_s > 0)) return;
+    const double share = clamp(age_s / missed_s, 0, 1);
+    *drift_m   = missed_m * share * share;
+    *drift_rad = missed_rad * share;
+}
+
+int snapshot_find(const Snapshot *snapshot, DisEntityId id)
+{
+    int low = 0, high = snapshot->count;
+    while (low < high) {
+        const int middle = low + (high - low) / 2;
+        const int order = dis_entity_id_compare(snapshot->entity[middle].id, id);
+        if (order == 0) return middle;
+        if (order < 0) low = middle + 1;
+        else high = middle;
+    }
+    return -1;
+}
+
+bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff)
+{
+    return puff->owner == entity_key(snapshot->entity[index].id) + 1;
+}
+
+int snapshot_damage(const SnapshotEntity *entity)
+{
+    return entity->type.kind == dis_kind_platform ? (int)(entity->appearance >> dis_appearance_damage_shift & 3) : 0;
+}
+
+bool snapshot_is_wreck(const SnapshotEntity *entity) { return snapshot_damage(entity) == dis_damage_destroyed; }
+
+/* ---- order -------------------------------------------------------------------------------- */
+
+typedef struct Ordered {
+    uint64_t key;
+    int      slot;
+} Ordered;
+
+/* Radix sort, an octet a pass, six octets of id; a pass whose octet is the same everywhere is left out. Returns
+ * whichever of the two arrays holds the result. */
+static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
+{
+    for (int shift = 0; shift < 48; shift += 8) {
+        int start[256] = {0}, at = 0;
+        for (int i = 0; i < count; i++) start[from[i].key >> shift & 255]++;
+        if (start[from[0].key >> shift & 255] == count) continue;
+        for (int digit = 0; digit < 256; digit++) {
+            const int here = start[digit];
+            start[digit] = at;
+            at += here;
+        }
+        for (int i = 0; i < count; i++) to[start[from[i].key >> shift & 255]++] = from[i];
+        Ordered *const swap = from;
+        from = to;
+        to = swap;
+    }
+    return from;
+}
+
+/* ---- no more than are asked for -------------------------------------------------------------- */
+
+/* Squared distance from the place that matters, as a number that sorts as it does: of what was reported, not of what it
+ * is extrapolated to. */
+static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
+{
+    const EntityFocus *focus = &table->focus;
+    double             d[3], d2_m2;
+    uint64_t           bits;
+    if (!focus->placed || dis_entity_id_compare(slot->id, focus->host) == 0 ||
+        dis_entity_id_compare(slot->id, focus->also) == 0)
+        return 0;
+    v3_sub(d, slot->reported.p_ecef, focus->p_ecef);
+    d2_m2 = v3_dot(d, d);
+    memcpy(&bits, &d2_m2, sizeof bits);
+    return bits;
+}
+
+/* The value of which `wanted` are not above it, and fewer below; *at_it: how many of those that equal it are wanted. An
+ * octet a pass, from the highest. */
+static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wanted)
+{
+    uint64_t prefix = 0;
+    for (int shift = 56; shift >= 0; shift -= 8) {
+        const uint64_t mask = shift == 56 ? 0 : ~UINT64_C(0) << (shift + 8);
+        int            digit = 0, of[256] = {0};
+        for (int i = 0; i < count; i++)
+            if ((value[i] & mask) == prefix) of[value[i] >> shift & 255]++;
+        for (; of[digit] < wanted; digit++) wanted -= of[digit];
+        prefix |= (uint64_t)digit << shift;
+    }
+    *at_it = wanted;
+    return prefix;
+}
+
+/* Of count in the order of ids, the nearest config.shown in that order; among equally near ones those with the lower ids. */
+static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
+{
+    const int wanted = table->config.shown;
+    if (*count <= wanted) return STATUS_OK;
+    uint64_t *near = arena_alloc(arena, (size_t)*count, sizeof *near);
+    if (!near) return STATUS_NO_MEMORY;
+    for (int i = 0; i < *count; i++) near[i] = nearness(table, table->slot + order[i].slot);
+    int            at_it, kept = 0;
+    const uint64_t last = last_wanted(&at_it, near, *count, wanted);
+    for (int i = 0; i < *count; i++) {
+        if (near[i] > last || (near[i] == last && at_it-- <= 0)) continue;
+        order[kept++] = order[i];
+    }
+    *count = kept;
+    return STATUS_OK;
+}
+
+/* ---- motion ------------------------------------------------------------------------------- */
+
+enum { block_count = 128 }; /* entities in a chunk, and so at most in a block of one algorithm */
+
+/* Arrays of one block: 22 in, 15 out, 37 KB. */
+typedef struct MotionBlock {
+    double in[22][block_count], out[15][block_count];
+} MotionBlock;
+
+static void block_arrays(KinematicsArrays *k, MotionArrays *m, MotionBlock *block, int count)
+{
+    int a = 0;
+    for (int i = 0; i < 3; i++) {
+        k->p_ecef[i] = block->in[a++];
+        k->v_mps[i] = block->in[a++];
+        k->a_mps2[i] = block->in[a++];
+        k->w_body_rps[i] = block->in[a++];
+    }
+    for (int i = 0; i < 9; i++) k->r_ecef_from_body[i] = block->in[a++];
+    k->dt_s = block->in[a++];
+    k->count = count;
+    a = 0;
+    for (int i = 0; i < 3; i++) {
+        m->p_ecef[i] = block->out[a++];
+        m->v_ecef_mps[i] = block->out[a++];
+    }
+    for (int i = 0; i < 9; i++) m->r_ecef_from_body[i] = block->out[a++];
+}
+
+/* The reach of geodesy and of every sender's arithmetic: what leaves it was no motion but a wrong report. */
+static bool is_near_earth(const double p_ecef[3])
+{
+    const double r_m = v3_length(p_ecef);
+    return r_m >= 1e5 && r_m <= 1e8;
+}
+
+/* member[count]: indices into entity and order, all of one algorithm. */
+static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int algorithm,
+                         const int *member, int count, double t_s)
+{
+    MotionBlock block;
+    KinematicsArrays k;
+    MotionArrays m;
+
+    block_arrays(&k, &m, &block, count);
+    for (int b = 0; b < count; b++) {
+        const EntitySlot *slot = table->slot + order[member[b]].slot;
+        for (int i = 0; i < 3; i++) {
+            k.p_ecef[i][b] = slot->reported.p_ecef[i];
+            k.v_mps[i][b] = slot->reported.v_mps[i];
+            k.a_mps2[i][b] = slot->reported.a_mps2[i];
+            k.w_body_rps[i][b] = slot->reported.w_body_rps[i];
+        }
+        for (int i = 0; i < 9; i++) k.r_ecef_from_body[i][b] = slot->reported.r_ecef_from_body[i];
+        k.dt_s[b] = entity_slot_dt(slot, t_s);
+    }
+    dead_reckon_arrays(&m, algorithm, &k);
+
+    for (int b = 0; b < count; b++) {
+        const EntitySlot *slot = table->slot + order[member[b]].slot;
+        const bool stands = entity_slot_frozen(slot) || slot->stopped;
+        SnapshotEntity *e = entity + member[b];
+        for (int i = 0; i < 3; i++) {
+            e->p_ecef[i] = m.p_ecef[i][b];
+            e->v_ecef_mps[i] = stands ? 0 : m.v_ecef_mps[i][b];
+            e->w_body_rps[i] = stands || !dead_reckoning_turns(algorithm) ? 0 : slot->reported.w_body_rps[i];
+        }
+        for (int i = 0; i < 9; i++) e->r_ecef_from_body[i] = m.r_ecef_from_body[i][b];
+        if (is_near_earth(e->p_ecef)) continue;
+        memcpy(e->p_ecef, slot->reported.p_ecef, sizeof e->p_ecef);
+        memset(e->v_ecef_mps, 0, sizeof e->v_ecef_mps);
+    }
+}
+
+/* Slots lie far apart, in no order of ids: a chunk's come into the cache together, not one after the other. */
+static void fetch_slots(const EntityTable *table, const Ordered *order, int first, int end)
+{
+    for (int e = first; e < end; e++) {
+        const char *slot = (const char *)(table->slot + order[e].slot);
+        for (size_t at = 0; at < offsetof(EntitySlot, articulation) + 64; at += 64) __builtin_prefetch(slot + at);
+    }
+}
+
+/* Entities first .. end - 1, by algorithm. */
+static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const Ordered *order, int first, int end,
+                         double t_s)
+{
+    int member[10][block_count], members[10] = {0};
+
+    for (int e = first; e < end; e++) {
+        const int a = table->slot[order[e].slot].reported.algorithm;
+        member[a][members[a]++] = e;
+    }
+    for (int a = 1; a < 10; a++)
+        if (members[a] > 0) reckon_block(entity, table, order, a, member[a], members[a], t_s);
+}
+
+/* ---- the rest of an entity ---------------------------------------------------------------- */
+
+/* From here on p is the model's origin, the centre of the base, on the ground where it is set onto it; z points down. */
+static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
+{
+    const double height_m = catalog_model(table->catalog, slot->model)->height_m;
+    if (slot->origin == ORIGIN_CENTRE)
+        for (int i = 0; i < 3; i++) e->p_ecef[i] += e->r_ecef_from_body[3 * i + 2] * 0.5 * height_m;
+    contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
+}
+
+/* Of an entity whose place is still as it was reported. The way that it has gone is asked for by what rolls alone. */
+static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, double t_s)
+{
+    const bool   stands = entity_slot_frozen(slot) || slot->stopped;
+    const double forward_m =
+        entity_slot_dt(slot, t_s) != 0 ? entity_slot_forward(slot, e->p_ecef, e->r_ecef_from_body) : 0;
+    return (JointDrive){.spin_s = entity_slot_spin(slot, t_s), .distance_m = slot->distance_m + forward_m,
+                        .speed_mps = stands ? 0 : v3_length(e->v_ecef_mps)};
+}
+
+static void pose_nodes(NodePose *pose, double *joint_value, const Model *model, const Articulation *articulation,
+                       const JointDrive *drive, double time_s, double hold_s, const SnapshotEntity *e)
+{
+    articulation_joint_values(joint_value, model, articulation, drive, time_s, hold_s);
+    entity_effects_wreck_joints(joint_value, model, e, articulation->count);
+    model_pose(pose, model, joint_value);
+}
+
+void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot, int index, const Model *model)
+{
+    const SnapshotEntity *e = &snapshot->entity[index];
+    if (snapshot->node) {
+        memcpy(pose, snapshot->node + e->first_node, (size_t)model->node_count * sizeof *pose);
+        return;
+    }
+    const SnapshotJoints *joints = &snapshot->joints[index];
+    Articulation          articulation;
+    articulation.t_s   = joints->report_s;
+    articulation.count = joints->count;
+    memcpy(articulation.joint, snapshot->joint_report + joints->first, (size_t)joints->count * sizeof *articulation.joint);
+    pose_nodes(pose, joint_value, model, &articulation, &joints->drive, joints->time_s, joints->hold_s, e);
+}
+
+static void keep_joints(SnapshotJoints *to, JointReport *report, const EntitySlot *slot, const SnapshotEntity *e, double t_s)
+{
+    to->report_s = slot->articulation.t_s;
+    to->hold_s   = slot->hold_s;
+    to->time_s   = entity_slot_time(slot, t_s);
+    to->drive    = drive_joints(slot, e, t_s);
+    memcpy(report + to->first, slot->articulation.joint, (size_t)to->count * sizeof *report);
+}
+
+static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport *report, const EntityTable *table,
+                          const EntitySlot *slot, double t_s)
+{
+    const bool stands = entity_slot_frozen(slot) || slot->stopped;
+
+    e->id = slot->id;
+    e->type = slot->type;
+    e->force = slot->force;
+    memcpy(e->marking, slot->marking, sizeof e->marking);
+    e->appearance = slot->appearance;
+    e->model = slot->model;
+    e->age_s = fmax(t_s - slot->report_s, 0);
+    e->position_error_m = stands ? 0 : snapshot_position_error_m(e->age_s, slot->timeout_s / timeout_per_heartbeat,
+                                                                 slot->hold_s, v3_length(e->v_ecef_mps));
+    snapshot_drift(&e->drift_m, &e->drift_rad, e->age_s, slot->missed_m, slot->missed_rad, slot->missed_s,
+                   e->position_error_m, slot->timeout_s / timeout_per_heartbeat);
+    if (stands) e->drift_m = e->drift_rad = 0;
+    heat_at(e->heat, &slot->heat, &table->heat, slot->roles, t_s);
+
+    keep_joints(joints, report, slot, e, t_s);
+
+    place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
+}
+
+/* Entities by chunks, each by whoever is free: they know nothing of each other. */
+typedef struct Chunks {
+    Snapshot          *snapshot;
+    const EntityTable *table;
+    const Ordered     *order;
+} Chunks;
+
+static void finish_chunk(void *user, int worker, int chunk)
+{
+    (void)worker;
+    const Chunks *all = user;
+    Snapshot     *snapshot = all->snapshot;
+    const int     first = chunk * block_count;
+    const int     end = snapshot->count - first < block_count ? snapshot->count : first + block_count;
+    fetch_slots(all->table, all->order, first, end);
+    reckon_chunk(snapshot->entity, all->table, all->order, first, end, snapshot->t_s);
+    for (int e = first; e < end; e++)
+        finish_entity(snapshot->entity + e, snapshot->joints + e, snapshot->joint_report, all->table,
+                      all->table->slot + all->order[e].slot, snapshot->t_s);
+}
+
+/* What entities carry first, then what they and the shots have let go. */
+static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
+{
+    EffectPuff *carried = NULL, one;
+    int         count = 0;
+    for (int pass = 0; pass < 2; pass++) {
+        const int found = count;
+        if (pass == 1 && found == 0) break;
+        if (pass == 1 && !(carried = arena_alloc(arena, (size_t)found, sizeof *carried))) return STATUS_NO_MEMORY;
+        count = 0;
+        for (int e = 0; e < snapshot->count; e++) {
+            EffectPuff *to = pass ? carried + count : &one;
+            if (entity_effects_carried(to, table, table->slot + order[e].slot, snapshot->entity + e, snapshot->t_s))
+                count++;
+            if (pass == 1 && count == found) break;
+        }
+    }
+    return entity_effects_snapshot(snapshot, table, carried, count, arena);
+}
+
+Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
+{
+    enum { ahead = 12 }; /* slots that are fetched before they are read */
+    Snapshot snapshot = {.t_s = t_s};
+
+    if (!isfinite(t_s)) return STATUS_BAD_VALUE;
+    const size_t capacity = (size_t)table->count + 1;
+    Ordered *order = arena_alloc(arena, capacity, sizeof *order);
+    Ordered *scratch = arena_alloc(arena, capacity, sizeof *scratch);
+    if (!order || !scratch) return STATUS_NO_MEMORY;
+
+    for (int s = 0; s < table->slot_end; s++) {
+        const EntitySlot *slot = table->slot + s;
+        if (s + ahead < table->slot_end) { /* what is read of a slot lies within its first two lines */
+            __builtin_prefetch(slot + ahead);
+            __builtin_prefetch((const char *)(slot + ahead) + 64);
+        }
+        if (!entity_slot_lives(slot) || entity_slot_silent(slot, t_s)) continue;
+        if (!catalog_shows(table->catalog, slot->model)) continue;
+        order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
+    }
+    if (snapshot.count > 0) order = sort_by_id(order, scratch, snapshot.count);
+    const int    found   = snapshot.count;
+    const Status nearest = keep_nearest(order, &snapshot.count, table, arena);
+    if (nearest != STATUS_OK) return nearest;
+    snapshot.left_out = found - snapshot.count;
+    snapshot.entity   = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.entity);
+    if (!snapshot.entity) return STATUS_NO_MEMORY;
+
+    snapshot.joints = arena_alloc(arena, (size_t)snapshot.count + 1, sizeof *snapshot.joints);
+    if (!snapshot.joints) return STATUS_NO_MEMORY;
+    int reports = 0;
+    for (int e = 0; e < snapshot.count; e++) {
+        const EntitySlot *slot = table->slot + order[e].slot;
+        if (e + ahead < snapshot.count) {
+            const EntitySlot *next = table->slot + order[e + ahead].slot;
+            __builtin_prefetch(&next->model);
+            __builtin_prefetch(&next->articulation.count);
+        }
+        const int nodes = catalog_model(table->catalog, slot->model)->node_count;
+        if (nodes > INT_MAX - snapshot.node_count || slot->articulation.count > INT_MAX - reports) return STATUS_NO_MEMORY;
+        snapshot.entity[e].first_node = snapshot.node_count;
+        snapshot.node_count += nodes;
+        snapshot.joints[e].first = reports;
+        snapshot.joints[e].count = slot->articulation.count;
+        reports += slot->articulation.count;
+    }
+    snapshot.joint_report = arena_alloc(arena, (size_t)reports + 1, sizeof *snapshot.joint_report);
+    if (!snapshot.joint_report) return STATUS_NO_MEMORY;
+    Pool     *pool   = table->config.pool;
+    const int chunks = (snapshot.count + block_count - 1) / block_count;
+
+    Chunks all = {&snapshot, table, order};
+    if (pool) pool_run(pool, chunks, finish_chunk, &all);
+    else
+        for (int chunk = 0; chunk < chunks; chunk++) finish_chunk(&all, 0, chunk);
+    const Status status = add_puffs(&snapshot, table, order, arena);
+    if (status == STATUS_OK) *out = snapshot;
+    return status;
+}
+
+bool entity_table_pose_nodes(SnapshotEntity *out, NodePose *node, double *joint_value, const EntityTable *table,
+                             EntityHandle handle, double t_s)
+{
+    if (!isfinite(t_s) || !entity_table_alive(table, handle)) return false;
+    const EntitySlot *slot = table->slot + handle.slot;
+    if (entity_slot_silent(slot, t_s)) return false;
+
+    SnapshotEntity e = {.id = slot->id, .type = slot->type, .force = slot->force, .appearance = slot->appearance,
+                        .model = slot->model, .age_s = fmax(t_s - slot->report_s, 0)};
+    const Ordered order = {entity_key(slot->id), (int)handle.slot};
+    const int     only = 0;
+    reckon_block(&e, table, &order, slot->reported.algorithm, &only, 1, t_s);
+    if (node) {
+        const JointDrive drive = drive_joints(slot, &e, t_s);
+        pose_nodes(node, joint_value, catalog_model(table->catalog, slot->model), &slot->articulation, &drive,
+                   entity_slot_time(slot, t_s), slot->hold_s, &e);
+    }
+    place_origin(&e, table, slot);
+    *out = e;
+    return true;
+}
+
+bool entity_table_pose(SnapshotEntity *out, const EntityTable *table, EntityHandle handle, double t_s)
+{
+    return entity_table_pose_nodes(out, NULL, NULL, table, handle, t_s);
+}

@@ -1,0 +1,339 @@
+/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, whose documents know their lines. */
+#include "pitviper_settings_private.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <yaml.h>
+
+typedef struct Reading {
+    const char      *path, *file; /* file: whose folder paths are relative to */
+    yaml_document_t *document;
+} Reading;
+
+enum { key_size = 160, source_size = 512, words_size = 512 };
+
+static int line_of(const yaml_node_t *node) { return (int)node->start_mark.line + 1; }
+
+static bool holds_nul(const yaml_node_t *node)
+{
+    return strlen((const char *)node->data.scalar.value) != node->data.scalar.length;
+}
+
+static const char *text_of(const yaml_node_t *node)
+{
+    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: no value of ours */
+}
+
+/* What stands there, as a message shows it. */
+static const char *shown(const yaml_node_t *node)
+{
+    return node->type == YAML_MAPPING_NODE ? "{...}" : node->type == YAML_SEQUENCE_NODE ? "[...]" : text_of(node);
+}
+
+/* [1, 2, [3, 4]] as numbers in a row. */
+static bool flatten(NumberList *out, const Reading *r, const Setting *row, const yaml_node_t *node, int depth)
+{
+    if (node->type == YAML_SCALAR_NODE)
+        return out->count < number_list_capacity &&
+               settings_number(&out->number[out->count++], row, text_of(node));
+    if (node->type != YAML_SEQUENCE_NODE || depth == 2) return false;
+    for (const yaml_node_item_t *item = node->data.sequence.items.start; item < node->data.sequence.items.top; item++)
+        if (!flatten(out, r, row, yaml_document_get_node(r->document, *item), depth + 1)) return false;
+    return true;
+}
+
+static Status fill_numbers(void *out, const Reading *r, const SettingTable *table, const Setting *row,
+                           const yaml_node_t *value, const char *source)
+{
+    NumberList list = {0};
+    if (!flatten(&list, r, row, value, 0)) {
+        char range[64] = "";
+        if (!isnan(row->low)) snprintf(range, sizeof range, " in %g .. %g %s", row->low, row->high, row->unit);
+        log_error("%s: %s: %s%s: needs a list of at most %d numbers%s", table->module, source, settings_prefix(table),
+                  row->name, number_list_capacity, range);
+        return STATUS_BAD_VALUE;
+    }
+    memcpy((char *)out + row->offset, &list, sizeof list);
+    return STATUS_OK;
+}
+
+/* ---- what a table reads by itself --------------------------------------------------------------- */
+
+static Status say_own(const Reading *r, const SettingTable *table, const Setting *row, const yaml_node_t *node,
+                      const char *complaint)
+{
+    char text[160];
+    text_escape(text, sizeof text, shown(node), strnlen(shown(node), 60));
+    log_error("%s: %s:%d: %s%s: '%s' is %s%s", table->module, r->path, line_of(node), settings_prefix(table), row->name,
+              text, complaint ? complaint : "not ", complaint ? "" : row->choices);
+    return STATUS_BAD_VALUE;
+}
+
+/* key: of a map; else NULL. words: instead of the value's text. */
+static Status fill_one(void *out, const Reading *r, const SettingTable *table, const Setting *row,
+                       const yaml_node_t *key, const yaml_node_t *value, const char *words)
+{
+    const yaml_node_t *part[2] = {value, key};
+    SettingValue       v = {.text = words, .line = line_of(key ? key : value)};
+    const char        *complaint = NULL;
+    for (int i = 0; i < (key ? 2 : 1); i++)
+        if (!(i == 0 && words) && (part[i]->type != YAML_SCALAR_NODE || holds_nul(part[i])))
+            return say_own(r, table, row, part[i], NULL);
+    if (!words) v.text = text_of(value);
+    if (key) v.key = text_of(key);
+    const Status status = table->own(&complaint, out, row, &v);
+    return status == STATUS_BAD_VALUE ? say_own(r, table, row, v.wrong_key ? key : value, complaint) : status;
+}
+
+/* A list of words as one text with blanks between; false where it is none. */
+static bool join(char out[words_size], const Reading *r, const yaml_node_t *sequence)
+{
+    size_t n = 0;
+    *out = 0;
+    for (const yaml_node_item_t *item = sequence->data.sequence.items.start; item < sequence->data.sequence.items.top;
+         item++) {
+        const yaml_node_t *node = yaml_document_get_node(r->document, *item);
+        if (node->type != YAML_SCALAR_NODE || holds_nul(node) || strpbrk(text_of(node), " \t")) return false;
+        n += (size_t)snprintf(out + n, words_size - n, "%s%s", n ? " " : "", text_of(node));
+        if (n >= words_size) return false;
+    }
+    return true;
+}
+
+static Status fill_own(void *out, const Reading *r, const SettingTable *table, const Setting *row,
+                       const yaml_node_t *value)
+{
+    char       words[words_size];
+    const bool list = value->type == YAML_SEQUENCE_NODE, map = value->type == YAML_MAPPING_NODE;
+    Status     status = STATUS_OK;
+    if (map != (row->type == SETTING_MAP) || (list && row->type == SETTING_OWN && !join(words, r, value)))
+        return say_own(r, table, row, value, NULL);
+    if (map) {
+        for (const yaml_node_pair_t *pair = value->data.mapping.pairs.start;
+             pair < value->data.mapping.pairs.top && status == STATUS_OK; pair++)
+            status = fill_one(out, r, table, row, yaml_document_get_node(r->document, pair->key),
+                              yaml_document_get_node(r->document, pair->value), NULL);
+    } else if (list && row->type == SETTING_EACH) {
+        for (const yaml_node_item_t *item = value->data.sequence.items.start;
+             item < value->data.sequence.items.top && status == STATUS_OK; item++)
+            status = fill_one(out, r, table, row, NULL, yaml_document_get_node(r->document, *item), NULL);
+    } else {
+        status = fill_one(out, r, table, row, NULL, value, list ? words : NULL);
+    }
+    return status;
+}
+
+/* ---- keys ---------------------------------------------------------------------------------------- */
+
+static Status fill_value(void *out, const Reading *r, const SettingTable *table, const Setting *row,
+                         const yaml_node_t *value, const char *source)
+{
+    if (row->type == SETTING_OWN || row->type == SETTING_EACH || row->type == SETTING_MAP)
+        return fill_own(out, r, table, row, value);
+    if (row->type == SETTING_NUMBERS && value->type == YAML_SEQUENCE_NODE)
+        return fill_numbers(out, r, table, row, value, source);
+    if (value->type != YAML_SCALAR_NODE) {
+        log_error("%s: %s: %s%s needs one value", table->module, source, settings_prefix(table), row->name);
+        return STATUS_BAD_VALUE;
+    }
+    return settings_store(out, table, row, text_of(value), source, r->file);
+}
+
+/* Ends: an item's table holds only lists that are written in the program, whatever aliases a file has. */
+static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
+                           const char *section, const yaml_node_t *mapping);
+
+static Status fill_list(void *out, const Reading *r, const SettingTable *table, const SettingList *list,
+                        const yaml_node_t *sequence)
+{
+    const yaml_node_item_t *at = sequence->data.sequence.items.start, *end = sequence->data.sequence.items.top;
+    for (; at < end; at++) {
+        const yaml_node_t *node = yaml_document_get_node(r->document, *at);
+        if (node->type != YAML_MAPPING_NODE) {
+            log_error("%s: %s:%d: %s: expected `- key: value` and more keys below", table->module, r->path,
+                      line_of(node), list->name);
+            return STATUS_BAD_VALUE;
+        }
+        errno = 0;
+        void *item = list->add(out);
+        if (!item && errno == ENOMEM) return STATUS_NO_MEMORY;
+        bool *seen = calloc((size_t)(list->item->count + list->item->list_count), sizeof *seen);
+        if (!item || !seen) {
+            if (!item) log_error("%s: %s:%d: %s: no room for more", table->module, r->path, line_of(node), list->name);
+            free(seen);
+            return item ? STATUS_NO_MEMORY : STATUS_BAD_VALUE;
+        }
+        if (list->item->line_at) *(int *)((char *)item + list->item->line_at) = line_of(node);
+        const Status status = fill_mapping(item, NULL, seen, r, list->item, "", node);
+        free(seen);
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+/* Which list a key names; -1: none. */
+static int find_list(const SettingTable *table, const char *name)
+{
+    for (int i = 0; i < table->list_count; i++)
+        if (strcmp(table->list[i].name, name) == 0) return i;
+    return -1;
+}
+
+static bool is_section(const SettingTable *table, const char *name)
+{
+    const size_t length = strlen(name);
+    for (int i = 0; i < table->count; i++)
+        if (strncmp(table->row[i].name, name, length) == 0 && table->row[i].name[length] == '.') return true;
+    return false;
+}
+
+static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
+                       const char *section, const yaml_node_t *name, const yaml_node_t *value)
+{
+    char full[key_size], source[source_size];
+    snprintf(source, sizeof source, "%s:%d", r->path, line_of(name));
+    if (name->type != YAML_SCALAR_NODE) {
+        log_error("%s: %s: a key must be a word", table->module, source);
+        return STATUS_BAD_VALUE;
+    }
+    snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(name));
+    if (is_section(table, full)) {
+        if (value->type == YAML_MAPPING_NODE) return fill_mapping(out, given, seen, r, table, full, value);
+        /* `section:` with nothing below it */
+        if (value->type == YAML_SCALAR_NODE && !*text_of(value)) return STATUS_OK;
+    }
+    const int list = find_list(table, full), row = settings_find(table, full);
+    if (row < 0 && list < 0) return settings_say_unknown(table, source, full);
+    bool *met = &seen[row >= 0 ? row : table->count + list];
+    if (*met) {
+        log_error("%s: %s: %s%s is given twice", table->module, source, settings_prefix(table), full);
+        return STATUS_BAD_VALUE;
+    }
+    *met = true;
+    if (list >= 0) {
+        if (value->type == YAML_SEQUENCE_NODE) return fill_list(out, r, table, &table->list[list], value);
+        log_error("%s: %s: %s: expected a list, `- key: value` and more keys below", table->module, source, full);
+        return STATUS_BAD_VALUE;
+    }
+    const Status status = fill_value(out, r, table, &table->row[row], value, source);
+    if (status == STATUS_OK && given) given[row] = true;
+    return status;
+}
+
+static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
+                           const char *section, const yaml_node_t *mapping)
+{
+    const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
+    for (; pair < end; pair++) {
+        const Status status = fill_key(out, given, seen, r, table, section,
+                                       yaml_document_get_node(r->document, pair->key),
+                                       yaml_document_get_node(r->document, pair->value));
+        if (status != STATUS_OK) return status;
+    }
+    return STATUS_OK;
+}
+
+/* ---- a file --------------------------------------------------------------------------------------- */
+
+static Status load(yaml_document_t *document, const SettingTable *table, const char *path, const char *text,
+                   size_t octets)
+{
+    yaml_parser_t parser;
+    Status        status = yaml_check(table->module, path, text, octets);
+    if (status != STATUS_OK) return status;
+    if (!yaml_parser_initialize(&parser)) return STATUS_NO_MEMORY;
+    yaml_parser_set_input_string(&parser, (const unsigned char *)text, octets);
+    if (!yaml_parser_load(&parser, document)) {
+        log_error("%s: %s:%d: %s", table->module, path, (int)parser.problem_mark.line + 1,
+                  parser.problem ? parser.problem : "not YAML");
+        status = STATUS_BAD_VALUE;
+    }
+    yaml_parser_delete(&parser);
+    return status;
+}
+
+static Status fill_document(void *out, bool *given, const SettingTable *table, const char *path, const char *file,
+                            yaml_document_t *document)
+{
+    const yaml_node_t *root = yaml_document_get_root_node(document);
+    const Reading      reading = {path, file, document};
+    if (!root) return STATUS_OK;
+    if (root->type != YAML_MAPPING_NODE) {
+        log_error("%s: %s:%d: expected %s", table->module, path, line_of(root),
+                  strchr(table->row[0].name, '.') ? "`section:` and keys below it" : "`key: value` lines");
+        return STATUS_BAD_VALUE;
+    }
+    bool *seen = calloc((size_t)(table->count + table->list_count), sizeof *seen);
+    if (!seen) return STATUS_NO_MEMORY;
+    const Status status = fill_mapping(out, given, seen, &reading, table, "", root);
+    free(seen);
+    return status;
+}
+
+static Status parse_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file,
+                       const char *text, size_t octets)
+{
+    yaml_document_t document;
+    Status          status = load(&document, table, path, text, octets);
+    if (status != STATUS_OK) return status;
+    status = fill_document(out, given, table, path, file, &document);
+    yaml_document_delete(&document);
+    return status;
+}
+
+Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
+                      size_t octets)
+{
+    return parse_as(out, given, table, path, path, text, octets);
+}
+
+Status settings_read(void *out, bool *given, const SettingTable *table, const char *path)
+{
+    return settings_read_as(out, given, table, path, path);
+}
+
+Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file)
+{
+    char  *text;
+    size_t octets;
+    Status status = text_read_file(&text, &octets, table->module, path, settings_file_octets);
+    if (status != STATUS_OK) return status;
+    status = parse_as(out, given, table, path, file, text, octets);
+    free(text);
+    if (status == STATUS_OK) log_detail("%s: read %s", table->module, path);
+    return status;
+}
+
+static int line_in(const SettingTable *table, yaml_document_t *document, const char *section, const char *name,
+                   const yaml_node_t *mapping)
+{
+    const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start, *end = mapping->data.mapping.pairs.top;
+    int                     line = 0;
+    for (; pair < end && line == 0; pair++) {
+        char               full[key_size];
+        const yaml_node_t *key = yaml_document_get_node(document, pair->key);
+        const yaml_node_t *value = yaml_document_get_node(document, pair->value);
+        if (key->type != YAML_SCALAR_NODE) continue;
+        snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(key));
+        if (strcmp(full, name) == 0) line = line_of(key);
+        else if (value->type == YAML_MAPPING_NODE && is_section(table, full))
+            line = line_in(table, document, full, name, value);
+    }
+    return line;
+}
+
+int settings_line(const SettingTable *table, const char *name, const char *path)
+{
+    char           *text;
+    size_t          octets;
+    yaml_document_t document;
+    int             line = 0;
+    if (text_read_file(&text, &octets, table->module, path, settings_file_octets) != STATUS_OK) return 0;
+    if (load(&document, table, path, text, octets) == STATUS_OK) {
+        const yaml_node_t *root = yaml_document_get_root_node(&document);
+        if (root && root->type == YAML_MAPPING_NODE) line = line_in(table, &document, "", name, root);
+        yaml_document_delete(&document);
+    }
+    free(text);
+    return line;
+}

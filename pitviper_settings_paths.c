@@ -1,0 +1,81 @@
+/* pitviper_settings_paths.c: names of files in settings: relative to the file that gives them, or made absolute. */
+#include "pitviper_settings_private.h"
+
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+bool settings_is_path(const Setting *row)
+{
+    return row->type == SETTING_PATH || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATH;
+}
+
+/* Characters of the folder that paths in this file are relative to, with its slash. A file that is none of a folder's
+ * (a pipe, /dev/stdin) has none: they are relative to the current folder. */
+static size_t folder_of(const char *file)
+{
+    struct stat about;
+    const char *slash = file ? strrchr(file, '/') : NULL;
+    if (!slash || (stat(file, &about) == 0 && !S_ISREG(about.st_mode))) return 0;
+    return (size_t)(slash - file) + 1;
+}
+
+/* Each path behind the folder it is relative to. False: it does not fit. */
+bool settings_place_paths(char *out, size_t out_size, SettingType type, const char *value, const char *file)
+{
+    const size_t folder = folder_of(file);
+    size_t       n = 0;
+    char        *made = calloc(out_size, 1);
+    bool         fits = made != NULL;
+    for (const char *at = value; fits && *at;) {
+        const size_t blanks = type == SETTING_PATHS ? strspn(at, " ") : 0;
+        const size_t length = type == SETTING_PATHS ? strcspn(at, ",") : strlen(at);
+        const bool   name = type == SETTING_NAME_OR_PATH && !strpbrk(value, "/.");
+        const size_t before = blanks < length && at[blanks] != '/' && !name ? folder : 0;
+        fits = n + before + length + 1 < out_size;
+        if (!fits) break;
+        if (before) memcpy(made + n, file, before);
+        memcpy(made + n + before, at + (blanks < length ? blanks : length), blanks < length ? length - blanks : 0);
+        n += before + (blanks < length ? length - blanks : 0);
+        if (at[length]) made[n++] = ',';
+        at += length + (at[length] != 0);
+    }
+    if (fits) memcpy(out, made, out_size);
+    free(made);
+    return fits;
+}
+
+/* Of a path that is there its real one; else with the current folder before it. */
+static bool absolute(char *out, size_t out_size, const char *path)
+{
+    char       *real = realpath(path, NULL), here[4096];
+    const char *folder = path[0] == '/' || real ? "" : getcwd(here, sizeof here);
+    const int   n = folder ? snprintf(out, out_size, "%s%s%s", folder, *folder ? "/" : "", real ? real : path) : -1;
+    free(real);
+    return n >= 0 && n < (int)out_size;
+}
+
+void settings_absolute(void *out, const SettingTable *table)
+{
+    for (int i = 0; i < table->count; i++) {
+        const Setting *row = &table->row[i];
+        char          *at = (char *)out + row->offset, *made, one[4096];
+        size_t         n = 0;
+        if (!settings_is_path(row) || !*at || (row->type == SETTING_NAME_OR_PATH && !strpbrk(at, "/."))) continue;
+        if (!(made = calloc(row->size, 1))) return;
+        bool fits = true;
+        for (const char *from = at; fits && *from;) {
+            const size_t length = row->type == SETTING_PATHS ? strcspn(from, ",") : strlen(from);
+            char         path[4096];
+            fits = length < sizeof path;
+            if (!fits) break;
+            snprintf(path, sizeof path, "%.*s", (int)length, from);
+            if (!length || !absolute(one, sizeof one, path)) snprintf(one, sizeof one, "%s", path);
+            n += (size_t)snprintf(made + n, row->size - n, "%s%s", one, from[length] ? "," : "");
+            fits = n < row->size;
+            from += length + (from[length] != 0);
+        }
+        if (fits) memcpy(at, made, row->size);
+        free(made);
+    }
+}

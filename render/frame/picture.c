@@ -1,0 +1,123 @@
+/* render/frame/picture.c: the planes of a frame, and which channel of light each shows. */
+#include "render/frame/picture.h"
+
+int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalChannels optical)
+{
+    static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
+    int                  count = 0;
+    if (has_band(bands, BAND_OPTICAL)) {
+        if (optical == OPTICAL_RGB) {
+            for (int c = 0; c < 3; c++)
+                out[count++] = (PictureChannel){picture_optical + c, BAND_OPTICAL, rgb[c]};
+        } else {
+            const AirBand one = optical == OPTICAL_NIR ? AIR_NIR : optical == OPTICAL_RED ? AIR_R
+                              : optical == OPTICAL_BLUE ? AIR_B : AIR_PAN;
+            out[count++] = (PictureChannel){picture_optical, BAND_OPTICAL, one};
+        }
+    }
+    if (has_band(bands, BAND_MWIR)) out[count++] = (PictureChannel){picture_mwir, BAND_MWIR, AIR_MWIR};
+    if (has_band(bands, BAND_LWIR)) out[count++] = (PictureChannel){picture_lwir, BAND_LWIR, AIR_LWIR};
+    return count;
+}
+
+int picture_smoke_channel(Band band, unsigned bands, OpticalChannels optical)
+{
+    PictureChannel of[picture_radar];
+    const int      count = picture_channels(of, bands, optical);
+    for (int k = 0; k < count; k++)
+        if (of[k].band == band) /* of three colours, green */
+            return k + 1 < count && of[k + 1].band == band ? (int)of[k + 1].channel : (int)of[k].channel;
+    return -1;
+}
+
+unsigned render_air_bands(unsigned bands, OpticalChannels optical)
+{
+    PictureChannel of[picture_radar];
+    unsigned       air = 0;
+    for (int k = picture_channels(of, bands, optical) - 1; k >= 0; k--) air |= 1u << of[k].channel;
+    return air;
+}
+
+Band picture_band(int plane)
+{
+    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR
+         : BAND_OPTICAL;
+}
+
+static float **plane_slot(Picture *picture, int plane)
+{
+    return plane == picture_mwir ? &picture->mwir : plane == picture_lwir ? &picture->lwir
+         : plane == picture_radar ? &picture->radar : &picture->optical[plane - picture_optical];
+}
+
+float *picture_plane(const Picture *picture, int plane) { return *plane_slot((Picture *)picture, plane); }
+
+Status picture_create(Picture *picture, const RenderRequest *request, int entities, Arena *arena)
+{
+    const size_t px = (size_t)request->view.width * (size_t)request->view.height;
+    bool         ok = true;
+    *picture = (Picture){0};
+    picture->width  = request->view.width;
+    picture->height = request->view.height;
+
+    PictureChannel of[picture_radar];
+    for (int k = picture_channels(of, request->bands, request->optical) - 1; k >= 0; k--)
+        ok = (*plane_slot(picture, of[k].plane) = arena_alloc(arena, px, sizeof(float))) && ok;
+    if (has_band(request->bands, BAND_RADAR)) {
+        ok = (picture->radar = arena_alloc(arena, px, sizeof(float))) && ok;
+        if (request->profile_bins > 0)
+            ok = (picture->profile = arena_alloc(arena, (size_t)request->profile_bins * radar_bounces,
+                                                 sizeof(double))) && ok;
+    }
+    if (request->truth || looks_for_edges(request)) { /* edges are where truth changes */
+        ok = (picture->range_m = arena_alloc(arena, px, sizeof(float))) && ok;
+        ok = (picture->entity = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
+        ok = (picture->part = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
+        ok = (picture->material = arena_alloc(arena, px, sizeof(uint32_t))) && ok;
+        ok = (picture->temp_k = arena_alloc(arena, px, sizeof(float))) && ok;
+        for (int k = 0; k < 3; k++) ok = (picture->normal[k] = arena_alloc(arena, px, sizeof(float))) && ok;
+    }
+    if (request->truth) ok = (picture->target = arena_alloc(arena, (size_t)entities, sizeof(TargetPixels))) && ok;
+    return ok ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+void picture_forget_truth(Picture *picture)
+{
+    picture->range_m = picture->temp_k = NULL;
+    picture->entity = picture->part = picture->material = NULL;
+    for (int k = 0; k < 3; k++) picture->normal[k] = NULL;
+}
+
+double plane_contrast(const Picture *p, const float *value, int x, int y)
+{
+    const size_t at = (size_t)y * (size_t)p->width + (size_t)x, row = (size_t)p->width;
+    const double here = (double)value[at];
+    double       sum = 0;
+    int          count = 0;
+    if (x > 0) sum += (value[at - 1] - here) * (value[at - 1] - here), count++;
+    if (x + 1 < p->width) sum += (value[at + 1] - here) * (value[at + 1] - here), count++;
+    if (y > 0) sum += (value[at - row] - here) * (value[at - row] - here), count++;
+    if (y + 1 < p->height) sum += (value[at + row] - here) * (value[at + row] - here), count++;
+    return count > 0 ? sum / count : 0;
+}
+
+void render_counters_add(RenderCounters *sum, const RenderCounters *more)
+{
+    VisibilityCounters       *to   = &sum->visibility;
+    const VisibilityCounters *from = &more->visibility;
+    sum->rays_primary += more->rays_primary;
+    sum->rays_edges += more->rays_edges;
+    sum->rays_small_targets += more->rays_small_targets;
+    sum->pixels += more->pixels;
+    sum->pixels_refined += more->pixels_refined;
+    sum->small_targets += more->small_targets;
+    sum->tiles += more->tiles;
+    sum->tiles_without_entities += more->tiles_without_entities;
+    to->rays_ground += from->rays_ground;
+    to->rays_parts += from->rays_parts;
+    to->rays_sun_ground += from->rays_sun_ground;
+    to->rays_sun_parts += from->rays_sun_parts;
+    to->skipped_parts += from->skipped_parts;
+    to->skipped_sun_parts += from->skipped_sun_parts;
+    for (int k = 0; k < SKIP_COUNT; k++) to->skipped[k] += from->skipped[k];
+}

@@ -1,0 +1,221 @@
+/* render/frame/shade.c: rays to hits to radiance: one set of eye rays, one set of sun rays, and every channel that is
+ * asked for from the same hits. */
+#include "render/frame/shade.h"
+
+#include "render/light/optical.h"
+#include "render/light/thermal.h"
+
+Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
+                          const RenderRequest *request, unsigned channels, Arena *arena)
+{
+    Visibility *posed = NULL;
+    *out = (ShadeScene){.world = world, .snapshot = snapshot, .air = air, .sky_samples = request->sky_samples,
+                        .hidden_entity = request->hidden_entity};
+    Status status = effects_scene(&out->effects, snapshot, request->hidden_entity, &world->frame, &request->view, air,
+                                  world->materials.ground_rho, channels, arena);
+    if (status != STATUS_OK) return status;
+    int *volume = arena_alloc(arena, (size_t)out->effects.count + 1, sizeof *volume);
+    if (!volume) return STATUS_NO_MEMORY;
+    for (int n = 0; n < out->effects.count; n++) volume[n] = n;
+    out->all_volumes = volume;
+    status = visibility_create(&posed, world->tracer, world->landscape, &world->frame, snapshot, request->skips_off, arena);
+    if (status != STATUS_OK) return status;
+    visibility_materials(posed, &world->materials);
+    out->visibility = posed;
+    return surface_light_prepare(&out->surface_light, air, &world->materials, arena);
+}
+
+Status samples_create(Samples *out, int capacity, Arena *arena)
+{
+    const size_t n = (size_t)capacity;
+    bool         ok = capacity >= 1 && capacity <= hits_capacity;
+    *out = (Samples){.capacity = capacity};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) ok = ok && (out->radiance[b] = arena_alloc(arena, n, sizeof(float)));
+    ok = ok && (out->sun = arena_alloc(arena, n, sizeof *out->sun));
+    ok = ok && (out->temp_k = arena_alloc(arena, n, sizeof *out->temp_k));
+    ok = ok && (out->radar_power = arena_alloc(arena, n, sizeof *out->radar_power));
+    return ok ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
+{
+    const double t0 = wall_clock_s();
+    visibility_first_hit(&s->hits, scene->visibility, &s->rays, list, listed, scene->hidden_entity, &shader->counters);
+    s->hits.several = false;
+    shader->visibility_s += wall_clock_s() - t0;
+}
+
+void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
+{
+    const double t0 = wall_clock_s();
+    uint8_t      dark[hits_capacity];
+    if (s->channels & ~(1u << AIR_LWIR))
+        visibility_shadow(dark, scene->visibility, &s->hits, scene->air->sun_d_enu, &shader->counters);
+    else
+        memset(dark, 0, (size_t)s->hits.count);
+    for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
+    shader->shadow_s += wall_clock_s() - t0;
+}
+
+void samples_smoke(const ShadeScene *scene, Samples *s)
+{
+    veil_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
+}
+
+/* ---- what was met ----------------------------------------------------------------------------- */
+
+/* What a photograph says of a channel: its own colour, or the brightness of all three. */
+static int albedo_of_channel(int channel)
+{
+    return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
+         : channel == optical_channel_b ? albedo_blue : albedo_all;
+}
+
+/* How bright the ground's own pattern is at each hit, in the optical channels that are asked for and in that by which
+ * ground warms (pan). */
+static void resolve_textures(Shader *shader, const ShadeScene *scene, const Samples *s)
+{
+    const Landscape *landscape = scene->world->landscape;
+    const Hits      *hits = &s->hits;
+    const Rays      *rays = &s->rays;
+    const unsigned   channels = s->channels | 1u << optical_channel_pan;
+    float           *pattern = shader->texture[optical_channel_pan], *footprint_m = shader->footprint_m;
+    /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
+    for (int i = 0; i < hits->count; i++) {
+        float graze = 0;
+        for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
+        footprint_m[i] = (float)(hits->range_m[i] / s->per_rad) / (graze > 0.01f ? graze : 0.01f);
+        pattern[i] = 1;
+    }
+    if (landscape)
+        landscape_textures(pattern, landscape, hits->count, hits->surface, hits->p_enu[0], hits->p_enu[1], footprint_m);
+    for (int c = 0; c < optical_channel_count; c++)
+        if (channels >> c & 1 && c != optical_channel_pan)
+            memcpy(shader->texture[c], pattern, (size_t)hits->count * sizeof *pattern);
+    if (!landscape || !landscape_has_photo(landscape)) return;
+    for (int i = 0; i < hits->count; i++) {
+        float albedo[albedo_channels];
+        if (!hits->surface[i]) continue;
+        landscape_albedo(albedo, landscape, (SurfaceClass)hits->surface[i], hits->p_enu[0][i], hits->p_enu[1][i],
+                         (double)footprint_m[i]);
+        for (int c = 0; c < optical_channel_count; c++)
+            if (channels >> c & 1) shader->texture[c][i] *= albedo[albedo_of_channel(c)];
+    }
+}
+
+/* ---- light ------------------------------------------------------------------------------------ */
+
+/* Rays that met nothing. */
+static void shade_beyond(const Shader *shader, const ShadeScene *scene, const Samples *s, float *const out[AIR_BAND_COUNT])
+{
+    const Air *air = scene->air;
+    double     ground_w_m2[optical_channel_count];
+    for (int c = 0; c < optical_channel_count; c++)
+        ground_w_m2[c] = optical_ground_w_m2(c, air, &scene->world->materials);
+    for (int i = 0; i < s->hits.count; i++) {
+        if (s->hits.range_m[i] < INFINITY) continue;
+        const double d_enu[3] = {s->rays.d_enu[0][i], s->rays.d_enu[1][i], s->rays.d_enu[2][i]};
+        for (int c = 0; c < optical_channel_count; c++)
+            if (out[c]) out[c][i] = optical_beyond(c, air, ground_w_m2[c], d_enu, &shader->air[c], i);
+        if (out[AIR_MWIR]) out[AIR_MWIR][i] = thermal_beyond(BAND_MWIR, air, d_enu, &shader->air[AIR_MWIR], i);
+        if (out[AIR_LWIR]) out[AIR_LWIR][i] = thermal_beyond(BAND_LWIR, air, d_enu, &shader->air[AIR_LWIR], i);
+    }
+}
+
+static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
+{
+    const World *world = scene->world;
+    if (s->channels & (1u << AIR_MWIR | 1u << AIR_LWIR) || s->temperature)
+        thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
+                            s->hits.material, shader->texture[optical_channel_pan]);
+    if (!s->channels) return;
+    air_veils_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
+
+    SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->hits.material, .temp_k = s->temp_k,
+                          .sun = s->sun, .veils = shader->air};
+    float       *out[AIR_BAND_COUNT] = {NULL};
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        if (!(s->channels >> b & 1)) continue;
+        out[b] = s->radiance[b];
+        if (b < optical_channel_count) block.texture[b] = shader->texture[b];
+        if (scene->sky_samples > 0) block.around_w_m2[b] = shader->gathered.w_m2[b];
+        else if (shader->any_open) block.open[b] = shader->open.factor[b];
+    }
+    surface_light_shade(out, &scene->surface_light, &block);
+    shade_beyond(shader, scene, s, out);
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (out[b]) veil_apply(out[b], &s->smoke, b, s->hits.count);
+}
+
+static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
+{
+    radar_shade(&s->returns, &scene->world->radar, scene->visibility, &scene->world->materials, &s->hits, &s->rays,
+                scene->hidden_entity, &shader->counters);
+    for (int i = 0; i < s->hits.count; i++) {
+        double sum = 0;
+        for (int b = 0; b < radar_bounces; b++) sum += s->returns.power[b][i];
+        s->radar_power[i] = (float)sum;
+    }
+}
+
+void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
+{
+    const double      t0 = wall_clock_s();
+    const GatherScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
+                                scene->snapshot};
+    resolve_textures(shader, scene, s);
+    samples_smoke(scene, s);
+    if (scene->sky_samples > 0)
+        gather_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
+    shader->any_open = scene->sky && s->channels &&
+                       sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
+    light_channels(shader, scene, s);
+    const double t1 = wall_clock_s();
+    if (s->radar) light_radar(shader, scene, s);
+    shader->shade_s += t1 - t0;
+    shader->radar_s += wall_clock_s() - t1;
+}
+
+void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed)
+{
+    samples_trace(shader, scene, s, list, listed);
+    samples_sun(shader, scene, s);
+    samples_light(shader, scene, s);
+}
+
+/* ---- without tables --------------------------------------------------------------------------- */
+
+/* What a channel's light from all around is at each hit, W/m2; NULL: by the tilt alone. */
+static const float *light_around(float room[hits_capacity], const Shader *shader, const ShadeScene *scene,
+                                 const Samples *s, AirBand b)
+{
+    const Air *air = scene->air;
+    if (scene->sky_samples > 0) return shader->gathered.w_m2[b];
+    if (!shader->any_open) return NULL;
+    const double level_w_m2 =
+        b >= AIR_MWIR ? air->ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
+    for (int i = 0; i < s->hits.count; i++) {
+        const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
+        room[i] = (float)((double)shader->open.factor[b][i] *
+                          (air_sky_on_plane(air, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2])));
+    }
+    return room;
+}
+
+void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, Veils direct[AIR_BAND_COUNT])
+{
+    const Materials *materials = &scene->world->materials;
+    air_veils_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        float        room[hits_capacity], *out = s->radiance[b];
+        if (!(s->channels >> b & 1)) continue;
+        const float *around = light_around(room, shader, scene, s, (AirBand)b);
+        if (b >= AIR_MWIR)
+            thermal_shade(out, b == AIR_MWIR ? BAND_MWIR : BAND_LWIR, scene->air, materials, &s->hits, &s->rays,
+                          s->hits.material, s->temp_k, s->sun, around, &direct[b], NULL);
+        else
+            optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, s->hits.material, shader->texture[b], s->sun,
+                          around, &direct[b], NULL);
+        veil_apply(out, &s->smoke, b, s->hits.count);
+    }
+}

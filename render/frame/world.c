@@ -1,0 +1,39 @@
+/* render/frame/world.c: tables and tracer, opened once. */
+#include "render/frame/world.h"
+
+Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,
+                  const char *isa)
+{
+    World  world = {.catalog = catalog, .landscape = landscape, .frame = *frame, .radar = {.lobe_rad = 0.05}};
+    char   materials[512], surfaces[512];
+    Status status = STATUS_BAD_VALUE;
+
+    if (!etc_path(materials, sizeof materials, "materials.csv") || !etc_path(surfaces, sizeof surfaces, "surfaces.csv")) {
+        log_error("render: path of the tables is too long; set PITVIPER_ETC to a shorter one");
+        return STATUS_BAD_VALUE;
+    }
+    status = tracer_create(&world.tracer, catalog, isa);
+    if (status == STATUS_OK) status = materials_open(&world.materials, materials, surfaces, catalog);
+    PlanckTable **const planck[2] = {&world.planck_mwir, &world.planck_lwir};
+    for (int k = 0; k < 2 && status == STATUS_OK; k++) {
+        double low_m, high_m;
+        air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));
+        status = planck_table_create(planck[k], low_m, high_m);
+    }
+    if (status != STATUS_OK) {
+        world_close(&world);
+        return status;
+    }
+    *out = world;
+    return STATUS_OK;
+}
+
+void world_close(World *world)
+{
+    atmosphere_close(world->atmosphere);
+    planck_table_destroy(world->planck_lwir);
+    planck_table_destroy(world->planck_mwir);
+    materials_close(&world->materials);
+    tracer_destroy(world->tracer);
+    memset(world, 0, sizeof *world);
+}

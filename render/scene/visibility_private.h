@@ -1,0 +1,58 @@
+/* render/scene/visibility_private.h: one frame's world, as visibility.c, visibility_pose.c and visibility_crowd.c share it. */
+#ifndef RENDER_SCENE_VISIBILITY_PRIVATE_H
+#define RENDER_SCENE_VISIBILITY_PRIVATE_H
+
+#include <pthread.h>
+#include <stdatomic.h>
+
+#include "render/ground/ground.h"
+#include "render/parts/parts.h"
+#include "render/scene/broad_phase.h"
+#include "render/scene/visibility.h"
+
+/* Up to so many entities are asked about one after the other, all rays of a block together; more go through the tree, a
+ * few rays at a time. Which of the two shows in no bit. */
+enum { crowd_least = 40 };
+
+/* What posing needs beside the snapshot: for one thread at a time. */
+typedef struct Poser {
+    pthread_mutex_t lock;
+    Arena          *arena;
+    NodePose       *node;        /* [most nodes of a model] */
+    double         *joint_value; /* likewise */
+    atomic_bool     lost;        /* no memory for some entity: the frame is not whole */
+} Poser;
+
+struct Visibility {
+    Tracer          *tracer;
+    const Landscape *landscape;
+    const Materials *materials; /* NULL: hits do not say theirs */
+    const LocalFrame *frame;
+    const Snapshot  *snapshot;
+    Ground           ground;
+    unsigned         skips_off;
+    int              count, drawable;
+    bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
+    _Atomic(const PosedEntity *) *posed; /* [count], as in the snapshot; NULL: not asked for yet */
+    Poser           *poser;
+    BroadPhase      *tree;       /* of those that may be drawn */
+    double           wider_m;    /* by so much the sphere of a posed entity may reach beyond that in the tree */
+};
+
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
+void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
+                      const double *limit_m, const double centre[3], double radius_m);
+
+/* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
+ * asked for one after the other. list: ascending; list_count -1: all but hidden. */
+typedef struct CrowdCounts {
+    uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
+} CrowdCounts;
+void crowd_first_hits(double *limit_m, uint32_t *entity, PartHit *hit, CrowdCounts *counts, const Visibility *v, int count,
+                      const double *const o[3], const double *const d[3], const int *order, const int *list,
+                      int list_count, int hidden);
+/* dark becomes 1 where anything is met. */
+void crowd_any_hits(uint8_t *dark, CrowdCounts *counts, const Visibility *v, int count, const double *const o[3],
+                    const double *const d[3]);
+
+#endif

@@ -1,0 +1,37 @@
+/* sensor/bench/sensor/rows.c: the suites of whole frames, detectors and the live node. */
+#include "sensor/bench/sensor/rows.h"
+
+#include "sensor/bench/sensor/network.h"
+#include "sensor/bench/sensor/precision.h"
+#include "sensor/bench/sensor/quality.h"
+#include "sensor/bench/sensor/skip.h"
+#include "sensor/bench/sensor/speed.h"
+#include "sensor/bench/sensor/stability.h"
+
+const BenchSuite sensor_benches[] = {
+    {.name = "speed",
+     .options = "size=WxH: 720x486,ground=KMxKM: 12x16; of posts 1 m apart,model=FILE: fills the picture; "
+                "models/brlcad/ktank.obj of the reference data or else the built-in tank",
+     .help = "frames over a large ground with twenty vehicles: whole, by stage, against the tracer alone",
+     .run = bench_speed,
+     .reads =
+         "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
+         "up to the frame (bars: their share), and `rays alone` is the least that a frame could take."},
+    {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
+    {.name = "skip",
+     .help = "what each exact skip saves, in the scene where it saves most",
+     .run = bench_skip,
+     .reads = "The time is of a frame with the skip, the ratio says how much longer it takes without; the planes are "
+              "the same to the bit, or the row fails."},
+    {.name = "precision",
+     .help = "frames, models and detectors: settings, what each costs and how wrong it is",
+     .run = bench_precision},
+    {.name = "stability",
+     .help = "detectors of 1 to 16 bits, displays without contrast, threads that agree",
+     .run = sensor_bench_stability},
+    {.name = "quality",
+     .options = "table=FILE: written too; quality.* picks from etc/quality.csv",
+     .help = "rays a pixel, at edges and over small targets together: time against error, what quality.* picks from",
+     .run = bench_quality},
+};
+const int sensor_bench_count = sizeof sensor_benches / sizeof *sensor_benches;

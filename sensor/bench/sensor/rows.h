@@ -1,0 +1,10 @@
+/* sensor/bench/sensor/rows.h: what `pitviper bench` can measure of this room. */
+#ifndef SENSOR_BENCH_SENSOR_ROWS_H
+#define SENSOR_BENCH_SENSOR_ROWS_H
+
+#include "sensor/bench/bench.h"
+
+extern const BenchSuite sensor_benches[];
+extern const int        sensor_bench_count;
+
+#endif

@@ -1,0 +1,32 @@
+/* sensor/bench/sensor/speed_private.h: what the files of `bench speed` share. */
+#ifndef SENSOR_BENCH_SENSOR_SPEED_PRIVATE_H
+#define SENSOR_BENCH_SENSOR_SPEED_PRIVATE_H
+
+#include "sensor/bench/sensor/speed.h"
+
+#include "sensor/quality/trial.h"
+
+enum { what_size = 160 };
+
+static const unsigned    three_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
+static const char *const all_threads = "all threads"; /* how many stands at the top of the table */
+
+typedef struct Speed {
+    Bench     *bench;
+    int        width, height;
+    double     east_m, north_m;
+    LocalFrame frame;
+    Landscape  landscape;
+    TrialScene scene, close;   /* twenty vehicles; one */
+    Pool      *one, *many;
+    Arena     *arena[3];       /* of frames on many threads, on one, and others */
+    char       target[96];     /* what fills the picture, and where from */
+} Speed;
+
+RenderRequest speed_request(const View *view, unsigned bands, bool truth);
+TrialFrame    speed_frame(const Speed *s, const TrialScene *scene, const RenderRequest *request, bool many);
+/* The rows of a frame's files; of memory. */
+Status        speed_files(Speed *s);
+void          speed_memory(Speed *s);
+
+#endif

@@ -1,9 +1,0 @@
-/* sensor/bench/speed.h: `pitviper bench speed`: what a frame costs, and what its rays alone cost. */
-#ifndef SENSOR_BENCH_SPEED_H
-#define SENSOR_BENCH_SPEED_H
-
-#include "sensor/bench/bench.h"
-
-Status bench_speed(Bench *bench);
-
-#endif

@@ -1,9 +1,0 @@
-/* sensor/bench/stability.h: `pitviper bench stability`: detectors and displays at their ends, and threads that agree. */
-#ifndef SENSOR_BENCH_STABILITY_H
-#define SENSOR_BENCH_STABILITY_H
-
-#include "sensor/bench/bench.h"
-
-Status sensor_bench_stability(Bench *bench);
-
-#endif

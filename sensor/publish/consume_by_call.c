@@ -1,0 +1,51 @@
+/* sensor/publish/consume_by_call.c: consumers that call: with each record; with each frame and its hash. */
+#include "sensor/publish/consumers.h"
+
+#include <stdlib.h>
+
+typedef struct Call {
+    Consumer   consumer;
+    FrameCall *call;
+    FrameDone *done;
+    void      *user;
+} Call;
+
+static Status put_record(Consumer *consumer, Frame *frame)
+{
+    const Call *c = (const Call *)consumer;
+    c->call(c->user, &frame->record);
+    return STATUS_OK;
+}
+
+static Status put_hash(Consumer *consumer, Frame *frame)
+{
+    const Call  *c      = (const Call *)consumer;
+    const Status status = frame_sha256(&frame->seen);
+    if (status == STATUS_OK) c->done(c->user, frame);
+    return status;
+}
+
+static Status close_call(Consumer *consumer)
+{
+    free(consumer);
+    return STATUS_OK;
+}
+
+static Status open_call(Consumer **out, const Call *made_of)
+{
+    Call *c = malloc(sizeof *c);
+    if (!c) return STATUS_NO_MEMORY;
+    *c   = *made_of;
+    *out = &c->consumer;
+    return STATUS_OK;
+}
+
+Status consume_by_call(Consumer **out, FrameCall *call, void *user)
+{
+    return open_call(out, &(Call){.consumer = {WANT_TARGETS, put_record, NULL, close_call}, .call = call, .user = user});
+}
+
+Status consume_hashes(Consumer **out, FrameDone *done, void *user)
+{
+    return open_call(out, &(Call){.consumer = {WANT_SHA256, put_hash, NULL, close_call}, .done = done, .user = user});
+}

@@ -1,0 +1,85 @@
+/* sensor/publish/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the
+ * aperture, and what a display behind the detector shows. Raw counts of a band with a sensor:
+ * OUT/raw/<band>/NNNNNN.png, 16 bits. */
+#ifndef SENSOR_PUBLISH_FRAME_FILES_H
+#define SENSOR_PUBLISH_FRAME_FILES_H
+
+#include "render/frame/render.h"
+#include "sensor/detector/chain.h"
+#include "sensor/detector/level.h"
+#include "sensor/settings/config.h"
+#include "sensor/truth/truth.h"
+#include "sensor/publish/frame.h"
+
+/* An automatic level that follows; begins with the first frame made. */
+typedef struct FrameLevel {
+    bool          known;
+    double        time_s;
+    DetectorLevel level;
+    DetectorLevel shown;            /* of the last display made: what its black and white stand for; R G B: balanced */
+} FrameLevel;
+
+typedef struct FrameFiles {
+    const char     *out;            /* folder of this host; exists, with its subfolders */
+    const Config   *config;
+    const World    *world;
+    const Picture  *picture;
+    const Picture  *noise_of;       /* whose mean white noise is a share of; NULL: picture */
+    const Snapshot *snapshot;
+    const RenderRequest *request;
+    const char     *host, *config_sha256;
+    int             frame;
+    double          time_s, unix_s;
+    bool            png;
+    Chain *const   *chain;          /* [BAND_COUNT]; NULL: white noise as configured */
+    FrameLevel     *level;          /* [BAND_COUNT] */
+    double          rate_px_s[2];   /* how the scene moves over the picture: column, row */
+} FrameFiles;
+
+/* Bands whose pictures come from a detector: all but radar. */
+enum { detector_bands = ((1 << BAND_COUNT) - 1) & ~(1 << BAND_RADAR) };
+
+/* OUT may be as long as leaves frame_path_room characters for what goes below it; a longer one is refused, logged.
+ * folder: makes OUT, or says why not; what is in it stays.
+ * earlier: whether OUT holds something of an earlier run that would be lost, and the path of such a thing.
+ * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
+ * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
+ * raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with frame_truth, truth too.
+ * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
+enum { frame_path_size = 4096, frame_path_room = 64, frame_truth = 1 << BAND_COUNT };
+Status frame_files_folder(const char *out);
+bool   frame_files_earlier(char found[frame_path_size], const char *out);
+void   frame_files_clear(const char *out);
+Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
+Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);
+/* Folders below OUT for each frame's other pictures (sensor/publish/pairs.h). */
+enum { pair_folders = 3 };
+extern const char *const pair_folder[pair_folders];
+/* Whether any plane of truth goes into files. */
+bool   frame_files_truth(const Config *config);
+/* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
+void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
+/* Writes everything of the frame, a task a file. hash: over all planes, before encoding; NULL: none. */
+Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
+/* What lies behind a detector alone: display pictures and raw counts of its bands. */
+Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
+/* OUT/FOLDER/NAME/NNNNNN.ENDING. False, logged: it is too long. */
+bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
+                  const char *ending);
+
+/* ---- displays (display_files.c) ---------------------------------------------------------------- */
+
+/* Runs the band's detector, writes what its display shows and its raw counts, as configured. BAND_COUNT: truth as a
+ * picture for people. */
+Status display_write(const FrameFiles *frame, int band);
+/* Gain and level of a frame by itself, by band: what a display's memory (detector.agc_s) takes of a frame that is not
+ * written. No bands where there is no memory. Runs the detectors, which must be exposed for this picture. */
+typedef struct DisplayLevels {
+    double        time_s;
+    unsigned      bands;
+    DetectorLevel level[BAND_COUNT];
+} DisplayLevels;
+Status display_levels(DisplayLevels *now, const FrameFiles *frame);
+void   display_follow(FrameLevel level[BAND_COUNT], const DisplayLevels *now, double agc_s);
+
+#endif

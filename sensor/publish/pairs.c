@@ -1,0 +1,159 @@
+/* sensor/publish/pairs.c: a consumer: each frame with and without its target, with and without noise. */
+#include "sensor/publish/pairs.h"
+
+#include "sensor/publish/pair_record.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = frame_path_size };
+
+/* What lies behind a detector, of one member. The first is the run's own. */
+typedef struct Member {
+    char       folder[path_size];
+    Chains     chains;
+    FrameLevel level[BAND_COUNT];
+} Member;
+
+typedef struct Pairs {
+    Consumer consumer;
+    PairsOf  of;
+    Config   noiseless;
+    bool     all;
+    FILE    *index;
+    int      frames, taken; /* taken: entities, over all frames */
+    Member   member[pair_members];
+} Pairs;
+
+static Status close_pairs(Consumer *consumer)
+{
+    Pairs *p      = (Pairs *)consumer;
+    Status status = STATUS_OK;
+    if (p->frames > 0 && p->taken == 0)
+        log_warn("pairs: nothing was taken away in any frame: %s; --pairs all takes every entity",
+                 p->all ? "there was none but the host" : "there is no aim (exercise.aim), or it was never there");
+    if (p->index && fclose(p->index) != 0) {
+        log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
+        status = STATUS_IO;
+    }
+    for (int m = CLEAN; m < pair_members; m++) chains_destroy(&p->member[m].chains);
+    free(p);
+    return status;
+}
+
+/* ---- the index -------------------------------------------------------------------------------- */
+
+static Status write_line(const Pairs *p, const Frame *frame)
+{
+    PairRecord r = {.frame = frame->number, .time_s = frame->time_s, .seed = p->of.config->seed, .removed = frame->taken,
+                    .removed_count = frame->taken_count, .frame_sha256 = frame->seen.sha256,
+                    .background_sha256 = frame->without->sha256, .bands = frame->request.bands, .raw = p->of.raw,
+                    .png = p->of.config->publish.png, .truth = frame_files_truth(p->of.config)};
+    for (int m = WITH; m < pair_members; m++)
+        r.member[m] = (PairMember){
+            .target   = m < BACKGROUND,
+            .noise    = m == WITH || m == BACKGROUND,
+            .radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1],
+            .shown    = m == WITH ? "" : pair_folder[m - 1],
+            .level    = m == WITH ? p->of.level : p->member[m].level,
+        };
+    const Status status = record_write_pair(p->index, &r);
+    if (status == STATUS_IO) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
+    return status;
+}
+
+/* ---- a frame ---------------------------------------------------------------------------------- */
+
+Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
+                       DisEntityId aim, int host, Arena *arena)
+{
+    const int       only   = all || dis_entity_id_is_none(aim) ? -1 : snapshot_find(with, aim);
+    SnapshotEntity *entity = arena_alloc(arena, (size_t)with->count + 1, sizeof *entity);
+    DisEntityId    *ids    = arena_alloc(arena, (size_t)with->count + 1, sizeof *ids);
+    if (!entity || !ids) return STATUS_NO_MEMORY;
+    *taken       = ids;
+    *taken_count = 0;
+    if (with->count > 0) memcpy(entity, with->entity, (size_t)with->count * sizeof *entity);
+    for (int i = 0; i < with->count; i++) {
+        if (i == host || (!all && i != only)) continue;
+        entity[i].model = -1;
+        ids[(*taken_count)++] = entity[i].id;
+    }
+    *without        = *with;
+    without->entity = entity;
+    return STATUS_OK;
+}
+
+static Status write_member(Pairs *p, int m, Frame *frame)
+{
+    Member          *member = &p->member[m];
+    FrameView       *view   = m < BACKGROUND ? &frame->seen : frame->without;
+    TruthNoise       ignored;
+    const FrameFiles files = {.out = member->folder, .config = m == BACKGROUND ? p->of.config : &p->noiseless,
+                              .world = frame->world, .picture = &view->picture,
+                              .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture, .snapshot = &view->snapshot,
+                              .request = &frame->request, .host = frame->host, .config_sha256 = p->of.config_sha256,
+                              .frame = frame->number, .time_s = frame->time_s, .unix_s = frame->unix_s,
+                              .png = p->of.config->publish.png, .chain = member->chains.band, .level = member->level,
+                              .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}};
+    frame_expose(&ignored, files.chain, files.picture, files.config);
+    return m == BACKGROUND ? frame_files_write(view->sha256, &files, p->of.pool)
+                           : frame_files_write_displays(&files, p->of.pool);
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    Pairs *p      = (Pairs *)consumer;
+    Status status = frame_sha256(&frame->seen);
+    for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) status = write_member(p, m, frame);
+    if (status != STATUS_OK) return status;
+    p->frames++;
+    p->taken += frame->taken_count;
+    return write_line(p, frame);
+}
+
+/* ---- opened ----------------------------------------------------------------------------------- */
+
+static Status open_members(Pairs *p, const PairsOf *of)
+{
+    const unsigned kept   = of->bands | (frame_files_truth(of->config) ? frame_truth : 0);
+    Status         status = STATUS_OK;
+    char           path[path_size];
+    for (int m = CLEAN; m < pair_members && status == STATUS_OK; m++) {
+        Member *member = &p->member[m];
+        if (snprintf(member->folder, path_size, "%s/%s", of->out, pair_folder[m - 1]) >= path_size) {
+            log_error("pairs: the name of the folder %s is too long; choose another place with --out", of->out);
+            return STATUS_BAD_VALUE;
+        }
+        status = m == BACKGROUND ? frame_files_prepare(member->folder, kept, of->raw)
+                                 : frame_files_prepare_displays(member->folder, of->bands, of->raw);
+    }
+    if (status != STATUS_OK) return status;
+    snprintf(path, sizeof path, "%.*s/pairs.jsonl", path_size - 32, of->out); /* the folders, longer, are there */
+    p->index = fopen(path, "w");
+    if (p->index) return STATUS_OK;
+    log_error("pairs: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+    return STATUS_IO;
+}
+
+Status consume_pairs(Consumer **out, const PairsOf *of)
+{
+    Pairs *p = calloc(1, sizeof *p);
+    if (!p) {
+        Chains chains[3] = {of->clean, of->background, of->background_clean};
+        for (int m = 0; m < 3; m++) chains_destroy(&chains[m]);
+        return STATUS_NO_MEMORY;
+    }
+    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256, put, NULL, close_pairs};
+    p->of       = *of;
+    p->all      = strcmp(of->config->publish.pairs, "all") == 0;
+    p->noiseless = *of->config;
+    p->noiseless.detector.noise = 0;
+    p->member[CLEAN].chains            = of->clean;
+    p->member[BACKGROUND].chains       = of->background;
+    p->member[BACKGROUND_CLEAN].chains = of->background_clean;
+    const Status status = open_members(p, of);
+    if (status == STATUS_OK) *out = &p->consumer;
+    else close_pairs(&p->consumer);
+    return status;
+}

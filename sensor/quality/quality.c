@@ -1,0 +1,210 @@
+/* sensor/quality/quality.c: the table of settings, the pick from it, and what is set in the configuration. */
+#include "sensor/quality/quality.h"
+
+#include <errno.h>
+
+static const char *const columns[] = {"samples", "edge_samples", "target_samples", "optical_percent", "mwir_percent",
+                                      "lwir_percent", "mwir_k", "lwir_k", "ms_megapixel"};
+enum { column_count = sizeof columns / sizeof *columns };
+static const double lows[column_count]  = {1, 0, 0, 0, 0, 0, 0, 0, 1e-3};
+static const double highs[column_count] = {16, 16, 256, 1e6, 1e6, 1e6, 1e6, 1e6, 1e9};
+
+/* ---- the table -------------------------------------------------------------------------------- */
+
+static bool is_whole(double x) { return x == floor(x); }
+
+static Status read_row(QualityRow *out, const Table *table, const int at[column_count], int row, const char *path)
+{
+    double value[column_count];
+    for (int c = 0; c < column_count; c++) {
+        const Status status = table_number(&value[c], table, row, at[c], lows[c], highs[c]);
+        if (status != STATUS_OK) return status;
+    }
+    const bool off = value[1] == 0 && value[2] == 0;
+    if (!is_whole(value[0]) || !is_whole(value[1]) || !is_whole(value[2]) ||
+        !(off || (value[1] >= 2 && value[2] >= 8))) {
+        log_error("quality: %s:%d: samples %g, edge_samples %g, target_samples %g: whole numbers, the last two both 0 "
+                  "or 2 .. 16 "
+                  "and 8 .. 256",
+                  path, table->line[row + 1], value[0], value[1], value[2]);
+        return STATUS_BAD_VALUE;
+    }
+    *out = (QualityRow){.samples = (int)value[0], .edge_samples = (int)value[1], .target_samples = (int)value[2],
+                        .percent = {value[3], value[4], value[5]}, .kelvin = {NAN, value[6], value[7]},
+                        .ms_megapixel = value[8]};
+    return STATUS_OK;
+}
+
+Status quality_open(QualityTable *out, const char *path)
+{
+    Table  table;
+    int    at[column_count];
+    Status status = table_open(&table, path);
+    if (status != STATUS_OK) return status;
+    QualityTable *made = out;
+    for (int c = 0; c < column_count && status == STATUS_OK; c++)
+        if ((at[c] = table_column(&table, columns[c])) < 0) {
+            log_error("quality: %s: no column %s; `pitviper bench quality --table FILE` writes a complete table", path,
+                      columns[c]);
+            status = STATUS_BAD_VALUE;
+        }
+    if (status == STATUS_OK && (table.rows < 1 || table.rows > quality_rows_max)) {
+        log_error("quality: %s: %d rows are not 1 .. %d", path, table.rows, quality_rows_max);
+        status = STATUS_BAD_VALUE;
+    }
+    made->count = 0;
+    for (int row = 0; status == STATUS_OK && row < table.rows; row++) {
+        status = read_row(&made->row[row], &table, at, row, path);
+        made->count += status == STATUS_OK;
+    }
+    table_close(&table);
+    return status;
+}
+
+Status quality_write(const char *path, const QualityTable *table, const char *comment)
+{
+    FILE *file = fopen(path, "w");
+    bool  ok = file != NULL;
+    ok = ok && fprintf(file, "# %s\n", comment) > 0;
+    for (int c = 0; ok && c < column_count; c++)
+        ok = fprintf(file, "%s%s", columns[c], c + 1 < column_count ? "," : "\n") > 0;
+    for (int k = 0; ok && k < table->count; k++) {
+        const QualityRow *r = &table->row[k];
+        ok = fprintf(file, "%d,%d,%d,%.3g,%.3g,%.3g,%.3g,%.3g,%.4g\n", r->samples, r->edge_samples, r->target_samples,
+                     r->percent[0], r->percent[1], r->percent[2], r->kelvin[1], r->kelvin[2], r->ms_megapixel) > 0;
+    }
+    if (file) ok = fclose(file) == 0 && ok;
+    if (!ok) log_error("quality: cannot write %s: %s", path, strerror(errno));
+    return ok ? STATUS_OK : STATUS_IO;
+}
+
+/* ---- the pick --------------------------------------------------------------------------------- */
+
+static double frame_ms(const QualityRow *r, const QualityTarget *t)
+{
+    return r->ms_megapixel * t->megapixels * t->machine_factor;
+}
+
+static double worst(const double *value, unsigned bands, int first)
+{
+    double most = 0;
+    for (int b = first; b < quality_bands; b++)
+        if (bands >> b & 1) most = fmax(most, value[b]);
+    return most;
+}
+
+/* Ratio of errors to their targets, at least 1; without a target the error itself, so that smaller is better. */
+static double excess(const QualityRow *r, const QualityTarget *t)
+{
+    const double percent = worst(r->percent, t->bands, BAND_OPTICAL), kelvin = worst(r->kelvin, t->bands, BAND_MWIR);
+    if (isnan(t->percent) && isnan(t->kelvin)) return percent;
+    double over = 1;
+    if (t->percent > 0) over = fmax(over, percent / t->percent);
+    if (t->kelvin > 0) over = fmax(over, kelvin / t->kelvin);
+    return over;
+}
+
+int quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target)
+{
+    const bool errors = !isnan(target->percent) || !isnan(target->kelvin);
+    int        best = -1;
+    bool       best_in_time = false;
+    for (int k = 0; k < table->count; k++) {
+        const QualityRow *r = &table->row[k], *b = best >= 0 ? &table->row[best] : NULL;
+        const bool        in_time = isnan(target->frame_ms) || frame_ms(r, target) <= target->frame_ms;
+        bool              better = !b || (in_time && !best_in_time);
+        if (b && in_time == best_in_time) {
+            const double mine = excess(r, target), others = excess(b, target);
+            better = !in_time ? frame_ms(r, target) < frame_ms(b, target) /* none within frame_ms: the fastest */
+                              : mine < others || (mine == others && frame_ms(r, target) < frame_ms(b, target));
+        }
+        if (better) best = k, best_in_time = in_time;
+    }
+    *reached = best >= 0 && best_in_time && (!errors || excess(&table->row[best], target) <= 1);
+    return best;
+}
+
+bool quality_wanted(const QualityTable *table, int row)
+{
+    const QualityRow *r = &table->row[row];
+    for (unsigned bands = 1; bands < 1u << quality_bands; bands++) {
+        /* the tightest targets of this row: a faster row that meets them dominates it */
+        const QualityTarget target = {
+            worst(r->percent, bands, BAND_OPTICAL), worst(r->kelvin, bands, BAND_MWIR), NAN, 1, 1, bands};
+        bool                quicker = false;
+        for (int k = 0; k < table->count; k++) {
+            const QualityRow *q = &table->row[k];
+            const bool first = q->ms_megapixel < r->ms_megapixel || (q->ms_megapixel == r->ms_megapixel && k < row);
+            quicker |= k != row && first && worst(q->percent, bands, BAND_OPTICAL) <= target.percent &&
+                       worst(q->kelvin, bands, BAND_MWIR) <= target.kelvin;
+        }
+        if (!quicker) return true;
+    }
+    return false;
+}
+
+/* ---- the configuration ------------------------------------------------------------------------ */
+
+static bool asks(const Config *c)
+{
+    return !isnan(c->quality.radiance_rmse_percent) || !isnan(c->quality.temperature_rms_k) ||
+           !isnan(c->quality.frame_ms);
+}
+
+bool quality_wants_factor(const Config *config)
+{
+    return !isnan(config->quality.frame_ms) && !config_given(config, "quality.machine_factor");
+}
+
+static void add(char *text, size_t size, const char *format, double value)
+{
+    const size_t n = strlen(text);
+    if (!isnan(value)) snprintf(text + n, size - n, format, value);
+}
+
+static void take(char *kept, size_t size, int *to, int value, const Config *config, const char *key)
+{
+    if (!config_given(config, key)) *to = value;
+    else snprintf(kept + strlen(kept), size - strlen(kept), "; %s as given", key);
+}
+
+Status quality_choose(Config *config, Choices *choices, unsigned bands)
+{
+    QualityTable table;
+    char         path[512], wants[80] = "", kept[128] = "", k_text[32] = "";
+    bool         reached;
+    if (!asks(config)) return STATUS_OK;
+    const bool given = *config->quality.table;
+    if (!given && !etc_path(path, sizeof path, "quality.csv")) return STATUS_BAD_VALUE;
+    const Status status = quality_open(&table, given ? config->quality.table : path);
+    if (status != STATUS_OK) return status;
+    const QualityTarget target = {config->quality.radiance_rmse_percent,
+                                  config->quality.temperature_rms_k,
+                                  config->quality.frame_ms,
+                                  1e-6 * config->sensor.width_px * config->sensor.height_px,
+                                  config->quality.machine_factor,
+                                  bands};
+    const QualityRow *r = &table.row[quality_pick(&reached, &table, &target)];
+    take(kept, sizeof kept, &config->sensor.samples, r->samples, config, "sensor.samples");
+    if (r->edge_samples > 0) {
+        take(kept, sizeof kept, &config->sensor.edge_samples, r->edge_samples, config, "sensor.edge_samples");
+        take(kept, sizeof kept, &config->sensor.target_samples, r->target_samples, config, "sensor.target_samples");
+    }
+    if (!config_given(config, "sensor.antialias"))
+        strcpy(config->sensor.antialias, r->edge_samples > 0 ? "adaptive" : "off");
+    add(wants, sizeof wants, " %g %% rmse", target.percent);
+    add(wants, sizeof wants, " %g K rms", target.kelvin);
+    add(wants, sizeof wants, " %g ms", target.frame_ms);
+    if (bands & (1u << BAND_MWIR | 1u << BAND_LWIR))
+        add(k_text, sizeof k_text, ", %.2g K", worst(r->kelvin, bands, BAND_MWIR));
+    char grids[64] = "";
+    if (r->edge_samples > 0)
+        snprintf(grids, sizeof grids, ", edge_samples %d, target_samples %d", r->edge_samples, r->target_samples);
+    choice_add(choices, "quality: samples %d%s for%s%s (at most %.2g %%%s; %.3g ms, %.2g x the fastest)%s", r->samples,
+               grids, wants, reached ? "" : ": NOT reached, the closest", worst(r->percent, bands, BAND_OPTICAL),
+               k_text, frame_ms(r, &target), r->ms_megapixel / table.row[0].ms_megapixel, kept);
+    if (!reached)
+        log_warn("quality: no row of the table meets%s; the closest is used (`pitviper bench quality` lists them)",
+                 wants);
+    return STATUS_OK;
+}

@@ -1,0 +1,51 @@
+/* sensor/quality/quality.h: settings picked off a measured front, where error or time is configured and not settings.
+ *
+ * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to
+ * have over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table
+ * and configuration alone: times are the table's times quality.machine_factor, never a clock's. */
+#ifndef SENSOR_QUALITY_QUALITY_H
+#define SENSOR_QUALITY_QUALITY_H
+
+#include "sensor/node/choices.h"
+
+/* The bands with an error in the table; not the radar. */
+enum { quality_bands = BAND_LWIR + 1, quality_rows_max = 256 };
+
+typedef struct QualityRow {
+    int    samples, edge_samples, target_samples; /* as RenderRequest: 0 of both of the latter: antialias off */
+    double percent[quality_bands];                /* rms of radiance over the band's mean */
+    double kelvin[quality_bands];                 /* the same as apparent temperature; of the thermal bands */
+    double ms_megapixel;                          /* three bands and truth, one thread */
+} QualityRow;
+
+typedef struct QualityTable {
+    int        count;
+    QualityRow row[quality_rows_max];
+} QualityTable;
+
+/* STATUS_BAD_VALUE, logged with file, line, column and range. */
+Status quality_open(QualityTable *out, const char *path);
+/* `# ` and comment, then the rows. STATUS_IO, logged. */
+Status quality_write(const char *path, const QualityTable *table, const char *comment);
+
+/* Targets; NaN: none. */
+typedef struct QualityTarget {
+    double   percent, kelvin, frame_ms;
+    double   megapixels, machine_factor;
+    unsigned bands;             /* 1 << Band: bands to which the targets apply */
+} QualityTarget;
+
+/* The fastest row that meets every target; if there is none, the closest: within frame_ms if any row is, then with the
+ * smallest ratio of error to target. Ties: the first. With frame_ms alone: the smallest error within it. reached: all
+ * targets are met. */
+int  quality_pick(bool *reached, const QualityTable *table, const QualityTarget *target);
+
+/* Whether any targets select this row; else a faster row is at least as good in all. */
+bool quality_wanted(const QualityTable *table, int row);
+
+/* Applies quality.* to the settings and reports it; keys that were given stay. No target: no change. */
+Status quality_choose(Config *config, Choices *choices, unsigned bands);
+/* Whether the selection depends on the speed of this machine: frame_ms is set, and no factor given. */
+bool   quality_wants_factor(const Config *config);
+
+#endif

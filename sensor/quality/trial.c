@@ -1,0 +1,174 @@
+/* sensor/quality/trial.c: a scene made to be measured in, and one frame of it with the time of each stage. */
+#include "sensor/quality/trial.h"
+
+#include "entities/motion/dead_reckoning.h"
+#include "sensor/node/seeker.h"
+
+/* ---- who is there ----------------------------------------------------------------------------- */
+
+enum { a_row = 5 };
+
+Status trial_scene_place(const TrialScene *scene, const TrialPlace *place)
+{
+    const LocalFrame *frame = &scene->landscape->frame;
+    const double      turn = place->turn_rad;
+    const double      r_enu_from_body[9] = {sin(turn), cos(turn), 0, cos(turn), -sin(turn), 0, 0, 0, -1};
+    const double p_enu[3] = {place->east_m, place->north_m,
+                             elevation_height(&scene->landscape->elevation, place->east_m, place->north_m, NULL) +
+                                 place->above_m};
+    double            r_ecef_from_body[9], euler[3];
+    DisEntityState pdu = {.header = {.version = 7, .type = dis_pdu_entity_state},
+                          .force = 1,
+                          .type = place->type,
+                          .id = {1, 1, (uint16_t)place->number},
+                          .appearance = place->appearance,
+                          .dead_reckoning = 2};
+    ecef_from_enu(pdu.p_ecef, frame, p_enu);
+    m3_mul(r_ecef_from_body, frame->r_ecef_from_enu, r_enu_from_body);
+    euler_from_r_ecef_from_body(&euler[0], &euler[1], &euler[2], r_ecef_from_body);
+    pdu.psi_rad   = (float)euler[0];
+    pdu.theta_rad = (float)euler[1];
+    pdu.phi_rad   = (float)euler[2];
+    /* primary turret 1 azimuth, primary gun 1 elevation */
+    pdu.variable[0] = (DisVariableParameter){.parameter = 4096 + 11, .value = (float)(turn - 3)};
+    pdu.variable[1] = (DisVariableParameter){.parameter = 4416 + 13, .value = 0.1f};
+    pdu.variable_count = 2;
+    return entity_table_entity_state(scene->table, &pdu, scene->sun_now_s);
+}
+
+static TrialPlace vehicle_place(DisEntityType type, int index, int vehicles)
+{
+    const int rows = (vehicles + a_row - 1) / a_row;
+    return (TrialPlace){.type = type, .number = index + 1, .appearance = 1u << 22,
+                        .east_m = 40.0 * (index % a_row) - 20.0 * (vehicles < a_row ? vehicles - 1 : a_row - 1),
+                        .north_m = 40.0 * (index / a_row) - 20.0 * (rows - 1),
+                        .turn_rad = vehicles == 1 ? 0.6 : 2 * pi_rad * random_uniform(1, 1, 0, (uint64_t)index)};
+}
+
+Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
+                        const DisEntityType *types, int type_count, int vehicles)
+{
+    TrialScene        scene = {.landscape = landscape, .sun_now_s = 60};
+    EntityTableConfig config = entity_table_default_config();
+    char              heat[512];
+    config.ground = (ContactGround){.frame = &landscape->frame, .elevation = &landscape->elevation};
+    Status status = etc_path(heat, sizeof heat, "heat.csv") && text_to_unix_s(&scene.unix_s, "2026-06-21T11:15:00Z")
+                        ? STATUS_OK : STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = catalog_open(&scene.catalog, catalog_path, 0.01);
+    if (status == STATUS_OK) status = entity_table_create(&scene.table, &config, scene.catalog, heat);
+    if (status == STATUS_OK) status = world_open(&scene.world, scene.catalog, landscape, &landscape->frame, "avx2");
+    if (status == STATUS_OK) status = atmosphere_open(&scene.world.atmosphere, "us1976");
+    for (int k = 0; k < vehicles && status == STATUS_OK; k++) {
+        const TrialPlace place = vehicle_place(types[k % type_count], k, vehicles);
+        status = trial_scene_place(&scene, &place);
+    }
+    if (status == STATUS_OK) *out = scene;
+    else trial_scene_close(&scene);
+    return status;
+}
+
+void trial_scene_close(TrialScene *scene)
+{
+    entity_table_destroy(scene->table);
+    world_close(&scene->world);
+    catalog_close(scene->catalog);
+    *scene = (TrialScene){0};
+}
+
+View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height)
+{
+    const Elevation *e = &scene->landscape->elevation;
+    const double     aim[3] = {0, 0, elevation_height(e, 0, 0, NULL) + 1};
+    View   view = {.p_enu = {0, -back_m, fmax(aim[2], elevation_height(e, 0, -back_m, NULL)) + above_m}, .width = width,
+                   .height = height, .focal_px = view_focal_px(width, hfov_rad)};
+    double d_enu[3];
+    v3_sub(d_enu, aim, view.p_enu);
+    v3_scale(d_enu, 1 / v3_length(d_enu), d_enu);
+    camera_upright(view.r_enu_from_cam, d_enu);
+    return view;
+}
+
+/* ---- one frame -------------------------------------------------------------------------------- */
+
+static Status light(TrialFrame *f)
+{
+    const TrialScene *scene = f->scene;
+    const World      *world = &scene->world;
+    Weather           weather = weather_default();
+    weather.air_temp_k        = atmosphere_temp_k(world->atmosphere, 0);
+    Status status =
+        sun_at(&f->sun, scene->unix_s, &world->frame.origin, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
+    if (status != STATUS_OK) return status;
+    const double    ground_m = elevation_height(&scene->landscape->elevation, 0, 0, NULL);
+    const AirSource source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
+    const AirEye    eye = {f->request.view.p_enu[2] - ground_m, render_air_bands(f->request.bands, f->request.optical),
+                           &f->request.view};
+    return air_at(&f->air, &source, &weather, &f->sun, &eye, f->pool, f->arena);
+}
+
+static Status targets(TrialFrame *f)
+{
+    const World     *world = &f->scene->world;
+    Target          *target = arena_alloc(f->arena, (size_t)f->snapshot.count + 1, sizeof *target);
+    EyeState         eye = {.host_index = -1};
+    const TruthNoise noise = {0.1, 0.03, 0.03};
+    if (!target) return STATUS_NO_MEMORY;
+    ecef_from_enu(eye.p_ecef, &world->frame, f->request.view.p_enu);
+    m3_mul(eye.r_ecef_from_cam, world->frame.r_ecef_from_enu, f->request.view.r_enu_from_cam);
+    f->targets = truth_targets(target, &f->picture, world, &f->snapshot, &f->request, &eye, &noise);
+    return STATUS_OK;
+}
+
+void trial_frame(void *user)
+{
+    TrialFrame  *f = user;
+    const double t0 = wall_clock_s();
+    arena_reset(f->arena);
+    f->status = entity_table_snapshot(&f->snapshot, f->scene->table, f->scene->sun_now_s + 0.5, f->arena);
+    const double t1 = wall_clock_s();
+    if (f->status == STATUS_OK) f->status = light(f);
+    const double t2 = wall_clock_s();
+    if (f->status == STATUS_OK)
+        f->status = render(&f->picture, &f->scene->world, &f->snapshot, &f->request, &f->air, f->pool, f->arena);
+    const double t3 = wall_clock_s();
+    if (f->status == STATUS_OK && f->request.truth) f->status = targets(f);
+    const double t4 = wall_clock_s();
+
+    const RenderTimes *r = &f->picture.times;
+    const double       share_s = 1e-3 / pool_threads(f->pool);
+    f->stage_s[STAGE_FRAME]      = t4 - t0;
+    f->stage_s[STAGE_SNAPSHOT]   = t1 - t0;
+    f->stage_s[STAGE_AIR]        = t2 - t1;
+    f->stage_s[STAGE_PREPARE]    = 1e-3 * r->prepare_ms;
+    f->stage_s[STAGE_VISIBILITY] = share_s * r->visibility_ms;
+    f->stage_s[STAGE_SUN]        = share_s * r->shadow_ms;
+    f->stage_s[STAGE_SHADE]      = share_s * r->shade_ms;
+    f->stage_s[STAGE_RADAR]      = share_s * r->radar_ms;
+    f->stage_s[STAGE_TRUTH]      = t4 - t3;
+    f->stage_s[STAGE_REST]       = t3 - t2;
+    for (int s = STAGE_PREPARE; s <= STAGE_RADAR; s++) f->stage_s[STAGE_REST] -= f->stage_s[s];
+    f->stage_s[STAGE_FOOTPRINTS] = 1e-3 * r->footprints_ms;
+    f->stage_s[STAGE_BASE]       = 1e-3 * r->base_ms;
+    f->stage_s[STAGE_EDGES]      = 1e-3 * r->edges_ms;
+}
+
+Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *f)
+{
+    static const char *const radiance[picture_plane_count] = {"R", "G", "B", "mwir", "lwir", "radar"};
+    static const char *const normal[3] = {"nx", "ny", "nz"};
+    const Picture *p = &f->picture;
+    const int      w = p->width, h = p->height;
+    Plane          plane[24];
+    int            n = 0;
+    for (int k = 0; k < picture_plane_count; k++)
+        if (picture_plane(p, k)) plane[n++] = plane_f32(radiance[k], w, h, picture_plane(p, k));
+    if (p->range_m) {
+        plane[n++] = plane_f32("range_m", w, h, p->range_m);
+        plane[n++] = plane_u32("entity", w, h, p->entity);
+        plane[n++] = plane_u32("part", w, h, p->part);
+        plane[n++] = plane_u32("material", w, h, p->material);
+        plane[n++] = plane_f32("temp_k", w, h, p->temp_k);
+        for (int k = 0; k < 3; k++) plane[n++] = plane_f32(normal[k], w, h, p->normal[k]);
+    }
+    return plane_hash(out, plane, n);
+}

@@ -1,0 +1,64 @@
+/* sensor/quality/trial.h: what frames are measured on: a bare ground, vehicles on it, the sun of a summer noon, a
+ * view. */
+#ifndef SENSOR_QUALITY_TRIAL_H
+#define SENSOR_QUALITY_TRIAL_H
+
+#include "entities/table/entity_table.h"
+#include "render/frame/render.h"
+#include "sensor/truth/truth.h"
+#include "sensor/publish/plane_hash.h"
+
+typedef struct TrialScene {
+    const Landscape *landscape;   /* not its own */
+    Catalog         *catalog;
+    World            world;
+    EntityTable     *table;
+    double           unix_s, sun_now_s;
+} TrialScene;
+
+/* vehicles: so many in rows of five, 40 m apart, about the origin, turrets and guns turned; types: theirs, in turn. */
+Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
+                        const DisEntityType *types, int type_count, int vehicles);
+void   trial_scene_close(TrialScene *scene);
+
+/* One more report at the scene's time: so far east and north of the origin, this high above the ground. */
+typedef struct TrialPlace {
+    DisEntityType type;
+    int           number;        /* 1 .. 65535: whose report it is */
+    double        east_m, north_m, above_m, turn_rad; /* turn: from north by east */
+    uint32_t      appearance;
+} TrialPlace;
+Status trial_scene_place(const TrialScene *scene, const TrialPlace *place);
+
+/* A view of the origin from this far south of it and this high above it. */
+View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
+
+/* The stages of a frame, in order. Of those summed over threads the share of one: on one thread they add up to the
+ * frame. The passes tell the same time otherwise: by what is being sampled. */
+typedef enum TrialStage {
+    STAGE_FRAME, STAGE_SNAPSHOT, STAGE_AIR, STAGE_PREPARE, STAGE_VISIBILITY, STAGE_SUN, STAGE_SHADE, STAGE_RADAR,
+    STAGE_REST,     /* of the pixels: truth planes, areas of targets, edges found */
+    STAGE_TRUTH, STAGE_FOOTPRINTS, STAGE_BASE, STAGE_EDGES, TRIAL_STAGE_COUNT
+} TrialStage;
+
+/* One frame as a node makes it, up to the planes; all in the arena, which is reset first. */
+typedef struct TrialFrame {
+    const TrialScene *scene;
+    RenderRequest     request;
+    Pool             *pool;
+    Arena            *arena;
+    Status            status;
+    Snapshot          snapshot;
+    Sun               sun;
+    Air               air;
+    Picture           picture;
+    int               targets;
+    double            stage_s[TRIAL_STAGE_COUNT];
+} TrialFrame;
+
+/* user: a TrialFrame. */
+void   trial_frame(void *user);
+/* Every plane of its picture. */
+Status trial_frame_hash(char out[sha256_text_size], const TrialFrame *frame);
+
+#endif

@@ -1,0 +1,252 @@
+"""tests/layers/layers.py ROOT: what a file may include, where a library is known, that includes go in no circle, and
+that a .c file says in its first line what it is. A link alone proves none of it: an object that is already pulled in
+satisfies a call backwards.
+
+    base < dis, terrain < entities < render < sensor
+
+A room's folders are its wings. A wing's exception below needs a reason; best there is none."""
+import collections
+import fnmatch
+import os
+import re
+import sys
+
+ROOMS = ('dis', 'terrain', 'entities', 'render', 'sensor')
+
+# Headers of other rooms that a room may include, beside its own.
+MAY = {
+    'base': (),
+    'dis': (),
+    'terrain': (),
+    'entities': ('dis/*', 'terrain/*'),
+    # a Snapshot and the terrain, never a PDU or the table; pdu.h for its ids alone
+    'render': ('terrain/*', 'entities/models/model.h', 'entities/import/model_import.h', 'entities/catalog/catalog.h',
+               'entities/table/snapshot.h', 'dis/pdu.h'),
+    'sensor': ('dis/*', 'terrain/*', 'entities/*', 'render/*'),
+    'top': ('*',), 'fuzz': ('*',), 'analytic': ('*',),
+}
+BASE_HEADERS = ('pitviper.h', 'pitviper_simd.h')
+
+# Libraries that one file, or one folder, knows: header, places.
+LIBRARIES = (
+    ('GeographicLib/*', 'terrain/*.cpp'), ('gdal*', 'terrain/elevation/raster.c'),
+    ('cpl_*', 'terrain/elevation/raster.c'), ('ogr_*', 'terrain/elevation/raster.c'), ('erfa.h', 'terrain/*'),
+    ('OpenImageIO/*', 'sensor/publish/*.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
+    ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
+    ('libdeflate.h', 'sensor/publish/*'), ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
+)
+
+# Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
+WING_EXCEPTIONS = {
+    ('render/light', 'render/air'): 'paths are shaded with the air that is made of their Planck tables',
+    ('render/scene', 'render/parts'): 'a visibility pass asks the traced parts, which know its hits',
+    ('sensor/publish', 'sensor/node'): 'a pair\'s record names the files of a frame',
+    ('sensor/node', 'sensor/commands'): 'replay is the sweep\'s child, and asks before it overwrites',
+    ('sensor/settings', 'sensor/node'): 'the list of choices',
+    ('sensor/settings', 'sensor/commands'): 'the next option of a command line',
+    ('sensor/quality', 'sensor/node'): 'the list of choices; an upright camera',
+}
+# Circles between files (x.c, x.h and x_private.h are one), each as its sorted members, with the reason.
+FILE_EXCEPTIONS = {
+    ('dis/pdu', 'dis/reader'): 'the reader is the PDU\'s cursor',
+    ('dis/udp', 'dis/udp_link', 'dis/udp_socket'): 'one socket in three files',
+    ('entities/survey/survey', 'entities/survey/survey_shots'): 'one survey in two files',
+    ('render/parts/parts', 'render/scene/visibility'): 'as the wings',
+    ('sensor/node/pairs', 'sensor/node/session'): 'one session in two files',
+    ('sensor/regress/run_case', 'sensor/regress/update'): 'an update runs its case again',
+}
+
+
+def room_of(path):
+    path = path.removeprefix('tests/')
+    first = path.split('/')[0]
+    if first in ROOMS or first in ('base', 'fuzz', 'analytic'):
+        return first if '/' in path else 'top'
+    return 'base' if path.startswith('pitviper') else 'top'
+
+
+def allowed(path, header):
+    room = room_of(path)
+    if header in BASE_HEADERS or header.startswith('tests/') or room == 'base' and header.startswith('pitviper'):
+        return True  # only tests have reason to include tests/, see below
+    if header.startswith('sensor/bench/'):  # the workshop is no part of the product
+        return path.startswith(('sensor/bench/', 'tests/')) or path == 'main.c'
+    return header.startswith(room + '/') and room in ROOMS or any(fnmatch.fnmatch(header, h) for h in MAY[room])
+
+
+def includes(text):
+    return re.findall(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', text, re.M)
+
+
+def check_rooms(tree):
+    for path, text in tree.items():
+        for kind, header in includes(text):
+            if kind == '<':
+                places = [place for library, place in LIBRARIES if fnmatch.fnmatch(header, library)]
+                judge = path.startswith(('tests/', 'sensor/bench/'))  # those that test a library's results may ask it
+                if places and not judge and not any(fnmatch.fnmatch(path, place) for place in places):
+                    yield f'{path}: <{header}> belongs to {" and ".join(places)} alone'
+            elif header.startswith('tests/') and not path.startswith('tests/'):
+                yield f'{path}: product code includes {header}'
+            elif not allowed(path, header):
+                yield f'{path}: {room_of(path)} may not include {header}'
+            elif (header.endswith('_private.h') and os.path.dirname(header) != os.path.dirname(path)
+                  and not path.startswith('sensor/bench/')):
+                yield f'{path}: {header} is private to {os.path.dirname(header)}/'
+
+
+def circles(graph):
+    """The strongly connected parts of more than one node (Tarjan)."""
+    index, low, stack, found = {}, {}, [], []
+
+    def visit(node):
+        index[node] = low[node] = len(index)
+        stack.append(node)
+        for other in sorted(graph[node]):
+            if other not in index:
+                visit(other)
+                low[node] = min(low[node], low[other])
+            elif other in stack:
+                low[node] = min(low[node], index[other])
+        if low[node] == index[node]:
+            part = stack[stack.index(node):]
+            del stack[stack.index(node):]
+            if len(part) > 1:
+                found.append(tuple(sorted(part)))
+
+    sys.setrecursionlimit(10000)
+    for node in sorted(graph):
+        if node not in index:
+            visit(node)
+    return found
+
+
+def unit_of(path):
+    return re.sub(r'(_private)?\.(c|h|cpp)$', '', path)
+
+
+def check_circles(tree):
+    files, wings, why = collections.defaultdict(set), collections.defaultdict(set), collections.defaultdict(list)
+    for path, text in tree.items():
+        if path.startswith('tests/'):
+            continue
+        for kind, header in includes(text):
+            if kind == '<' or header not in tree:
+                continue
+            if unit_of(path) != unit_of(header):
+                files[unit_of(path)].add(unit_of(header))
+                files[unit_of(header)]  # a node, though it includes nothing
+            a, b = os.path.dirname(path), os.path.dirname(header)
+            if a != b and a and b and room_of(path) == room_of(header) and (a, b) not in WING_EXCEPTIONS:
+                wings[a].add(b)
+                wings[b]
+                why[a, b].append(f'{path} includes {header}')
+    for part in circles(files):
+        if part not in FILE_EXCEPTIONS:
+            yield 'files in a circle: ' + ', '.join(part)
+    for part in circles(wings):
+        yield 'wings in a circle: ' + ', '.join(part) + ''.join(
+            f'\n    {a} -> {b}: {len(lines)}: {lines[0]}' for (a, b), lines in sorted(why.items())
+            if a in part and b in part)
+
+
+def check_first_lines(tree):
+    for path, text in tree.items():
+        first = text.split('\n', 1)[0]
+        if path.endswith('.h'):
+            continue
+        if path.startswith('tests/') and not re.match(r'/\* \S', first):
+            yield f'{path}: the first line does not say what it tests: {first}'
+        elif not path.startswith('tests/') and not first.startswith(f'/* {path}: '):
+            yield f'{path}: the first line is not `/* {path}: what it is`: {first}'
+
+
+CHECKS = (check_rooms, check_circles, check_first_lines)
+
+
+def violations(tree):
+    return [line for check in CHECKS for line in check(tree)]
+
+
+# Planted trees: each bad one must be caught, each good one passed. FILE: what it includes, with `first` its first line.
+def twins():
+    wrong = []
+
+    def plant(bad, **files):
+        tree = {}
+        for path, headers in files.items():
+            path = path.replace('__', '/').replace('_DOT_', '.')
+            lines = ''.join(f'#include {h if h[0] == "<" else chr(34) + h + chr(34)}\n' for h in headers.split())
+            tree[path] = f'/* {path}: planted. */\n{lines}'
+        found = violations(tree)
+        if bool(found) != bad:
+            wrong.append(f'twin: {"not caught" if bad else "wrongly caught"}: {files} {found}')
+
+    def one(bad, path, header):
+        plant(bad, **{path: header})
+
+    for path, header in re.findall(r'(\S+) (\S+)', """
+        pitviper_log.c dis/pdu.h                        pitviper_log.c sensor/bench/bench_private.h
+        dis/pdu.c sensor/bench/bench_private.h          sensor/node/live.c sensor/bench/sensor/quality.h
+        sensor/publish/html.c sensor/bench/bench.h      dis/pdu.c terrain/earth/geodesy.h
+        dis/pdu.c entities/models/model.h               terrain/earth/sun.c dis/pdu.h
+        entities/models/model.c render/frame/render.h   render/frame/render.c entities/table/entity_table.h
+        render/frame/render.c dis/entity_state.h        render/frame/render.c sensor/detector/detector.h
+        tests/dis/test_pdu.c entities/models/model.h    tests/render/test_render.c sensor/publish/plane.h
+        sensor/node/loop.c render/parts/parts_private.h sensor/node/loop.c loop.h
+        dis/pdu.c tests/check.h                         entities/models/model.c <GeographicLib/Geocentric.hpp>
+        sensor/truth/truth.c <jansson.h>                terrain/earth/geoid.c <gdal.h>
+        sensor/detector/scan.c <fftw3.h>                entities/import/sidecar.c <assimp/scene.h>
+        entities/import/sidecar.c <yaml.h>"""):
+        one(True, path, header)
+    for path, header in re.findall(r'(\S+) (\S+)', """
+        sensor/bench/run.c sensor/bench/bench_private.h sensor/bench/render/precision_air.c render/air/air_private.h
+        dis/pdu.c pitviper.h                            dis/pdu.c dis/reader_private.h
+        render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/entity_state.h
+        render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/log.h
+        sensor/publish/truth.c <jansson.h>              tests/dis/test_pdu.c tests/check.h
+        main.c sensor/node/replay.h"""):
+        one(False, path, header)
+    # circles: of two files, through a third, of wings by different files; a line of wings, a file and its own headers
+    plant(True, **{'dis/a.c': 'dis/a.h dis/b.h', 'dis/a.h': '', 'dis/b.h': '', 'dis/b.c': 'dis/a.h'})
+    plant(True, **{'dis/a.h': 'dis/b.h', 'dis/b.h': 'dis/c.h', 'dis/c.h': '', 'dis/c.c': 'dis/a_private.h',
+                   'dis/a_private.h': ''})
+    plant(True, **{'render/p/a.c': 'render/q/b.h', 'render/q/b.h': '', 'render/q/c.c': 'render/p/d.h',
+                   'render/p/d.h': ''})
+    plant(False, **{'render/p/a.c': 'render/q/b.h', 'render/q/b.h': '', 'render/q/c.c': 'render/s/d.h',
+                    'render/s/d.h': ''})
+    plant(False, **{'dis/a.c': 'dis/a.h dis/a_private.h', 'dis/a_private.h': 'dis/a.h', 'dis/a.h': ''})
+    for path, first in (('dis/a.c', '#include "dis/a.h"'), ('dis/a.c', '/* dis/b.c: another. */'),
+                        ('tests/dis/test_a.c', '#include "tests/check.h"'), ('main.c', '')):
+        if not violations({path: first + '\n'}):
+            wrong.append(f'twin: not caught: {path} begins {first}')
+    return wrong
+
+
+def read_tree(root):
+    tree = {}
+    for folder, folders, names in os.walk(root):
+        folders[:] = [f for f in folders if not (folder == root and (f.startswith('build') or f[0] == '.'))]
+        for name in names:
+            if name.endswith(('.c', '.h', '.cpp')):
+                path = os.path.join(folder, name)
+                with open(path, encoding='utf-8', errors='replace') as file:
+                    tree[os.path.relpath(path, root)] = file.read()
+    return tree
+
+
+def main():
+    wrong = twins()
+    tree = read_tree(sys.argv[1])
+    wrong += violations(tree)
+    for line in wrong:
+        print(line)
+    product = sum(not path.startswith('tests/') for path in tree)
+    print(f'layers: {product} files in {len({os.path.dirname(p) for p in tree if not p.startswith("tests/")})} folders; '
+          f'{len(wrong)} against the rules; {len(WING_EXCEPTIONS)} exceptions between wings, {len(FILE_EXCEPTIONS)} '
+          'between files')
+    return bool(wrong)
+
+
+if __name__ == '__main__':
+    sys.exit(main())
