@@ -300,11 +300,11 @@ static void ask_directly(Scratch *s, const Job *job, ProbeTask *t, Veils direct[
         float        open_w_m2[hits_capacity];
         const float *around = request->sky_samples > 0 ? s->gathered.w_m2[b] : NULL;
         if (!around && s->any_open) {
-            const double level_w_m2 = b >= AIR_MWIR ? job->air->ground_w_m2_sr[b] * pi_rad
+            const double level_w_m2 = b >= AIR_MWIR ? job->air->light.ground_w_m2_sr[b] * pi_rad
                                                     : optical_ground_w_m2((int)b, job->air, materials);
             for (int i = 0; i < count; i++) {
                 const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
-                open_w_m2[i] = (float)((double)s->open.factor[b][i] * (air_sky_on_plane(job->air, b, n_enu) +
+                open_w_m2[i] = (float)((double)s->open.factor[b][i] * (daylight_on_plane(&job->air->light, b, n_enu) +
                                                                        level_w_m2 * 0.5 * (1 - n_enu[2])));
             }
             around = open_w_m2;

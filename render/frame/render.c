@@ -341,7 +341,7 @@ void trace_shadows(Scratch *s, const Job *job)
 {
     const double t0 = wall_clock_s();
     if (has_band(s->block.bands, BAND_OPTICAL) || has_band(s->block.bands, BAND_MWIR))
-        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->sun_d_enu, &s->counters.visibility);
+        visibility_shadow(s->shadow, job->visibility, &s->hits, job->air->light.sun_d_enu, &s->counters.visibility);
     else
         memset(s->shadow, 0, sizeof s->shadow);
     s->shadow_s += wall_clock_s() - t0;
