@@ -19,12 +19,12 @@ static double phase_per_sr(double asymmetry, double cosine)
     return (1 - g2) / (4 * pi_rad * base * sqrt(base));
 }
 
-/* Below 500 K nothing shows to 1.1 um: under 2e-5 W/(m2 sr). */
+/* Below 500 K nothing shows to 1.1 um, and as little by Wien's law elsewhere: under 2e-5 W/(m2 sr). */
 static double glow_w_m2_sr(int band, double temp_k)
 {
-    if (band < effect_band_mwir && temp_k < 500) return 0;
     double low_m, high_m;
     air_band_edges(&low_m, &high_m, (AirBand)band);
+    if (band < effect_band_mwir && temp_k < 500 * fmin(1, 1.1e-6 / high_m)) return 0;
     return planck_band(low_m, high_m, temp_k, NULL);
 }
 

@@ -139,8 +139,9 @@ static Status write_exr(const FrameFiles *frame, int band)
     if (band == BAND_RADAR) attribute[n++] = image_string("model", "pseudo-radar");
     if (band == BAND_OPTICAL) /* what the planes see, um; in the order of their names */
         attribute[n++] = image_string("wavelengths_um", frame->request->optical == OPTICAL_RGB   ? "R 0.6-0.7, G 0.5-0.6, B 0.4-0.5"
-                                                        : frame->request->optical == OPTICAL_NIR ? "0.7-1.1"
-                                                                                                 : "0.4-0.7");
+                                                        : frame->request->optical == OPTICAL_NIR
+                                                            ? channel_in(SPECTRAL_NIR)->edges_um
+                                                            : channel_in(SPECTRAL_PAN)->edges_um);
     attribute[n++] = image_int("frame", frame->frame);
     attribute[n++] = image_double("time_s", frame->time_s);
     attribute[n++] = image_string("host", frame->host);
