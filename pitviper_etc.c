@@ -46,7 +46,7 @@ bool etc_path(char *out, size_t out_size, const char *name)
 bool etc_is_complete(void)
 {
     static const char *const needed[] = {"catalog.csv", "materials.csv", "surfaces.csv", "ground_heat.csv",
-                                         "heat.csv", "effects.csv", "sensors.csv", "atmosphere/bands.csv"};
+                                         "heat.csv", "effects.csv", "sensors.csv", "channels.csv", "atmosphere/bands.csv"};
     char   path[4096], beside[4096], missing[256] = "";
     size_t n = 0;
     for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)

@@ -1,6 +1,8 @@
 /* entities/effects/effects.c: the rows of etc/effects.csv, and a puff's closed form. */
 #include "entities/effects/effects.h"
 
+#include <stdio.h>
+
 const double effect_mean_density = 8.0 / 35;
 
 static const char *const kind_names[EFFECT_KIND_COUNT] = {
@@ -15,18 +17,6 @@ static const struct {
     size_t      offset;
     double      low, high;
 } columns[] = {
-    {"ext_b", offsetof(EffectLaw, extinction_m2_kg[effect_band_b]), 0, 1e5},
-    {"ext_g", offsetof(EffectLaw, extinction_m2_kg[effect_band_g]), 0, 1e5},
-    {"ext_r", offsetof(EffectLaw, extinction_m2_kg[effect_band_r]), 0, 1e5},
-    {"ext_nir", offsetof(EffectLaw, extinction_m2_kg[effect_band_nir]), 0, 1e5},
-    {"ext_mwir", offsetof(EffectLaw, extinction_m2_kg[effect_band_mwir]), 0, 1e5},
-    {"ext_lwir", offsetof(EffectLaw, extinction_m2_kg[effect_band_lwir]), 0, 1e5},
-    {"albedo_b", offsetof(EffectLaw, albedo[effect_band_b]), 0, 1},
-    {"albedo_g", offsetof(EffectLaw, albedo[effect_band_g]), 0, 1},
-    {"albedo_r", offsetof(EffectLaw, albedo[effect_band_r]), 0, 1},
-    {"albedo_nir", offsetof(EffectLaw, albedo[effect_band_nir]), 0, 1},
-    {"albedo_mwir", offsetof(EffectLaw, albedo[effect_band_mwir]), 0, 1},
-    {"albedo_lwir", offsetof(EffectLaw, albedo[effect_band_lwir]), 0, 1},
     {"asymmetry", offsetof(EffectLaw, asymmetry), -0.95, 0.95},
     {"mass_kg", offsetof(EffectLaw, mass_kg), 0, 1e4},
     {"radius_start_m", offsetof(EffectLaw, radius_start_m), 0.01, 100},
@@ -43,8 +33,30 @@ static const struct {
 };
 enum { column_count = sizeof columns / sizeof *columns };
 
+/* ext_ and albedo_ of the channel in each place but pan's. */
+typedef struct ChannelColumns {
+    int of[2][effect_band_count]; /* extinction, albedo; -1: pan */
+} ChannelColumns;
+
+static bool find_channel_columns(ChannelColumns *out, const Table *table)
+{
+    bool all = true;
+    for (int which = 0; which < 2; which++)
+        for (int b = 0; b < effect_band_count; b++) {
+            char name[32];
+            out->of[which][b] = -1;
+            if (b == effect_band_pan) continue;
+            snprintf(name, sizeof name, "%s_%s", which ? "albedo" : "ext", channel_in((ChannelPlace)b)->name);
+            out->of[which][b] = table_column(table, name);
+            if (out->of[which][b] >= 0) continue;
+            log_error("effects: a column is missing: file=%s column=%s", table->path, name);
+            all = false;
+        }
+    return all;
+}
+
 static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const Table *table, int row, int name_column,
-                       const int column[column_count])
+                       const int column[column_count], const ChannelColumns *channels)
 {
     const char *name = table_text(table, row, name_column);
     int kind = 0;
@@ -64,6 +76,11 @@ static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const
     }
     for (int which = 0; which < 2; which++) {
         double *of = which ? law->albedo : law->extinction_m2_kg;
+        for (int b = 0; b < effect_band_count; b++) {
+            if (channels->of[which][b] < 0) continue;
+            const Status status = table_number(&of[b], table, row, channels->of[which][b], 0, which ? 1 : 1e5);
+            if (status != STATUS_OK) return status;
+        }
         of[effect_band_pan] = (of[effect_band_b] + of[effect_band_g] + of[effect_band_r]) / 3;
     }
     return STATUS_OK;
@@ -86,8 +103,10 @@ Status effect_table_open(EffectTable *out, const char *path)
         log_error("effects: a column is missing: file=%s column=%s", path, c < 0 ? "name" : columns[c].name);
         status = STATUS_BAD_VALUE;
     }
+    ChannelColumns channels;
+    if (!find_channel_columns(&channels, &table)) status = STATUS_BAD_VALUE;
     for (int row = 0; row < table.rows && status == STATUS_OK; row++)
-        status = read_row(&effects, seen, &table, row, name_column, column);
+        status = read_row(&effects, seen, &table, row, name_column, column, &channels);
     for (int kind = 0; kind < EFFECT_KIND_COUNT && status == STATUS_OK; kind++) {
         if (seen[kind]) continue;
         log_error("effects: an effect has no row: file=%s name=%s", path, kind_names[kind]);

@@ -6,7 +6,7 @@
 #ifndef ENTITIES_EFFECTS_EFFECTS_H
 #define ENTITIES_EFFECTS_EFFECTS_H
 
-#include "pitviper.h"
+#include "pitviper_channels.h"
 #include "terrain/earth/local_frame.h"
 #include "terrain/weather.h"
 
@@ -18,9 +18,10 @@ typedef enum EffectKind {
     EFFECT_KIND_COUNT
 } EffectKind;
 
-/* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7 (the mean of the three), 0.7-1.1, 3.4-4.8, 8-12 um. */
-enum { effect_band_b, effect_band_g, effect_band_r, effect_band_pan, effect_band_nir, effect_band_mwir,
-       effect_band_lwir, effect_band_count };
+/* Places of channels (pitviper_channels.h); pan is the mean of b, g and r. */
+enum { effect_band_b = SPECTRAL_B, effect_band_g = SPECTRAL_G, effect_band_r = SPECTRAL_R, effect_band_pan = SPECTRAL_PAN,
+       effect_band_nir = SPECTRAL_NIR, effect_band_mwir = SPECTRAL_MWIR, effect_band_lwir = SPECTRAL_LWIR,
+       effect_band_count = SPECTRAL_PLACES };
 
 /* One row of etc/effects.csv. */
 typedef struct EffectLaw {

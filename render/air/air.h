@@ -1,85 +1,33 @@
-/* render/air/air.h: sun, sky and the path, per frame: the light that falls on the scene and the air before it.
+/* render/air/air.h: the air before an eye, per frame: daylight, the sky from where it is, and the path to what it sees.
  *
- * Everything comes from the tables of render/air/atmosphere.h, collapsed once a frame for one eye, one sun and one
- * visibility into tables small enough to ask for every sample. tests/render/test_air.c measures what that costs in
- * accuracy. Heights are above the ground at the terrain's origin, which stands at the model's 0 km.
- *
- * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
- * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
- * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. Wind cools surfaces and nothing else here. With height the air's temperature changes as the model's does. */
+ * Paths come from the tables of render/air/atmosphere.h, collapsed once a frame for one eye, one sun and one visibility
+ * into tables small enough to ask for every sample. tests/render/test_air.c measures what that costs in accuracy. */
 #ifndef RENDER_AIR_AIR_H
 #define RENDER_AIR_AIR_H
 
-#include "render/air/atmosphere.h"
-#include "render/scene/hits.h"
-#include "render/light/materials.h"
-#include "render/light/planck.h"
+#include "render/air/daylight.h"
 #include "render/scene/view.h"
-#include "terrain/earth/sun.h"
-#include "terrain/weather.h"
-
-/* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
- * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
- * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: over (1 + n_up) / 2, the share
- * of the sky that it sees, so that an even sky is exact; by azimuth, and by tilt, dense where a plane is level: equal
- * steps of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which are straight in small tilts where n_up is
- * not. */
-enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
-
-typedef struct AirSky {
-    float thermal_w_m2_sr[air_sky_ups + 1], scattered_w_m2_sr[air_sky_ups + 1][air_sky_azimuths + 1];
-    float around_sun[air_sky_angles + 2]; /* one to spare at the end */
-} AirSky;
-
-/* Air temperature by height: 0 .. 16 km in steps of 500 m; as at 16 km above. */
-enum { air_warmer_nodes = 33 };
 
 typedef struct AirTable AirTable; /* paths from this eye */
 
 typedef struct Air {
-    Weather weather;
-    double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
-    double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
-    double  sun_eye_w_m2[AIR_BAND_COUNT];  /* the same at the eye: what its disc is seen by */
-    /* The tables' radiance and irradiance of a sky are two computations and do not quite agree: what is seen, also in a
-     * mirror, is the radiance, and what lights a surface is that times this, so that it adds up to the irradiance. */
-    double  sky_scale[AIR_BAND_COUNT];
-    double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane: its radiance, added up */
-    double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground that things see from below, and of ground beyond
-                                            * the terrain's edge. Others: 0, since it depends on the materials */
-    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
-    AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
-    AirSky  sky_eye[AIR_BAND_COUNT];       /* from the eye */
-    float plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
-    const PlanckTable *planck_mwir, *planck_lwir;
-
+    Daylight  light;
+    AirSky    sky_eye[AIR_BAND_COUNT];      /* from the eye */
+    double    sun_eye_w_m2[AIR_BAND_COUNT]; /* direct sunlight at the eye: what its disc is seen by */
     double    eye_height_m;
-    AirTable *table;                       /* in the arena of air_at; NULL: even air, see air_even */
-    const struct AirDay *day;              /* what the tables were drawn from, and its scales; likewise */
-    double    day_thermal_scale[2], day_scattered_scale;
-    double    even_per_m;                  /* extinction of even air, whose radiance is that of its sky */
-    /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
-    double    solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
-    double    zero_z_m;                    /* ENU z of the model's 0 km; heights bend with the Earth: air_height */
-    float     warmer_k[air_warmer_nodes];  /* of the air every 500 m up from there, against weather.air_temp_k */
+    AirTable *table;                        /* in the arena of air_at; NULL: even air, see air_even */
+    double    even_per_m;                   /* extinction of even air, whose radiance is that of its sky */
 } Air;
 
-/* What does not change between frames. */
-typedef struct AirSource {
-    const Atmosphere  *atmosphere;
-    const PlanckTable *planck_mwir, *planck_lwir;
-} AirSource;
-
-/* Who looks. */
+/* What an eye asks for. */
 typedef struct AirEye {
     double      height_m; /* clamped to the tables */
-    unsigned    bands;    /* 1 << AirBand, those that somebody asks for; air_veils answers no others */
+    unsigned    bands;    /* 1 << AirBand, those that are asked for; air_veils answers no others */
     const View *view;     /* where to, so that only its azimuths are filled in; NULL: all round */
 } AirEye;
 
-/* weather->air_temp_k: NaN for the model's own; the Air's is then filled in. pool: may be NULL. The tables live in the
- * arena. STATUS_NO_MEMORY when that is out. 1 to 2 ms of one core for five bands, 0.4 for LWIR alone; over the pool. */
+/* weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. pool: may be NULL. The tables live in
+ * the arena. STATUS_NO_MEMORY when that is out. 1 to 2 ms of one core for five bands, 0.4 for LWIR alone; over the pool. */
 Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
               Arena *arena);
 
@@ -87,71 +35,6 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
  * sky_w_m2_sr[band]; even_per_m 0: nothing in between. No tables, no arena. */
 void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double sky_w_m2_sr[AIR_BAND_COUNT],
               double even_per_m, const PlanckTable *mwir, const PlanckTable *lwir);
-
-/* low: steps below zero that the first one is drawn on to */
-static const double air_warmer_step_m = 500, air_warmer_low = -4;
-
-/* Height of a place above the model's 0 km: the tangent plane leaves the Earth. */
-static inline double air_height(const Air *air, const double p_enu[3])
-{
-    return p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3) - air->zero_z_m;
-}
-/* Air temperature there, K. */
-static inline double air_temp_at(const Air *air, const double p_enu[3])
-{
-    const double at = clamp(air_height(air, p_enu) / air_warmer_step_m, air_warmer_low, air_warmer_nodes - 1);
-    const int    i  = at < 0 ? 0 : at < air_warmer_nodes - 2 ? (int)at : air_warmer_nodes - 2;
-    const double low_k = (double)air->warmer_k[i], high_k = (double)air->warmer_k[i + 1];
-    return air->weather.air_temp_k + low_k + (at - i) * (high_k - low_k);
-}
-
-/* Where a direction lies in the tables of the sky, and a plane's normal in those of the light on it: the same for every
- * band, so that who asks for several finds it once. */
-typedef struct SkyPlace {
-    int   up, azimuth, angle; /* lower nodes; shares of the upper ones */
-    float up_share, azimuth_share, angle_share;
-} SkyPlace;
-typedef struct PlanePlace {
-    int   up, azimuth;
-    float up_share, azimuth_share, open; /* open: share of the sky before it */
-} PlanePlace;
-void air_sky_place(SkyPlace *out, const Air *air, const double d_enu[3]);
-void air_plane_place(PlanePlace *out, const Air *air, const double n_enu[3]);
-
-/* Both for each hit of a block: of its normal, and of the direction its mirror shows, where it has any gloss. */
-typedef struct Facing {
-    PlanePlace plane[hits_capacity];
-    SkyPlace   mirror[hits_capacity];
-} Facing;
-void air_facing(Facing *out, const Air *air, const Materials *materials, const Hits *hits, const Rays *rays,
-                const uint16_t *material);
-
-static inline double air_sky_there(const AirSky *sky, const SkyPlace *p)
-{
-    const float *low = &sky->scattered_w_m2_sr[p->up][p->azimuth], *high = low + air_sky_azimuths + 1;
-    const float *around = &sky->around_sun[p->angle], *thermal = &sky->thermal_w_m2_sr[p->up];
-    const float  l = low[0] + p->azimuth_share * (low[1] - low[0]);
-    const float  h = high[0] + p->azimuth_share * (high[1] - high[0]);
-    return (double)(thermal[0] + p->up_share * (thermal[1] - thermal[0]) +
-                    (l + p->up_share * (h - l)) * (around[0] + p->angle_share * (around[1] - around[0])));
-}
-
-static inline double air_plane_there(const Air *air, AirBand band, const PlanePlace *p)
-{
-    const float *low = &air->plane_w_m2[band][p->up][p->azimuth], *high = low + air_plane_azimuths + 1;
-    const float  l = low[0] + p->azimuth_share * (low[1] - low[0]);
-    const float  h = high[0] + p->azimuth_share * (high[1] - high[0]);
-    return (double)(p->open * (l + p->up_share * (h - l)));
-}
-
-/* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
-double air_sky(const Air *air, AirBand band, const double d_enu[3]);
-/* The same as it lights a surface: it adds up to air_sky_on_plane. */
-double air_sky_light(const Air *air, AirBand band, const double d_enu[3]);
-/* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
-double air_sky_on_plane(const Air *air, AirBand band, const double n_enu[3]);
-/* Share of the direct sun's irradiance that arrives from a direction, 1/sr: its disc has one brightness. */
-double air_sun_disc(const Air *air, const double d_enu[3]);
 
 /* What the path does to what is behind it: seen = emitted * transmittance + sunlight reflected * sun_transmittance +
  * air's light reflected * air_transmittance + added. Outside the thermal bands the three are one; at night, and always

@@ -17,7 +17,7 @@ static double depth_of(const double depth[day_temps_max], double temp_k)
 
 static double azimuth_from_sun_rad(const Air *air, const double d_enu[3])
 {
-    const double *s = air->sun_d_enu, level = hypot(d_enu[0], d_enu[1]) * hypot(s[0], s[1]);
+    const double *s = air->light.sun_d_enu, level = hypot(d_enu[0], d_enu[1]) * hypot(s[0], s[1]);
     return level > 1e-12 ? acos(clamp((d_enu[0] * s[0] + d_enu[1] * s[1]) / level, -1, 1)) : 0;
 }
 
@@ -25,11 +25,11 @@ static void sky_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, c
 {
     double       seen[1][AIR_BAND_COUNT], thermal[2];
     const double azimuth_rad = azimuth_from_sun_rad(air, d_enu);
-    air_day_sky(seen, thermal, air->day, air->eye_height_m, acos(clamp(d_enu[2], 0, 1)), &azimuth_rad, 1);
+    air_day_sky(seen, thermal, air->light.day, air->eye_height_m, acos(clamp(d_enu[2], 0, 1)), &azimuth_rad, 1);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
-        double added = b == AIR_LWIR ? 0 : seen[0][b] * air->day_scattered_scale;
-        if (b >= AIR_MWIR) added += thermal[b - AIR_MWIR] * air->day_thermal_scale[b - AIR_MWIR];
+        double added = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
+        if (b >= AIR_MWIR) added += thermal[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR];
         out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] = 0;
         out[b].added_w_m2_sr[i] = (float)added;
     }
@@ -44,11 +44,11 @@ static void solid_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands,
     const double far_m = air->eye_height_m + range_m * climb + range_m * range_m * level2 / (2 * earth_radius_m);
     const AirPath path = {.observer_m = air->eye_height_m, .target_m = clamp(far_m, 0, air_top_m), .range_m = range_m};
     DayPath       way;
-    air_day_path(&way, air->day, &path);
-    air_day_scattered(seen, sun, air->day, &path, &azimuth_rad, 1);
+    air_day_path(&way, air->light.day, &path);
+    air_day_scattered(seen, sun, air->light.day, &path, &azimuth_rad, 1);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         if (!(bands >> b & 1)) continue;
-        const double scattered = b == AIR_LWIR ? 0 : seen[0][b] * air->day_scattered_scale;
+        const double scattered = b == AIR_LWIR ? 0 : seen[0][b] * air->light.scattered_scale;
         if (b < AIR_MWIR) {
             out[b].transmittance[i] = out[b].sun_transmittance[i] = out[b].air_transmittance[i] = (float)exp(-way.sun[b]);
             out[b].added_w_m2_sr[i] = (float)scattered;
@@ -56,9 +56,9 @@ static void solid_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands,
         }
         const double *depth = way.emitted[b - AIR_MWIR], own = exp(-depth[air_temps]);
         out[b].air_transmittance[i] = (float)own;
-        out[b].sun_transmittance[i] = (float)(b == AIR_MWIR && air->day_scattered_scale > 0 ? exp(-way.sun[b]) : own);
+        out[b].sun_transmittance[i] = (float)(b == AIR_MWIR && air->light.scattered_scale > 0 ? exp(-way.sun[b]) : own);
         out[b].transmittance[i] = temp_k > 0 ? (float)exp(-depth_of(depth, temp_k)) : out[b].sun_transmittance[i];
-        out[b].added_w_m2_sr[i] = (float)(way.thermal_w_m2_sr[b - AIR_MWIR] * air->day_thermal_scale[b - AIR_MWIR] + scattered);
+        out[b].added_w_m2_sr[i] = (float)(way.thermal_w_m2_sr[b - AIR_MWIR] * air->light.thermal_scale[b - AIR_MWIR] + scattered);
     }
 }
 
@@ -67,7 +67,7 @@ void air_veils_directly(Veils out[AIR_BAND_COUNT], const Air *air, unsigned band
 {
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) out[b] = tables[b];
-    if (!air->day || !air->table) return;
+    if (!air->light.day || !air->table) return;
     for (int i = 0; i < hits->count; i++) {
         const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};

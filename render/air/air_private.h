@@ -3,7 +3,7 @@
 #define RENDER_AIR_AIR_PRIVATE_H
 
 #include "render/air/air.h"
-#include "render/air/atmosphere_day.h"
+#include "render/air/daylight_private.h"
 
 /* Paths from one eye. What they take away, and the air's own light, by the far end's height and the range, both in
  * octaves (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that a number's own bits say
@@ -15,7 +15,7 @@
  * is dense about the sun. What a sample wants of a node lies side by side. */
 enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
 enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };
-enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_temps = 5, air_lights = 4 };
+enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_lights = 4 };
 enum { air_range_row = air_ranges + 1, air_nodes = (air_rows_most + 1) * air_range_row };
 enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_share_row };
 
@@ -40,10 +40,6 @@ typedef struct AirHeat {
     float value[air_temps - 1][air_nodes][2 * air_warm_values];
 } AirHeat;
 
-/* Temperatures of emitters for which transmittance is kept; between them its depth is linear in the temperature's
- * logarithm, as in the tables, outside the nearest counts. */
-static const double emitter_temp_k[air_temps] = {260,300,400,600,1000};
-
 struct AirTable {
     int   rows, row_shift;        /* steps of height; bits of a number within one: 20 or 21, 8 or 4 to an octave */
     bool  scattered;
@@ -67,11 +63,8 @@ static inline float air_step_up(double low, int steps, int shift)
     return to;
 }
 
-/* What air->table is of: these bands, between two azimuths from the sun and two slopes, up to a height.
- * thermal_scale: for air of another temperature than the model's; scattered_scale: twilight and the sun's distance. */
+/* What air->table is of: these bands, between two azimuths from the sun and two slopes, up to a height. */
 typedef struct TableInput {
-    const AirDay *day;        /* its temperatures: emitter_temp_k and, behind them, the air's */
-    double thermal_scale[2], scattered_scale;
     double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
@@ -83,11 +76,5 @@ int    air_table_asks(const TableJob *job);
 void   air_table_ask(TableJob *job, int ask);
 int    air_table_draws(const TableJob *job);
 void   air_table_draw(TableJob *job, int draw);
-
-/* Straight-on cubic through four points a step apart, at t of the middle step. */
-static inline double cubic_between(double a, double b, double c, double d, double t)
-{
-    return b + t * (c - b) + t * (t - 1) / 6 * ((2 - t) * (a - 2 * b + c) + (1 + t) * (b - 2 * c + d));
-}
 
 #endif

@@ -49,7 +49,7 @@ static double mean_source(double radiance_w_m2_sr, double depth)
 
 static double log2_source(const TableJob *job, double scattered_w_m2_sr, double depth)
 {
-    return log2(fmax(mean_source(scattered_w_m2_sr * job->in.scattered_scale, depth), 1e-30));
+    return log2(fmax(mean_source(scattered_w_m2_sr * job->air->light.scattered_scale, depth), 1e-30));
 }
 
 /* A band whose scattered light is asked for: sunlight is below a thousandth of what 8-12 um emits. */
@@ -109,11 +109,11 @@ static void ask_height(TableJob *job, int row)
     for (int r = 0; r <= air_octaves; r++) {
         /* shorter than straight up or down there is no path: the nodes hold that one */
         path.range_m = fmax(ldexp(air_near_m, r), straight_m);
-        if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->in.day, &path);
+        if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->air->light.day, &path);
         for (int b = 0; b < AIR_BAND_COUNT; b++) sun[b][r] = extinction(here.sun[b], path.range_m);
         for (int t = 0; t < 2; t++) {
             own[t][r]    = extinction(here.emitted[t][air_temps], path.range_m);
-            source[t][r] = mean_source(here.thermal_w_m2_sr[t] * job->in.thermal_scale[t], here.emitted[t][air_temps]);
+            source[t][r] = mean_source(here.thermal_w_m2_sr[t] * job->air->light.thermal_scale[t], here.emitted[t][air_temps]);
             for (int k = 0; k < air_temps; k++) emitted[t][k][r] = extinction(here.emitted[t][k], path.range_m);
         }
     }
@@ -164,8 +164,8 @@ static void ask_slope(TableJob *job, int i)
     for (int c = 0; c <= coarse_shares; c++) {
         const AirPath path = path_at(job, i, c);
         const bool    all = i % side_stride == 0 && c % side_stride == 0;
-        if (all) air_day_scattered(seen, sun, job->in.day, &path, azimuth, job->turns + 1);
-        else air_day_scattered(seen + job->middle, sun, job->in.day, &path, azimuth + job->middle, 1);
+        if (all) air_day_scattered(seen, sun, job->air->light.day, &path, azimuth, job->turns + 1);
+        else air_day_scattered(seen + job->middle, sun, job->air->light.day, &path, azimuth + job->middle, 1);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!scatters(job, b)) continue;
             job->log2_source[b][i * coarse_row + c] = log2_source(job, seen[job->middle][b], sun[b]);
@@ -258,7 +258,7 @@ Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena 
     /* asked for in a sixth of all round at most, of a quarter of the view at least */
     job->turns = (int)clamp(ceil(turn_span * coarse_turns / sqrt(2) - 1e-9), 4, coarse_turns);
     job->middle = job->turns / 2;
-    *table = (AirTable){.scattered = input->scattered_scale > 0,
+    *table = (AirTable){.scattered = air->light.scattered_scale > 0,
                         .slope_low = (float)slope_low,
                         .slope_steps = (float)(air_slopes / (slope_high - slope_low)),
                         .turn_low = (float)turn_low,

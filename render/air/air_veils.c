@@ -32,7 +32,7 @@ typedef struct Look {
 static Look look_from(const Air *air)
 {
     const AirTable *table = air->table;
-    const double level = hypot(air->sun_d_enu[0], air->sun_d_enu[1]), eye_m = air->eye_height_m;
+    const double level = hypot(air->light.sun_d_enu[0], air->light.sun_d_enu[1]), eye_m = air->eye_height_m;
     const float top_m = air_step_up(air_low_m, table->rows, table->row_shift);
     float temp_low[8] = {0}, per_ln_temp[8] = {0};
     for (int k = 0; k < air_temps - 1; k++) {
@@ -50,8 +50,8 @@ static Look look_from(const Air *air)
                   .down_m = f32x8_set(-eye_m),
                   .per_fall_m = f32x8_set(1 / fmax(eye_m, air_least_fall_m)),
                   .per_climb_m = f32x8_set(1 / fmax(air_top_m - eye_m, 1e-3)),
-                  .sun_east = f32x8_set(level > 1e-10 ? air->sun_d_enu[0] / level : 1),
-                  .sun_north = f32x8_set(level > 1e-10 ? air->sun_d_enu[1] / level : 0),
+                  .sun_east = f32x8_set(level > 1e-10 ? air->light.sun_d_enu[0] / level : 1),
+                  .sun_north = f32x8_set(level > 1e-10 ? air->light.sun_d_enu[1] / level : 0),
                   .slope_low = f32x8_set((double)table->slope_low),
                   .slope_steps = f32x8_set((double)table->slope_steps),
                   .turn_low = f32x8_set((double)table->turn_low),
@@ -329,11 +329,11 @@ static void veil_bands(Veils *const out[AIR_BAND_COUNT], const Air *air, const H
         if (range_m[i] < INFINITY) continue;
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         SkyPlace place;
-        air_sky_place(&place, air, d_enu);
+        daylight_sky_place(&place, &air->light, d_enu);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (!out[b]) continue;
             out[b]->transmittance[i] = out[b]->sun_transmittance[i] = out[b]->air_transmittance[i] = 0;
-            out[b]->added_w_m2_sr[i] = (float)air_sky_there(&air->sky_eye[b], &place);
+            out[b]->added_w_m2_sr[i] = (float)daylight_sky_there(&air->sky_eye[b], &place);
         }
     }
 }

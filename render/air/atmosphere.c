@@ -5,16 +5,13 @@ const AirBand air_tabled[air_tabled_count] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_
 
 const char *air_band_name(AirBand band)
 {
-    static const char *const name[AIR_BAND_COUNT] = {"b", "g", "r", "pan", "nir", "mwir", "lwir"};
-    return band >= 0 && band < AIR_BAND_COUNT ? name[band] : "?";
+    return band < AIR_BAND_COUNT && *channel_in(band)->name ? channel_in(band)->name : "?";
 }
 
 void air_band_edges(double *low_m, double *high_m, AirBand band)
 {
-    static const double low[AIR_BAND_COUNT] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6, 0.7e-6, 3.4e-6, 8e-6};
-    static const double high[AIR_BAND_COUNT] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6, 1.1e-6, 4.8e-6, 12e-6};
-    *low_m  = low[band];
-    *high_m = high[band];
+    *low_m  = channel_in(band)->low_m;
+    *high_m = channel_in(band)->high_m;
 }
 
 int air_tabled_index(AirBand band)

@@ -8,13 +8,20 @@
 #ifndef RENDER_AIR_ATMOSPHERE_H
 #define RENDER_AIR_ATMOSPHERE_H
 
-#include "pitviper.h"
+#include "pitviper_channels.h"
 
-/* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7, 0.7-1.1, 3.4-4.8, 8-12 um. The first five are in the order of the optical
- * channels of render/materials.h. */
-typedef enum AirBand { AIR_B, AIR_G, AIR_R, AIR_PAN, AIR_NIR, AIR_MWIR, AIR_LWIR, AIR_BAND_COUNT } AirBand;
-const char *air_band_name(AirBand band); /* b g r pan nir mwir lwir */
-/* Where a band begins and ends, in vacuum: the one table of them. */
+/* The places of channels (pitviper_channels.h) by their standard names; the channel in each is that of the run. */
+typedef ChannelPlace AirBand;
+#define AIR_B          SPECTRAL_B
+#define AIR_G          SPECTRAL_G
+#define AIR_R          SPECTRAL_R
+#define AIR_PAN        SPECTRAL_PAN
+#define AIR_NIR        SPECTRAL_NIR
+#define AIR_MWIR       SPECTRAL_MWIR
+#define AIR_LWIR       SPECTRAL_LWIR
+#define AIR_BAND_COUNT SPECTRAL_PLACES
+const char *air_band_name(AirBand band);
+/* Where a band begins and ends, in vacuum. */
 void air_band_edges(double *low_m, double *high_m, AirBand band);
 
 typedef struct Atmosphere Atmosphere;

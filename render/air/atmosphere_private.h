@@ -7,7 +7,7 @@
 
 /* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
 enum { air_tabled_count = 6 };
-extern const AirBand air_tabled[air_tabled_count]; /* b g r nir mwir lwir */
+extern const AirBand air_tabled[air_tabled_count];
 int air_tabled_index(AirBand band);
 static inline bool air_band_is_thermal(AirBand band) { return band == AIR_MWIR || band == AIR_LWIR; }
 

@@ -92,6 +92,74 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
         }
 }
 
+/* ---- tables of all channels -------------------------------------------------------------------- */
+
+/* A column <prefix><channel> of a file in which the standard channels stand side by side. */
+typedef struct ChannelColumn {
+    const char *prefix;
+    AirBand     band;
+    double      low, high;
+} ChannelColumn;
+
+static bool is_standard(AirBand band) { return channel_in(band)->standard; }
+
+/* FILE_<channel>.csv beside FILE.csv: of a channel that stands in another's place. */
+static Status path_beside(char out[1024], const char *path, AirBand band)
+{
+    const int length = snprintf(out, 1024, "%.*s_%s.csv", (int)strlen(path) - 4, path, air_band_name(band));
+    if (length >= 0 && length < 1024) return STATUS_OK;
+    log_error("atmosphere: path too long: %s", path);
+    return STATUS_BAD_VALUE;
+}
+
+/* Of a file in which standard channels stand; one that is not seen is not looked at. */
+static void name_column(GridColumn *out, char name[48], const ChannelColumn *c, bool beside)
+{
+    static const char *const standard[AIR_BAND_COUNT] = {"b", "g", "r", "pan", "nir", "mwir", "lwir"};
+    const bool seen = beside || is_standard(c->band);
+    snprintf(name, 48, "%s%s", c->prefix, beside ? air_band_name(c->band) : standard[c->band]);
+    *out = (GridColumn){name, seen ? c->low : -1e300, seen ? c->high : 1e300};
+}
+
+static bool same_axes(const Grid *a, const Grid *b)
+{
+    for (int k = 0; k < a->axes; k++)
+        if (a->nodes[k] != b->nodes[k] || memcmp(a->axis[k], b->axis[k], (size_t)a->nodes[k] * sizeof(double)) != 0)
+            return false;
+    return true;
+}
+
+enum { channel_columns_most = 2 * air_tabled_count };
+
+/* Columns of channels in their places: of the file, and of that beside it where another than the standard one is
+ * there. */
+static Status channels_open(Grid *out, const char *path, const GridColumn *axis, int axes, const ChannelColumn *column,
+                            int columns)
+{
+    char       name[channel_columns_most][48], beside[1024];
+    GridColumn of[channel_columns_most];
+    for (int i = 0; i < columns; i++) name_column(&of[i], name[i], &column[i], false);
+    Status status = grid_open(out, path, axis, axes, of, columns);
+    if (status != STATUS_OK) return status;
+    size_t nodes = 1;
+    for (int k = 0; k < axes; k++) nodes *= (size_t)out->nodes[k];
+    for (int i = 0; i < columns && status == STATUS_OK; i++) {
+        if (is_standard(column[i].band)) continue;
+        Grid one = {0};
+        name_column(&of[i], name[i], &column[i], true);
+        status = path_beside(beside, path, column[i].band);
+        if (status == STATUS_OK) status = grid_open(&one, beside, axis, axes, &of[i], 1);
+        if (status == STATUS_OK && !same_axes(out, &one)) {
+            log_error("atmosphere: %s: its rows are not those of %s", beside, path);
+            status = STATUS_BAD_VALUE;
+        }
+        for (size_t n = 0; n < nodes && status == STATUS_OK; n++) out->value[n * (size_t)columns + (size_t)i] = one.value[n];
+        grid_close(&one);
+    }
+    if (status != STATUS_OK) grid_close(out);
+    return status;
+}
+
 /* ---- columns of air ---------------------------------------------------------------------------- */
 
 void column_sum_up(const AirColumn *column, const double *value, double *sum)
@@ -104,14 +172,11 @@ void column_sum_up(const AirColumn *column, const double *value, double *sum)
 static Status read_column(AirColumn *out, const char *path, double low)
 {
     static const GridColumn axis = {"height_m", 0, height_max_m};
-    char name[2 * air_tabled_count][32];
-    GridColumn column[2 * air_tabled_count];
-    for (int i = 0; i < 2 * air_tabled_count; i++) {
-        snprintf(name[i], sizeof name[i], "%s_%s", i % 2 ? "scatter" : "extinction", air_band_name(air_tabled[i / 2]));
-        column[i] = (GridColumn){name[i], i % 2 ? 0 : low, 1e3};
-    }
+    ChannelColumn column[2 * air_tabled_count];
+    for (int i = 0; i < 2 * air_tabled_count; i++)
+        column[i] = (ChannelColumn){i % 2 ? "scatter_" : "extinction_", air_tabled[i / 2], i % 2 ? 0 : low, 1e3};
     Grid grid;
-    Status status = grid_open(&grid, path, &axis, 1, column, 2 * air_tabled_count);
+    Status status = channels_open(&grid, path, &axis, 1, column, 2 * air_tabled_count);
     if (status != STATUS_OK) return status;
     out->nodes = grid.nodes[0];
     if (out->nodes >= 2 && out->nodes <= column_max && grid.axis[0][0] == 0) {
@@ -151,8 +216,8 @@ static void zenith_axis(Grid *grid, int axis)
 static Status read_sky_thermal(Grid *out, const Atmosphere *atmosphere, const char *path)
 {
     static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}};
-    static const GridColumn value[2] = {{"mwir", 1e-30, 1e4}, {"lwir", 1e-30, 1e4}};
-    const Status status = grid_open(out, path, axis, 2, value, 2);
+    static const ChannelColumn value[2] = {{"", AIR_MWIR, 1e-30, 1e4}, {"", AIR_LWIR, 1e-30, 1e4}};
+    const Status status = channels_open(out, path, axis, 2, value, 2);
     if (status != STATUS_OK) return status;
     zenith_axis(out, 1);
     for (int i = 0; i < out->nodes[0] * out->nodes[1] * 2; i++) {
@@ -165,16 +230,13 @@ static Status read_sky_thermal(Grid *out, const Atmosphere *atmosphere, const ch
 static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AIR_BAND_COUNT])
 {
     static const GridColumn axis[2] = {{"observer_m", 0, height_max_m}, {"sun_zenith_deg", 0, 90}};
-    char name[2 * air_tabled_count][32];
-    GridColumn column[2 * air_tabled_count];
+    ChannelColumn column[2 * air_tabled_count];
     for (int i = 0; i < air_tabled_count; i++) {
         const double top = sun_top_w_m2[air_tabled[i]];
-        snprintf(name[i], sizeof name[i], "direct_%s", air_band_name(air_tabled[i]));
-        snprintf(name[i + air_tabled_count], sizeof name[i], "diffuse_%s", air_band_name(air_tabled[i]));
-        column[i] = (GridColumn){name[i], 0, top};
-        column[i + air_tabled_count] = (GridColumn){name[i + air_tabled_count], 0, top};
+        column[i] = (ChannelColumn){"direct_", air_tabled[i], 0, top};
+        column[i + air_tabled_count] = (ChannelColumn){"diffuse_", air_tabled[i], 0, top};
     }
-    const Status status = grid_open(out, path, axis, 2, column, 2 * air_tabled_count);
+    const Status status = channels_open(out, path, axis, 2, column, 2 * air_tabled_count);
     if (status != STATUS_OK) return status;
     zenith_axis(out, 1);
     for (int n = 0; n < out->nodes[0] * out->nodes[1]; n++)
@@ -188,8 +250,35 @@ static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AI
     return STATUS_OK;
 }
 
-static const GridColumn scattered_column[air_tabled_count] = {
-    {"b", 0, 1e4}, {"g", 0, 1e4}, {"r", 0, 1e4}, {"nir", 0, 1e4}, {"mwir", 0, 1e4}, {"lwir", 0, 1e4}};
+static const ChannelColumn scattered_column[air_tabled_count] = {{"", AIR_B, 0, 1e4},    {"", AIR_G, 0, 1e4},
+                                                                 {"", AIR_R, 0, 1e4},    {"", AIR_NIR, 0, 1e4},
+                                                                 {"", AIR_MWIR, 0, 1e4}, {"", AIR_LWIR, 0, 1e4}};
+
+/* scattered.csv, each channel in its place, as channels_open. */
+static Status open_scattered(PathTable *out, const char *path)
+{
+    char       name[air_tabled_count][48], beside[1024];
+    GridColumn of[air_tabled_count];
+    for (int i = 0; i < air_tabled_count; i++) name_column(&of[i], name[i], &scattered_column[i], false);
+    Status status = paths_open(out, path, 5, of, air_tabled_count, NULL);
+    if (status != STATUS_OK) return status;
+    for (int i = 0; i < air_tabled_count && status == STATUS_OK; i++) {
+        if (is_standard(air_tabled[i])) continue;
+        PathTable one = {0};
+        name_column(&of[i], name[i], &scattered_column[i], true);
+        status = path_beside(beside, path, air_tabled[i]);
+        if (status == STATUS_OK) status = paths_open(&one, beside, 5, &of[i], 1, NULL);
+        if (status == STATUS_OK && (!paths_same_shape(out, &one) || one.suns != out->suns || one.azimuths != out->azimuths)) {
+            log_error("atmosphere: %s: its rows are not those of %s", beside, path);
+            status = STATUS_BAD_VALUE;
+        }
+        const int count = status == STATUS_OK ? out->rows * out->suns * out->azimuths : 0;
+        for (int n = 0; n < count; n++) out->value[n * air_tabled_count + i] = one.value[n];
+        paths_close(&one);
+    }
+    if (status != STATUS_OK) paths_close(out);
+    return status;
+}
 
 /* Ratio of the truth to the estimate. Where the estimate is nothing so is the truth. */
 static double ratio_to(double truth, double estimate) { return estimate > 1e-30 ? clamp(truth / estimate, 0, 100) : 1; }
@@ -197,7 +286,7 @@ static double ratio_to(double truth, double estimate) { return estimate > 1e-30 
 static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
 {
     PathTable table;
-    const Status status = paths_open(&table, path, 5, scattered_column, air_tabled_count, NULL);
+    const Status status = open_scattered(&table, path);
     if (status != STATUS_OK) return status;
     for (int j = 0; j < table.nodes[1]; j++) table.axis[1][j] = -cos(table.axis[1][j] * rad_per_deg);
     double *value = table.value;
@@ -229,7 +318,7 @@ static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, con
     static const GridColumn axis[4] = {
         {"observer_m", 0, height_max_m}, {"zenith_deg", 0, 90}, {"sun_zenith_deg", 0, 90}, {"rel_azimuth_deg", 0, 180}};
     Grid grid;
-    const Status status = grid_open(&grid, path, axis, 4, scattered_column, air_tabled_count);
+    const Status status = channels_open(&grid, path, axis, 4, scattered_column, air_tabled_count);
     if (status != STATUS_OK) return status;
     const int azimuths = grid.nodes[3];
     double *value = grid.value;
@@ -326,8 +415,10 @@ static Status read_sun_top(double sun_top_w_m2[AIR_BAND_COUNT])
         goto done;
     }
     for (int row = 0; row < table.rows; row++) {
-        AirBand band = AIR_B;
-        while (band < AIR_BAND_COUNT && strcmp(air_band_name(band), table_text(&table, row, name)) != 0) band++;
+        const char    *text = table_text(&table, row, name);
+        const SpectralChannel *channel = channel_named(text, strlen(text));
+        const AirBand  band = channel ? channel->place : AIR_BAND_COUNT;
+        if (channel && channel_in(band) != channel) continue; /* another is in its place */
         if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0) {
             log_error("atmosphere: %s:%d: band %s is unknown or there twice", path, table.line[row + 1],
                       table_text(&table, row, name));
@@ -352,13 +443,13 @@ static Status open_clear(Atmosphere *atmosphere, const char *folder)
 {
     static const GridColumn height = {"height_m", 0, height_max_m}, temp = {"temp_k", 100, 400};
     static const GridColumn angle[2] = {{"height_m", 0, height_max_m}, {"angle_deg", 0, 180}};
-    static const GridColumn phase[air_tabled_count] = {{"b", 1e-6, 1e6},   {"g", 1e-6, 1e6},    {"r", 1e-6, 1e6},
-                                                       {"nir", 1e-6, 1e6}, {"mwir", 1e-6, 1e6}, {"lwir", 1e-6, 1e6}};
+    ChannelColumn phase[air_tabled_count];
+    for (int i = 0; i < air_tabled_count; i++) phase[i] = (ChannelColumn){"", air_tabled[i], 1e-6, 1e6};
     char path[1024], clear[1024];
     Status status = path_in(path, folder, "temperature.csv");
     if (status == STATUS_OK) status = grid_open(&atmosphere->temperature, path, &height, 1, &temp, 1);
     if (status == STATUS_OK) status = path_in(path, folder, "phase.csv");
-    if (status == STATUS_OK) status = grid_open(&atmosphere->phase, path, angle, 2, phase, air_tabled_count);
+    if (status == STATUS_OK) status = channels_open(&atmosphere->phase, path, angle, 2, phase, air_tabled_count);
     if (status != STATUS_OK) return status;
     Grid *p = &atmosphere->phase;
     if (p->nodes[0] > phase_heights_max) {
@@ -552,7 +643,8 @@ Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility
         log_error("atmosphere: out of memory for model %s", model);
         return STATUS_NO_MEMORY;
     }
-    Status status = read_sun_top(atmosphere->sun_top_w_m2);
+    Status status = channels_load();
+    if (status == STATUS_OK) status = read_sun_top(atmosphere->sun_top_w_m2);
     for (int k = 0; k < 2 && status == STATUS_OK; k++) {
         double low_m, high_m;
         air_band_edges(&low_m, &high_m, (AirBand)(AIR_MWIR + k));

@@ -45,7 +45,7 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
 static bool shadow_box(double box[4], const Job *job, int index)
 {
     const SnapshotEntity *entity = &job->scene.snapshot->entity[index];
-    const double         *sun    = job->scene.air->sun_d_enu;
+    const double         *sun    = job->scene.air->light.sun_d_enu;
     double                foot_enu[3], tip_enu[3], foot[4], tip[4];
     if (entity->model < 0) return false;
     const Model          *model  = catalog_model(job->scene.world->catalog, entity->model);

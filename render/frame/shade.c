@@ -50,7 +50,7 @@ void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
     const double t0 = wall_clock_s();
     uint8_t      dark[hits_capacity];
     if (s->channels & ~(1u << AIR_LWIR))
-        visibility_shadow(dark, scene->visibility, &s->hits, scene->air->sun_d_enu, &shader->counters);
+        visibility_shadow(dark, scene->visibility, &s->hits, scene->air->light.sun_d_enu, &shader->counters);
     else
         memset(dark, 0, (size_t)s->hits.count);
     for (int i = 0; i < s->hits.count; i++) s->sun[i] = dark[i] ? 0 : 1;
@@ -193,11 +193,11 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
     if (scene->sky_samples > 0) return shader->gathered.w_m2[b];
     if (!shader->any_open) return NULL;
     const double level_w_m2 =
-        b >= AIR_MWIR ? air->ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
+        b >= AIR_MWIR ? air->light.ground_w_m2_sr[b] * pi_rad : optical_ground_w_m2((int)b, air, &scene->world->materials);
     for (int i = 0; i < s->hits.count; i++) {
         const double n_enu[3] = {s->hits.n_enu[0][i], s->hits.n_enu[1][i], s->hits.n_enu[2][i]};
         room[i] = (float)((double)shader->open.factor[b][i] *
-                          (air_sky_on_plane(air, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2])));
+                          (daylight_on_plane(&air->light, b, n_enu) + level_w_m2 * 0.5 * (1 - n_enu[2])));
     }
     return room;
 }

@@ -123,8 +123,8 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const in
         p->texture[i] = 1;
     }
     uint8_t dark[hits_capacity] = {0};
-    if (scene->air->sun_d_enu[2] > 0)
-        visibility_shadow(dark, scene->visibility, &p->hits, scene->air->sun_d_enu, counters);
+    if (scene->air->light.sun_d_enu[2] > 0)
+        visibility_shadow(dark, scene->visibility, &p->hits, scene->air->light.sun_d_enu, counters);
     for (int i = 0; i < p->hits.count; i++) p->sun[i] = dark[i] ? 0 : 1;
     if (bands & (1 << AIR_MWIR | 1 << AIR_LWIR))
         thermal_temperature(p->temp_k, scene->air, scene->materials, scene->catalog, scene->snapshot, &p->hits,
@@ -134,7 +134,7 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const in
 /* Radiance of level, open ground. */
 static double ground_radiance(const GatherScene *scene, AirBand band)
 {
-    return band >= AIR_MWIR ? scene->air->ground_w_m2_sr[band]
+    return band >= AIR_MWIR ? scene->air->light.ground_w_m2_sr[band]
                             : optical_ground_w_m2((int)band, scene->air, scene->materials) / pi_rad;
 }
 
@@ -145,7 +145,7 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
     *rho = 0;
     if (!(p->hits.range_m[i] < INFINITY)) {
         const double d_enu[3] = {p->rays.d_enu[0][i], p->rays.d_enu[1][i], p->rays.d_enu[2][i]};
-        return d_enu[2] < 0 ? ground : air_sky_light(air, band, d_enu);
+        return d_enu[2] < 0 ? ground : daylight_sky_light(&air->light, band, d_enu);
     }
     const Material *m = &scene->materials->material[p->hits.material[i]];
     const double n_enu[3] = {p->hits.n_enu[0][i], p->hits.n_enu[1][i], p->hits.n_enu[2][i]};
@@ -153,10 +153,10 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
     double radiance = 0;
     if (band >= AIR_MWIR)
         radiance =
-            (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->planck_mwir : air->planck_lwir, p->temp_k[i]);
+            (1 - *rho) * planck_table_radiance(band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir, p->temp_k[i]);
     if (p->sun[i] > 0 && band != AIR_LWIR)
-        radiance += *rho / pi_rad * air->sun_w_m2[band] * fmax(v3_dot(n_enu, air->sun_d_enu), 0) * (double)p->sun[i];
-    if (last) radiance += *rho * (air_sky_on_plane(air, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
+        radiance += *rho / pi_rad * air->light.sun_w_m2[band] * fmax(v3_dot(n_enu, air->light.sun_d_enu), 0) * (double)p->sun[i];
+    if (last) radiance += *rho * (daylight_on_plane(&air->light, band, n_enu) / pi_rad + ground * 0.5 * (1 - n_enu[2]));
     return radiance;
 }
 
@@ -247,7 +247,7 @@ typedef struct Open {
 
 static double ring_radiance(const AirSky *sky, const SkyPlace *at, const SkyPlace *edge)
 {
-    return air_sky_there(sky, at) - air_sky_there(sky, edge);
+    return daylight_sky_there(sky, at) - daylight_sky_there(sky, edge);
 }
 
 /* At the edge of the ring, for a direction within it. */
@@ -269,7 +269,7 @@ static void open_light(Open *out, const GatherScene *scene, unsigned bands)
 {
     enum { offs = 16, turns = 3 };
     const Air    *air = scene->air;
-    const double *sun = air->sun_d_enu;
+    const double *sun = air->light.sun_d_enu;
     *out = (Open){.ring = sun[2] > 0};
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) out->ground[b] = ground_radiance(scene, (AirBand)b);
@@ -281,11 +281,11 @@ static void open_light(Open *out, const GatherScene *scene, unsigned bands)
         ring_direction(d_enu, out, sun, off_rad, 2 * pi_rad * (i % turns) / turns);
         if (d_enu[2] < 0) continue;
         SkyPlace at;
-        air_sky_place(&at, air, d_enu);
+        daylight_sky_place(&at, &air->light, d_enu);
         const SkyPlace edge = ring_edge(&at);
         const double   sr = 2 * pi_rad * ring_rad * sin(off_rad) / (offs * turns);
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (bands >> b & 1) out->ring_w_m2[b] += ring_radiance(&air->sky_light[b], &at, &edge) * cos(off_rad) * sr;
+            if (bands >> b & 1) out->ring_w_m2[b] += ring_radiance(&air->light.sky_light[b], &at, &edge) * cos(off_rad) * sr;
     }
 }
 
@@ -301,7 +301,7 @@ static void count_first(Change *to, const Paths *p, int i, const GatherScene *sc
     to->parts += hits->entity[i] != 0;
     to->inside += hits->inside[i];
     double along = 0;
-    for (int c = 0; c < 3; c++) along += hits->n_enu[c][i] * scene->air->sun_d_enu[c];
+    for (int c = 0; c < 3; c++) along += hits->n_enu[c][i] * scene->air->light.sun_d_enu[c];
     to->sunlit += p->sun[i] > 0 && along > 0;
 }
 
@@ -337,20 +337,20 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
             float        share[AIR_BAND_COUNT];
             PlanePlace   plane;
             SkyPlace     sky;
-            air_plane_place(&plane, scene->air, n_enu);
+            daylight_plane_place(&plane, &scene->air->light, n_enu);
             if (d_enu[2] >= 0) {
-                air_sky_place(&sky, scene->air, d_enu);
+                daylight_sky_place(&sky, &scene->air->light, d_enu);
                 if (open->ring) sky = ring_edge(&sky);
             }
-            const double ring = (1 - (double)p->sun[i]) * fmax(v3_dot(n_enu, scene->air->sun_d_enu), 0) / pi_rad;
+            const double ring = (1 - (double)p->sun[i]) * fmax(v3_dot(n_enu, scene->air->light.sun_d_enu), 0) / pi_rad;
             for (int b = 0; b < AIR_BAND_COUNT; b++) {
                 if (!(bands >> b & 1)) continue;
                 double       rho;
                 const double ground = open->ground[b];
                 const double shown = met(&rho, p, i, scene, (AirBand)b, ground, false) +
-                                     rho * (air_plane_there(scene->air, (AirBand)b, &plane) / pi_rad +
+                                     rho * (daylight_plane_there(&scene->air->light, (AirBand)b, &plane) / pi_rad +
                                             ground * 0.5 * (1 - n_enu[2]) - ring * open->ring_w_m2[b]);
-                const double behind = d_enu[2] < 0 ? ground : air_sky_there(&scene->air->sky_light[b], &sky);
+                const double behind = d_enu[2] < 0 ? ground : daylight_sky_there(&scene->air->light.sky_light[b], &sky);
                 brought[b][p->of_path[i]] += p->share[b][i] * (shown - behind);
                 share[b] = 2 * p->share[b][i] * (float)rho;
             }
@@ -404,7 +404,7 @@ static int leave_to_ring(Paths *p, const Hits *hits, int from, const GatherScene
     const double off_rad = ring_rad * (n + u) / ring_directions;
     const double n_enu[3] = {hits->n_enu[0][from], hits->n_enu[1][from], hits->n_enu[2][from]};
     double       d_enu[3];
-    ring_direction(d_enu, open, scene->air->sun_d_enu, off_rad, 2 * pi_rad * (v + n * golden_ratio));
+    ring_direction(d_enu, open, scene->air->light.sun_d_enu, off_rad, 2 * pi_rad * (v + n * golden_ratio));
     const double along = v3_dot(d_enu, n_enu);
     if (along <= 0 || d_enu[2] < 0) return -1;
     const int at = p->rays.count++;
@@ -413,12 +413,12 @@ static int leave_to_ring(Paths *p, const Hits *hits, int from, const GatherScene
         p->rays.d_enu[k][at] = d_enu[k];
     }
     SkyPlace place;
-    air_sky_place(&place, scene->air, d_enu);
+    daylight_sky_place(&place, &scene->air->light, d_enu);
     const SkyPlace edge = ring_edge(&place);
     const double   share = along * 2 * ring_rad * sin(off_rad) * samples / ring_directions;
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1)
-            p->share[b][at] = (float)(share * ring_radiance(&scene->air->sky_light[b], &place, &edge));
+            p->share[b][at] = (float)(share * ring_radiance(&scene->air->light.sky_light[b], &place, &edge));
     return at;
 }
 

@@ -2,6 +2,7 @@
  * strings again. */
 #include "render/light/materials.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 
 enum { materials_limit = 60000 }; /* a hit carries its row in 16 bits */
@@ -13,28 +14,30 @@ int materials_find(const Materials *materials, const char *name)
     return -1;
 }
 
-/* Every number column of a material, where it goes and what is allowed. */
+/* Every number column of a material, where it goes and what is allowed. Without a name: rho_<name> of the channel in a
+ * place. */
 static const struct {
-    const char *name;
-    size_t      offset;
-    double      low, high;
+    const char  *name;
+    size_t       offset;
+    double       low, high;
+    ChannelPlace place;
 } number_columns[] = {
-    {"rho_b", offsetof(Material, rho[optical_channel_b]), 0, 1},
-    {"rho_g", offsetof(Material, rho[optical_channel_g]), 0, 1},
-    {"rho_r", offsetof(Material, rho[optical_channel_r]), 0, 1},
-    {"rho_pan", offsetof(Material, rho[optical_channel_pan]), 0, 1},
-    {"rho_nir", offsetof(Material, rho[optical_channel_nir]), 0, 1},
-    {"rho_mwir", offsetof(Material, rho_mwir), 0, 1},
-    {"rho_lwir", offsetof(Material, rho_lwir), 0, 1},
-    {"solar_absorptance", offsetof(Material, solar_absorptance), 0, 1},
-    {"gloss", offsetof(Material, gloss), 0, 1},
-    {"roughness_rad", offsetof(Material, roughness), 0, 1.5},
-    {"metal", offsetof(Material, metal), 0, 1},
-    {"radar_gamma", offsetof(Material, radar_gamma), 0, 100},
+    {NULL, offsetof(Material, rho[optical_channel_b]), 0, 1, SPECTRAL_B},
+    {NULL, offsetof(Material, rho[optical_channel_g]), 0, 1, SPECTRAL_G},
+    {NULL, offsetof(Material, rho[optical_channel_r]), 0, 1, SPECTRAL_R},
+    {NULL, offsetof(Material, rho[optical_channel_pan]), 0, 1, SPECTRAL_PAN},
+    {NULL, offsetof(Material, rho[optical_channel_nir]), 0, 1, SPECTRAL_NIR},
+    {NULL, offsetof(Material, rho_mwir), 0, 1, SPECTRAL_MWIR},
+    {NULL, offsetof(Material, rho_lwir), 0, 1, SPECTRAL_LWIR},
+    {"solar_absorptance", offsetof(Material, solar_absorptance), 0, 1, 0},
+    {"gloss", offsetof(Material, gloss), 0, 1, 0},
+    {"roughness_rad", offsetof(Material, roughness), 0, 1.5, 0},
+    {"metal", offsetof(Material, metal), 0, 1, 0},
+    {"radar_gamma", offsetof(Material, radar_gamma), 0, 100, 0},
     /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with room */
-    {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000},
-    {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000},
-    {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000},
+    {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000, 0},
+    {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000, 0},
+    {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000, 0},
 };
 enum { number_column_count = sizeof number_columns / sizeof *number_columns };
 
@@ -50,10 +53,13 @@ static Status read_rows(Materials *m, const char *path)
     const int name_column = table_column(&table, "name");
     int column[number_column_count];
     for (int i = -1; i < number_column_count; i++) {
-        if (i >= 0) column[i] = table_column(&table, number_columns[i].name);
+        char wanted[32] = "name";
+        if (i >= 0 && number_columns[i].name) snprintf(wanted, sizeof wanted, "%s", number_columns[i].name);
+        else if (i >= 0)
+            snprintf(wanted, sizeof wanted, "rho_%s", channel_in(number_columns[i].place)->name);
+        if (i >= 0) column[i] = table_column(&table, wanted);
         if ((i < 0 ? name_column : column[i]) >= 0) continue;
-        log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0],
-                  i < 0 ? "name" : number_columns[i].name);
+        log_error("materials: column missing: file=%s line=%d column=%s", path, table.line[0], wanted);
         goto done;
     }
     if (table.rows > materials_limit - before) {

@@ -4,19 +4,20 @@
 #ifndef RENDER_LIGHT_MATERIALS_H
 #define RENDER_LIGHT_MATERIALS_H
 
+#include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
 #include "terrain/surface.h"
 
-/* In the order of AirBand (render/air/atmosphere.h). */
+/* Reflective channels by place (pitviper_channels.h). */
 enum {
-    optical_channel_b, optical_channel_g, optical_channel_r, optical_channel_pan, optical_channel_nir,
-    optical_channel_count
+    optical_channel_b = SPECTRAL_B, optical_channel_g = SPECTRAL_G, optical_channel_r = SPECTRAL_R,
+    optical_channel_pan = SPECTRAL_PAN, optical_channel_nir = SPECTRAL_NIR, optical_channel_count
 };
 
 typedef struct Material {
     char  name[32];
-    float rho[optical_channel_count]; /* 0.4-0.5, 0.5-0.6, 0.6-0.7, 0.4-0.7, 0.7-1.1 um */
-    float rho_mwir, rho_lwir;         /* 3.4-4.8, 8-12 um */
+    float rho[optical_channel_count];
+    float rho_mwir, rho_lwir;
     float solar_absorptance;
     float gloss;                      /* share of the reflectance that is a lobe, 0 .. 1; 1: bare metal, glass */
     float roughness;                  /* width of that lobe, rad rms slope */

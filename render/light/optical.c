@@ -8,20 +8,20 @@
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials)
 {
     return materials->ground_rho[channel] *
-           (air->sun_w_m2[channel] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[channel]);
+           (air->light.sun_w_m2[channel] * fmax(air->light.sun_d_enu[2], 0) + air->light.sky_w_m2[channel]);
 }
 
 void optical_white(double w_m2_sr[3], const Air *air)
 {
     static const AirBand rgb[3] = {AIR_R, AIR_G, AIR_B};
     for (int c = 0; c < 3; c++)
-        w_m2_sr[c] = (air->sun_w_m2[rgb[c]] * fmax(air->sun_d_enu[2], 0) + air->sky_w_m2[rgb[c]]) / pi_rad;
+        w_m2_sr[c] = (air->light.sun_w_m2[rgb[c]] * fmax(air->light.sun_d_enu[2], 0) + air->light.sky_w_m2[rgb[c]]) / pi_rad;
 }
 
 float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *v, int i)
 {
     double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
-    if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * air_sun_disc(air, d_enu);
+    if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * daylight_sun_disc(&air->light, d_enu);
     return (float)seen;
 }
 
@@ -30,14 +30,14 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
                    const float *around_w_m2, const Veils *veils, const Facing *facing)
 {
     const AirBand band = (AirBand)channel;
-    const double *sun_d_enu = air->sun_d_enu, sun_w_m2 = air->sun_w_m2[channel];
+    const double *sun_d_enu = air->light.sun_d_enu, sun_w_m2 = air->light.sun_w_m2[channel];
     const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
     Veils own;
     if (!veils) air_veils(&own, air, band, hits, rays, NULL);
     const Veils *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
-        air_facing(&found, air, materials, hits, rays, material);
+        daylight_facing(&found, &air->light, materials, hits, rays, material);
         facing = &found;
     }
 
@@ -53,7 +53,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
         const double lit = sun ? (double)sun[i] : 1, n_sun = lit > 0 ? fmax(v3_dot(n_enu, sun_d_enu), 0) : 0;
         const double around =
             around_w_m2 ? around_w_m2[i]
-                        : air_plane_there(air, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
+                        : daylight_plane_there(&air->light, band, &facing->plane[i]) + ground_w_m2 * 0.5 * (1 - n_enu[2]);
         const double irradiance_w_m2 = sun_w_m2 * n_sun * lit + around;
 
         double radiance;
@@ -70,7 +70,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
             /* a rough lobe near the horizon sees some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
             double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
-            if (sees_sky > 0) seen += sees_sky * air_sky_there(&air->sky[band], &facing->mirror[i]);
+            if (sees_sky > 0) seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]);
             radiance += lobe_rho * seen;
 
             if (n_sun > 0) {

@@ -142,7 +142,7 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
         at++;
     }
     for (int b = 0; b < AIR_BAND_COUNT; b++)
-        v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->ground_w_m2_sr[b] * pi_rad
+        v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->light.ground_w_m2_sr[b] * pi_rad
                                          : optical_ground_w_m2(b, scene->gather.air, scene->gather.materials);
     *out = v;
     return plan_tasks(v, arena);
@@ -296,7 +296,7 @@ static void answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3]
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         out->factor[b] = 1;
         if (!(v->scene.air_bands >> b & 1)) continue;
-        const double open_w_m2 = air_sky_on_plane(v->scene.gather.air, (AirBand)b, n_enu) +
+        const double open_w_m2 = daylight_on_plane(&v->scene.gather.air->light, (AirBand)b, n_enu) +
                                  v->level_w_m2[b] * 0.5 * (1 - n_enu[2]);
         if (open_w_m2 > 0) out->factor[b] = (float)clamp(1 + (double)change->w_m2[b] / open_w_m2, 0, 100);
     }

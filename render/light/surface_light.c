@@ -32,17 +32,17 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
     if (!out->rho || !out->gloss) return STATUS_NO_MEMORY;
     for (int m = 0; m < materials->count; m++) fill_row(out->rho[m], out->gloss[m], &materials->material[m]);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
-        const AirSky *sky = &air->sky[b];
+        const AirSky *sky = &air->light.sky[b];
         for (int i = 0; i <= air_plane_ups; i++)
-            for (int a = 0; a <= air_plane_azimuths; a++) out->plane[i][a][b] = air->plane_w_m2[b][i][a];
+            for (int a = 0; a <= air_plane_azimuths; a++) out->plane[i][a][b] = air->light.plane_w_m2[b][i][a];
         for (int i = 0; i <= air_sky_ups; i++) {
             out->thermal[i][b] = sky->thermal_w_m2_sr[i];
             for (int a = 0; a <= air_sky_azimuths; a++) out->scattered[i][a][b] = sky->scattered_w_m2_sr[i][a];
         }
         for (int i = 0; i < air_sky_angles + 2; i++) out->around_sun[i][b] = sky->around_sun[i];
-        out->level_w_m2_sr[b] = b >= AIR_MWIR ? (float)air->ground_w_m2_sr[b]
+        out->level_w_m2_sr[b] = b >= AIR_MWIR ? (float)air->light.ground_w_m2_sr[b]
                                               : (float)(optical_ground_w_m2(b, air, materials) / pi_rad);
-        out->sun_w_m2[b] = b == AIR_LWIR ? 0 : (float)air->sun_w_m2[b];
+        out->sun_w_m2[b] = b == AIR_LWIR ? 0 : (float)air->light.sun_w_m2[b];
         if (out->sun_w_m2[b] > 0) out->any_sun = true;
     }
     return STATUS_OK;
@@ -227,7 +227,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     material_rows(of, light->gloss, material, same);
     const bool glossy = f32x8_bits(f32x8_greater(of[gloss_share], zero())) != 0;
 
-    const Three sun = {f32x8_set(air->sun_d_enu[0]), f32x8_set(air->sun_d_enu[1]), f32x8_set(air->sun_d_enu[2])};
+    const Three sun = {f32x8_set(air->light.sun_d_enu[0]), f32x8_set(air->light.sun_d_enu[1]), f32x8_set(air->light.sun_d_enu[2])};
     const Three n = {f32x8_load(hits->n_enu[0] + i), f32x8_load(hits->n_enu[1] + i), f32x8_load(hits->n_enu[2] + i)};
     const Three d = {f32x8_of_doubles(rays->d_enu[0] + i), f32x8_of_doubles(rays->d_enu[1] + i),
                      f32x8_of_doubles(rays->d_enu[2] + i)};
@@ -275,7 +275,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
         F32x8 seen = f32x8_fma(reflected, f32x8_load(veil->air_transmittance + i), f32x8_load(veil->added_w_m2_sr + i));
         seen = f32x8_fma(sunlit, f32x8_load(veil->sun_transmittance + i), seen);
         if (band >= AIR_MWIR) {
-            const PlanckTable *planck = band == AIR_MWIR ? air->planck_mwir : air->planck_lwir;
+            const PlanckTable *planck = band == AIR_MWIR ? air->light.planck_mwir : air->light.planck_lwir;
             float              emitted[8];
             planck_table_radiance8(emitted, planck, b->temp_k + i);
             seen =

@@ -23,7 +23,7 @@ static double passive_part_k(const Air *air, double air_temp_k, const Material *
     const double emissivity = 1 - material->rho_lwir;
     const double up = 0.5 * (1 + n_up);
     const double gain_w_m2 = material->solar_absorptance * sun_level_w_m2 * (0.3 + 0.4 * up) -
-                             emissivity * air->longwave_loss_w_m2 * up;
+                             emissivity * air->light.longwave_loss_w_m2 * up;
     return air_temp_k + gain_w_m2 / (film + emission_w_m2_k(emissivity, air_temp_k));
 }
 
@@ -37,9 +37,9 @@ static void ground_day(GroundDay *out, const Air *air, const Materials *material
     static const double melts_k = 273.15, sea_freezes_k = 271.35;
     for (int s = 0; s < SURFACE_COUNT; s++) {
         const Material *m = &materials->material[materials->surface[s]];
-        const double    other = emission_w_m2_k(1 - m->rho_lwir, air->weather.air_temp_k) +
+        const double    other = emission_w_m2_k(1 - m->rho_lwir, air->light.weather.air_temp_k) +
                              daily_wave_w_m2_k(m->conductivity_w_mk, m->density_kg_m3, m->heat_capacity_j_kgk);
-        const double share = ground_heat_share(air->weather.wind_mps, other);
+        const double share = ground_heat_share(air->light.weather.wind_mps, other);
         out->rise_k[s]  = (float)(share * materials->ground_rise_k[s]);
         out->fall_k[s]  = (float)(share * materials->ground_fall_k[s]);
         out->least_k[s] = s == SURFACE_WATER ? (float)sea_freezes_k : 0;
@@ -51,12 +51,12 @@ static void ground_day(GroundDay *out, const Air *air, const Materials *material
 static F32x8 air_k8(const Air *air, const Hits *hits, int first)
 {
     const F32x8    x = f32x8_of_doubles(hits->p_enu[0] + first), y = f32x8_of_doubles(hits->p_enu[1] + first);
-    const F32x8    level = f32x8_of_doubles(hits->p_enu[2] + first) - f32x8_set(air->zero_z_m);
+    const F32x8    level = f32x8_of_doubles(hits->p_enu[2] + first) - f32x8_set(air->light.zero_z_m);
     const F32x8    height_m = f32x8_fma(f32x8_fma(x, x, y * y), f32x8_set(1 / (2 * 6371e3)), level);
     const F32x8    at = f32x8_clamp(height_m * f32x8_set(1 / air_warmer_step_m), air_warmer_low, air_warmer_nodes - 1);
     const I32x8 node = i32x8_truncate(f32x8_clamp(at, 0, air_warmer_nodes - 2));
-    const F32x8    low = f32x8_gather(air->warmer_k, node), high = f32x8_gather(air->warmer_k + 1, node);
-    return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->weather.air_temp_k);
+    const F32x8    low = f32x8_gather(air->light.warmer_k, node), high = f32x8_gather(air->light.warmer_k + 1, node);
+    return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
 /* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
@@ -67,15 +67,15 @@ static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32
                       const float *const n_enu[3], const float texture[8])
 {
     const I32x8 class = i32x8_of_bytes(surface);
-    const F32x8    along = f32x8_fma(f32x8_load(n_enu[0]), f32x8_set(air->sun_d_enu[0]),
-                                     f32x8_fma(f32x8_load(n_enu[1]), f32x8_set(air->sun_d_enu[1]),
-                                               f32x8_load(n_enu[2]) * f32x8_set(air->sun_d_enu[2])));
+    const F32x8    along = f32x8_fma(f32x8_load(n_enu[0]), f32x8_set(air->light.sun_d_enu[0]),
+                                     f32x8_fma(f32x8_load(n_enu[1]), f32x8_set(air->light.sun_d_enu[1]),
+                                               f32x8_load(n_enu[2]) * f32x8_set(air->light.sun_d_enu[2])));
     const F32x8 rise = f32x8_gather(day->rise_k, class), fall = f32x8_gather(day->fall_k, class);
-    const F32x8 level = (f32x8_set(1) + f32x8_load(n_enu[2])) * f32x8_set(0.5 * air->solar_diffuse_w_m2);
+    const F32x8 level = (f32x8_set(1) + f32x8_load(n_enu[2])) * f32x8_set(0.5 * air->light.solar_diffuse_w_m2);
     const F32x8 slope_kw_m2 =
-        f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->solar_direct_w_m2), level) * f32x8_set(1e-3);
+        f32x8_fma(f32x8_max(along, f32x8_set(0)), f32x8_set(air->light.solar_direct_w_m2), level) * f32x8_set(1e-3);
     const F32x8 dark = f32x8_set(1.5) - f32x8_set(0.5) * f32x8_clamp(f32x8_load(texture), 0.6, 1.4);
-    const F32x8 above = f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 * air->longwave_loss_w_m2));
+    const F32x8 above = f32x8_fma(rise * slope_kw_m2, dark, fall * f32x8_set(-1e-2 * air->light.longwave_loss_w_m2));
     const F32x8 least = f32x8_gather(day->least_k, class), most = f32x8_gather(day->most_k, class);
     f32x8_store(temp_k, f32x8_min(f32x8_max(above + air_k, least), most));
 }
@@ -83,8 +83,8 @@ static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
                          const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture)
 {
-    const double sun_level_w_m2 = air->solar_direct_w_m2 * fmax(air->sun_d_enu[2], 0) + air->solar_diffuse_w_m2;
-    const double film = film_w_m2_k(air->weather.wind_mps);
+    const double sun_level_w_m2 = air->light.solar_direct_w_m2 * fmax(air->light.sun_d_enu[2], 0) + air->light.solar_diffuse_w_m2;
+    const double film = film_w_m2_k(air->light.weather.wind_mps);
     GroundDay    day;
     ground_day(&day, air, materials);
 
@@ -119,8 +119,8 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Veils *v, int i)
 {
     const AirBand air_band = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
-    double seen = air->ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
-    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[AIR_MWIR] * air_sun_disc(air, d_enu);
+    double seen = air->light.ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
+    if (band == BAND_MWIR && !(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[AIR_MWIR] * daylight_sun_disc(&air->light, d_enu);
     return (float)seen;
 }
 
@@ -130,16 +130,16 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
 {
     const bool mwir = band == BAND_MWIR;
     const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
-    const PlanckTable *planck = mwir ? air->planck_mwir : air->planck_lwir;
-    const double ground_w_m2_sr = air->ground_w_m2_sr[air_band];
+    const PlanckTable *planck = mwir ? air->light.planck_mwir : air->light.planck_lwir;
+    const double ground_w_m2_sr = air->light.ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
-    const double sun_w_m2 = mwir ? air->sun_w_m2[AIR_MWIR] : 0;
+    const double sun_w_m2 = mwir ? air->light.sun_w_m2[AIR_MWIR] : 0;
     Veils own;
     if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
     const Veils *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
-        air_facing(&found, air, materials, hits, rays, material);
+        daylight_facing(&found, &air->light, materials, hits, rays, material);
         facing = &found;
     }
 
@@ -159,27 +159,27 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
         /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
         const double around = around_w_m2 ? around_w_m2[i] / pi_rad
-                                          : air_plane_there(air, air_band, &facing->plane[i]) / pi_rad +
+                                          : daylight_plane_there(&air->light, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);
         double reflected = diffuse * around;
         if (lobe_rho > 0) {
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
-            const double sky = air_sky_there(&air->sky[air_band], &facing->mirror[i]);
+            const double sky = daylight_sky_there(&air->light.sky[air_band], &facing->mirror[i]);
             reflected += lobe_rho * (sees_sky * sky + (1 - sees_sky) * ground_w_m2_sr);
         }
         double sunlit = 0;
         const double lit = sun ? (double)sun[i] : 1;
         if (sun_w_m2 > 0 && lit > 0) {
-            const double n_sun = v3_dot(n_enu, air->sun_d_enu);
+            const double n_sun = v3_dot(n_enu, air->light.sun_d_enu);
             if (n_sun > 0) {
                 sunlit = diffuse * n_sun / pi_rad;
                 if (lobe_rho > 0) {
                     const double eye_enu[3] = {-d_enu[0], -d_enu[1], -d_enu[2]};
-                    const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, air->sun_d_enu)), 0));
+                    const double cosine = sqrt(fmax(0.5 * (1 + v3_dot(eye_enu, air->light.sun_d_enu)), 0));
                     sunlit += material_fresnel((mwir ? m->rho_mwir : m->rho_lwir) * m->gloss, m->roughness, cosine) *
-                              material_lobe(m->roughness, n_enu, eye_enu, air->sun_d_enu);
+                              material_lobe(m->roughness, n_enu, eye_enu, air->light.sun_d_enu);
                 }
                 sunlit *= sun_w_m2 * lit;
             }

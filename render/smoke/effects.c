@@ -19,12 +19,12 @@ static double phase_per_sr(double asymmetry, double cosine)
     return (1 - g2) / (4 * pi_rad * base * sqrt(base));
 }
 
-/* Below 500 K nothing shows to 1.1 um: under 2e-5 W/(m2 sr). */
+/* Below 500 K nothing shows to 1.1 um, and as little by Wien's law elsewhere: under 2e-5 W/(m2 sr). */
 static double glow_w_m2_sr(int band, double temp_k)
 {
-    if (band < effect_band_mwir && temp_k < 500) return 0;
     double low_m, high_m;
     air_band_edges(&low_m, &high_m, (AirBand)band);
+    if (band < effect_band_mwir && temp_k < 500 * fmin(1, 1.1e-6 / high_m)) return 0;
     return planck_band(low_m, high_m, temp_k, NULL);
 }
 
@@ -41,17 +41,17 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
 {
     VeilVolume  *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
-    const double albedo = p->law->albedo[band], sun_w_m2 = air->sun_w_m2[band];
+    const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
     /* mean radiances from above and below: thermal ground shines by itself, ground in daylight by what falls on it */
-    const double above = air->sky_w_m2[band] / pi_rad;
-    const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->sun_d_enu[2], 0) / pi_rad + above)
-                                 : air->ground_w_m2_sr[band];
+    const double above = air->light.sky_w_m2[band] / pi_rad;
+    const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
+                                 : air->light.ground_w_m2_sr[band];
     const double lit = veils->air_transmittance[i] * albedo * 0.5;
     v->source[band] = veils->added_w_m2_sr[i] + lit * (above + below) +
                       veils->transmittance[i] * (1 - albedo) * glow_w_m2_sr(band, p->temp_k);
     v->from_top[band] = lit * (above - below);
 
-    const double cosine = v3_dot(p->d_eye_enu, air->sun_d_enu); /* forward: the sun behind the puff */
+    const double cosine = v3_dot(p->d_eye_enu, air->light.sun_d_enu); /* forward: the sun behind the puff */
     double       share = veils->sun_transmittance[i] * albedo * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
     for (int order = 0; order < veil_orders; order++) {
         v->sun[band][order] = share * phase_per_sr(asymmetry, cosine);
@@ -148,7 +148,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         const EffectLaw  *law = &snapshot->effect_table->law[puff->kind];
         EffectVolume      volume;
         if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
-        if (!effect_volume(&volume, snapshot->effect_table, puff, &air->weather, frame)) continue;
+        if (!effect_volume(&volume, snapshot->effect_table, puff, &air->light.weather, frame)) continue;
         if (!may_matter(view, &volume)) continue;
 
         VeilVolume *v = &placed[count].volume;
@@ -156,7 +156,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         *v = (VeilVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
         memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
         memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
-        memcpy(v->d_sun_enu, air->sun_d_enu, sizeof v->d_sun_enu);
+        memcpy(v->d_sun_enu, air->light.sun_d_enu, sizeof v->d_sun_enu);
         memcpy(v->extinction_per_m, volume.extinction_per_m, sizeof v->extinction_per_m);
         v3_sub(d_eye_enu, volume.p_enu, view->p_enu);
         v->range_m = v3_length(d_eye_enu);
@@ -164,7 +164,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
         v->pattern[2] -= 0.25 * puff->age_s; /* it rolls upwards through its own outline */
         placed[count].law    = law;
-        placed[count].temp_k = volume.temp_k + air_temp_at(air, volume.p_enu) - air->weather.air_temp_k;
+        placed[count].temp_k = volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
         placed[count].group  = puff->group;
         placed[count].index  = i;
         count++;

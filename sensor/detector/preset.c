@@ -103,10 +103,12 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
     snprintf(p.name, sizeof p.name, "%s", table_text(t, row, table_column(t, "name")));
 
     const char *text = table_text(t, row, band);
-    int         b    = 0;
-    while (b < BAND_RADAR && strcmp(band_name((Band)b), text) != 0) b++;
-    if (b == BAND_RADAR) return bad_word(t, row, "band", text, "optical, mwir, lwir");
-    p.band = (Band)b;
+    p.channel        = channel_named(text, strlen(text));
+    if (p.channel ? p.channel->place < (p.channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR) : strcmp(text, "optical") != 0)
+        return bad_word(t, row, "band", text, "optical, mwir, lwir, or another channel of etc/channels.csv");
+    p.band = !p.channel || p.channel->place == SPECTRAL_NIR ? BAND_OPTICAL
+             : p.channel->place == SPECTRAL_MWIR            ? BAND_MWIR
+                                                            : BAND_LWIR;
     text   = table_text(t, row, exposure);
     if (strcmp(text, "fixed") != 0 && strcmp(text, "auto") != 0)
         return bad_word(t, row, "exposure", text, "fixed, auto");

@@ -2,6 +2,7 @@
 #ifndef SENSOR_DETECTOR_PRESET_H
 #define SENSOR_DETECTOR_PRESET_H
 
+#include "pitviper_channels.h"
 #include "render/scene/view.h"
 #include "sensor/detector/noise3d.h"
 #include "sensor/detector/photons.h"
@@ -10,6 +11,7 @@
 typedef struct SensorPreset {
     char           name[32];
     Band           band;               /* optical, mwir or lwir */
+    const SpectralChannel *channel;    /* the one it was made for; NULL: the visible ones, or whatever the band has */
     OpticalChannels optical;           /* what it sees of the optical band */
     double         width_px, height_px, hfov_deg;
     double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/lens.h); R and B over G, less 1 */

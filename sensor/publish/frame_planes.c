@@ -1,6 +1,7 @@
 /* sensor/publish/frame_planes.c: a picture as a list of named planes: the one place that knows a Picture's fields for
  * all
  * that goes through planes. */
+#include "pitviper_channels.h"
 #include "sensor/publish/frame.h"
 
 typedef struct PlaneList {
@@ -23,8 +24,8 @@ int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const Ren
     static const char *const truth = "truth", *const radiance = "W/(m2 sr)", *const relative = "relative";
     static const char *const radar_model = "pseudo-radar";
     const char *const        wavelengths_um = request->optical == OPTICAL_RGB   ? "R 0.6-0.7, G 0.5-0.6, B 0.4-0.5"
-                                              : request->optical == OPTICAL_NIR ? "0.7-1.1"
-                                                                                : "0.4-0.7";
+                                              : request->optical == OPTICAL_NIR ? channel_in(SPECTRAL_NIR)->edges_um
+                                                                                : channel_in(SPECTRAL_PAN)->edges_um;
     PlaneList                list = {plane, 0, p->width, p->height};
     for (int k = 0; k < picture_plane_count; k++) {
         const Band band = k < picture_mwir ? BAND_OPTICAL : (Band)(BAND_OPTICAL + 1 + k - picture_mwir);

@@ -1,6 +1,8 @@
 /* sensor/settings/config.c: the table of all settings, their defaults, and the checks that involve several of them. */
 #include "sensor/settings/config.h"
 
+#include "pitviper_channels.h"
+
 #include "dis/pdu.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
@@ -26,7 +28,8 @@ static const Setting keys[] = {
      "rays along each side of a pixel that differs from its neighbours; adaptive only"},
     {"sensor.target_samples", SETTING_INT, AT(sensor.target_samples), 8, 256, NULL, "",
      "rays along each side of the grid over a target below 16 px; adaptive only"},
-    {"sensor.bands", SETTING_TEXT, AT(sensor.bands), 0, 0, NULL, "", "any of optical,mwir,lwir,radar"},
+    {"sensor.bands", SETTING_TEXT, AT(sensor.bands), 0, 0, NULL, "",
+     "any of optical,mwir,lwir,radar, and further channels of etc/channels.csv in the place of one of these: swir"},
     {"sensor.optical", SETTING_TEXT, AT(sensor.optical), 0, 0, "rgb|pan|nir", "",
      "three visible channels, one panchromatic, or one of 0.7-1.1 um"},
     {"sensor.sky_samples", SETTING_INT, AT(sensor.sky_samples), 0, 4096, NULL, "",
@@ -315,9 +318,10 @@ Config config_default(void)
 
 OpticalChannels config_optical(const Config *config)
 {
-    return strcmp(config->sensor.optical, "rgb") == 0   ? OPTICAL_RGB
-           : strcmp(config->sensor.optical, "nir") == 0 ? OPTICAL_NIR
-                                                        : OPTICAL_PAN;
+    /* a channel that stands in nir's place is what there is of the band */
+    return strcmp(config->sensor.optical, "nir") == 0 || !channel_in(SPECTRAL_NIR)->standard ? OPTICAL_NIR
+           : strcmp(config->sensor.optical, "rgb") == 0                                     ? OPTICAL_RGB
+                                                                                            : OPTICAL_PAN;
 }
 
 bool config_adaptive(const Config *config) { return strcmp(config->sensor.antialias, "adaptive") == 0; }

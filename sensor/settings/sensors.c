@@ -54,8 +54,11 @@ static Status add_sensor(Sensors *s, const Config *config, const char *name, uns
                   band_name(p.band));
         return STATUS_BAD_VALUE;
     }
-    if (!(bands >> p.band & 1)) {
-        log_error("replay: %s: %s is for %s, which sensor.bands does not name", key, p.name, band_name(p.band));
+    const bool seen = p.channel ? channel_in(p.channel->place) == p.channel
+                                : p.band != BAND_OPTICAL || channel_in(SPECTRAL_NIR)->standard;
+    if (!(bands >> p.band & 1) || (name && !seen)) {
+        log_error("replay: %s: %s is for %s, which sensor.bands does not name", key, p.name,
+                  p.channel ? p.channel->name : "optical");
         return STATUS_BAD_VALUE;
     }
     s->has[p.band]    = true;

@@ -3,6 +3,7 @@
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
+#include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
 #include "entities/effects/heat.h"
@@ -61,6 +62,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     const int file = fuzz_file(path, data, size);
     if (file < 0) return 0;
 
+    (void)channels_check(path);
     SensorPreset sheet;
     if (sheet_read(&sheet, path) == STATUS_OK) {
         /* what the detector's chain builds on */

@@ -135,8 +135,8 @@ static inline void hand_air_off(const double sun_enu[3])
     static const double dark[AIR_BAND_COUNT] = {0};
     Air *a = &hand.air;
     air_even(a, sun_enu, 300, dark, 0, hand.world.planck_mwir, hand.world.planck_lwir);
-    for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
-    a->solar_direct_w_m2 = a->solar_diffuse_w_m2 = 0;
+    for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->light.sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
+    a->light.solar_direct_w_m2 = a->light.solar_diffuse_w_m2 = 0;
 }
 
 /* Air of the tables about an eye at this height; good until hand_close. */
@@ -154,7 +154,7 @@ static inline void hand_air_on(const double sun_enu[3], double height_m)
 static inline double hand_emitted(Band band)
 {
     const bool mwir = band == BAND_MWIR;
-    return (1 - hand_rho_ir) * planck_band(mwir ? 3.4e-6 : 8e-6, mwir ? 4.8e-6 : 12e-6, hand.air.weather.air_temp_k, NULL);
+    return (1 - hand_rho_ir) * planck_band(mwir ? 3.4e-6 : 8e-6, mwir ? 4.8e-6 : 12e-6, hand.air.light.weather.air_temp_k, NULL);
 }
 
 static inline RenderRequest hand_request(const View *view)

@@ -125,7 +125,7 @@ static void frames_follow_the_tables(void **state)
                                 .range_m = r,
                                 .sun_zenith_rad = 45 * rad_per_deg,
                                 .target_m = fmax(eye_m + r * up + r * r * level * level / (2 * 6371e3), 0)};
-                const double *s = air.sun_d_enu;
+                const double *s = air.light.sun_d_enu;
                 path.rel_azimuth_rad = acos(
                     clamp((rays.d_enu[0][i] * s[0] + rays.d_enu[1][i] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
                 PathAir want;
@@ -133,7 +133,7 @@ static void frames_follow_the_tables(void **state)
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
                 /* a target of 300 K, or of reflectance 0.1 in the open */
                 const double bare = thermal ? planck_table_radiance(planck_of((AirBand)b), 300)
-                                            : 0.1 / pi_rad * (air.sun_w_m2[b] * s[2] + air.sky_w_m2[b]);
+                                            : 0.1 / pi_rad * (air.light.sun_w_m2[b] * s[2] + air.light.sky_w_m2[b]);
                 const double added = want.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr);
                 tau_error[n] = fabs(veils.transmittance[i] / tau - 1);
                 seen_error[n++] =
@@ -158,8 +158,8 @@ static void pins(void **state)
     /* LOWTRAN 7, US standard, 23 km, sun at zenith 40 degrees, PAN; 5 km along the ground, target at 300 K */
     const Weather weather = weather_default();
     const Air air = air_of(&weather, 50, 0, all_bands, NULL);
-    const double total = air.sun_w_m2[AIR_PAN] * sin(50 * rad_per_deg) + air.sky_w_m2[AIR_PAN];
-    CHECK_NEAR(air.sun_w_m2[AIR_PAN] / 282.10, 1, 0.01);
+    const double total = air.light.sun_w_m2[AIR_PAN] * sin(50 * rad_per_deg) + air.light.sky_w_m2[AIR_PAN];
+    CHECK_NEAR(air.light.sun_w_m2[AIR_PAN] / 282.10, 1, 0.01);
     CHECK_NEAR(total / 344.865, 1, 0.01);
     clear();
     add(0, -0.0001, 5000);
@@ -200,7 +200,7 @@ static void sky_adds_up(void **state)
                     const double rise = (h + 0.5) / heights * 0.5 * pi_rad, turn = (a + 0.5) * 2 * pi_rad / azimuths;
                     const double d[3] = {cos(rise) * sin(turn), cos(rise) * cos(turn), sin(rise)};
                     const double part =
-                        air_sky_light(&air, bands[b], d) * cos(rise) * pi_rad * pi_rad / heights / azimuths;
+                        daylight_sky_light(&air.light, bands[b], d) * cos(rise) * pi_rad * pi_rad / heights / azimuths;
                     for (int n = 0; n < planes; n++) sum[n] += part * fmax(v3_dot(d, normals[n]), 0);
                 }
             SunAir sun;
@@ -208,16 +208,16 @@ static void sky_adds_up(void **state)
                            (90 - fmax(elevations_deg[e], 5)) * rad_per_deg);
             print_message(
                 "sun %2.0f deg, %s: level %.4g (tables' diffuse %.4g, scale %.3f); over the integral, planes:",
-                elevations_deg[e], air_band_name(bands[b]), air.sky_w_m2[bands[b]], sun.diffuse_horizontal_w_m2,
-                air.sky_scale[bands[b]]);
+                elevations_deg[e], air_band_name(bands[b]), air.light.sky_w_m2[bands[b]], sun.diffuse_horizontal_w_m2,
+                air.light.sky_scale[bands[b]]);
             for (int n = 0; n < planes; n++)
-                print_message(" %.4f%s", air_sky_on_plane(&air, bands[b], normals[n]) / sum[n],
+                print_message(" %.4f%s", daylight_on_plane(&air.light, bands[b], normals[n]) / sum[n],
                               n < planes - 1 ? "" : "\n");
             /* 1 %: the grid cuts the ring about a low sun at the horizon */
             for (int n = 0; n < planes; n++)
-                CHECK_NEAR(air_sky_on_plane(&air, bands[b], normals[n]), sum[n], 0.01 * air.sky_w_m2[bands[b]]);
+                CHECK_NEAR(daylight_on_plane(&air.light, bands[b], normals[n]), sum[n], 0.01 * air.light.sky_w_m2[bands[b]]);
             if (bands[b] < AIR_MWIR && elevations_deg[e] > 5)
-                CHECK_NEAR(air.sky_w_m2[bands[b]] / sun.diffuse_horizontal_w_m2, 1, 1e-4);
+                CHECK_NEAR(air.light.sky_w_m2[bands[b]] / sun.diffuse_horizontal_w_m2, 1, 1e-4);
         }
     }
 }
@@ -229,11 +229,34 @@ static void a_band_does_not_see_its_company(void **state)
     const Weather weather = weather_default();
     const Air alone = air_of(&weather, 35, 100, 1 << AIR_LWIR, NULL);
     const Air company = air_of(&weather, 35, 100, 1 << AIR_LWIR | 1 << AIR_PAN | 1 << AIR_G | 1 << AIR_MWIR, NULL);
-    CHECK(alone.solar_direct_w_m2 == company.solar_direct_w_m2 &&
-          alone.solar_diffuse_w_m2 == company.solar_diffuse_w_m2);
-    CHECK(alone.longwave_loss_w_m2 == company.longwave_loss_w_m2);
-    CHECK(alone.ground_w_m2_sr[AIR_LWIR] == company.ground_w_m2_sr[AIR_LWIR]);
-    CHECK(alone.sky_w_m2[AIR_LWIR] == company.sky_w_m2[AIR_LWIR]);
+    CHECK(alone.light.solar_direct_w_m2 == company.light.solar_direct_w_m2 &&
+          alone.light.solar_diffuse_w_m2 == company.light.solar_diffuse_w_m2);
+    CHECK(alone.light.longwave_loss_w_m2 == company.light.longwave_loss_w_m2);
+    CHECK(alone.light.ground_w_m2_sr[AIR_LWIR] == company.light.ground_w_m2_sr[AIR_LWIR]);
+    CHECK(alone.light.sky_w_m2[AIR_LWIR] == company.light.sky_w_m2[AIR_LWIR]);
+}
+
+/* What an eye sees by and what falls where nothing looks are one: the sums, and the sky by direction. */
+static void daylight_needs_no_eye(void **state)
+{
+    (void)state;
+    static Daylight sums, light;
+    const Weather   weather = weather_default();
+    const AirSource source = {atmosphere, mwir, lwir};
+    const unsigned  bands = 1 << AIR_PAN | 1 << AIR_MWIR | 1 << AIR_LWIR;
+    for (double elevation_deg = -20; elevation_deg <= 80; elevation_deg += 25) {
+        const Sun sun = sun_at_elevation(elevation_deg);
+        const Air air = air_of(&weather, elevation_deg, 900, bands, NULL);
+        daylight_at(&sums, &source, &weather, &sun);
+        CHECK(daylight_by_direction(&light, &source, &weather, &sun, bands, NULL, arena) == STATUS_OK);
+        CHECK(sums.weather.air_temp_k == air.light.weather.air_temp_k && sums.sun_w_m2[AIR_PAN] == air.light.sun_w_m2[AIR_PAN]);
+        CHECK(sums.solar_direct_w_m2 == air.light.solar_direct_w_m2 && sums.solar_diffuse_w_m2 == air.light.solar_diffuse_w_m2);
+        CHECK(sums.longwave_loss_w_m2 == air.light.longwave_loss_w_m2 && memcmp(sums.warmer_k, air.light.warmer_k, sizeof sums.warmer_k) == 0);
+        CHECK(memcmp(sums.ground_w_m2_sr, air.light.ground_w_m2_sr, sizeof sums.ground_w_m2_sr) == 0);
+        CHECK(memcmp(light.sky_light, air.light.sky_light, sizeof light.sky_light) == 0);
+        CHECK(memcmp(light.plane_w_m2, air.light.plane_w_m2, sizeof light.plane_w_m2) == 0);
+        CHECK(memcmp(light.sky_w_m2, air.light.sky_w_m2, sizeof light.sky_w_m2) == 0);
+    }
 }
 
 static void sun_disc_adds_up(void **state)
@@ -244,17 +267,17 @@ static void sun_disc_adds_up(void **state)
     air_even(&air, sun_at_elevation(30).d_enu, 1, sky, 0, mwir, lwir);
     /* rings about the sun */
     double u[3] = {0, 0, 1}, w[3], sum = 0;
-    v3_cross(w, u, air.sun_d_enu);
+    v3_cross(w, u, air.light.sun_d_enu);
     CHECK(v3_normalize(w, w));
-    v3_cross(u, air.sun_d_enu, w);
+    v3_cross(u, air.light.sun_d_enu, w);
     const int n = 2000;
     const double reach_rad = 0.01;
     for (int i = 0; i < n; i++) {
         const double angle = (i + 0.5) / n * reach_rad;
         double d_enu[3];
-        v3_scale(d_enu, cos(angle), air.sun_d_enu);
+        v3_scale(d_enu, cos(angle), air.light.sun_d_enu);
         v3_add_scaled(d_enu, d_enu, sin(angle), u);
-        sum += air_sun_disc(&air, d_enu) * 2 * pi_rad * sin(angle) * reach_rad / n;
+        sum += daylight_sun_disc(&air.light, d_enu) * 2 * pi_rad * sin(angle) * reach_rad / n;
     }
     CHECK_NEAR(sum, 1, 2e-3); /* the rim falls within one ring of 930 */
 }
@@ -266,7 +289,7 @@ static void light_fades_smoothly(void **state)
     double last[AIR_BAND_COUNT] = {0};
     for (double e = -30; e <= 90; e += 0.5) {
         const Air air = air_of(&weather, e, 2, 1 << AIR_PAN, NULL);
-        const double sun = air.sun_w_m2[AIR_PAN], sky = air.sky_w_m2[AIR_PAN];
+        const double sun = air.light.sun_w_m2[AIR_PAN], sky = air.light.sky_w_m2[AIR_PAN];
         const double level = fmax(sun * sin(e * rad_per_deg), 0) + sky;
         CHECK(isfinite(sun) && sun >= 0 && sky > 0 && sky < 250);
         if (e < -0.27) CHECK(sun == 0);
@@ -275,8 +298,8 @@ static void light_fades_smoothly(void **state)
         last[0] = level;
     }
     const Air night = air_of(&weather, -40, 500, all_bands, NULL);
-    CHECK(night.sky_w_m2[AIR_PAN] > 1e-7 && night.sky_w_m2[AIR_PAN] < 1e-4 && night.sun_w_m2[AIR_MWIR] == 0);
-    CHECK(air_sky(&night, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
+    CHECK(night.light.sky_w_m2[AIR_PAN] > 1e-7 && night.light.sky_w_m2[AIR_PAN] < 1e-4 && night.light.sun_w_m2[AIR_MWIR] == 0);
+    CHECK(daylight_sky(&night.light, AIR_MWIR, (double[3]){0, 0, 1}) > 0.01);
 }
 
 /* Further is dimmer, nothing is between at no distance, and no number is not one: from the ground, the air and space,
@@ -315,7 +338,7 @@ static void veils_are_sound_everywhere(void **state)
                         CHECK(tau[0] <= fmaxf(veils.transmittance[i - 1] * 1.0001f, 2e-30f)); /* where depths end */
                 }
             }
-            CHECK(air.longwave_loss_w_m2 >= 0 && air.longwave_loss_w_m2 < 400);
+            CHECK(air.light.longwave_loss_w_m2 >= 0 && air.light.longwave_loss_w_m2 < 400);
         }
 }
 
@@ -327,21 +350,21 @@ static void sky_is_cold_above_and_warm_at_the_horizon(void **state)
               high = air_of(&weather, 40, 3000, 1 << AIR_LWIR, NULL);
     double last = INFINITY;
     for (double up = 0; up <= 1; up += 0.001) {
-        const double sky = air_sky(&air, AIR_LWIR, (double[3]){sqrt(1 - up * up), 0, up});
+        const double sky = daylight_sky(&air.light, AIR_LWIR, (double[3]){sqrt(1 - up * up), 0, up});
         CHECK(sky < last * 1.003); /* cubics between the tables' zenith angles */
         last = sky;
     }
-    const double zenith_k = planck_table_temp(lwir, air_sky(&air, AIR_LWIR, (double[3]){0, 0, 1}));
-    const double horizon_k = planck_table_temp(lwir, air_sky(&air, AIR_LWIR, (double[3]){1, 0, 0}));
+    const double zenith_k = planck_table_temp(lwir, daylight_sky(&air.light, AIR_LWIR, (double[3]){0, 0, 1}));
+    const double horizon_k = planck_table_temp(lwir, daylight_sky(&air.light, AIR_LWIR, (double[3]){1, 0, 0}));
     print_message("LWIR sky: zenith %.1f K, horizon %.1f K\n", zenith_k, horizon_k);
     CHECK(zenith_k > 205 && zenith_k < 240);
     CHECK(horizon_k > 280 && horizon_k < 288.15);
-    CHECK(air_sky(&air, AIR_LWIR, (double[3]){0.6, 0, -0.8}) == air_sky(&air, AIR_LWIR, (double[3]){0.6, 0.8, 0}));
+    CHECK(daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0, -0.8}) == daylight_sky(&air.light, AIR_LWIR, (double[3]){0.6, 0.8, 0}));
     /* an eye above half of the water sees less of it over itself */
     clear();
     add(0, 0.5 * pi_rad, INFINITY);
     air_veils(&veils, &high, AIR_LWIR, &hits, &rays, NULL);
-    CHECK(veils.added_w_m2_sr[0] < 0.7 * air_sky(&air, AIR_LWIR, (double[3]){0, 0, 1}));
+    CHECK(veils.added_w_m2_sr[0] < 0.7 * daylight_sky(&air.light, AIR_LWIR, (double[3]){0, 0, 1}));
 }
 
 /* Air of another temperature than the model's: its light by Planck, its transmittance as before. */
@@ -353,17 +376,17 @@ static void warm_air_glows_by_planck(void **state)
     clear();
     add(1, -0.01, 2000);
     const Air plain = air_of(&weather, -20, 20, 1 << AIR_LWIR, NULL);
-    CHECK_NEAR(plain.weather.air_temp_k, 288.15, 0.1); /* US standard */
+    CHECK_NEAR(plain.light.weather.air_temp_k, 288.15, 0.1); /* US standard */
     air_veils(&veils, &plain, AIR_LWIR, &hits, &rays, temp_k);
     const double tau = veils.transmittance[0], added = veils.added_w_m2_sr[0];
-    const double zenith = air_sky(&plain, AIR_LWIR, (double[3]){0, 0, 1}), own_k = plain.weather.air_temp_k;
+    const double zenith = daylight_sky(&plain.light, AIR_LWIR, (double[3]){0, 0, 1}), own_k = plain.light.weather.air_temp_k;
     weather.air_temp_k = own_k + 15;
     const Air warm = air_of(&weather, -20, 20, 1 << AIR_LWIR, NULL);
     air_veils(&veils, &warm, AIR_LWIR, &hits, &rays, temp_k);
     const double ratio = planck_table_radiance(lwir, own_k + 15) / planck_table_radiance(lwir, own_k);
     CHECK_NEAR(veils.transmittance[0] / tau, 1, 1e-6);
     CHECK_NEAR(veils.added_w_m2_sr[0] / added, ratio, 0.01); /* the air's own weight of the spectrum shifts with it */
-    CHECK_NEAR(air_sky(&warm, AIR_LWIR, (double[3]){0, 0, 1}) / zenith, ratio, 1e-5);
+    CHECK_NEAR(daylight_sky(&warm.light, AIR_LWIR, (double[3]){0, 0, 1}) / zenith, ratio, 1e-5);
 }
 
 /* A view fills in less than all round, and what it fills in agrees. */
@@ -398,6 +421,7 @@ int main(void)
         cmocka_unit_test(pins),
         cmocka_unit_test(sky_adds_up),
         cmocka_unit_test(a_band_does_not_see_its_company),
+        cmocka_unit_test(daylight_needs_no_eye),
         cmocka_unit_test(sun_disc_adds_up),
         cmocka_unit_test(light_fades_smoothly),
         cmocka_unit_test(veils_are_sound_everywhere),

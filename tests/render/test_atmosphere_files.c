@@ -57,7 +57,7 @@ static int make_small(void **state)
 {
     (void)state;
     strcpy(small_root, "/tmp/pitviper-test-XXXXXX");
-    if (!mkdtemp(small_root)) return -1;
+    if (channels_load() != STATUS_OK || !mkdtemp(small_root)) return -1; /* the table of channels is the program's own */
     static const char *const folder[] = {"atmosphere", "atmosphere/m", "atmosphere/m/clear", "atmosphere/m/10000"};
     for (int i = 0; i < 4; i++) {
         char path[256];

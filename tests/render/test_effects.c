@@ -85,7 +85,7 @@ static View view_north(int side_px)
 static double air_k_at(const EffectPuff *puff, const Air *air)
 {
     EffectVolume v;
-    CHECK(effect_volume(&v, &effects, puff, &air->weather, &world.frame));
+    CHECK(effect_volume(&v, &effects, puff, &air->light.weather, &world.frame));
     const double height_m = v.p_enu[2] + (v.p_enu[0] * v.p_enu[0] + v.p_enu[1] * v.p_enu[1]) / (2 * 6371e3);
     return 288.15 - 0.0065 * height_m;
 }
@@ -147,7 +147,7 @@ static void flash_follows_its_closed_form(void **state)
         for (int b = 0; b <= effect_band_pan; b++) {
             static Veils path;
             path_north(&path, &air, b, range_m, (float)temp_k);
-            const double night = air.sky_w_m2[b] / pi_rad; /* starlight from above: of no account */
+            const double night = air.light.sky_w_m2[b] / pi_rad; /* starlight from above: of no account */
             const double want = (1 - exp(-depth)) * (path.added_w_m2_sr[0] + path.transmittance[0] * 0.95 *
                                                      planck_band(low_m[b], high_m[b], temp_k, NULL));
             CHECK_NEAR(added[b], want, 1e-5 * want + night);
@@ -168,15 +168,15 @@ static void thick_smoke_reads_its_temperature(void **state)
         double       tau[effect_band_count], added[effect_band_count];
         const double temp_k = air_k_at(&puff, &air) + effects.law[EFFECT_BURST_SMOKE].temp_rise_k, albedo = effects.law[EFFECT_BURST_SMOKE].albedo[effect_band_lwir];
         /* surroundings as warm as it is: then what it scatters is the same */
-        air.ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air.planck_lwir, temp_k);
-        air.sky_w_m2[AIR_LWIR] = pi_rad * air.ground_w_m2_sr[AIR_LWIR];
+        air.light.ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air.light.planck_lwir, temp_k);
+        air.light.sky_w_m2[AIR_LWIR] = pi_rad * air.light.ground_w_m2_sr[AIR_LWIR];
         boresight(tau, added, &puff, &air);
         static Veils path;
         path_north(&path, &air, AIR_LWIR, range_m, (float)temp_k);
         CHECK(tau[effect_band_lwir] < 1e-6 && albedo > 0);
         CHECK_NEAR(added[effect_band_lwir],
                    ((1 - albedo) * (double)path.transmittance[0] + albedo * (double)path.air_transmittance[0]) *
-                           planck_table_radiance(air.planck_lwir, temp_k) +
+                           planck_table_radiance(air.light.planck_lwir, temp_k) +
                        (double)path.added_w_m2_sr[0],
                    1e-5);
     }
@@ -195,7 +195,7 @@ static void near_infrared_sees_it_longer(void **state)
     const double     temp_k = air_k_at(&puff, &air) + law->temp_rise_k * exp(-age_s / law->cool_s);
     boresight(tau, added, &puff, &air);
     path_north(&path, &air, AIR_NIR, range_m, (float)temp_k);
-    const double glow = planck_band(0.7e-6, 1.1e-6, temp_k, NULL), night = air.sky_w_m2[AIR_NIR] / pi_rad;
+    const double glow = planck_band(0.7e-6, 1.1e-6, temp_k, NULL), night = air.light.sky_w_m2[AIR_NIR] / pi_rad;
     CHECK(temp_k < 900 && glow > 1);
     /* the wind has moved its centre by some metres of 100 */
     CHECK_NEAR(added[effect_band_nir],

@@ -268,10 +268,10 @@ static void sky_pixels_are_the_sky(void **state)
     const int zenith = add_sky(0, 0, 1), sun = add_sky(cos(e), 0, sin(e));
     const int level = add_sky(0, 1, 0);
     shade(&air, optical_channel_r);
-    CHECK_NEAR(scene.out[zenith] / air_sky(&air, AIR_R, (double[3]){0, 0, 1}), 1, 1e-3); /* two metres of air less */
+    CHECK_NEAR(scene.out[zenith] / daylight_sky(&air.light, AIR_R, (double[3]){0, 0, 1}), 1, 1e-3); /* two metres of air less */
     /* the disc: its irradiance over pi (0.2665 degree)^2 */
-    const double disc = air.sun_w_m2[optical_channel_r] / (pi_rad * pow(0.2665 * rad_per_deg, 2));
-    CHECK_NEAR((scene.out[sun] - air_sky(&air, AIR_R, air.sun_d_enu)) / disc, 1, 1e-3);
+    const double disc = air.light.sun_w_m2[optical_channel_r] / (pi_rad * pow(0.2665 * rad_per_deg, 2));
+    CHECK_NEAR((scene.out[sun] - daylight_sky(&air.light, AIR_R, air.light.sun_d_enu)) / disc, 1, 1e-3);
     CHECK(scene.out[level] > scene.out[zenith]);
 }
 

@@ -101,7 +101,7 @@ static void a_plate_keeps_its_intensity(void **state)
     hand_attitude(r, pi_rad + turn, 0);
     for (int k = 0; k < 3; k++) n_enu[k] = r[3 * k];
     double want[picture_plane_count] = {0};
-    want[picture_optical] = hand_rho * hand.air.sun_w_m2[optical_channel_pan] * v3_dot(n_enu, sun_enu) / pi_rad * area_m2;
+    want[picture_optical] = hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * v3_dot(n_enu, sun_enu) / pi_rad * area_m2;
     want[picture_mwir]    = hand_emitted(BAND_MWIR) * area_m2;
     want[picture_lwir]    = hand_emitted(BAND_LWIR) * area_m2;
     for (int k = 0; k < range_count; k++) {
@@ -124,7 +124,7 @@ static double sunlit_sphere(double range_m, const double towards_sun[3])
             const double lit = v3_dot(n, towards_sun), seen = v3_dot(n, eye);
             if (lit > 0 && seen > 0) sum += lit * seen / pow(v3_length(eye), 3);
         }
-    return hand_rho / pi_rad * hand.air.sun_w_m2[optical_channel_pan] * sum * hand_sphere_m * hand_sphere_m * 2 * pi_rad /
+    return hand_rho / pi_rad * hand.air.light.sun_w_m2[optical_channel_pan] * sum * hand_sphere_m * hand_sphere_m * 2 * pi_rad /
            ((double)steps * steps) * range_m * range_m;
 }
 
@@ -137,7 +137,7 @@ static void a_sphere_keeps_its_intensity(void **state)
         double       r[9], want[picture_plane_count] = {0};
         hand_air_off(sun);
         hand_attitude(r, 0.3, 0.2);
-        const double from_afar = hand_rho * hand.air.sun_w_m2[optical_channel_pan] * hand_sphere_m * hand_sphere_m * 2 /
+        const double from_afar = hand_rho * hand.air.light.sun_w_m2[optical_channel_pan] * hand_sphere_m * hand_sphere_m * 2 /
                                  (3 * pi_rad) * (sin(p) + (pi_rad - p) * cos(p));
         CHECK_NEAR(sunlit_sphere(1e5, sun) / from_afar, 1, 1e-3); /* 600 steps of the sum, and 1e-5 of nearness */
         want[picture_mwir] = hand_emitted(BAND_MWIR) * pi_rad * hand_sphere_m * hand_sphere_m;

@@ -127,7 +127,7 @@ static void a_warm_wall_shows_by_its_emissivity(void **state)
         CHECK_NEAR((scene.out[2 * m + 1] - scene.out[2 * m]) / step, 1 - 0.5 * m, 1e-4); /* float out of 38 W */
     /* a black one reads its temperature, a mirror the mean sky */
     CHECK_NEAR(planck_table_temp(lwir, scene.out[0]), 300, 1e-3);
-    CHECK_NEAR(pi_rad * scene.out[4] / air.sky_w_m2[AIR_LWIR], 1, 1e-5);
+    CHECK_NEAR(pi_rad * scene.out[4] / air.light.sky_w_m2[AIR_LWIR], 1, 1e-5);
 }
 
 static void mirrors_show_cold_zenith_and_warm_ground(void **state)
@@ -141,9 +141,9 @@ static void mirrors_show_cold_zenith_and_warm_ground(void **state)
     const int side = add((double[3]){0, 0.5, -0.05}, (double[3]){0, 0, 1}, 0, 1, 300);
     const int down = add((double[3]){0, 1, -1}, (double[3]){0, -1, 0}, 0, 1, 300); /* a wall, seen from above */
     shade(&air, BAND_LWIR);
-    CHECK_NEAR(scene.out[up] / air_sky(&air, AIR_LWIR, (double[3]){0, 0, 1}), 1, 1e-6);
+    CHECK_NEAR(scene.out[up] / daylight_sky(&air.light, AIR_LWIR, (double[3]){0, 0, 1}), 1, 1e-6);
     CHECK(scene.out[side] > 2.5 * scene.out[up]);
-    CHECK_NEAR(scene.out[down] / air.ground_w_m2_sr[AIR_LWIR], 1, 1e-6);
+    CHECK_NEAR(scene.out[down] / air.light.ground_w_m2_sr[AIR_LWIR], 1, 1e-6);
 }
 
 static void sun_shows_in_mwir_only_and_not_in_shadow(void **state)
@@ -161,7 +161,7 @@ static void sun_shows_in_mwir_only_and_not_in_shadow(void **state)
     const int facing_dark = add((double[3]){0, cos(e), -sin(e)}, n, 0, 2, 300);
     scene.sun[dark] = scene.sun[away] = scene.sun[facing_dark] = 0;
     shade(&air, BAND_MWIR);
-    CHECK_NEAR(scene.out[lit] - scene.out[dark], 0.15 / pi_rad * air.sun_w_m2[AIR_MWIR] * sin(e), 1e-6);
+    CHECK_NEAR(scene.out[lit] - scene.out[dark], 0.15 / pi_rad * air.light.sun_w_m2[AIR_MWIR] * sin(e), 1e-6);
     /* the eye looks towards -y, where the sun stands: glint; towards +y: none */
     CHECK(scene.out[toward] - scene.out[away] > 10 * (scene.out[lit] - scene.out[dark]));
     CHECK_NEAR(scene.out[facing], scene.out[facing_dark], 1e-4 * scene.out[facing_dark]);
@@ -346,13 +346,13 @@ static void wind_takes_what_the_balance_says(void **state)
         int ground[SURFACE_COUNT] = {0};
         for (int s = 1; s < SURFACE_COUNT; s++) ground[s] = add_ground(&m, (SurfaceClass)s, up, 1);
         thermal_temperature(scene.temp_k, &air, &m, NULL, NULL, &scene.hits, scene.material, scene.texture);
-        const double sun_w_m2 = air.solar_direct_w_m2 * sin(60 * rad_per_deg) + air.solar_diffuse_w_m2;
+        const double sun_w_m2 = air.light.solar_direct_w_m2 * sin(60 * rad_per_deg) + air.light.solar_diffuse_w_m2;
         for (int s = 1; s < SURFACE_COUNT; s++) {
             if (s == SURFACE_SNOW) continue; /* at 0 C */
             const Material *of = &m.material[m.surface[s]];
             const double    air_k = weather.air_temp_k, sigma = 5.670374419184429e-8, e = 1 - of->rho_lwir;
             const double    wave = sqrt(of->conductivity_w_mk * of->density_kg_m3 * of->heat_capacity_j_kgk * 2 * pi_rad / 86164.1);
-            const double    still_k = m.ground_rise_k[s] * sun_w_m2 / 1000 - m.ground_fall_k[s] * air.longwave_loss_w_m2 / 100;
+            const double    still_k = m.ground_rise_k[s] * sun_w_m2 / 1000 - m.ground_fall_k[s] * air.light.longwave_loss_w_m2 / 100;
             const double    gains_w_m2 = (5.7 + 3.8 * 3) * still_k + wave * still_k +
                                       e * sigma * (pow(air_k + still_k, 4) - pow(air_k, 4));
             double low_k = 200, high_k = 400;
@@ -457,14 +457,14 @@ static void air_is_colder_above(void **state)
     for (int warm = 0; warm < 2; warm++) {
         weather.air_temp_k = 288.15 + 20 * warm;
         Air air = air_when(&weather, -30);
-        air.zero_z_m = 300 * warm;
+        air.light.zero_z_m = 300 * warm;
         for (int k = 0; k < 8; k++) {
             clear();
             add_ground(&m, SURFACE_GRASS, up, 1);
             add_ground(&m, SURFACE_GRASS, up, 1);
             add_part(&m, 0, 0, up);
             add_part(&m, 0, 0, up);
-            for (int i = 0; i < 4; i++) scene.hits.p_enu[2][i] = i % 2 ? heights_m[k] + air.zero_z_m : air.zero_z_m;
+            for (int i = 0; i < 4; i++) scene.hits.p_enu[2][i] = i % 2 ? heights_m[k] + air.light.zero_z_m : air.light.zero_z_m;
             scene.hits.p_enu[0][1] = 100e3; /* and there the tangent plane is 785 m up */
             scene.hits.p_enu[2][1] -= 100e3 * 100e3 / (2 * 6371e3);
             thermal_temperature(scene.temp_k, &air, &m, catalog, &snapshot, &scene.hits, scene.material, scene.texture);
@@ -472,8 +472,8 @@ static void air_is_colder_above(void **state)
             /* the profile is in tenths of a kelvin, and of geometric heights: 0.1 K at 10 km */
             CHECK_NEAR(scene.temp_k[1] - scene.temp_k[0], want_k, 0.16);
             CHECK_NEAR(scene.temp_k[3] - scene.temp_k[2], want_k, 0.16 - 0.03 * want_k); /* emits less, so loses less */
-            const double p_enu[3] = {0, 0, heights_m[k] + air.zero_z_m};
-            CHECK_NEAR(air_temp_at(&air, p_enu), weather.air_temp_k + want_k, 0.15);
+            const double p_enu[3] = {0, 0, heights_m[k] + air.light.zero_z_m};
+            CHECK_NEAR(daylight_temp_at(&air.light, p_enu), weather.air_temp_k + want_k, 0.15);
         }
     }
     materials_close(&m);

@@ -274,7 +274,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
             hits.range_m[0] = (double)p->range_m[i];
             float temp_k[8] = {p->temp_k[i]};
             air_veils(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
-            const double *s = air->sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
+            const double *s = air->light.sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
             const double  azimuth = acos(clamp((d[0] * s[0] + d[1] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
             const double sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad,
                          au2 = 1 / (frame.sun.distance_au * frame.sun.distance_au);
@@ -290,7 +290,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
                                                            range_m * range_m * level * level / (2 * 6371e3),
                                                        0)};
                 PathAir want;
-                atmosphere_path(&want, scene.world.atmosphere, air->weather.visibility_m, b, &path,
+                atmosphere_path(&want, scene.world.atmosphere, air->light.weather.visibility_m, b, &path,
                                 thermal && p->temp_k[i] > 0 ? (double)p->temp_k[i] : 288);
                 const double tau = thermal ? want.transmittance : want.sun_transmittance;
                 const double added = want.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want.scattered_w_m2_sr * au2);
@@ -298,7 +298,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
                     (seen - (double)veils.added_w_m2_sr[0]) / fmax((double)veils.transmittance[0], 1e-6) * tau + added;
             } else {
                 SkyAir sky;
-                atmosphere_sky(&sky, scene.world.atmosphere, air->weather.visibility_m, b, air->eye_height_m,
+                atmosphere_sky(&sky, scene.world.atmosphere, air->light.weather.visibility_m, b, air->eye_height_m,
                                acos(fmax(d[2], 0)), sun_zenith, azimuth);
                 seen = sky.thermal_w_m2_sr + (b == AIR_LWIR ? 0 : sky.scattered_w_m2_sr * au2);
             }

@@ -336,7 +336,7 @@ static void shoot_through(Shot *shot, const Glass *glass, const double *lateral,
     v3_normalize(sun.d_enu, sun.d_enu);
     static const double sky[AIR_BAND_COUNT] = {20, 20, 20, 60, 60, 0.3, 15};
     air_even(&air, sun.d_enu, 150, sky, 0, fixture.world.planck_mwir, fixture.world.planck_lwir);
-    air.sun_w_m2[AIR_MWIR] = 8;
+    air.light.sun_w_m2[AIR_MWIR] = 8;
     assert_int_equal(render(&shot->picture, &fixture.world, &snapshot, &request, &air, fixture.pool, fixture.arena), STATUS_OK);
     shot->target = shot->picture.target[0];
     entity_table_destroy(table);

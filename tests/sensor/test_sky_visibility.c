@@ -143,12 +143,12 @@ static void test_near_the_exact(void **state)
         for (int i = 0; i < width * height; i++)
             lit[i] = (float)((double)quick[0]->optical[0][i] / (brightest / sorted));
         print_message("%s: sun %.0f deg, %.1f s, %.1f ms, %.1f ms\n", of->name,
-                      asin(frame[0].air.sun_d_enu[2]) / rad_per_deg, s[0], 1e3 * s[1], 1e3 * s[2]);
+                      asin(frame[0].air.light.sun_d_enu[2]) / rad_per_deg, s[0], 1e3 * s[1], 1e3 * s[2]);
         static const char *const plane_name[] = {"r", "g", "b", "mwir", "lwir"};
         for (int plane = 0; plane <= picture_lwir; plane++) {
             Found found[REGION_COUNT] = {0};
             const float *const values[2] = {picture_plane(quick[0], plane), picture_plane(quick[1], plane)};
-            compare(found, exact, picture_plane(exact, plane), values, lit, frame[0].air.sun_d_enu);
+            compare(found, exact, picture_plane(exact, plane), values, lit, frame[0].air.light.sun_d_enu);
             for (int r = 0; r < REGION_COUNT; r++)
                 if (found[r].blocks > 3) {
                     const double percent = 100 * sqrt(found[r].square[1] / found[r].blocks);

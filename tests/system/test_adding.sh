@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # etc/ADDING.md: its commands as they stand there, in an empty folder: a vehicle, a material, a sensor; the shape's code
-# compiles; the lists of files are complete. And whose rows win, and what a file of the wrong size is told.
+# compiles; a channel by files alone. And whose rows win, and what a file of the wrong size is told.
 . "$(dirname "$0")/common.sh"
 here=$PWD
 real=$(realpath "$pitviper")
@@ -88,14 +88,61 @@ for file in parametric_kiosk parametric; do
     check "shape: $file.c compiles" "${CC:-cc}" -std=gnu17 -D_GNU_SOURCE -Wall -Werror -Wno-missing-prototypes -I. -include entities/parametric/parametric.h -fsyntax-only "$tmp/$file.c"
 done
 
-# ---- a band: what is listed is there, and what names a band is listed
+# ---- what is listed is there
 # shellcheck disable=SC2016
 for path in $(grep -oE '`(etc|dis|terrain|render|sensor|entities|tests)/[a-z0-9_./]+`' etc/ADDING.md | tr -d '`' | sort -u); do
     case $path in */kiosk.c|*/) continue ;; esac
     check "listed and there: $path" [ -e "$path" ]
 done
-for file in $(grep -rlE 'BAND_LWIR|AIR_LWIR|picture_lwir|rho_lwir|netd_lwir' --include='*.c' --include='*.h' render sensor | grep -v bench); do
-    check "names a band and is listed: $file" grep -qF "\`$file\`" etc/ADDING.md
+
+# ---- a channel: 8-14 um in lwir's place, by files alone; its figures are lwir's own
+etc=$tmp/etc
+mkdir "$etc"
+cp -r etc/*.csv etc/atmosphere "$etc/"
+echo 'lwir_wide,8,14,emissive,lwir,a microbolometer' >>"$etc/channels.csv"
+echo 'lwir_wide,8,14,1.9' >>"$etc/atmosphere/bands.csv"
+column() { # column FILE OLD NEW: a copy of a column at the end
+    awk -F, -v old="$2" -v new="$3" '/^#/ || !NF { print; next } !h { for (i = 1; i <= NF; i++) if ($i == old) h = i; print $0 "," new; next } { print $0 "," $h }' "$1" >"$1.new" && mv "$1.new" "$1"
+}
+column "$etc/materials.csv" rho_lwir rho_lwir_wide
+column "$etc/effects.csv" ext_lwir ext_lwir_wide
+column "$etc/effects.csv" albedo_lwir albedo_lwir_wide
+tables() { # tables FOLDER FILE KEYS PREFIX...: FILE_lwir_wide.csv: its keys and the columns <prefix>lwir, named anew
+    folder=$1 file=$2 keys=$3; shift 3
+    awk -F, -v keys="$keys" -v want="$*" '/^#/ { next } !n { split(want, p, " "); for (k in p) { if (p[k] == "-") p[k] = ""; m++ }
+        for (i = 1; i <= keys; i++) line = line (i > 1 ? "," : "") $i
+        for (k = 1; k <= m; k++) { for (i = 1; i <= NF; i++) if ($i == p[k] "lwir") at[k] = i; line = line "," p[k] "lwir_wide" }
+        print line; n = 1; next }
+        { line = $1; for (i = 2; i <= keys; i++) line = line "," $i; for (k = 1; k <= m; k++) line = line "," $at[k]; print line }' \
+        "$folder/$file.csv" >"$folder/${file}_lwir_wide.csv"
+}
+for model in us1976; do
+    a=$etc/atmosphere/$model
+    tables "$a" phase 2 -
+    tables "$a/clear" air 1 extinction_ scatter_
+    cp "$a/clear/paths_lwir.csv" "$a/clear/paths_lwir_wide.csv"
+    for v in "$a"/[0-9]*; do
+        tables "$v" haze 1 extinction_ scatter_
+        tables "$v" sun 2 direct_ diffuse_
+        tables "$v" sky_thermal 2 -
+        [ ! -e "$v/paths_lwir.csv" ] || cp "$v/paths_lwir.csv" "$v/paths_lwir_wide.csv"
+        [ ! -e "$v/sky_scattered.csv" ] || tables "$v" sky_scattered 4 -
+        [ ! -e "$v/scattered.csv" ] || tables "$v" scattered 5 -
+    done
 done
+grep '^staring_lwir,' "$etc/sensors.csv" | sed 's/^staring_lwir,lwir/bolometer,lwir_wide/' >>"$etc/sensors.csv"
+PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands optical,lwir_wide --set sensor.preset=bolometer --size 64x48 --only 0 --no-png --out "$tmp/wide"
+check "channel: it runs" [ $code = 0 ]
+check "channel: a picture" [ -s "$tmp/wide/frames/lwir_wide/000000.exr" ]
+check "channel: truth has its sums" grep -q '"lwir_wide":{"contrast_k"' "$tmp/wide/truth.jsonl"
+check "channel: a detector looks at it" grep -q '^lwir_wide: bolometer, F/2' "$tmp/stdout"
+check "channel: run.json" grep -q 'optical,lwir_wide' "$tmp/wide/run.json"
+sed -i 's/,ext_lwir_wide/,ext_other/' "$etc/effects.csv"
+PITVIPER_ETC=$etc run replay "$tmp/work/exercise.pcap" --bands lwir_wide --size 64x48 --only 0 --no-png --out "$tmp/wide2"
+check "channel: a column that is missing" complained 'effects.csv.*ext_lwir_wide'
+run replay "$tmp/work/exercise.pcap" --bands lwir,lwir_wide --out "$tmp/o"
+check "channel: no such" complained "'lwir,lwir_wide' is not a list of .*mwir, lwir, swir"
+run replay "$tmp/work/exercise.pcap" --bands swir,optical --out "$tmp/o"
+check "channel: one of a place" complained 'swir takes the place of another'
 cd "$here" || exit 1
 finish

@@ -79,7 +79,7 @@ static void ask_veils(void *user)
 static void ask_atmosphere(void *user)
 {
     AirSet       *s = user;
-    const double *sun = s->air.sun_d_enu;
+    const double *sun = s->air.light.sun_d_enu;
     for (int i = 0; i < s->paths; i++) {
         const double r = s->hits.range_m[i], up = s->rays.d_enu[2][i], level = sqrt(1 - up * up);
         const double along = (s->rays.d_enu[0][i] * sun[0] + s->rays.d_enu[1][i] * sun[1]) /
@@ -89,7 +89,7 @@ static void ask_atmosphere(void *user)
                               .target_m = fmax(s->eye_m + r * up + r * r * level * level / (2 * earth_radius_m), 0),
                               .rel_azimuth_rad = acos(clamp(along, -1, 1))};
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            atmosphere_path(&s->path[b][i], s->atmosphere, s->air.weather.visibility_m, (AirBand)b, &path,
+            atmosphere_path(&s->path[b][i], s->atmosphere, s->air.light.weather.visibility_m, (AirBand)b, &path,
                             (double)s->temp_k[i]);
     }
     bench_keep(s->path);
@@ -106,7 +106,7 @@ static int seen_errors(double *error, const AirSet *s, int first, int end)
             const bool     warm = b >= AIR_MWIR;
             const double   tau = warm ? want->transmittance : want->sun_transmittance;
             const double   bare = warm ? planck_table_radiance(s->planck[b - AIR_MWIR], (double)s->temp_k[i])
-                                       : 0.1 / pi_rad * (s->air.sun_w_m2[b] * s->air.sun_d_enu[2] + s->air.sky_w_m2[b]);
+                                       : 0.1 / pi_rad * (s->air.light.sun_w_m2[b] * s->air.light.sun_d_enu[2] + s->air.light.sky_w_m2[b]);
             const double   added = want->thermal_w_m2_sr + (b == AIR_LWIR ? 0 : want->scattered_w_m2_sr);
             const double   got = bare * (double)s->veils[b].transmittance[i] + (double)s->veils[b].added_w_m2_sr[i];
             error[n++] = 100 * fabs(got / (bare * tau + added) - 1);
@@ -249,17 +249,17 @@ static void ask_skies(void *user)
 {
     SkySet      *s = user;
     const double zenith_rad = 0.5 * pi_rad - s->from->sun.elevation_rad;
-    const double *sun = s->air.sun_d_enu;
+    const double *sun = s->air.light.sun_d_enu;
     for (int i = 0; i < skies; i++) {
         const double *d = s->d_enu[i];
         if (s->asked) {
             SkyAir sky;
             const double along = (d[0] * sun[0] + d[1] * sun[1]) / (hypot(d[0], d[1]) * hypot(sun[0], sun[1]));
-            atmosphere_sky(&sky, s->from->atmosphere, s->air.weather.visibility_m, AIR_G, 0, acos(d[2]), zenith_rad,
+            atmosphere_sky(&sky, s->from->atmosphere, s->air.light.weather.visibility_m, AIR_G, 0, acos(d[2]), zenith_rad,
                            acos(clamp(along, -1, 1)));
             s->out[i] = sky.scattered_w_m2_sr;
         } else {
-            s->out[i] = air_sky(&s->air, AIR_G, d);
+            s->out[i] = daylight_sky(&s->air.light, AIR_G, d);
         }
     }
     bench_keep(s->out);
@@ -276,7 +276,7 @@ static void knob_sky(Bench *bench, const AirSet *from)
     BenchPoint    point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k] = (SkySet){.from = from, .air = from->air, .asked = k == 0};
-        AirSky *sky = &set[k].air.sky[AIR_G];
+        AirSky *sky = &set[k].air.light.sky[AIR_G];
         if (k == 2) {
             thin(sky->scattered_w_m2_sr[0], 1, 0, air_sky_ups + 1, air_sky_azimuths + 1, air_sky_azimuths + 1);
             thin(sky->scattered_w_m2_sr[0], air_sky_ups + 1, air_sky_azimuths + 1, air_sky_azimuths + 1, 1, 1);
@@ -313,7 +313,7 @@ static void ask_planes(void *user)
     for (int i = 0; i < planes; i++) {
         const double *n = s->n_enu[i];
         if (s->steps == 0) {
-            s->out[i] = air_sky_on_plane(&s->air, AIR_G, n);
+            s->out[i] = daylight_on_plane(&s->air.light, AIR_G, n);
             continue;
         }
         double sum = 0;
@@ -321,7 +321,7 @@ static void ask_planes(void *user)
             for (int a = 0; a < 4 * s->steps; a++) {
                 const double rise = (h + 0.5) / s->steps * 0.5 * pi_rad, turn = (a + 0.5) * pi_rad / (2 * s->steps);
                 const double d[3] = {cos(rise) * sin(turn), cos(rise) * cos(turn), sin(rise)}, cosine = v3_dot(d, n);
-                if (cosine > 0) sum += air_sky_light(&s->air, AIR_G, d) * cos(rise) * cosine;
+                if (cosine > 0) sum += daylight_sky_light(&s->air.light, AIR_G, d) * cos(rise) * cosine;
             }
         s->out[i] = sum * 0.5 * pi_rad / s->steps * 0.5 * pi_rad / s->steps;
     }
@@ -342,7 +342,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
         s->air   = from->air;
         s->steps = k >= 0 ? steps[k] : bench_quick(bench) ? 64 : 128;
         if (k == 3) {
-            float *plane = s->air.plane_w_m2[AIR_G][0];
+            float *plane = s->air.light.plane_w_m2[AIR_G][0];
             thin(plane, 1, 0, air_plane_ups + 1, air_plane_azimuths + 1, air_plane_azimuths + 1);
             thin(plane, air_plane_ups + 1, air_plane_azimuths + 1, air_plane_azimuths + 1, 1, 1);
         }
@@ -353,12 +353,12 @@ static void knob_planes(Bench *bench, const AirSet *from)
         }
         ask_planes(s);
         if (k < 0) continue;
-        const double level = s->air.sky_w_m2[AIR_G];
+        const double level = s->air.light.sky_w_m2[AIR_G];
         for (int i = 0; i < planes; i++) bench_worst(&point[k].error, 100 * fabs(s->out[i] - fine.out[i]) / level);
         work[k] = (BenchWork){ask_planes, s, planes};
         point[k].setting    = name[k];
         point[k].is_default = k == 2;
-        point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.plane_w_m2[0];
+        point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.light.plane_w_m2[0];
     }
     bench_turn(bench, &(BenchKnob){"light of the sky on a plane", "render/air/air.h", "a plane, 0.5-0.6 um", "%",
                                    "largest over that of a level one; 64 x 256 directions or more", 1},

@@ -224,7 +224,7 @@ static void shade(void *user)
         surface_light_shade(out, &s->light, &block);
     } else {
         static Facing facing;
-        air_facing(&facing, s->air, s->materials, &s->hits, &s->rays, s->material);
+        daylight_facing(&facing, &s->air->light, s->materials, &s->hits, &s->rays, s->material);
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
             if (b < AIR_MWIR)
                 optical_shade(s->out[b], b, s->air, s->materials, &s->hits, &s->rays, s->material, s->texture,

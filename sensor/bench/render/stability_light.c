@@ -192,7 +192,7 @@ static double veil_values(void *user, bool quick)
                     for (int k = 0; k < 3; k++) wrong += !(share[k][i] >= 0 && share[k][i] <= 1);
                     wrong += !(veils[b].added_w_m2_sr[i] >= 0 && isfinite(veils[b].added_w_m2_sr[i]));
                     const double d[3] = {rays.d_enu[0][i], rays.d_enu[1][i], rays.d_enu[2][i]};
-                    const double sky = air_sky(&air, (AirBand)b, d), plane = air_sky_on_plane(&air, (AirBand)b, d);
+                    const double sky = daylight_sky(&air.light, (AirBand)b, d), plane = daylight_on_plane(&air.light, (AirBand)b, d);
                     wrong += !(sky >= 0 && isfinite(sky)) + !(plane >= 0 && isfinite(plane));
                 }
         }

@@ -51,7 +51,7 @@ static void one_range(Ranges *r, double range_m, double columns)
     const size_t        middle = (size_t)(height / 2) * (size_t)width + (size_t)(width / 2);
     const double half_px[2] = {0.5 * columns, 0.5 * columns * stress_size_m[2] / stress_size_m[0]},
         area = 4 * half_px[0] * half_px[1];
-    const double temp_k = w->air.weather.air_temp_k, optical = (double)stress_rho / pi_rad * stress_sun_w_m2 * 0.6;
+    const double temp_k = w->air.light.weather.air_temp_k, optical = (double)stress_rho / pi_rad * stress_sun_w_m2 * 0.6;
     const double thermal = (1 - (double)stress_rho_ir) * planck_band(8e-6, 12e-6, temp_k, NULL);
     worse(&r->radiance, fabs((t->small ? t->mean[picture_optical] : (double)p->optical[0][middle]) / optical - 1));
     worse(&r->radiance, fabs((t->small ? t->mean[picture_lwir] : (double)p->lwir[middle]) / thermal - 1));

@@ -57,7 +57,7 @@ static void light_at(Lit *lit, double elevation_rad)
     for (int b = 0; b < bands; b++)
         for (int i = 0; i < 3; i++) {
             lit->value[i * bands + b]       = (double)out[b][i];
-            lit->value[(3 + i) * bands + b] = air_sky(&air, (AirBand)b, look[i]);
+            lit->value[(3 + i) * bands + b] = daylight_sky(&air.light, (AirBand)b, look[i]);
         }
 }
 

@@ -85,8 +85,8 @@ void stress_no_air(StressWorld *w, const double sun_enu[3])
     static const double dark[AIR_BAND_COUNT] = {0};
     Air *a = &w->air;
     air_even(a, sun_enu, stress_sun_w_m2, dark, 0, w->world.planck_mwir, w->world.planck_lwir);
-    for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
-    a->solar_direct_w_m2 = a->solar_diffuse_w_m2 = 0;
+    for (int b = AIR_MWIR; b <= AIR_LWIR; b++) a->light.sun_w_m2[b] = a->sun_eye_w_m2[b] = 0;
+    a->light.solar_direct_w_m2 = a->light.solar_diffuse_w_m2 = 0;
     for (int c = 0; c < optical_channel_count; c++) w->world.materials.ground_rho[c] = 0;
 }
 

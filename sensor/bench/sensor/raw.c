@@ -108,9 +108,9 @@ static void add_tile(RawRays *raw, Rays *rays, Hits *hits, const TrialFrame *f, 
         const int    i = order[k];
         const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
         double       start[3];
-        if (!(hits->range_m[i] < INFINITY) || !(v3_dot(n, f->air.sun_d_enu) > 0)) continue;
+        if (!(hits->range_m[i] < INFINITY) || !(v3_dot(n, f->air.light.sun_d_enu) > 0)) continue;
         for (int c = 0; c < 3; c++) start[c] = hits->p_enu[c][i] + offset_m * n[c];
-        add_ray(raw, start, f->air.sun_d_enu);
+        add_ray(raw, start, f->air.light.sun_d_enu);
     }
     raw->first[++raw->blocks] = raw->count;
 }

@@ -1,0 +1,527 @@
+/* render/air/daylight.c: what sun and sky give to a place, from the tables of render/air/atmosphere.c: no eye.
+ *
+ * The tables know the sun above the horizon only. Below 5 degrees the sky keeps the shape it has there and loses
+ * brightness as twilight does. */
+#include "render/air/daylight_private.h"
+
+#include "render/light/surface_balance.h"
+
+/* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
+ * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
+ * nautical, 3e-7 (airglow and stars) of astronomical twilight. Right within a factor of two. */
+static double twilight(double elevation_rad)
+{
+    static const double at_deg[] = {-18, -12, -6, 0, 5}, decades[] = {-6.5, -5.7, -3.1, -0.77, 0};
+    const double e_deg = elevation_rad / rad_per_deg;
+    if (e_deg <= at_deg[0]) return pow(10, decades[0]);
+    for (int i = 1; i < 5; i++)
+        if (e_deg <= at_deg[i]) {
+            const double f = (e_deg - at_deg[i - 1]) / (at_deg[i] - at_deg[i - 1]);
+            return pow(10, decades[i - 1] + f * (decades[i] - decades[i - 1]));
+        }
+    return 1;
+}
+
+static const double sun_radius_rad = 0.2665 * 0.017453292519943295769; /* mean over the year */
+
+/* Share of the sun's disc above the horizon. */
+static double disc_above(double elevation_rad)
+{
+    return clamp((elevation_rad + sun_radius_rad) / (2 * sun_radius_rad), 0, 1);
+}
+
+double daylight_sun_disc(const Daylight *light, const double d_enu[3])
+{
+    /* by the chord, since the cosine of so small an angle has lost half its digits */
+    double chord[3];
+    v3_sub(chord, d_enu, light->sun_d_enu);
+    const double disc = 2 * sin(0.5 * sun_radius_rad), disc2 = disc * disc;
+    return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
+}
+
+/* ---- the sky as a table -------------------------------------------------------------------- */
+
+double cos_azimuth(const double a_enu[3], const double b_enu[3])
+{
+    const double n2 = (a_enu[0] * a_enu[0] + a_enu[1] * a_enu[1]) * (b_enu[0] * b_enu[0] + b_enu[1] * b_enu[1]);
+    return n2 > 1e-20 ? clamp((a_enu[0] * b_enu[0] + a_enu[1] * b_enu[1]) / sqrt(n2), -1, 1) : 1;
+}
+
+double acos_quick(double c)
+{
+    const double x = fmin(fabs(c), 1);
+    const double a = sqrt(1 - x) * (1.5707288 + x * (-0.2121144 + x * (0.0742610 - x * 0.0187293)));
+    return c < 0 ? pi_rad - a : a;
+}
+
+/* Where x of 0 .. steps falls: *at its lower node, returns the share of the upper one. */
+static inline double split(int *at, double x, int steps)
+{
+    const int i = x > 0 ? (int)x : 0;
+    *at = i < steps ? i : steps - 1;
+    return clamp(x - *at, 0, 1);
+}
+
+/* blur_rad: nothing about the sun shows finer than this. */
+static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)
+{
+    out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
+    out->azimuth_share = (float)split(
+        &out->azimuth, air_sky_azimuths / pi_rad * acos_quick(cos_azimuth(d_enu, sun_d_enu)), air_sky_azimuths);
+    /* by the chord, since the cosine of a small angle has lost half its digits; chord = 2 sin(angle / 2) */
+    double chord[3];
+    v3_sub(chord, d_enu, sun_d_enu);
+    const double c2 = fmin(0.25 * v3_dot(chord, chord), 1), angle = c2 < 0.01 ? 2 * sqrt(c2) : acos_quick(1 - 2 * c2);
+    const double blurred = fmin(fmax(angle, blur_rad), pi_rad);
+    out->angle_share = (float)split(&out->angle, air_sky_angles * sqrt(blurred / pi_rad), air_sky_angles);
+}
+
+void daylight_sky_place(SkyPlace *out, const Daylight *light, const double d_enu[3])
+{
+    place_in_sky(out, light->sun_d_enu, d_enu, 0);
+}
+
+double daylight_sky(const Daylight *light, AirBand band, const double d_enu[3])
+{
+    SkyPlace place;
+    daylight_sky_place(&place, light, d_enu);
+    return daylight_sky_there(&light->sky[band], &place);
+}
+
+double daylight_sky_light(const Daylight *light, AirBand band, const double d_enu[3])
+{
+    SkyPlace place;
+    daylight_sky_place(&place, light, d_enu);
+    return daylight_sky_there(&light->sky_light[band], &place);
+}
+
+void daylight_plane_place(PlanePlace *out, const Daylight *light, const double n_enu[3])
+{
+    const double up = clamp(n_enu[2], -1, 1), x = 0.5 * air_plane_ups * sqrt(1 - fabs(up));
+    out->open = (float)(0.5 * (1 + up));
+    out->up_share = (float)split(&out->up, up < 0 ? x : air_plane_ups - x, air_plane_ups);
+    const double azimuth_rad = acos_quick(cos_azimuth(n_enu, light->sun_d_enu));
+    out->azimuth_share = (float)split(&out->azimuth, air_plane_azimuths / pi_rad * azimuth_rad, air_plane_azimuths);
+}
+
+void daylight_facing(Facing *out, const Daylight *light, const Materials *materials, const Hits *hits, const Rays *rays,
+                const uint16_t *material)
+{
+    for (int i = 0; i < hits->count; i++) {
+        if (!(hits->range_m[i] < INFINITY)) continue;
+        const double n_enu[3] = {hits->n_enu[0][i], hits->n_enu[1][i], hits->n_enu[2][i]};
+        daylight_plane_place(&out->plane[i], light, n_enu);
+        if (!(materials->material[material[i]].gloss > 0)) continue;
+        const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
+        double mirror_enu[3];
+        v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
+        /* facets that lean by the roughness turn the ray by twice that: grass does not mirror the ring about the sun */
+        place_in_sky(&out->mirror[i], light->sun_d_enu, mirror_enu, 2 * materials->material[material[i]].roughness);
+    }
+}
+
+double daylight_on_plane(const Daylight *light, AirBand band, const double n_enu[3])
+{
+    PlanePlace place;
+    daylight_plane_place(&place, light, n_enu);
+    return daylight_plane_there(light, band, &place);
+}
+
+/* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
+ * and 48 azimuths; and rings about the sun, dense at its middle, which take over from the grid there by a weight that
+ * goes smoothly from one to nothing. */
+enum {
+    lamp_ups = 24,
+    lamp_azimuths = 48,
+    lamp_rings = 20,
+    lamp_spokes = 24,
+    lamps = lamp_ups * lamp_azimuths + lamp_rings * lamp_spokes
+};
+static const double rings_rad = 0.7, rings_only_rad = 0.2;
+
+typedef struct Lamps {
+    float    d[3][lamps], solid_angle[lamps];
+    SkyPlace place[lamps];
+} Lamps;
+
+/* Share of the rings at an angle from the sun. */
+static double rings_share(double angle_rad)
+{
+    const double t = clamp((rings_rad - angle_rad) / (rings_rad - rings_only_rad), 0, 1);
+    return t * t * (3 - 2 * t);
+}
+
+static void set_lamp(Lamps *out, int k, const double sun_d_enu[3], const double d_enu[3], double solid_angle)
+{
+    for (int c = 0; c < 3; c++) out->d[c][k] = (float)d_enu[c];
+    out->solid_angle[k] = d_enu[2] > 0 ? (float)solid_angle : 0;
+    if (d_enu[2] > 0) place_in_sky(&out->place[k], sun_d_enu, d_enu, 0);
+}
+
+/* A height of the grid; below, a ring about the sun. */
+static void place_grid(Lamps *out, int i, const double sun_d_enu[3])
+{
+    static const double step_rad = 2 * 3.14159265358979323846 / lamp_azimuths;
+    const double u0 = (double)i / lamp_ups, u1 = (i + 1.0) / lamp_ups;
+    const double up = 0.5 * (u0 * u0 + u1 * u1), flat = sqrt(1 - up * up);
+    for (int a = 0; a < lamp_azimuths; a++) {
+        const double d[3] = {flat * sin((a + 0.5) * step_rad), flat * cos((a + 0.5) * step_rad), up};
+        const double angle = acos(clamp(v3_dot(d, sun_d_enu), -1, 1));
+        set_lamp(out, i * lamp_azimuths + a, sun_d_enu, d, (u1 * u1 - u0 * u0) * step_rad * (1 - rings_share(angle)));
+    }
+}
+
+static void place_ring(Lamps *out, int r, const double sun_d_enu[3])
+{
+    double east[3] = {0}, other[3];
+    east[fabs(sun_d_enu[0]) < 0.6 ? 0 : 1] = 1;
+    v3_add_scaled(east, east, -v3_dot(east, sun_d_enu), sun_d_enu);
+    v3_normalize(east, east);
+    v3_cross(other, sun_d_enu, east);
+    const double a0 = rings_rad * r * r / (lamp_rings * lamp_rings);
+    const double a1 = rings_rad * (r + 1) * (r + 1) / (lamp_rings * lamp_rings), angle = 0.5 * (a0 + a1);
+    const double solid_angle = (cos(a0) - cos(a1)) * 2 * pi_rad / lamp_spokes * rings_share(angle);
+    const double along = cos(angle), across = sin(angle);
+    for (int p = 0; p < lamp_spokes; p++) {
+        const double turn = (p + 0.5) * 2 * pi_rad / lamp_spokes, c = across * cos(turn), s = across * sin(turn);
+        double d[3];
+        for (int k = 0; k < 3; k++) d[k] = along * sun_d_enu[k] + c * east[k] + s * other[k];
+        set_lamp(out, lamp_ups * lamp_azimuths + r * lamp_spokes + p, sun_d_enu, d, solid_angle);
+    }
+}
+
+/* Irradiance of each lamp facing it. */
+static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky)
+{
+    for (int k = 0; k < lamps; k++)
+        w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)daylight_sky_there(sky, &lamp->place[k]) : 0;
+}
+
+/* What they give to a plane: a fixed order of sums, eight at a time. */
+static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double n_enu[3])
+{
+    const float n0 = (float)n_enu[0], n1 = (float)n_enu[1], n2 = (float)n_enu[2];
+    float part[8] = {0};
+    for (int k = 0; k < lamps; k += 8)
+        for (int j = 0; j < 8; j++) {
+            const float cosine = n0 * lamp->d[0][k + j] + n1 * lamp->d[1][k + j] + n2 * lamp->d[2][k + j];
+            part[j] += w_m2[k + j] * (cosine > 0 ? cosine : 0);
+        }
+    double sum = 0;
+    for (int j = 0; j < 8; j++) sum += (double)part[j];
+    return sum;
+}
+
+/* ---- all of it ---------------------------------------------------------------------------- */
+
+/* The sky is asked for at every second height and azimuth, over its brightness around the sun, and drawn between them
+ * by cubics. */
+enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
+
+typedef struct AskedSky {
+    double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
+} AskedSky;
+
+/* Asked of the day for all bands at once: how bright the sky is by angle from the sun, and by height and azimuth. */
+typedef struct SkyAnswers {
+    double around[air_sky_angles + 1][AIR_BAND_COUNT];
+    double scattered[asked_ups + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_ups + 1][2];
+} SkyAnswers;
+
+struct DaylightJob {
+    Daylight *light;
+    AirSky *other; /* [AIR_BAND_COUNT], the sky from other_m up; NULL: of the ground alone */
+    double other_m;
+    const AirDay *day;
+    unsigned bands;
+    double diffuse_w_m2[AIR_BAND_COUNT];
+    double azimuth_rad[asked_azimuths + 1];
+    SkyAnswers answer[2]; /* from the ground, from other_m */
+    Lamps lamp;
+    float w_m2[AIR_BAND_COUNT][lamps];
+};
+
+static double height_of(const DaylightJob *job, int other) { return other ? job->other_m : 0; }
+
+/* How bright the sky is by angle from the sun: from it up over the zenith and down to the horizon behind, and beyond
+ * that as there. */
+static void ask_around_sun(DaylightJob *job, int other, int k)
+{
+    const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
+    const double zenith_rad = fmax(job->light->day_zenith_rad - angle_rad, -0.5 * pi_rad),
+                 azimuth_rad = zenith_rad < 0 ? pi_rad : 0;
+    double thermal[2];
+    air_day_sky(&job->answer[other].around[k], thermal, job->day, height_of(job, other), fabs(zenith_rad),
+                &azimuth_rad, 1);
+}
+
+/* One height of the sky. */
+static void ask_sky(DaylightJob *job, int other, int i)
+{
+    const double u = (double)i / asked_ups;
+    const int azimuths = i == asked_ups ? 1 : asked_azimuths + 1; /* the zenith has none */
+    SkyAnswers *answer = &job->answer[other];
+    air_day_sky(answer->scattered[i], answer->thermal[i], job->day, height_of(job, other), acos(u * u),
+                job->azimuth_rad, azimuths);
+    for (int a = azimuths; a <= asked_azimuths; a++)
+        memcpy(answer->scattered[i][a], answer->scattered[i][0], sizeof answer->scattered[i][a]);
+}
+
+static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
+{
+    for (int k = 0; k <= air_sky_angles; k++)
+        sky->around_sun[k] = b != AIR_LWIR && answer->around[k][b] > 0 ? (float)answer->around[k][b] : 1;
+    sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
+}
+
+/* The sky over its ring: what is even enough to be drawn between few places. */
+static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyAnswers *answer, int b)
+{
+    const double sun[3] = {sin(job->light->day_zenith_rad), 0, cos(job->light->day_zenith_rad)};
+    for (int i = 0; i <= asked_ups; i++) {
+        const double u = (double)i / asked_ups, up = u * u, flat = sqrt(1 - up * up);
+        for (int a = 0; a <= asked_azimuths; a++) {
+            const int azimuth = i == asked_ups ? 0 : a;
+            const double d[3] = {flat * cos(job->azimuth_rad[azimuth]), flat * sin(job->azimuth_rad[azimuth]), up};
+            SkyPlace place;
+            place_in_sky(&place, sun, d, 0);
+            const float *ring = &sky->around_sun[place.angle];
+            const double around = (double)(ring[0] + place.angle_share * (ring[1] - ring[0]));
+            asked->scattered_w_m2_sr[i][a] =
+                b == AIR_LWIR ? 0 : answer->scattered[i][a][b] * job->light->scattered_scale / around;
+        }
+        asked->thermal_w_m2_sr[i] =
+            b >= AIR_MWIR ? answer->thermal[i][b - AIR_MWIR] * job->light->thermal_scale[b - AIR_MWIR] : 0;
+    }
+}
+
+/* In full resolution; mirrored at both ends of azimuth, as the sky is. */
+static void draw_sky(AirSky *sky, const AskedSky *asked)
+{
+    double along[asked_ups + 1][air_sky_azimuths + 1];
+    for (int i = 0; i <= asked_ups; i++)
+        for (int a = 0; a <= air_sky_azimuths; a++) {
+            const double *v = asked->scattered_w_m2_sr[i];
+            const int low = a / sky_stride < asked_azimuths ? a / sky_stride : asked_azimuths - 1;
+            const int below = low > 0 ? low - 1 : 1, above = low + 2 <= asked_azimuths ? low + 2 : asked_azimuths - 1;
+            along[i][a] =
+                cubic_between(v[below], v[low], v[low + 1], v[above], (double)(a - low * sky_stride) / sky_stride);
+        }
+    const double *v = asked->thermal_w_m2_sr;
+    for (int i = 0; i <= air_sky_ups; i++) {
+        const int low = i / sky_stride < asked_ups ? i / sky_stride : asked_ups - 1;
+        const int below = low > 0 ? low - 1 : 0, above = low + 2 <= asked_ups ? low + 2 : asked_ups;
+        const double t = (double)(i - low * sky_stride) / sky_stride;
+        for (int a = 0; a <= air_sky_azimuths; a++)
+            sky->scattered_w_m2_sr[i][a] =
+                (float)fmax(cubic_between(along[below][a], along[low][a], along[low + 1][a], along[above][a], t), 0);
+        sky->thermal_w_m2_sr[i] = (float)cubic_between(v[below], v[low], v[low + 1], v[above], t);
+    }
+}
+
+/* One band: drawn, and scaled to add up as light. */
+static void fill_sky(DaylightJob *job, int band)
+{
+    Daylight *light = job->light;
+    if (!(job->bands >> band & 1)) return;
+    AirSky *sky = &light->sky[band], *sky_light = &light->sky_light[band];
+    static const double up_enu[3] = {0, 0, 1};
+    AskedSky asked;
+    fill_around_sun(sky, &job->answer[0], band);
+    without_ring(&asked, job, sky, &job->answer[0], band);
+    draw_sky(sky, &asked);
+    if (job->other) {
+        fill_around_sun(&job->other[band], &job->answer[1], band);
+        without_ring(&asked, job, &job->other[band], &job->answer[1], band);
+        draw_sky(&job->other[band], &asked);
+    }
+    AirSky scattered = *sky;
+    memset(scattered.thermal_w_m2_sr, 0, sizeof scattered.thermal_w_m2_sr);
+    light_lamps(job->w_m2[band], &job->lamp, &scattered);
+    const double adds_up_to = on_plane(job->w_m2[band], &job->lamp, up_enu);
+    const double scale = adds_up_to > 0 ? job->diffuse_w_m2[band] / adds_up_to : 0;
+    *sky_light = *sky;
+    for (int k = 0; k < air_sky_angles + 2; k++) sky_light->around_sun[k] *= (float)scale;
+    light_lamps(job->w_m2[band], &job->lamp, sky_light);
+    light->sky_scale[band] = scale;
+}
+
+/* What the lamps give to planes of one height, in every band. */
+static void light_planes(DaylightJob *job, int i)
+{
+    Daylight *light = job->light;
+    const double level = hypot(light->sun_d_enu[0], light->sun_d_enu[1]);
+    const double sun_east = level > 1e-10 ? light->sun_d_enu[0] / level : 1;
+    const double sun_north = level > 1e-10 ? light->sun_d_enu[1] / level : 0;
+    /* a plane that faces down sees nothing: what one sees that leans by a little less, over its share */
+    const double x = fmax((i < air_plane_ups / 2 ? i : air_plane_ups - i) * 2.0 / air_plane_ups, i == 0 ? 0.02 : 0);
+    const double up = i < air_plane_ups / 2 ? x * x - 1 : 1 - x * x, open = 0.5 * (1 + up), flat = sqrt(1 - up * up);
+    for (int p = 0; p <= air_plane_azimuths; p++) {
+        const double turn = p * pi_rad / air_plane_azimuths, c = flat * cos(turn), s = flat * sin(turn);
+        const double n_enu[3] = {c * sun_east - s * sun_north, c * sun_north + s * sun_east, up};
+        for (int b = 0; b < AIR_BAND_COUNT; b++)
+            if (job->bands >> b & 1)
+                light->plane_w_m2[b][i][p] = (float)(on_plane(job->w_m2[b], &job->lamp, n_enu) / open);
+    }
+}
+
+/* ---- tasks for a pool --------------------------------------------------------------------------- */
+
+enum {
+    asks_of_sky = 2 * (asked_ups + 1),
+    asks_around_sun = 2 * (air_sky_angles + 1),
+    lamp_tasks = lamp_ups + lamp_rings
+};
+
+int daylight_asks(const DaylightJob *job) { return job->bands ? asks_of_sky + asks_around_sun + lamp_tasks : 0; }
+
+void daylight_ask(DaylightJob *job, int task)
+{
+    if (task < asks_of_sky + asks_around_sun) {
+        const int other = task % 2, k = task / 2;
+        if (other && !job->other) return;
+        if (k <= asked_ups) ask_sky(job, other, k);
+        else ask_around_sun(job, other, k - (asked_ups + 1));
+        return;
+    }
+    task -= asks_of_sky + asks_around_sun;
+    if (task < lamp_ups) place_grid(&job->lamp, task, job->light->sun_d_enu);
+    else place_ring(&job->lamp, task - lamp_ups, job->light->sun_d_enu);
+}
+
+int daylight_draws(const DaylightJob *job) { return job->bands ? AIR_BAND_COUNT : 0; }
+
+void daylight_draw(DaylightJob *job, int band) { fill_sky(job, band); }
+
+int daylight_planes(const DaylightJob *job) { return job->bands ? air_plane_ups + 1 : 0; }
+
+void daylight_plane(DaylightJob *job, int height) { light_planes(job, height); }
+
+void daylight_end(DaylightJob *job)
+{
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (job->bands >> b & 1) job->light->sky_w_m2[b] = job->light->plane_w_m2[b][air_plane_ups][0];
+}
+
+/* ---- all of it ---------------------------------------------------------------------------------- */
+
+/* For temperatures: all wavelengths. sky_w_m2 is still the tables' own: the sum over our sky is there only where pan
+ * is asked for. */
+static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
+{
+    /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
+     * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
+    static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
+    light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
+    light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN] / visible_share;
+
+    /* What a black horizontal plane at air temperature loses to a clear sky. */
+    const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
+    const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
+    light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
+
+    /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
+    const double share = ground_heat_share(light->weather.wind_mps, emission_w_m2_k(1, t_k));
+    const double ground_temp_k =
+        t_k + share * 0.018 * (light->solar_direct_w_m2 * fmax(light->sun_d_enu[2], 0) + light->solar_diffuse_w_m2);
+    light->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(light->planck_mwir, ground_temp_k);
+    light->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(light->planck_lwir, ground_temp_k);
+}
+
+void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
+                   double diffuse_w_m2[AIR_BAND_COUNT])
+{
+    const Atmosphere *atmosphere = source->atmosphere;
+    const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
+    out->weather = *weather;
+    out->planck_mwir = source->planck_mwir, out->planck_lwir = source->planck_lwir;
+    memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
+    if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
+    for (int i = 0; i < air_warmer_nodes; i++)
+        out->warmer_k[i] = (float)(atmosphere_temp_k(atmosphere, i * air_warmer_step_m) - model_temp_k);
+    const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
+    for (int k = 0; k < 2; k++)
+        out->thermal_scale[k] =
+            planck_table_radiance(planck[k], out->weather.air_temp_k) / planck_table_radiance(planck[k], model_temp_k);
+    const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
+    out->day_zenith_rad = fmin(zenith_rad, 85 * rad_per_deg);
+    out->scattered_scale = per_au2 * twilight(sun->elevation_rad);
+    out->sun_above = per_au2 * disc_above(sun->elevation_rad);
+
+    const double low_rad = fmin(zenith_rad, 0.5 * pi_rad);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        diffuse_w_m2[b] = 0;
+        if (!((bands | 1 << AIR_PAN) >> b & 1)) continue;
+        SunAir direct, diffuse;
+        atmosphere_sun(&direct, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
+        atmosphere_sun(&diffuse, atmosphere, weather->visibility_m, (AirBand)b, 0, out->day_zenith_rad);
+        out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
+        out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
+    }
+    heat_balance(out, atmosphere, model_temp_k);
+}
+
+Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
+                      const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena)
+{
+    DaylightJob *job = arena_alloc(arena, 1, sizeof *job);
+    if (!job) return STATUS_NO_MEMORY;
+    *light = (Daylight){0};
+    job->light = light, job->bands = bands, job->other = other, job->other_m = other_m;
+    daylight_sums(light, source, weather, sun, bands, job->diffuse_w_m2);
+    for (int a = 0; a <= asked_azimuths; a++) job->azimuth_rad[a] = a * pi_rad / asked_azimuths;
+    double temp_k[air_temps + 1];
+    memcpy(temp_k, emitter_temp_k, sizeof emitter_temp_k);
+    temp_k[air_temps] = light->weather.air_temp_k;
+    const Status status = air_day_at(&light->day, source->atmosphere, weather->visibility_m, light->day_zenith_rad,
+                                     bands, temp_k, air_temps + 1, arena);
+    job->day = light->day;
+    *out = job;
+    return status;
+}
+
+static void ask_task(void *user, int worker, int task)
+{
+    (void)worker;
+    daylight_ask(user, task);
+}
+
+static void draw_task(void *user, int worker, int task)
+{
+    (void)worker;
+    daylight_draw(user, task);
+}
+
+static void plane_task(void *user, int worker, int task)
+{
+    (void)worker;
+    daylight_plane(user, task);
+}
+
+void air_run(Pool *pool, int count, PoolTask *task, void *user)
+{
+    if (pool)
+        pool_run(pool, count, task, user);
+    else
+        for (int i = 0; i < count; i++) task(user, 0, i);
+}
+
+void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)
+{
+    double diffuse_w_m2[AIR_BAND_COUNT];
+    memset(out, 0, offsetof(Daylight, sky));
+    daylight_sums(out, source, weather, sun, 0, diffuse_w_m2);
+}
+
+Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
+                             unsigned bands, Pool *pool, Arena *arena)
+{
+    DaylightJob *job;
+    const Status status = daylight_begin(&job, out, source, weather, sun, bands, NULL, 0, arena);
+    if (status != STATUS_OK) return status;
+    air_run(pool, daylight_asks(job), ask_task, job);
+    air_run(pool, daylight_draws(job), draw_task, job);
+    air_run(pool, daylight_planes(job), plane_task, job);
+    daylight_end(job);
+    return STATUS_OK;
+}
