@@ -1,7 +1,7 @@
 /* sensor/framefile/frame_again.c: a frame file's picture made again, hashed plane by plane and compared. */
 #include "sensor/framefile/frame_again.h"
 
-#include "sensor/node/frame_light.h"
+#include "sensor/world/frame_light.h"
 
 /* ---- what came out ------------------------------------------------------------------------------ */
 

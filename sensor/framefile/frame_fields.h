@@ -3,7 +3,7 @@
 #define SENSOR_FRAMEFILE_FRAME_FIELDS_H
 
 #include "sensor/framefile/fields.h"
-#include "sensor/framefile/frame_file.h"
+#include "sensor/framefile/frame_content.h"
 #include "sensor/framefile/ground_cutout.h"
 
 void frame_fields_about(Fields *f, FrameFile *file);

@@ -5,7 +5,7 @@
 #include "sensor/framefile/frame_again.h"
 #include "sensor/framefile/frame_tables.h"
 #include "sensor/framefile/ground_cutout.h"
-#include "sensor/node/frame_world.h"
+#include "sensor/world/frame_world.h"
 
 #include <errno.h>
 #include <stdlib.h>

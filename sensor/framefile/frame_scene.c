@@ -2,7 +2,8 @@
 #include "sensor/framefile/frame_scene.h"
 
 #include "sensor/framefile/frame_tables.h"
-#include "sensor/node/frame_world.h"
+#include "sensor/world/frame_world.h"
+#include "sensor/settings/band_choice.h"
 
 #include <stdlib.h>
 #include <unistd.h>
@@ -24,11 +25,18 @@ static Status read_settings(Config *config, const FrameFile *file)
     return status;
 }
 
-/* Samples may have been chosen for the frame (quality.*), and the picture's size by its sensor. */
+/* Channels first: sensors and tables depend on them. Samples may have been chosen for the frame (quality.*), and the
+ * picture's size by its sensor. */
 static Status choose_sensors(FrameScene *s, const FrameFile *file)
 {
     const RenderRequest *r = &file->request;
-    Choices             *choices = calloc(1, sizeof *choices);
+    unsigned             bands;
+    if (!bands_choose(&bands, s->config.sensor.bands)) return STATUS_BAD_VALUE;
+    if (bands != r->bands) {
+        log_error("frame: the bands of the request are not those of the settings (sensor.bands)");
+        return STATUS_BAD_VALUE;
+    }
+    Choices *choices = calloc(1, sizeof *choices);
     if (!choices) return STATUS_NO_MEMORY;
     const Status status = sensors_choose(&s->sensors, choices, &s->config, r->bands);
     free(choices);
@@ -109,7 +117,8 @@ static Status open_ground(FrameScene *s, const FrameFile *file)
 {
     const char  *why = NULL;
     const Status status = landscape_from_parts(&s->landscape, &why, &file->ground);
-    if (status == STATUS_BAD_VALUE) log_error("frame: the ground in the file cannot be used: %s", why ? why : "its figures");
+    if (status == STATUS_BAD_VALUE)
+        log_error("frame: the ground in the file cannot be used: %s", why ? why : "values out of range");
     return status;
 }
 

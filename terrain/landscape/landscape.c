@@ -278,8 +278,9 @@ static Status grow_levels(Work *work, const LandscapeConfig *config)
 /* The evidence outlives its owner here: the same landscape can be made again from it. */
 static Status keep_evidence(LandscapeEvidence *out, const LandscapeEvidence *from)
 {
-    const size_t fixes = (size_t)from->fix_count * sizeof *from->fix, lines = (size_t)from->line_count * sizeof *from->line,
-                 places = (size_t)from->place_count * sizeof *from->place;
+    const size_t fixes  = (size_t)from->fix_count * sizeof *from->fix;
+    const size_t lines  = (size_t)from->line_count * sizeof *from->line;
+    const size_t places = (size_t)from->place_count * sizeof *from->place;
     GroundFix  *fix   = fixes ? malloc(fixes) : NULL;
     ClearLine  *line  = lines ? malloc(lines) : NULL;
     CoastPlace *place = places ? malloc(places) : NULL;

@@ -87,7 +87,7 @@ static bool parse(const uint8_t *data, size_t size)
         for (int e = 0; e < s->count; e++)
             if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();
         if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) abort();
-        if (!(file->request.view.focal_px > 0) || file->plane_count > frame_planes_most) abort();
+        if (!(file->request.view.focal_px > 0) || file->plane_count > frame_max_planes) abort();
         Landscape   landscape = {0};
         const char *why = NULL;
         size_t      posts = 0;

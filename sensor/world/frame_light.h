@@ -1,6 +1,6 @@
-/* sensor/node/frame_light.h: sun and air of one frame, and the axes that its products give normals in. */
-#ifndef SENSOR_NODE_FRAME_LIGHT_H
-#define SENSOR_NODE_FRAME_LIGHT_H
+/* sensor/world/frame_light.h: sun and air of one frame, and the axes that its products give normals in. */
+#ifndef SENSOR_WORLD_FRAME_LIGHT_H
+#define SENSOR_WORLD_FRAME_LIGHT_H
 
 #include "render/frame/render.h"
 #include "sensor/settings/config.h"

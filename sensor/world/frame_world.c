@@ -1,5 +1,5 @@
-/* sensor/node/frame_world.c: a world opened with the air and the radar of the settings. */
-#include "sensor/node/frame_world.h"
+/* sensor/world/frame_world.c: a world opened with the air and the radar of the settings. */
+#include "sensor/world/frame_world.h"
 
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,
                    const LocalFrame *frame, const char *isa)

@@ -1,6 +1,6 @@
-/* sensor/framefile/frame_command.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says
+/* sensor/commands/frame.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says
  * whether the planes are the same to the bit. */
-#include "sensor/framefile/frame_command.h"
+#include "sensor/commands/frame.h"
 
 #include "sensor/commands/next_option.h"
 #include "sensor/commands/overwrite.h"

@@ -1,6 +1,6 @@
-/* sensor/node/frame_world.h: the world as the settings have it: models and ground, materials, air, radar. */
-#ifndef SENSOR_NODE_FRAME_WORLD_H
-#define SENSOR_NODE_FRAME_WORLD_H
+/* sensor/world/frame_world.h: the world as the settings have it: models and ground, materials, air, radar. */
+#ifndef SENSOR_WORLD_FRAME_WORLD_H
+#define SENSOR_WORLD_FRAME_WORLD_H
 
 #include "render/frame/render.h"
 #include "sensor/settings/config.h"

@@ -1,5 +1,5 @@
-/* sensor/node/frame_light.c: sun and air of one frame from time, place, weather and view. */
-#include "sensor/node/frame_light.h"
+/* sensor/world/frame_light.c: sun and air of one frame from time, place, weather and view. */
+#include "sensor/world/frame_light.h"
 
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
                    const FrameEye *eye, Pool *pool, Arena *arena)
