@@ -12,6 +12,8 @@
 
 #include "render/frame/sampling_variance.h"
 
+#include <stdlib.h>
+
 /* The target's sample nearest the centre of a pixel. */
 typedef struct FootprintTruth {
     double   square_px; /* of its distance */
@@ -47,18 +49,76 @@ static bool is_small(const TargetPixels *t)
     return t->projected && fmin(w, h) < small_target_px && fmax(w, h) < small_target_long_px;
 }
 
+/* Cells of a target's footprint. */
+static void cells_of(int *columns, int *rows, const Job *job, int index)
+{
+    const double *box = job->boxes[index].projected_box, w = box[2] - box[0], h = box[3] - box[1];
+    /* never fewer than the edges of larger targets get */
+    const int per_px = looks_for_edges(job->request) ? job->request->edge_samples : job->request->samples;
+    *columns = *rows = 0;
+    if (!(w > 0 && h > 0)) return;
+    *columns = (int)fmax(job->request->target_samples, ceil(w) * per_px);
+    *rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
+}
+
+/* ---- a limit for crowds ------------------------------------------------------------------------ */
+
+/* A frame's footprints have at most so many cells for each of its pixels, or 2^17 (56 targets of 48 x 48) where that is
+ * more. Beyond, targets are sampled by pixels and their edges, as larger ones are. */
+enum { cells_per_pixel = 4, cells_always = 1 << 17 };
+
+typedef struct SmallPlace {
+    double square_px; /* from the image's centre */
+    int    index;
+} SmallPlace;
+
+static int nearer_the_axis(const void *left, const void *right)
+{
+    const SmallPlace *a = left, *b = right;
+    if (a->square_px != b->square_px) return a->square_px < b->square_px ? -1 : 1;
+    return (a->index > b->index) - (a->index < b->index);
+}
+
+/* Those nearest the boresight keep their footprints. Returns how many do. */
+static Status limit_cells(int *count, Job *job, Arena *arena)
+{
+    const View   *view = &job->request->view;
+    const int64_t most = (int64_t)fmax(cells_always, (double)cells_per_pixel * view->width * view->height);
+    int64_t       cells = 0;
+    int           columns, rows, places = 0;
+    for (int i = 0; i < job->scene.snapshot->count; i++) {
+        if (!job->is_small[i]) continue;
+        cells_of(&columns, &rows, job, i);
+        cells += (int64_t)columns * rows;
+    }
+    if (cells <= most) return STATUS_OK;
+    SmallPlace *place = arena_alloc(arena, (size_t)*count, sizeof *place);
+    if (!place) return STATUS_NO_MEMORY;
+    for (int i = 0; i < job->scene.snapshot->count; i++) {
+        const double *box = job->boxes[i].projected_box;
+        if (!job->is_small[i]) continue;
+        const double dx = 0.5 * (box[0] + box[2] - view->width), dy = 0.5 * (box[1] + box[3] - view->height);
+        place[places++] = (SmallPlace){dx * dx + dy * dy, i};
+    }
+    qsort(place, (size_t)places, sizeof *place, nearer_the_axis);
+    cells = 0;
+    for (int k = 0; k < places; k++) {
+        cells_of(&columns, &rows, job, place[k].index);
+        cells += (int64_t)columns * rows;
+        if (cells <= most) continue;
+        job->is_small[place[k].index] = false;
+        --*count;
+        job->picture->counters.small_targets_by_pixels++;
+    }
+    return STATUS_OK;
+}
+
 static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
 {
     const View *view = &job->request->view;
     f->entity = index;
     memcpy(f->box, job->boxes[index].projected_box, sizeof f->box);
-    const double w = f->box[2] - f->box[0], h = f->box[3] - f->box[1];
-    /* never fewer than the edges of larger targets get */
-    const int per_px = looks_for_edges(job->request) ? job->request->edge_samples : job->request->samples;
-    if (w > 0 && h > 0) {
-        f->columns = (int)fmax(job->request->target_samples, ceil(w) * per_px);
-        f->rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
-    }
+    cells_of(&f->columns, &f->rows, job, index);
     f->x0 = (int)fmax(0, floor(f->box[0])), f->x1 = (int)fmin(view->width, ceil(f->box[2]));
     f->y0 = (int)fmax(0, floor(f->box[1])), f->y1 = (int)fmin(view->height, ceil(f->box[3]));
     const size_t pixels = (size_t)(f->x1 - f->x0) * (size_t)(f->y1 - f->y0);
@@ -87,6 +147,8 @@ Status footprints_plan(Job *job, Arena *arena)
     int          count = 0;
     for (int i = 0; i < job->scene.snapshot->count; i++) count += job->is_small[i] = is_small(&job->boxes[i]);
     if (count == 0) return STATUS_OK;
+    const Status limited = limit_cells(&count, job, arena);
+    if (limited != STATUS_OK) return limited;
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
     job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);

@@ -111,6 +111,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more)
     sum->pixels += more->pixels;
     sum->pixels_refined += more->pixels_refined;
     sum->small_targets += more->small_targets;
+    sum->small_targets_by_pixels += more->small_targets_by_pixels;
     sum->tiles += more->tiles;
     sum->tiles_without_entities += more->tiles_without_entities;
     to->rays_ground += from->rays_ground;

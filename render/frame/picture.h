@@ -66,6 +66,7 @@ typedef struct RenderCounters {
     uint64_t rays_primary;                 /* all from the eye; of these: */
     uint64_t rays_edges, rays_small_targets;
     uint64_t pixels, pixels_refined, small_targets;
+    uint64_t small_targets_by_pixels;      /* beyond the limit of cells a frame (footprint.c) */
     uint64_t tiles, tiles_without_entities;
 } RenderCounters;
 

@@ -290,6 +290,7 @@ static json_t *counters_json(const RunRecord *r)
     set_count(counters, "pixels", r->render.pixels);
     set_count(counters, "pixels_refined", r->render.pixels_refined);
     set_count(counters, "small_targets", r->render.small_targets);
+    set_if_any(counters, "small_targets_by_pixels", r->render.small_targets_by_pixels);
     set_count(counters, "rays_ground", v->rays_ground);
     set_count(counters, "rays_parts", v->rays_parts);
     set_count(counters, "rays_sun_ground", v->rays_sun_ground);

@@ -81,6 +81,8 @@ static const ReferenceField fields[] = {
     {"counters.pixels", "integer", "px", "", "", "in all frames"},
     {"counters.pixels_refined", "integer", "px", "", "", "with additional rays"},
     {"counters.small_targets", "integer", "", "", "", "targets below 16 px, in all frames"},
+    {"counters.small_targets_by_pixels", "integer", "", "", "",
+     "of these, beyond the limit of rays a frame (4 per pixel, at least 131072): sampled by pixels, the nearest the boresight last; absent: 0"},
     {"counters.rays_ground", "integer", "", "", "", "rays tested against the ground"},
     {"counters.rays_parts", "integer", "", "", "", "rays tested against parts of entities"},
     {"counters.rays_sun_ground", "integer", "", "", "", "shadow rays against the ground"},

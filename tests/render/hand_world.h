@@ -6,7 +6,7 @@
 
 #include "render/frame/render.h"
 
-enum { hand_plate_model, hand_sphere_model, hand_mast_model, hand_models, hand_most_entities = 64 };
+enum { hand_plate_model, hand_sphere_model, hand_mast_model, hand_models, hand_most_entities = 96 };
 
 static const double hand_plate_y_m = 1, hand_plate_z_m = 1, hand_sphere_m = 1;
 static const float  hand_rho = 0.5f, hand_rho_ir = 0.2f;

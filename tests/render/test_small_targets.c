@@ -266,6 +266,44 @@ static void all_that_is_hidden_names_what_hides_it(void **state)
 }
 
 /* Planes of ids hold the target where it covers more than half of a pixel; areas hold it always. */
+/* 80 plates in 10 columns of 8, 9 and 11 px apart: 56 footprints of 48 x 48 cells fit into 2^17, those of the places
+ * nearest the image's centre; the others keep their areas, by pixels and edges. */
+static void a_crowd_keeps_the_footprints_near_the_boresight(void **state)
+{
+    (void)state;
+    enum { plates = 80, kept = (1 << 17) / (48 * 48) };
+    const View    view = east();
+    RenderRequest request = hand_request(&view);
+    double        square_px[plates], r[9], area_px = 0;
+    hand_air_off(sun_enu);
+    hand_attitude(r, pi_rad, 0);
+    hand_clear();
+    for (int k = 0; k < plates; k++) {
+        double       p_enu[3];
+        const double right_px = 9 * (k % 10) - 40.3, down_px = 11 * (k / 10) - 38.1;
+        place_at(p_enu, &view, 2000, right_px, down_px);
+        p_enu[2] -= hand_plate_z_m; /* its origin is at its foot */
+        hand_add(hand_plate_model, p_enu, r);
+        square_px[k] = right_px * right_px + down_px * down_px;
+    }
+    request.target_samples = 48;
+    arena_reset(hand.arena);
+    const Picture picture = hand_render(&request, hand.pool);
+    assert_int_equal(picture.counters.small_targets, kept);
+    assert_int_equal(picture.counters.small_targets_by_pixels, plates - kept);
+    for (int k = 0; k < plates; k++) {
+        int nearer = 0;
+        for (int i = 0; i < plates; i++) nearer += square_px[i] < square_px[k];
+        if (picture.target[k].small != (nearer < kept)) fail_msg("plate %d: %d are nearer the centre", k, nearer);
+        if (picture.target[k].small) area_px = picture.target[k].visible;
+    }
+    for (int k = 0; k < plates; k++) CHECK_NEAR(picture.target[k].visible / area_px, 1, 0.1); /* edges: 1 / 16 px of 2 */
+    request.target_samples = 24; /* a quarter of the cells: all have footprints */
+    arena_reset(hand.arena);
+    const Picture all = hand_render(&request, hand.pool);
+    assert_int_equal(all.counters.small_targets_by_pixels, 0);
+}
+
 static void a_pixel_is_whose_most_of_it_is(void **state)
 {
     (void)state;
@@ -339,6 +377,7 @@ int main(void)
         cmocka_unit_test(the_background_gives_way_by_as_much),
         cmocka_unit_test(overlap_occlusion_and_the_picture_s_edge),
         cmocka_unit_test(all_that_is_hidden_names_what_hides_it),
+        cmocka_unit_test(a_crowd_keeps_the_footprints_near_the_boresight),
         cmocka_unit_test(a_pixel_is_whose_most_of_it_is),
         cmocka_unit_test(the_profile_holds_the_picture),
     };
