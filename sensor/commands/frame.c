@@ -19,17 +19,17 @@ enum { path_size = 4096, most_octets = 1 << 29 };
 static const char help[] =
     "usage: pitviper frame FILE [options]\n"
     "\n"
-    "Renders one frame again from FILE, which `pitviper replay LOG --save-frame N` wrote, and says whether every\n"
-    "plane is the same to the bit: it ends with 0, else with 1. Needs neither the log nor files of elevation. Tables\n"
-    "and models of this installation must be those of the frame, which are known by their SHA-256.\n"
+    "Re-renders one frame from FILE, written by `pitviper replay LOG --save-frame N`, and verifies that every plane\n"
+    "is the same to the bit: exit code 0, else 1. Needs neither the log nor elevation files. Tables and models of\n"
+    "this installation must be those of the frame; they are compared by SHA-256.\n"
     "etc/FRAME_FILE.md describes the format.\n"
     "\n"
-    "  --out DIR            its pictures and its line of truth.jsonl, as replay writes them\n"
-    "  --overwrite          let go what an earlier run left in DIR; otherwise it is kept and nothing is done\n"
-    "  --threads N          default: one for each processor\n"
-    "  --no-skip            compute what is known to change nothing; the planes stay the same to the bit\n"
-    "  --force              render it with other tables or models too; they are named\n"
-    "  --help               this\n";
+    "  --out DIR            write its images and its line of truth.jsonl, as replay does\n"
+    "  --overwrite          replace the products of an earlier run in DIR; without it that is an error\n"
+    "  --threads N          number of threads (default: one per processor)\n"
+    "  --no-skip            disable skipping; same output, slower\n"
+    "  --force              render with other tables or models too; they are listed\n"
+    "  --help               print this help\n";
 
 typedef struct FrameOptions {
     const char *path, *out;

@@ -161,7 +161,7 @@ Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *
     return STATUS_UNSUPPORTED;
 }
 
-static Status spoilt(ChunkSource *chunks, Status status, const char *fault)
+static Status damaged(ChunkSource *chunks, Status status, const char *fault)
 {
     chunks->fault = fault;
     return status;
@@ -174,29 +174,29 @@ Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSour
     const uint32_t method = source_u32(rest), crc = source_u32(rest);
     const uint64_t plain = source_u64(rest), stored = source_u64(rest);
     if (rest->truncated || stored > (uint64_t)(rest->end - rest->at))
-        return spoilt(chunks, STATUS_TRUNCATED, "it ends too early");
+        return damaged(chunks, STATUS_TRUNCATED, "it ends too early");
     memcpy(name, named, chunk_name_size);
     name[chunk_name_size] = 0;
     *content              = (ByteSource){0};
     if (strcmp(name, "end") == 0) {
         name[0] = 0;
-        return plain == 0 && stored == 0 ? STATUS_OK : spoilt(chunks, STATUS_BAD_VALUE, "its end is spoilt");
+        return plain == 0 && stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
     }
     const uint8_t *bytes = source_bytes(rest, stored);
     /* zlib packs a thousandfold at most: no more is made room for than the octets can hold */
     if (method > method_zlib || (method == method_plain && plain != stored) || plain / 1032 > stored ||
         plain > chunk_most_octets - chunks->octets)
-        return spoilt(chunks, STATUS_BAD_VALUE, "the size of a chunk is spoilt");
+        return damaged(chunks, STATUS_BAD_VALUE, "the size of a chunk is damaged");
     chunks->octets += plain;
     if (method == method_zlib) {
         uint8_t *unpacked = arena_alloc(chunks->arena, plain + 1, 1);
         uLongf   octets   = (uLongf)plain;
-        if (!unpacked) return spoilt(chunks, STATUS_NO_MEMORY, "there is no memory for it");
+        if (!unpacked) return damaged(chunks, STATUS_NO_MEMORY, "there is no memory for it");
         if (uncompress(unpacked, &octets, bytes, (uLong)stored) != Z_OK || octets != plain)
-            return spoilt(chunks, STATUS_BAD_VALUE, "a chunk is spoilt");
+            return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
         bytes = unpacked;
     }
-    if (crc32_z(0, bytes, plain) != crc && plain > 0) return spoilt(chunks, STATUS_BAD_VALUE, "a chunk is spoilt");
+    if (crc32_z(0, bytes, plain) != crc && plain > 0) return damaged(chunks, STATUS_BAD_VALUE, "a chunk is damaged");
     *content = (ByteSource){bytes, bytes + plain, false};
     return STATUS_OK;
 }

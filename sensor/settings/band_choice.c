@@ -42,8 +42,8 @@ bool bands_choose(unsigned *bands, const char *text)
             channel_choose(channel);
         } else if (found >= 0 && *bands >> found & 1 && strcmp(band_name((Band)found), "radar") != 0 &&
                    band_named(band_name((Band)found), strlen(band_name((Band)found))) < 0) {
-            log_error("config: sensor.bands: '%s': %s takes the place of another that is named; one of them a run", text,
-                      band_name((Band)found));
+            log_error("config: sensor.bands: '%s': %s takes the place of another that is named; one of them a run",
+                      text, band_name((Band)found));
             return false;
         }
         if (found < 0) return no_bands(text);

@@ -10,7 +10,8 @@
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
 enum {
-    OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SAVE, SWEEP, HELP, KEY
+    OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SAVE, SWEEP,
+    HELP, KEY
 };
 
 static const char *const names[] = {"replay", "run"};

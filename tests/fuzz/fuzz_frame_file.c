@@ -1,4 +1,4 @@
-/* tests/fuzz/fuzz_frame_file.c: any octets as a frame file; and its fields spoilt behind checksums that are right.
+/* tests/fuzz/fuzz_frame_file.c: any octets as a frame file; and its fields damaged behind checksums that are right.
  * What is accepted must be what render() can be given: indices within their arrays, and ground that can be made.
  * Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
@@ -117,7 +117,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
     static bool begun = false;
     log_set_level((LogLevel)(LOG_ERROR + 1));
-    for (int k = 0; k < 2 && !begun; k++) { /* an unspoilt file is accepted, or nothing here is tried */
+    for (int k = 0; k < 2 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
         ByteSink whole = {0};
         small_file(&whole, k == 0);
         if (!parse(whole.bytes, whole.count)) abort();

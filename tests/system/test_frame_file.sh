@@ -39,25 +39,26 @@ check "demo: frame files of an earlier run are removed" [ ! -e "$tmp/demo/frame_
 again demo --out "$tmp/again" --no-skip
 check "products: truth.jsonl is the replay's" cmp "$tmp/demo/truth.jsonl" "$tmp/again/truth.jsonl"
 for band in swir mwir lwir radar truth; do
-    check "products: $band.png is the replay's" cmp "$tmp/demo/frames/$band/000012.png" "$tmp/again/frames/$band/000012.png"
+    png=frames/$band/000012.png
+    check "products: $band.png is the replay's" cmp "$tmp/demo/$png" "$tmp/again/$png"
 done
 run frame "$tmp/elsewhere/demo.pvf" --out "$tmp/again"
 check "products: kept without --overwrite" [ "$code" != 0 ]
 check "products: the message names --overwrite" complained 'overwrite'
 
-# spoilt
+# damaged
 file=$tmp/elsewhere/demo.pvf
 size=$(stat -c %s "$file")
 refused() { # refused WHAT WORDS
-    run frame "$tmp/spoilt.pvf"
+    run frame "$tmp/damaged.pvf"
     check "$1: refused" [ "$code" = 1 ]
     check "$1: it says $2" complained "$2"
 }
-head -c $((size / 2)) "$file" >"$tmp/spoilt.pvf"; refused "cut" 'ends too early'
-cp "$file" "$tmp/spoilt.pvf"
-printf '\377\377\377\377' | dd of="$tmp/spoilt.pvf" bs=1 seek=$((size / 2)) conv=notrunc status=none
-refused "octets turned" 'spoilt'
-printf '\002' | dd of="$tmp/spoilt.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
+head -c $((size / 2)) "$file" >"$tmp/damaged.pvf"; refused "cut" 'ends too early'
+cp "$file" "$tmp/damaged.pvf"
+printf '\377\377\377\377' | dd of="$tmp/damaged.pvf" bs=1 seek=$((size / 2)) conv=notrunc status=none
+refused "octets turned" 'damaged'
+printf '\002' | dd of="$tmp/damaged.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
 
 # another table, named; forced: the planes that it changes, named
 cp -r etc "$tmp/etc"
