@@ -4,6 +4,7 @@
 #include "sensor/commands/check.h"
 #include "sensor/bench/sensor/suites.h"
 #include "sensor/commands/exercise.h"
+#include "sensor/commands/frame.h"
 #include "sensor/commands/inspect.h"
 #include "sensor/node/live.h"
 #include "sensor/commands/model.h"
@@ -99,6 +100,8 @@ static const struct Command {
 } commands[] = {
     {"run", run_command, "render a live exercise on the network", true},
     {"replay", replay_command, "render what a missile's seeker sees in a recorded exercise", true},
+    {"frame", frame_command, "re-render one saved frame without its log and verify that it is the same to the bit",
+     true},
     {"regress", regress_command, "re-render recorded exercises and compare them with approved baselines", true},
     {"inspect", inspect_command, "list the entities of a recording, what they did, what was malformed", true},
     {"check", check_command, "validate a configuration file; or print one to start from", true},

@@ -1,8 +1,10 @@
 /* sensor/node/host_run.c: from what was heard to choices, a world, a session and run.json. */
 #include "sensor/node/host_run.h"
 
+#include "sensor/world/frame_world.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/quality/quality.h"
+#include "sensor/settings/band_choice.h"
 #include "sensor/node/shape_choice.h"
 
 #include <stdlib.h>
@@ -12,54 +14,6 @@ enum { path_size = 4096 };
 double frame_grid_s(const FrameGrid *grid, double n) { return (grid->origin + n) / grid->rate_hz; }
 
 /* ---- before ---------------------------------------------------------------------------------- */
-
-/* A band by its own name: optical, mwir, lwir, radar; -1: none. */
-static int band_named(const char *name, size_t length)
-{
-    static const char *const names[BAND_COUNT] = {"optical", "mwir", "lwir", "radar"};
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (strlen(names[b]) == length && strncmp(names[b], name, length) == 0) return b;
-    return -1;
-}
-
-static bool no_bands(const char *text)
-{
-    char further[256];
-    channels_list(further, sizeof further);
-    log_error("config: sensor.bands: '%s' is not a list of optical, radar or channels of etc/channels.csv: %s", text, further);
-    return false;
-}
-
-/* Bands, or channels that stand in the place of one: these are chosen for the run. */
-static bool parse_bands(unsigned *bands, const char *text)
-{
-    *bands = 0;
-    channels_standard();
-    for (const char *at = text; *at;) {
-        const size_t           length = strcspn(at, ",");
-        const SpectralChannel *channel = channel_named(at, length);
-        int                    found = band_named(at, length);
-        if (channel && !channel->standard) {
-            found = channel->place == SPECTRAL_NIR ? BAND_OPTICAL : channel->place == SPECTRAL_MWIR ? BAND_MWIR : BAND_LWIR;
-            if (*bands >> found & 1) {
-                log_error("config: sensor.bands: '%s': %s takes the place of another that is named; one of them a run",
-                          text, channel->name);
-                return false;
-            }
-            channel_choose(channel);
-        } else if (found >= 0 && *bands >> found & 1 && strcmp(band_name((Band)found), "radar") != 0 &&
-                   band_named(band_name((Band)found), strlen(band_name((Band)found))) < 0) {
-            log_error("config: sensor.bands: '%s': %s takes the place of another that is named; one of them a run", text,
-                      band_name((Band)found));
-            return false;
-        }
-        if (found < 0) return no_bands(text);
-        *bands |= 1u << found;
-        at += length + (at[length] == ',');
-    }
-    if (*bands == 0) log_error("config: sensor.bands: no band is named; any of optical, mwir, lwir, radar");
-    return *bands != 0;
-}
 
 /* What threads, speed and paths cannot change: every setting that the pictures depend on. */
 static Status hash_config(char out[sha256_text_size], const Options *o)
@@ -75,7 +29,7 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 
 Status run_prepare(Run *run)
 {
-    if (!parse_bands(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
+    if (!bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
     status = quality_choose(&run->options.config, &run->choices, run->bands);
@@ -236,13 +190,10 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     if (status == STATUS_OK)
         status = choose_ground(landscape, contact, choices, &run->survey, &o->config, &frame, run->catalog, plan);
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
-    if (status == STATUS_OK) status = world_open(world, run->catalog, landscape, &frame, o->isa);
-    if (status == STATUS_OK)
-        status = atmosphere_open_at(&world->atmosphere, o->config.weather.atmosphere, o->config.weather.visibility_m);
+    if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
     if (status != STATUS_OK) return status;
     say_visibility(choices, &o->config, world->atmosphere);
     say_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
-    world->radar.lobe_rad = o->config.radar.lobe_deg * rad_per_deg;
     choose_rate(plan, choices, &o->config);
     choice_say_night(choices, run->bands, *unix_s, plan, &frame);
     for (int i = 0; i < choices->count; i++) log_say("%s\n", choices->line[i]);
@@ -303,7 +254,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN, .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
-                                  .user = run->user};
+                                  .user = run->user, .save_count = o->save_count, .save = o->save};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

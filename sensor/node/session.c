@@ -1,6 +1,7 @@
 /* sensor/node/session.c: one host's seeker: frames made, handed to consumers, and listed. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/framefile/frame_save.h"
 #include "sensor/node/scene_rate.h"
 #include "sensor/publish/pairs.h"
 
@@ -21,52 +22,6 @@ static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *pi
 }
 
 /* ---- one frame ------------------------------------------------------------------------------ */
-
-/* Sun at the eye's own place, its direction turned into the world's frame. */
-static Status light_at(Air *air, Sun *sun, double r_host_from_enu[9], const Session *s, const Eye *eye, double t_s,
-                       Arena *arena)
-{
-    const SessionShared *shared = s->shared;
-    const Config        *config = shared->config;
-    World               *world = shared->world;
-    Weather              weather = {.visibility_m = config->weather.visibility_m,
-                                    .air_temp_k = config->weather.air_temp_k,
-                                    .pressure_mbar = config->weather.pressure_mbar,
-                                    .wind_mps = config->weather.wind_mps,
-                                    .wind_from_rad = config->weather.wind_from_deg * rad_per_deg};
-    if (isnan(weather.air_temp_k)) weather.air_temp_k = atmosphere_temp_k(world->atmosphere, 0);
-    Geodetic place;
-    double   p_ecef[3], r_ecef_from_host[9], d_ecef[3];
-    Status   status = geodetic_from_ecef(&place, eye->state.p_ecef);
-    if (status == STATUS_OK) status = ecef_from_geodetic(p_ecef, r_ecef_from_host, &place);
-    if (status == STATUS_OK)
-        status = sun_at(sun, shared->unix_s + t_s, &place, weather.pressure_mbar, weather.air_temp_k - 273.15, NAN);
-    if (status != STATUS_OK) return status;
-    Sun local = *sun;
-    m3_mul_v3(d_ecef, r_ecef_from_host, sun->d_enu);
-    m3_tmul_v3(local.d_enu, shared->world->frame.r_ecef_from_enu, d_ecef);
-    m3_tmul(r_host_from_enu, r_ecef_from_host, shared->world->frame.r_ecef_from_enu);
-
-    /* heights of the air are above the ground at the origin, and the tangent plane leaves the Earth */
-    const double     *p_enu = eye->view.p_enu;
-    const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
-    const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);
-    const AirSource   source = {world->atmosphere, world->planck_mwir, world->planck_lwir};
-    const AirEye      air_eye = {eye_height_m, render_air_bands(shared->bands, config_optical(config)), &eye->view};
-    return air_at(air, &source, &weather, &local, &air_eye, shared->pool, arena);
-}
-
-/* Products give normals in the host's own ENU. */
-static void turn_normals(Picture *picture, const double r_host_from_enu[9])
-{
-    const size_t count = (size_t)picture->width * (size_t)picture->height;
-    for (size_t i = 0; i < count; i++) {
-        const double n[3] = {picture->normal[0][i], picture->normal[1][i], picture->normal[2][i]};
-        double       turned[3];
-        m3_mul_v3(turned, r_host_from_enu, n);
-        for (int k = 0; k < 3; k++) picture->normal[k][i] = (float)turned[k];
-    }
-}
 
 static void make_request(RenderRequest *request, const Session *s, const Eye *eye)
 {
@@ -154,6 +109,17 @@ static void fill_record(Frame *f, const Session *s, const Eye *eye)
     memcpy(r->r_ecef_from_cam, eye->state.r_ecef_from_cam, sizeof r->r_ecef_from_cam);
 }
 
+/* Where it is asked for: the frame as a file of its own. */
+static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
+{
+    const SessionShared *shared = s->shared;
+    for (int i = 0; i < shared->save_count; i++)
+        if (shared->save[i] == f->number)
+            return frame_save(&(FrameSave){f, shared->config, s->out, &eye->state, shared->unix_s,
+                                           shared->contact == GROUND_CONTACT_ALL, shared->pool});
+    return STATUS_OK;
+}
+
 /* shown: false when the host is not there. left_out: entities that are not in it. */
 static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
 {
@@ -170,9 +136,11 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     f->world   = shared->world;
     memcpy(f->host, s->host_text, sizeof f->host);
 
-    Air    air;
-    double r_host_from_enu[9] = {0};
-    status = light_at(&air, &f->sun, r_host_from_enu, s, &eye, t_s, f->arena);
+    Air            air;
+    double         r_host_from_enu[9] = {0};
+    const double  *p_ecef = eye.state.p_ecef;
+    const FrameEye at = {f->unix_s, {p_ecef[0], p_ecef[1], p_ecef[2]}, &eye.view, shared->bands};
+    status = frame_light(&air, &f->sun, r_host_from_enu, shared->world, shared->config, &at, shared->pool, f->arena);
     make_request(&f->request, s, &eye);
     const double posed_s = wall_clock_s();
     if (status == STATUS_OK) status = look(&f->seen, s, &f->request, &air, r_host_from_enu, f->arena);
@@ -190,7 +158,7 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
                                  .seed = shared->config->seed, .datagrams = player_counters(s->player)->datagrams,
                                  .begun_s = f->provenance.begun_s, .posed_s = posed_s, .rendered_s = wall_clock_s()};
     *shown = true;
-    return STATUS_OK;
+    return save_frame(s, f, &eye);
 }
 
 /* ---- the loop ------------------------------------------------------------------------------- */

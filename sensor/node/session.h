@@ -26,6 +26,8 @@ typedef struct SessionShared {
     const Sensors *sensors;
     void         (*publish)(void *user, const FrameRecord *frame); /* every frame made; NULL: nobody asks */
     void          *user;
+    int            save_count; /* frames that are also written as frame files, ascending */
+    const int     *save;       /* [save_count] */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };

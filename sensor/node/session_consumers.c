@@ -133,6 +133,6 @@ Status session_consumers(Session *s, FrameDone *done)
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
     if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
-    s->wants = consumers_wants(&s->consumers);
+    s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     return status == STATUS_OK ? frame_pool_create(&s->frames, s->publish_pool ? queue_frames : 1) : status;
 }

@@ -2,6 +2,7 @@
 #ifndef SENSOR_NODE_SESSION_PRIVATE_H
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
+#include "sensor/world/frame_light.h"
 #include "sensor/node/mount.h"
 #include "sensor/node/player.h"
 #include "sensor/node/seeker.h"

@@ -54,13 +54,22 @@ static bool is_frame_name(const char *name)
     return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".png") == 0 || strcmp(name + 6, ".csv") == 0;
 }
 
-static void clear_folder(const char *folder)
+/* frame_NNNNNN.pvf: what frame_save makes. */
+static bool is_frame_file(const char *name)
+{
+    int end = 0;
+    return strlen(name) == strlen("frame_NNNNNN.pvf") && strspn(name + 6, "0123456789") == 6 &&
+           sscanf(name, "frame_%*6d.pvf%n", &end) == 0 && end > 0;
+}
+
+/* What ours says is the program's own. */
+static void clear_folder(const char *folder, bool (*ours)(const char *name))
 {
     DIR *directory = opendir(folder);
     if (!directory) return;
     char path[path_size + 300];
     for (struct dirent *entry; (entry = readdir(directory));)
-        if (is_frame_name(entry->d_name)) {
+        if (ours(entry->d_name)) {
             snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
             unlink(path);
         }
@@ -88,7 +97,7 @@ static void clear_products(const char *out)
     char path[path_size];
     for (int b = 0; b < folder_count; b++) {
         product_folder(path, out, b);
-        clear_folder(path);
+        clear_folder(path, is_frame_name);
         rmdir(path); /* when nothing else is in it */
     }
     for (int i = 0; i < 3; i++) {
@@ -138,6 +147,7 @@ void frame_files_clear(const char *out)
     }
     if (!earlier) return;
     clear_products(out);
+    clear_folder(out, is_frame_file);
     for (int i = 0; i < pair_folders; i++) {
         snprintf(path, sizeof path, "%s/%s", out, pair_folder[i]);
         clear_products(path);

@@ -9,7 +9,10 @@
 #include <stdlib.h>
 
 enum { IN_REPLAY = 1, IN_RUN = 2, IN_BOTH = 3 };
-enum { OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SWEEP, HELP, KEY };
+enum {
+    OUT = 256, SIZE, HOST, CONFIG, SET, THREADS, SPEED, FOR, FRAMES, NO_SKIP, ISA, OVERWRITE, ONLY, SAVE, SWEEP,
+    HELP, KEY
+};
 
 static const char *const names[] = {"replay", "run"};
 
@@ -41,6 +44,8 @@ static const struct Row {
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
      "render only these frames, by number; the same as in a full replay, except\n"
      "for the automatic level of display images (detector.agc_s)"},
+    {"save-frame", SAVE, IN_REPLAY, NULL, "N,N,...",
+     "save these frames to DIR/frame_NNNNNN.pvf, for `pitviper frame`, which\nre-renders one without the log"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
      "entity that carries the sensor: site:application:entity, or observer; may\n"
      "be repeated; or once, munition: munitions in flight, guided ones first,\none after the other"},
@@ -180,27 +185,26 @@ static int compare_ints(const void *a, const void *b)
 }
 
 /* 3,7,12: sorted, without duplicates. */
-static bool parse_only(Options *o, const char *text)
+static bool parse_frames(int out[options_only_max], int *out_count, const char *name, const char *text)
 {
     char      one[16];
     long long number;
-    o->only_count = 0;
+    int       count = 0;
     for (const char *at = text; at;) {
         const size_t length = strcspn(at, ",");
         snprintf(one, sizeof one, "%.*s", (int)(length < sizeof one ? length : sizeof one - 1), at);
-        if (!text_to_long(&number, one) || number < 0 || number > 999999 || o->only_count == options_only_max) {
-            log_error("options: --only: '%s' is not a list of at most %d frame numbers in 0 .. 999999, for example "
-                      "3,7,12", text, options_only_max);
+        if (!text_to_long(&number, one) || number < 0 || number > 999999 || count == options_only_max) {
+            log_error("options: --%s: '%s' is not a list of at most %d frame numbers in 0 .. 999999, for example "
+                      "3,7,12", name, text, options_only_max);
             return false;
         }
-        o->only[o->only_count++] = (int)number;
+        out[count++] = (int)number;
         at = at[length] ? at + length + 1 : NULL;
     }
-    qsort(o->only, (size_t)o->only_count, sizeof *o->only, compare_ints);
-    int kept = 1;
-    for (int i = 1; i < o->only_count; i++)
-        if (o->only[i] != o->only[kept - 1]) o->only[kept++] = o->only[i];
-    o->only_count = kept;
+    qsort(out, (size_t)count, sizeof *out, compare_ints);
+    *out_count = 1;
+    for (int i = 1; i < count; i++)
+        if (out[i] != out[*out_count - 1]) out[(*out_count)++] = out[i];
     return true;
 }
 
@@ -234,7 +238,8 @@ static bool take(Options *o, const struct Row *row, const char *text)
         if (!ok) log_error("options: --isa: '%s' is not avx2, sse4.2 or avx512", text);
         o->isa = text;
         return ok;
-    case ONLY: return parse_only(o, text);
+    case ONLY: return parse_frames(o->only, &o->only_count, row->name, text);
+    case SAVE: return parse_frames(o->save, &o->save_count, row->name, text);
     case SWEEP: o->sweep = text; return true;
     case OVERWRITE: o->overwrite = true; return true;
     default: return true; /* CONFIG has been read already */

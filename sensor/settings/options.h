@@ -27,6 +27,7 @@ typedef struct Options {
     bool        no_skip, overwrite;
     const char *host[options_hosts_max]; /* several ids; a single one is in the configuration */
     int         only_count, only[options_only_max]; /* frames to be made, ascending, each once; 0: all */
+    int         save_count, save[options_only_max]; /* frames that are written as frame files, likewise; 0: none */
     int         given_count;
     OptionGiven given[options_given_max]; /* in order; without settings, which are in config, and the options of the sweep itself */
     Config      config;

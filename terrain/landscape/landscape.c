@@ -275,6 +275,33 @@ static Status grow_levels(Work *work, const LandscapeConfig *config)
 
 /* ---- the whole ---------------------------------------------------------------------------- */
 
+/* The evidence outlives its owner here: the same landscape can be made again from it. */
+static Status keep_evidence(LandscapeEvidence *out, const LandscapeEvidence *from)
+{
+    const size_t fixes  = (size_t)from->fix_count * sizeof *from->fix;
+    const size_t lines  = (size_t)from->line_count * sizeof *from->line;
+    const size_t places = (size_t)from->place_count * sizeof *from->place;
+    GroundFix  *fix   = fixes ? malloc(fixes) : NULL;
+    ClearLine  *line  = lines ? malloc(lines) : NULL;
+    CoastPlace *place = places ? malloc(places) : NULL;
+    *out      = *from;
+    out->fix   = fix;
+    out->line  = line;
+    out->place = place;
+    if ((fixes && !fix) || (lines && !line) || (places && !place)) return STATUS_NO_MEMORY;
+    if (fixes) memcpy(fix, from->fix, fixes);
+    if (lines) memcpy(line, from->line, lines);
+    if (places) memcpy(place, from->place, places);
+    return STATUS_OK;
+}
+
+static void free_evidence(LandscapeEvidence *evidence)
+{
+    free((void *)evidence->fix);
+    free((void *)evidence->line);
+    free((void *)evidence->place);
+}
+
 static bool config_ok(const LandscapeConfig *config)
 {
     if (!(config->relief_m >= 0 && config->relief_m <= 200)) return false;
@@ -335,6 +362,7 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
     Work   work = {0};
     Cover *cover = calloc(1, sizeof *cover);
     Status status = cover ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK) status = keep_evidence(&landscape.fitted_to, evidence);
     if (status == STATUS_OK) status = fix_set_create(&work.fixes, frame, fix, fix_count, config->horizon_m);
     if (status == STATUS_OK) status = coast_create(&work.coast, evidence, landscape_hash(config->seed, 3, 0));
     if (status == STATUS_OK) drop_fixes_at_sea(&work);
@@ -358,8 +386,10 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
     landscape.cover = cover;
     cover = NULL;
     *out = landscape;
+    landscape.fitted_to = (LandscapeEvidence){0};
 
 done:
+    free_evidence(&landscape.fitted_to);
     free(cover);
     free(work.aim);
     field_destroy(&work.calm.factor);
@@ -379,5 +409,6 @@ void landscape_destroy(Landscape *landscape)
     if (!landscape) return;
     elevation_destroy(&landscape->elevation);
     cover_free(landscape->cover);
+    free_evidence(&landscape->fitted_to);
     *landscape = (Landscape){0};
 }

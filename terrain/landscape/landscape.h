@@ -59,6 +59,7 @@ typedef struct Landscape {
     LandscapeConfig config;
     double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
     int             fixes_dropped;/* contradicted by their neighbours, above a clear line, or not on this ground */
+    LandscapeEvidence fitted_to;  /* a copy of what an invented one was made from: landscape_parts.h */
     void           *cover;        /* private; surface and texture need it */
 } Landscape;
 

@@ -1,5 +1,5 @@
-/* The options of `replay`, every one by the table itself: each changes what a run is told, and a variant of a sweep is told
- * the same as a run without one. What an option changes is found by comparing all of Options: an option that changes
+/* The options of `replay`, every one by the table itself: each changes what a run is told, and a variant of a sweep is
+ * told the same as a run without one. What an option changes is found by comparing all of Options: an option that changes
  * nothing there fails, until this test can see what it changes, and with that whether a variant has it. */
 #include "tests/check.h"
 
@@ -11,8 +11,9 @@ enum { line_max = 40 };
 static const char *const samples[][2] = {
     {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"},
     {"from", "+12"}, {"to", "4"}, {"planes", "range,entity"},
-    {"only", "3,7,12"}, {"only", "9"}, {"host", "1:2:3"}, {"host", "observer"}, {"samples", "2"}, {"config", "FILE"},
-    {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"}, {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
+    {"only", "3,7,12"}, {"only", "9"}, {"save-frame", "9,2"}, {"host", "1:2:3"}, {"host", "observer"},
+    {"samples", "2"}, {"config", "FILE"}, {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"},
+    {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
     {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},
 };
 enum { sample_count = sizeof samples / sizeof *samples };
@@ -42,6 +43,7 @@ static const char *difference(const Options *a, const Options *b)
     if (a->speed != b->speed) return "speed";
     if (a->no_skip != b->no_skip) return "no_skip";
     if (a->only_count != b->only_count || memcmp(a->only, b->only, sizeof a->only) != 0) return "only";
+    if (a->save_count != b->save_count || memcmp(a->save, b->save, sizeof a->save) != 0) return "save-frame";
     if (a->host_count != b->host_count) return "host";
     if (a->given_count != b->given_count) return "given";
     for (int i = 0; i < a->given_count; i++)
@@ -166,7 +168,8 @@ static void a_sweep_may_bring_what_a_setting_needs(void **state)
     const char *line[] = {"replay", "--sweep", "s.yaml", "--set", "detector.smear=false", "log.pcap"};
     parse(o, 6, line);
     CHECK(config_given(&o->config, "detector.smear"));
-    char *alone[] = {(char[]){"replay"}, (char[]){"--set"}, (char[]){"detector.smear=false"}, (char[]){"log.pcap"}, NULL};
+    char *alone[] = {(char[]){"replay"}, (char[]){"--set"}, (char[]){"detector.smear=false"}, (char[]){"log.pcap"},
+                     NULL};
     assert_int_equal(options_parse(o, COMMAND_REPLAY, 4, alone), 3);
     CHECK(strstr(check_said, "overrides a sensor preset"));
     free(o);

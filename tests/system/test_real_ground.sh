@@ -14,12 +14,19 @@ terrain:
   orthophoto: $data/autzen_rgb_1m.tif
 EOF
 few=(--config "$tmp/ground.yaml" --rate 0.4 --no-png)
-replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1
+replay "$tmp/demo.pcap" "$tmp/one" "${few[@]}" --threads 1 --save-frame 1
 check "a replay" [ "$code" = 0 ]
 for line in 'posts 1 m apart' 'above the geoid, which lies -22\.4' 'resampling left 0\.01 m rms' 'table worldcover' \
     'photograph: 1 m' 'are set onto the ground'; do
     check "it says: $line" said "$line"
 done
+# one frame of it by itself: its part of the ground is in the file, and its name nowhere
+size=$(stat -c %s "$tmp/one/frame_000001.pvf")
+check "a frame file of $size octets" [ "$size" -lt 4000000 ]
+run frame "$tmp/one/frame_000001.pvf" --threads 3
+check "the frame alone: same bits" [ "$code" = 0 ]
+check "the frame alone: of files" said 'ground: of files'
+check "the frame alone: without their names" not grep -q autzen_dtm "$tmp/one/frame_000001.pvf"
 replay "$tmp/demo.pcap" "$tmp/two" "${few[@]}" --threads 3
 check "3 threads, same bits" same_hashes "$tmp/one" "$tmp/two"
 

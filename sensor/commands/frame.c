@@ -1,0 +1,230 @@
+/* sensor/commands/frame.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says
+ * whether the planes are the same to the bit. */
+#include "sensor/commands/frame.h"
+
+#include "sensor/commands/next_option.h"
+#include "sensor/commands/overwrite.h"
+#include "sensor/framefile/frame_again.h"
+#include "sensor/framefile/frame_scene.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/publish/records.h"
+#include "sensor/truth/frame_error.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { path_size = 4096, most_octets = 1 << 29 };
+
+static const char help[] =
+    "usage: pitviper frame FILE [options]\n"
+    "\n"
+    "Re-renders one frame from FILE, written by `pitviper replay LOG --save-frame N`, and verifies that every plane\n"
+    "is the same to the bit: exit code 0, else 1. Needs neither the log nor elevation files. Tables and models of\n"
+    "this installation must be those of the frame; they are compared by SHA-256.\n"
+    "etc/FRAME_FILE.md describes the format.\n"
+    "\n"
+    "  --out DIR            write its images and its line of truth.jsonl, as replay does\n"
+    "  --overwrite          replace the products of an earlier run in DIR; without it that is an error\n"
+    "  --threads N          number of threads (default: one per processor)\n"
+    "  --no-skip            disable skipping; same output, slower\n"
+    "  --force              render with other tables or models too; they are listed\n"
+    "  --help               print this help\n";
+
+typedef struct FrameOptions {
+    const char *path, *out;
+    int         threads;
+    bool        overwrite, no_skip, forced;
+} FrameOptions;
+
+/* 0: go on; else exit with this code - 1. */
+static int parse(FrameOptions *o, int argc, char **argv)
+{
+    enum { OUT = 256, OVERWRITE, THREADS, NO_SKIP, FORCE, HELP };
+    static const struct option options[] = {
+        {"out", 1, NULL, OUT},         {"overwrite", 0, NULL, OVERWRITE}, {"threads", 1, NULL, THREADS},
+        {"no-skip", 0, NULL, NO_SKIP}, {"force", 0, NULL, FORCE},         {"help", 0, NULL, HELP},
+        {NULL, 0, NULL, 0}};
+    *o     = (FrameOptions){.threads = thread_processors()};
+    optind = 0; /* start anew */
+    for (int option; (option = next_option(argc, argv, "h", options)) != -1;) {
+        long long number;
+        switch (option) {
+        case OUT: o->out = optarg; break;
+        case OVERWRITE: o->overwrite = true; break;
+        case NO_SKIP: o->no_skip = true; break;
+        case FORCE: o->forced = true; break;
+        case THREADS:
+            if (!text_to_long(&number, optarg) || number < 1 || number > 256) {
+                log_error("frame: --threads: '%s' is not a whole number in 1 .. 256", optarg);
+                return 3;
+            }
+            o->threads = (int)number;
+            break;
+        case HELP:
+        case 'h': fputs(help, stdout); return 1;
+        default: return 3;
+        }
+    }
+    if (argc - optind != 1) {
+        log_error("frame: %s; `pitviper frame --help` says more",
+                  argc == optind ? "no FILE is named" : "one FILE at a time");
+        return 3;
+    }
+    o->path = argv[optind];
+    return 0;
+}
+
+/* ---- what it is --------------------------------------------------------------------------------- */
+
+static void describe_ground(const LandscapeParts *g)
+{
+    char size[64 * elevation_max_levels] = "";
+    if (g->invented) {
+        log_say("ground: invented, from %d places, %d clear lines, %d places of sea and land\n", g->said.fix_count,
+                g->said.line_count, g->said.place_count);
+        return;
+    }
+    for (int n = 0, at = 0; n < g->elevation.level_count; n++) {
+        const ElevationLevel *l = &g->elevation.level[n];
+        at += snprintf(size + at, sizeof size - (size_t)at, "%s%d x %d at %.4g m", n ? ", " : "", l->nx, l->ny,
+                       l->spacing_m);
+    }
+    log_say("ground: of files, %s%s%s\n", size, g->cover[0].nx ? ", cover" : "", g->photo.mips ? ", photograph" : "");
+}
+
+static void describe(const FrameFile *file)
+{
+    const RenderRequest *r = &file->request;
+    const time_t         whole = (time_t)floor(file->unix_s + file->time_s);
+    struct tm            date;
+    char                 utc[32] = "?", bands[64] = "", host[128], version[128];
+    if (!gmtime_r(&whole, &date) || strftime(utc, sizeof utc, "%Y-%m-%dT%H:%M:%SZ", &date) == 0) strcpy(utc, "?");
+    for (int b = 0, at = 0; b < BAND_COUNT; b++)
+        if (r->bands >> b & 1)
+            at += snprintf(bands + at, sizeof bands - (size_t)at, "%s%s", at ? "," : "", band_name((Band)b));
+    text_escape(host, sizeof host, file->host, strlen(file->host));
+    text_escape(version, sizeof version, file->version, strlen(file->version));
+    log_say("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc, version,
+            strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
+    log_say("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
+            r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
+    describe_ground(&file->ground);
+    log_say("tables: %d of etc/ and models, by SHA-256\n", file->tables.count);
+    for (int i = 0; i < file->tables.count; i++)
+        log_detail("frame: %s %.64s", file->tables.table[i].name, file->tables.table[i].sha256);
+}
+
+/* ---- its products ------------------------------------------------------------------------------- */
+
+/* The line of truth.jsonl, from the picture as the frame loop makes it. */
+static Status write_truth(const char *out, const FrameFile *file, const FrameScene *s, const FrameAgain *again,
+                          const TruthNoise *noise, Arena *arena)
+{
+    char        path[path_size];
+    Target     *target = arena_alloc(arena, (size_t)s->snapshot.count + 1, sizeof *target);
+    FrameError  error;
+    const int   host = file->eye.host_index;
+    if (!target) return STATUS_NO_MEMORY;
+    FrameRecord record = {.frame = file->frame, .time_s = file->time_s, .snapshot = &s->snapshot, .catalog = s->catalog,
+                          .host = host >= 0 ? &s->snapshot.entity[host] : NULL, .request = &file->request,
+                          .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = file->at_limit,
+                          .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .sun = &again->sun,
+                          .target = target, .frame_sha256 = again->made.sha256};
+    memcpy(record.p_eye_ecef, file->eye.p_ecef, sizeof record.p_eye_ecef);
+    memcpy(record.v_eye_mps, file->eye.v_ecef_mps, sizeof record.v_eye_mps);
+    memcpy(record.r_ecef_from_body, file->r_ecef_from_body, sizeof record.r_ecef_from_body);
+    memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
+    record.target_count =
+        truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
+    if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
+                    s->config.models.sag_m, file->all_on_ground))
+        record.error = &error;
+    if (snprintf(path, sizeof path, "%s/truth.jsonl", out) >= (int)sizeof path) return STATUS_BAD_VALUE;
+    FILE  *to     = fopen(path, "w");
+    Status status = to ? record_write_frame(to, &record) : STATUS_IO;
+    if (to && fclose(to) != 0 && status == STATUS_OK) status = STATUS_IO;
+    if (status == STATUS_IO) log_error("frame: cannot write %s: %s", path, strerror(errno));
+    return status;
+}
+
+/* The detectors begin with this frame: what they remember of those before (detector.agc_s, lines of AC coupling) is not
+ * in the file. */
+static Status write_products(const FrameOptions *o, const FrameFile *file, FrameScene *s, const FrameAgain *again,
+                             Pool *pool, Arena *arena)
+{
+    Chain      *chain[BAND_COUNT] = {NULL};
+    FrameLevel *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
+    TruthNoise  noise;
+    char        hash[sha256_text_size];
+    unsigned    raw = 0;
+    Status      status = level ? sensors_chains(chain, &s->sensors, &s->config) : STATUS_NO_MEMORY;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (chain[b] && s->config.detector.raw) raw |= 1u << b;
+    const unsigned kept = file->request.bands | (frame_files_truth(&s->config) ? frame_truth : 0);
+    if (status == STATUS_OK) status = frame_files_prepare(o->out, kept, raw);
+    if (status == STATUS_OK) {
+        const FrameFiles files = {.out = o->out, .config = &s->config, .world = &s->world, .picture = &again->picture,
+                                  .snapshot = &s->snapshot, .request = &file->request, .host = file->host,
+                                  .config_sha256 = file->config_sha256, .frame = file->frame, .time_s = file->time_s,
+                                  .unix_s = file->unix_s + file->time_s, .png = s->config.publish.png, .chain = chain,
+                                  .level = level, .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}};
+        frame_expose(&noise, chain, &again->picture, &s->config);
+        status = frame_files_write(hash, &files, pool);
+    }
+    if (status == STATUS_OK && again->picture.target) status = write_truth(o->out, file, s, again, &noise, arena);
+    if (status == STATUS_OK) log_say("its pictures are in %s/frames\n", o->out);
+    for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
+    return status;
+}
+
+/* ---- rendered again ----------------------------------------------------------------------------- */
+
+static Status show(int *differ, const FrameOptions *o, const FrameFile *file, FrameScene *s, Pool *pool, Arena *arena)
+{
+    FrameAgain *again = arena_alloc(arena, 1, sizeof *again);
+    if (!again) return STATUS_NO_MEMORY;
+    const double begun_s = wall_clock_s();
+    Status status = frame_again(again, file, &s->snapshot, &s->world, &s->config, o->no_skip, pool, arena);
+    if (status != STATUS_OK) return status;
+    log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
+    *differ = frame_differences(file, &again->made, true);
+    if (*differ == 0)
+        log_say("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
+    else
+        log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
+                   again->made.sha256, file->frame_sha256,
+                   strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : "; another version of pitviper made it");
+    return o->out ? write_products(o, file, s, again, pool, arena) : STATUS_OK;
+}
+
+int frame_command(int argc, char **argv)
+{
+    FrameOptions o;
+    char        *bytes = NULL;
+    size_t       count;
+    int          differ = 0;
+    FrameScene  *scene = NULL;
+    FrameFile   *file = NULL;
+    Pool        *pool = NULL;
+    const int    stop = parse(&o, argc, argv);
+    if (stop) return stop - 1;
+    thread_flush_denormals();
+    Arena *arena = arena_create();
+    scene = arena ? arena_alloc(arena, 1, sizeof *scene) : NULL;
+    file  = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
+    Status status = scene && file ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && o.out) status = overwrite_folder("frame", o.out, o.overwrite);
+    if (status == STATUS_OK) status = text_read_file(&bytes, &count, "frame", o.path, most_octets);
+    if (status == STATUS_OK) status = frame_file_parse(file, (const uint8_t *)bytes, count, o.path, arena);
+    if (status == STATUS_OK) describe(file);
+    if (status == STATUS_OK) status = frame_scene_open(scene, file, o.forced, "avx2");
+    if (status == STATUS_OK) status = pool_create(&pool, o.threads);
+    if (status == STATUS_OK) status = show(&differ, &o, file, scene, pool, arena);
+    if (status == STATUS_NO_MEMORY) log_error("frame: out of memory");
+    pool_destroy(pool);
+    if (scene) frame_scene_close(scene);
+    free(bytes);
+    arena_destroy(arena);
+    return status != STATUS_OK || differ > 0 ? 1 : 0;
+}

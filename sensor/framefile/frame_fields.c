@@ -1,0 +1,332 @@
+/* sensor/framefile/frame_fields.c: what each chunk of a frame file holds: the fields, in order, with their ranges. */
+#include "sensor/framefile/frame_fields.h"
+
+#include "entities/effects/effects_history.h"
+#include "sensor/framefile/ground_cutout.h"
+
+static const double earth_m = 1e8;    /* of a place in ECEF: far outside anything a picture shows */
+static const double local_m = 2e7;    /* of a place in a local frame */
+static const double fast_mps = 1e6;
+static const double long_s = 1e12;
+
+/* ---- what it is of ------------------------------------------------------------------------------ */
+
+void frame_fields_about(Fields *f, FrameFile *file)
+{
+    field_text(f, "version", &file->version, 64);
+    field_text(f, "host", &file->host, 64);
+    field_text(f, "config_sha256", &file->config_sha256, sha256_text_size - 1);
+    field_int(f, "frame", &file->frame, 0, 999999999);
+    field_real(f, "time_s", &file->time_s, -long_s, long_s);
+    field_real(f, "unix_s", &file->unix_s, -long_s, long_s);
+}
+
+void frame_fields_settings(Fields *f, FrameFile *file)
+{
+    field_text(f, "settings", &file->settings, settings_file_octets);
+}
+
+void frame_fields_tables(Fields *f, FrameFile *file)
+{
+    field_int(f, "tables", &file->tables.count, 0, tables_used_max);
+    for (int i = 0; i < file->tables.count && fields_good(f); i++) {
+        field_chars(f, "table name", file->tables.table[i].name, table_used_name_size);
+        field_chars(f, "table sha256", file->tables.table[i].sha256, sha256_text_size);
+    }
+}
+
+void frame_fields_models(Fields *f, FrameFile *file)
+{
+    if (!field_array(f, "models", &file->model_count, (void **)&file->model, sizeof *file->model, 169,
+                     frame_models_max))
+        return;
+    for (int i = 0; i < file->model_count && fields_good(f); i++) {
+        FrameModel *m = &file->model[i];
+        field_int(f, "model", &m->model, 0, INT32_MAX - 1);
+        field_int(f, "nodes of a model", &m->node_count, 1, 1 << 20);
+        field_chars(f, "model name", m->name, sizeof m->name);
+        field_chars(f, "model sha256", m->sha256, sizeof m->sha256);
+    }
+}
+
+/* ---- snapshot ----------------------------------------------------------------------------------- */
+
+static void entity_fields(Fields *f, SnapshotEntity *e)
+{
+    uint32_t id[3] = {e->id.site, e->id.application, e->id.entity}, appearance = e->appearance;
+    uint8_t  type[9] = {e->type.kind, e->type.domain, (uint8_t)(e->type.country >> 8), (uint8_t)e->type.country,
+                        e->type.category, e->type.subcategory, e->type.specific, e->type.extra, e->force};
+    for (int k = 0; k < 3; k++) field_u32(f, &id[k]);
+    field_bytes(f, type, sizeof type);
+    e->id    = (DisEntityId){(uint16_t)id[0], (uint16_t)id[1], (uint16_t)id[2]};
+    e->type  = (DisEntityType){type[0], type[1], (uint16_t)(type[2] << 8 | type[3]), type[4], type[5], type[6],
+                               type[7]};
+    e->force = type[8];
+    field_chars(f, "marking", e->marking, sizeof e->marking);
+    field_u32(f, &appearance);
+    e->appearance = appearance;
+    field_int(f, "model of an entity", &e->model, -1, INT32_MAX - 1);
+    field_reals(f, "place of an entity", e->p_ecef, 3, earth_m);
+    field_reals(f, "velocity of an entity", e->v_ecef_mps, 3, fast_mps);
+    field_reals(f, "turning of an entity", e->w_body_rps, 3, 1e6);
+    field_rotation(f, "attitude of an entity", e->r_ecef_from_body);
+    field_real(f, "age of an entity", &e->age_s, 0, long_s);
+    field_real(f, "position error of an entity", &e->position_error_m, 0, INFINITY);
+    field_real(f, "drift of an entity", &e->drift_m, 0, INFINITY);
+    field_real(f, "drift of an entity", &e->drift_rad, 0, INFINITY);
+    field_int(f, "nodes of an entity", &e->first_node, 0, INT32_MAX - 1);
+    field_floats(f, "heat of an entity", e->heat, HEAT_ROLE_COUNT, -1000, 10000);
+}
+
+static void puff_fields(Fields *f, EffectPuff *p)
+{
+    int kind = (int)p->kind;
+    field_int(f, "kind of a puff", &kind, 0, EFFECT_KIND_COUNT - 1);
+    p->kind = (EffectKind)kind;
+    field_u64(f, &p->owner);
+    field_u32(f, &p->group);
+    field_u32(f, &p->seed);
+    field_real(f, "age of a puff", &p->age_s, 0, long_s);
+    field_reals(f, "place of a puff", p->p_ecef, 3, earth_m);
+    field_unit(f, "up of a puff", p->up_ecef);
+    field_reals(f, "throw of a puff", p->throw_mps, 3, fast_mps);
+    field_real(f, "throw of a puff", &p->throw_s, 0, long_s);
+    field_real(f, "scale of a puff", &p->scale, 0, 1e6);
+    field_real(f, "mass of a puff", &p->mass_kg, 0, 1e12);
+    field_reals(f, "axis of a puff", p->axis_ecef, 3, 2);
+    field_real(f, "length of a puff", &p->along_m, 0, local_m);
+    field_bool(f, "puff on the ground", &p->grounded);
+    field_reals(f, "height of a puff", &p->above_m, 1, local_m);
+}
+
+static void check_order(Fields *f, const Snapshot *s)
+{
+    for (int e = 0; e < s->count && fields_good(f); e++)
+        if (s->entity[e].first_node > s->node_count ||
+            (e > 0 && dis_entity_id_compare(s->entity[e - 1].id, s->entity[e].id) >= 0))
+            f->fault = "order of the entities";
+}
+
+void frame_fields_snapshot(Fields *f, FrameFile *file)
+{
+    Snapshot *s = &file->snapshot;
+    int64_t   left = s->puffs_left_out;
+    field_real(f, "time of the snapshot", &s->t_s, -long_s, long_s);
+    field_int(f, "entities left out", &s->left_out, 0, INT32_MAX - 1);
+    field_bytes(f, &left, sizeof left);
+    s->puffs_left_out = left;
+    if (!field_array(f, "entities", &s->count, (void **)&s->entity, sizeof *s->entity, 300, frame_file_entities_max))
+        return;
+    for (int e = 0; e < s->count && fields_good(f); e++) entity_fields(f, &s->entity[e]);
+    if (!field_array(f, "nodes", &s->node_count, (void **)&s->node, sizeof *s->node, 96, INT32_MAX - 1)) return;
+    for (int n = 0; n < s->node_count && fields_good(f); n++) {
+        field_reals(f, "place of a node", s->node[n].p_body, 3, local_m);
+        field_rotation(f, "attitude of a node", s->node[n].r_body_from_node);
+    }
+    if (!field_array(f, "puffs", &s->puff_count, (void **)&s->puff, sizeof *s->puff, 150, effect_puff_capacity))
+        return;
+    for (int p = 0; p < s->puff_count && fields_good(f); p++) puff_fields(f, &s->puff[p]);
+    if (f->from) check_order(f, s);
+}
+
+/* ---- eye and request ---------------------------------------------------------------------------- */
+
+/* A lens is made again from its coefficients: what else it holds follows from them. */
+static void lens_fields(Fields *f, View *view)
+{
+    bool has = view_has_lens(view);
+    field_bool(f, "lens", &has);
+    field_reals(f, "lens", view->lens.k, 3, 1e6);
+    field_reals(f, "lens", view->lens.p, 2, 1e6);
+    if (!f->from || !has || !fields_good(f)) return;
+    const double half[2] = {0.5 * view->width / view->focal_px, 0.5 * view->height / view->focal_px};
+    const double k[3] = {view->lens.k[0], view->lens.k[1], view->lens.k[2]}, p[2] = {view->lens.p[0], view->lens.p[1]};
+    if (lens_make(&view->lens, k, p, half) != STATUS_OK) f->fault = "lens";
+}
+
+void frame_fields_request(Fields *f, FrameFile *file)
+{
+    RenderRequest *r = &file->request;
+    View          *v = &r->view;
+    int            bands = (int)r->bands, optical = (int)r->optical;
+    field_int(f, "picture width", &v->width, 8, 8192);
+    field_int(f, "picture height", &v->height, 8, 8192);
+    field_real(f, "focal length", &v->focal_px, 1e-3, 1e9);
+    field_reals(f, "place of the eye", v->p_enu, 3, local_m);
+    field_rotation(f, "attitude of the eye", v->r_enu_from_cam);
+    lens_fields(f, v);
+    field_int(f, "bands", &bands, 1, (1 << BAND_COUNT) - 1);
+    field_bool(f, "truth", &r->truth);
+    field_int(f, "optical channels", &optical, OPTICAL_PAN, OPTICAL_NIR);
+    field_reals(f, "lateral colour", r->lateral, 2, view_most_lateral);
+    field_int(f, "sky samples", &r->sky_samples, 0, 4096);
+    field_bool(f, "sky visibility", &r->sky_visibility);
+    field_int(f, "samples", &r->samples, 1, 16);
+    field_int(f, "edge samples", &r->edge_samples, 0, 16);
+    field_int(f, "target samples", &r->target_samples, 0, 256);
+    field_int(f, "hidden entity", &r->hidden_entity, -1, frame_file_entities_max);
+    field_bool(f, "budget", &r->budget);
+    field_bool(f, "cells of small targets", &r->hand_over_cells);
+    field_real(f, "range profile", &r->profile_near_m, 0, earth_m);
+    field_real(f, "range profile", &r->profile_bin_m, 0, 100);
+    field_int(f, "range profile", &r->profile_bins, 0, 65536);
+    r->bands   = (unsigned)bands;
+    r->optical = (OpticalChannels)optical;
+
+    field_reals(f, "place of the eye", file->eye.p_ecef, 3, earth_m);
+    field_reals(f, "velocity of the eye", file->eye.v_ecef_mps, 3, fast_mps);
+    field_rotation(f, "attitude of the eye", file->eye.r_ecef_from_cam);
+    field_int(f, "host", &file->eye.host_index, -1, frame_file_entities_max);
+    field_rotation(f, "attitude of the host", file->r_ecef_from_body);
+    field_reals(f, "rate of the scene", file->rate_px_s, 2, INFINITY);
+    field_bool(f, "gimbal", &file->at_limit);
+    field_bool(f, "contact", &file->all_on_ground);
+}
+
+/* ---- ground ------------------------------------------------------------------------------------- */
+
+static void evidence_fields(Fields *f, LandscapeEvidence *said)
+{
+    GroundFix  *fix   = (GroundFix *)said->fix;
+    ClearLine  *line  = (ClearLine *)said->line;
+    CoastPlace *place = (CoastPlace *)said->place;
+    field_real(f, "height of the sea", &said->sea_h_m, -local_m, local_m);
+    if (!field_array(f, "places of the ground", &said->fix_count, (void **)&fix, sizeof *fix, 28, landscape_parts_rows))
+        return;
+    for (int i = 0; i < said->fix_count && fields_good(f); i++) {
+        field_reals(f, "place of the ground", fix[i].p_enu, 3, local_m);
+        field_int(f, "voter", &fix[i].voter, 0, INT32_MAX - 1);
+    }
+    if (!field_array(f, "clear lines", &said->line_count, (void **)&line, sizeof *line, 48, landscape_parts_rows))
+        return;
+    for (int i = 0; i < said->line_count && fields_good(f); i++) {
+        field_reals(f, "clear line", line[i].a_enu, 3, local_m);
+        field_reals(f, "clear line", line[i].b_enu, 3, local_m);
+    }
+    if (!field_array(f, "places of sea and land", &said->place_count, (void **)&place, sizeof *place, 20,
+                     landscape_parts_rows))
+        return;
+    for (int i = 0; i < said->place_count && fields_good(f); i++) {
+        field_real(f, "place of sea or land", &place[i].x_m, -local_m, local_m);
+        field_real(f, "place of sea or land", &place[i].y_m, -local_m, local_m);
+        field_bool(f, "place of sea or land", &place[i].sea);
+    }
+    said->fix   = fix;
+    said->line  = line;
+    said->place = place;
+}
+
+/* The values of a grid; reading, room is made for all of them. */
+static void grid_values(Fields *f, const GroundCutout *kept, void **values, int nx, int ny, int octets, double x0_m,
+                        double y0_m, double spacing_m)
+{
+    const CutoutGrid grid = {nx, ny, octets, x0_m, y0_m, spacing_m};
+    if (f->to) {
+        cutout_put(f->to, &grid, *values, kept);
+        return;
+    }
+    *values = fields_good(f) ? arena_alloc(f->arena, (size_t)nx * (size_t)ny, (size_t)octets) : NULL;
+    if (fields_good(f) && !*values) f->no_memory = true;
+    if (*values) cutout_get(f->from, &grid, *values);
+}
+
+/* No more than `most` values in all of a ground's grids of one kind. */
+static void limit(Fields *f, const char *name, size_t *sum, int nx, int ny, size_t most)
+{
+    *sum += (size_t)nx * (size_t)ny;
+    if (f->from && fields_good(f) && *sum > most) f->fault = name;
+}
+
+static void level_fields(Fields *f, ElevationLevel *l, size_t *posts, const GroundCutout *kept)
+{
+    field_int(f, "posts of a level", &l->nx, 2, 32768);
+    field_int(f, "posts of a level", &l->ny, 2, 32768);
+    field_real(f, "place of a level", &l->x0_m, -local_m, local_m);
+    field_real(f, "place of a level", &l->y0_m, -local_m, local_m);
+    field_real(f, "spacing of a level", &l->spacing_m, 0.1, 1e5);
+    field_real(f, "height of a level", &l->z0_m, -local_m, local_m);
+    field_real(f, "step of a level", &l->step_m, 1e-9, 100);
+    limit(f, "posts of the ground", posts, l->nx, l->ny, landscape_parts_posts);
+    grid_values(f, kept, (void **)&l->post, l->nx, l->ny, 2, l->x0_m, l->y0_m, l->spacing_m);
+}
+
+static void cover_fields(Fields *f, CoverGrid *g, size_t *cells, const GroundCutout *kept)
+{
+    field_int(f, "cells of the cover", &g->nx, 0, 32768);
+    field_int(f, "cells of the cover", &g->ny, 0, 32768);
+    if (!fields_good(f) || g->nx == 0 || g->ny == 0) {
+        g->nx = g->ny = 0;
+        return;
+    }
+    field_real(f, "place of the cover", &g->x0_m, -local_m, local_m);
+    field_real(f, "place of the cover", &g->y0_m, -local_m, local_m);
+    field_real(f, "cells of the cover", &g->cell_m, 1e-3, 1e6);
+    limit(f, "cells of the cover", cells, g->nx, g->ny, landscape_parts_cells);
+    grid_values(f, kept, (void **)&g->surface, g->nx, g->ny, 1, g->x0_m, g->y0_m, g->cell_m);
+}
+
+static void photo_fields(Fields *f, Photo *p, const GroundCutout *kept)
+{
+    size_t pixels = 0;
+    field_int(f, "photograph", &p->mips, 0, ground_image_mips);
+    if (!fields_good(f) || p->mips == 0) return;
+    field_real(f, "place of the photograph", &p->x0_m, -local_m, local_m);
+    field_real(f, "place of the photograph", &p->y0_m, -local_m, local_m);
+    field_real(f, "pixels of the photograph", &p->cell_m, 1e-3, 1e6);
+    field_floats(f, "mean of the photograph", &p->mean[0][0], SURFACE_COUNT * photo_channels, 0, 1e6f);
+    for (int k = 0; k < p->mips && fields_good(f); k++) {
+        field_int(f, "pixels of the photograph", &p->nx[k], 1, 65536);
+        field_int(f, "pixels of the photograph", &p->ny[k], 1, 65536);
+        limit(f, "pixels of the photograph", &pixels, p->nx[k], p->ny[k], landscape_parts_pixels);
+        grid_values(f, kept, (void **)&p->rgba[k], p->nx[k], p->ny[k], 4, p->x0_m, p->y0_m, ldexp(p->cell_m, k));
+    }
+}
+
+void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
+{
+    LandscapeParts *g = &file->ground;
+    size_t          posts = 0, cells = 0;
+    field_real(f, "latitude of the origin", &g->frame.origin.lat_rad, -pi_rad / 2, pi_rad / 2);
+    field_real(f, "longitude of the origin", &g->frame.origin.lon_rad, -4, 4);
+    field_real(f, "height of the origin", &g->frame.origin.h_m, -earth_m, earth_m);
+    const Geodetic origin = g->frame.origin;
+    if (f->from && fields_good(f) && local_frame_at(&g->frame, &origin) != STATUS_OK) f->fault = "origin";
+    field_u64(f, &g->config.seed);
+    field_real(f, "relief", &g->config.relief_m, 0, 200);
+    field_real(f, "spacing of the ground", &g->config.spacing_m, 0, 1e5);
+    field_real(f, "width of the ground", &g->config.half_width_m, 0, local_m);
+    field_real(f, "horizon", &g->config.horizon_m, 0, local_m);
+    field_bool(f, "invented ground", &g->invented);
+    if (!fields_good(f)) return;
+    if (g->invented) {
+        evidence_fields(f, &g->said);
+        return;
+    }
+    field_u64(f, &g->cover_seed);
+    field_real(f, "geoid", &g->geoid_m, -1e4, 1e4);
+    field_real(f, "treeline", &g->treeline_m, -1e5, 1e5);
+    field_int(f, "levels", &g->elevation.level_count, 1, elevation_max_levels);
+    for (int n = 0; n < g->elevation.level_count && fields_good(f); n++)
+        level_fields(f, &g->elevation.level[n], &posts, kept);
+    for (int w = 0; w < cover_windows && fields_good(f); w++) cover_fields(f, &g->cover[w], &cells, kept);
+    if (fields_good(f)) photo_fields(f, &g->photo, kept);
+}
+
+/* ---- what came out ------------------------------------------------------------------------------ */
+
+void frame_fields_planes(Fields *f, FrameFile *file)
+{
+    field_chars(f, "frame sha256", file->frame_sha256, sizeof file->frame_sha256);
+    if (!field_array(f, "planes", &file->plane_count, (void **)&file->plane, sizeof *file->plane, 161,
+                     frame_max_planes))
+        return;
+    for (int i = 0; i < file->plane_count && fields_good(f); i++) {
+        FramePlane *p = &file->plane[i];
+        field_chars(f, "plane name", p->name, sizeof p->name);
+        field_chars(f, "plane sha256", p->sha256, sizeof p->sha256);
+        field_real(f, "plane", &p->finite, 0, 1e12);
+        field_real(f, "plane", &p->mean, -INFINITY, INFINITY);
+        field_real(f, "plane", &p->low, -INFINITY, INFINITY);
+        field_real(f, "plane", &p->high, -INFINITY, INFINITY);
+    }
+}

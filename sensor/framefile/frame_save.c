@@ -1,0 +1,223 @@
+/* sensor/framefile/frame_save.c: gathers what a frame was made from, packs it, renders it again from the octets, and
+ * writes the file when the planes are the same. */
+#include "sensor/framefile/frame_save.h"
+
+#include "sensor/framefile/frame_again.h"
+#include "sensor/framefile/frame_tables.h"
+#include "sensor/framefile/ground_cutout.h"
+#include "sensor/world/frame_world.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+enum { path_size = 4096 };
+
+/* ---- gathered ----------------------------------------------------------------------------------- */
+
+/* Without files of ground, which the file itself has in their place, and without what makes no picture. */
+static Status write_settings(char **text, const Config *config)
+{
+    Config plain = *config;
+    size_t octets;
+    *plain.terrain.elevation = *plain.terrain.cover = *plain.terrain.cover_table = *plain.terrain.orthophoto = 0;
+    *plain.terrain.geoid = *plain.record.path = *plain.quality.table = 0;
+    FILE *to = open_memstream(text, &octets);
+    if (!to) return STATUS_NO_MEMORY;
+    config_write_settings(to, &plain);
+    const bool whole = !ferror(to);
+    return fclose(to) == 0 && whole ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+/* Each model of the snapshot once. */
+static Status list_models(FrameFile *file, const Catalog *catalog, Arena *arena)
+{
+    const Snapshot *s = &file->snapshot;
+    const int       models = catalog_model_count(catalog);
+    bool           *listed = arena_alloc(arena, (size_t)models + 1, sizeof *listed);
+    file->model = arena_alloc(arena, (size_t)models + 1, sizeof *file->model);
+    if (!listed || !file->model) return STATUS_NO_MEMORY;
+    Status status = STATUS_OK;
+    for (int e = 0; e < s->count && status == STATUS_OK; e++) {
+        const int m = s->entity[e].model;
+        if (m < 0 || m >= models || listed[m]) continue;
+        const Model *model = catalog_model(catalog, m);
+        FrameModel  *to = &file->model[file->model_count++];
+        listed[m]      = true;
+        to->model      = m;
+        to->node_count = model->node_count;
+        snprintf(to->name, sizeof to->name, "%s", model->name);
+        status = frame_model_sha256(to->sha256, model);
+    }
+    return status;
+}
+
+/* The nodes of all entities: the snapshot of a frame poses only those that are drawn. */
+static Status pose_nodes(FrameFile *file, const Catalog *catalog, Arena *arena)
+{
+    Snapshot *s = &file->snapshot;
+    if (s->node) return STATUS_OK;
+    const size_t nodes = (size_t)s->node_count + 1;
+    NodePose    *pose  = arena_alloc(arena, nodes, sizeof *pose);
+    double      *value = arena_alloc(arena, nodes, sizeof *value);
+    if (!pose || !value) return STATUS_NO_MEMORY;
+    for (int e = 0; e < s->count; e++) {
+        const int m = s->entity[e].model;
+        if (m >= 0) snapshot_pose(pose + s->entity[e].first_node, value, s, e, catalog_model(catalog, m));
+    }
+    s->node = pose;
+    return STATUS_OK;
+}
+
+static Status gather(FrameFile *file, FrameMade *made, char **settings, const FrameSave *save, Arena *arena)
+{
+    const Frame *f = save->frame;
+    char         catalog[path_size];
+    *file = (FrameFile){.version = f->provenance.version, .host = f->host,
+                        .config_sha256 = f->provenance.config_sha256, .frame = f->number, .time_s = f->time_s,
+                        .unix_s = save->unix_s, .snapshot = f->seen.snapshot, .request = f->request,
+                        .eye = *save->eye, .rate_px_s = {f->rate_px_s[0], f->rate_px_s[1]},
+                        .at_limit = f->record.gimbal_at_limit, .all_on_ground = save->all_on_ground};
+    memcpy(file->r_ecef_from_body, f->record.r_ecef_from_body, sizeof file->r_ecef_from_body);
+    landscape_parts(&file->ground, f->world->landscape);
+    if (!etc_path(catalog, sizeof catalog, "catalog.csv")) return STATUS_BAD_VALUE;
+    Status status = frame_tables(&file->tables, save->config, catalog);
+    if (status == STATUS_OK) status = write_settings(settings, save->config);
+    if (status == STATUS_OK) status = pose_nodes(file, f->world->catalog, arena);
+    if (status == STATUS_OK) status = list_models(file, f->world->catalog, arena);
+    if (status == STATUS_OK) status = frame_made(made, f->seen.plane, f->seen.plane_count);
+    if (status != STATUS_OK) return status;
+    file->settings    = *settings;
+    file->plane       = made->plane;
+    file->plane_count = made->plane_count;
+    memcpy(file->frame_sha256, made->sha256, sizeof file->frame_sha256);
+    return STATUS_OK;
+}
+
+/* Where the frame's rays meet the ground, or what stands on it; the eye, the origin, and smoke on the ground. */
+static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
+{
+    const Picture    *picture = &f->seen.picture;
+    const View       *view = &f->request.view;
+    const Snapshot   *snapshot = &f->seen.snapshot;
+    const LocalFrame *frame = &f->world->frame;
+    const size_t      most = (size_t)picture->width * (size_t)picture->height + (size_t)snapshot->puff_count + 2;
+    double (*place)[2] = arena_alloc(arena, most, sizeof *place);
+    int n = 1; /* the first is the origin */
+    if (!place) return STATUS_NO_MEMORY;
+    memcpy(place[n++], view->p_enu, sizeof *place);
+    for (int y = 0; y < picture->height; y++)
+        for (int x = 0; x < picture->width; x++) {
+            const double range_m = (double)picture->range_m[(size_t)y * (size_t)picture->width + (size_t)x];
+            double       d_enu[3];
+            if (!isfinite(range_m)) continue;
+            view_ray(d_enu, view, x + 0.5, y + 0.5);
+            for (int k = 0; k < 2; k++) place[n][k] = view->p_enu[k] + range_m * d_enu[k];
+            n++;
+        }
+    for (int p = 0; p < snapshot->puff_count; p++) {
+        double p_enu[3];
+        if (!snapshot->puff[p].grounded) continue;
+        enu_from_ecef(p_enu, frame, snapshot->puff[p].p_ecef);
+        memcpy(place[n++], p_enu, sizeof *place);
+    }
+    *out = (GroundCutout){.count = n, .p_m = (const double(*)[2])place};
+    return STATUS_OK;
+}
+
+/* ---- proved ------------------------------------------------------------------------------------- */
+
+/* Whether the octets give the same planes. */
+static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Arena *arena)
+{
+    const Frame *f = save->frame;
+    FrameFile    file;
+    FrameAgain  *again = arena_alloc(arena, 1, sizeof *again);
+    Landscape    landscape = {0};
+    World        world = {0};
+    const char  *why = NULL;
+    *same = false;
+    if (!again) return STATUS_NO_MEMORY;
+    Status status = frame_file_parse(&file, bytes->bytes, bytes->count, "the file just made", arena);
+    if (status == STATUS_OK) status = landscape_from_parts(&landscape, &why, &file.ground);
+    if (status == STATUS_BAD_VALUE && why) log_error("frame: the ground of the file just made: %s", why);
+    if (status == STATUS_OK)
+        status = frame_world(&world, save->config, f->world->catalog, &landscape, &file.ground.frame, "avx2");
+    if (status == STATUS_OK) {
+        file.snapshot.effect_table = f->seen.snapshot.effect_table;
+        status = frame_again(again, &file, &file.snapshot, &world, save->config, false, save->pool, arena);
+    }
+    if (status == STATUS_OK) *same = frame_differences(&file, &again->made, false) == 0;
+    world_close(&world);
+    landscape_destroy(&landscape);
+    return status;
+}
+
+/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. What is seen directly is in the first;
+ * glossy surfaces mirror hills that are farther away than what the picture shows. */
+static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *file, const FrameSave *save,
+                          Arena *gathered)
+{
+    static const double reaches_m[][2] = {
+        {100, 100}, {3000, 100}, {20000, 100}, {20000, 3000}, {INFINITY, INFINITY}};
+    GroundCutout        kept = {0};
+    Arena              *arena = arena_create();
+    bool                same = false;
+    Status              status = arena ? STATUS_OK : STATUS_NO_MEMORY;
+    if (status == STATUS_OK && !file->ground.invented) status = gather_places(&kept, save->frame, gathered);
+    for (size_t r = 0; r < sizeof reaches_m / sizeof *reaches_m && status == STATUS_OK && !same; r++) {
+        if (file->ground.invented && isfinite(reaches_m[r][0])) continue;
+        *reach_m = kept.reach_m = reaches_m[r][0];
+        kept.looks_reach_m = reaches_m[r][1];
+        sink_free(bytes);
+        arena_reset(arena);
+        status = frame_file_pack(bytes, file, &kept);
+        if (status == STATUS_OK) status = prove(&same, bytes, save, arena);
+    }
+    if (status == STATUS_OK && !same) {
+        log_error("frame: frame %d, rendered again from its file, is another picture; nothing is written. Please "
+                  "report this", file->frame);
+        status = STATUS_BAD_VALUE;
+    }
+    arena_destroy(arena);
+    return status;
+}
+
+/* Beside its place first: a file is whole or not there. */
+static Status write_file(const char *path, const ByteSink *bytes)
+{
+    char  part[path_size + 8];
+    snprintf(part, sizeof part, "%s.part", path);
+    FILE *to = fopen(part, "wb");
+    const bool put = to && fwrite(bytes->bytes, 1, bytes->count, to) == bytes->count;
+    const bool closed = to && fclose(to) == 0;
+    if (put && closed && rename(part, path) == 0) return STATUS_OK;
+    log_error("frame: cannot write %s: %s", path, strerror(errno));
+    unlink(part);
+    return STATUS_IO;
+}
+
+Status frame_save(const FrameSave *save)
+{
+    char      path[path_size], *settings = NULL;
+    ByteSink  bytes = {0};
+    double    reach_m = INFINITY;
+    Arena    *arena = arena_create();
+    FrameFile *file = arena ? arena_alloc(arena, 1, sizeof *file) : NULL;
+    FrameMade *made = arena ? arena_alloc(arena, 1, sizeof *made) : NULL;
+    Status     status = file && made ? STATUS_OK : STATUS_NO_MEMORY;
+    if (snprintf(path, sizeof path, "%s/frame_%06d.pvf", save->out, save->frame->number) >= (int)sizeof path)
+        status = STATUS_BAD_VALUE;
+    if (status == STATUS_OK) status = gather(file, made, &settings, save, arena);
+    if (status == STATUS_OK) status = pack_proved(&bytes, &reach_m, file, save, arena);
+    if (status == STATUS_OK) status = write_file(path, &bytes);
+    if (status == STATUS_OK && !file->ground.invented && isfinite(reach_m))
+        log_say("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path,
+                1e-3 * (double)bytes.count, reach_m);
+    else if (status == STATUS_OK)
+        log_say("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
+    free(settings);
+    sink_free(&bytes);
+    arena_destroy(arena);
+    return status;
+}

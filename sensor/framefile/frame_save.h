@@ -1,0 +1,22 @@
+/* sensor/framefile/frame_save.h: a frame that was just made, written as OUT/frame_NNNNNN.pvf (frame_file.h). */
+#ifndef SENSOR_FRAMEFILE_FRAME_SAVE_H
+#define SENSOR_FRAMEFILE_FRAME_SAVE_H
+
+#include "sensor/publish/frame.h"
+#include "sensor/settings/config.h"
+
+typedef struct FrameSave {
+    const Frame    *frame;  /* complete, with planes of truth; its planes are compared with those of the file */
+    const Config   *config;
+    const char     *out;    /* folder; exists */
+    const EyeState *eye;
+    double          unix_s; /* Unix time of exercise time 0 */
+    bool            all_on_ground;
+    Pool           *pool;
+} FrameSave;
+
+/* Writes it only after rendering it again from its own octets to the same bits; with ground of files it takes more of
+ * the ground until that is so. Takes the time of a few frames. Logs failures. */
+Status frame_save(const FrameSave *save);
+
+#endif

@@ -1,0 +1,25 @@
+/* sensor/framefile/frame_scene.h: everything that a frame file needs of this installation, opened and compared with
+ * what the frame was made with: settings, tables, models, sensors; and its own ground. */
+#ifndef SENSOR_FRAMEFILE_FRAME_SCENE_H
+#define SENSOR_FRAMEFILE_FRAME_SCENE_H
+
+#include "sensor/framefile/frame_file.h"
+#include "sensor/settings/sensors.h"
+
+typedef struct FrameScene {
+    Config      config;
+    Sensors     sensors;
+    Catalog    *catalog;
+    Landscape   landscape;
+    World       world;
+    EffectTable effects;
+    Snapshot    snapshot;      /* the file's, with the models of this catalog */
+    int         tables_differ;
+} FrameScene;
+
+/* Tables and models that are not those of the frame are logged by name: STATUS_BAD_VALUE unless forced. Whatever it
+ * returns, frame_scene_close must follow. isa: as world_open. */
+Status frame_scene_open(FrameScene *out, const FrameFile *file, bool forced, const char *isa);
+void   frame_scene_close(FrameScene *scene);
+
+#endif

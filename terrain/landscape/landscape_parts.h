@@ -1,0 +1,37 @@
+/* terrain/landscape/landscape_parts.h: all that a landscape is made of, as plain arrays: what a file must hold so that
+ * the same ground can be made again, to the bit, without what it was first made from.
+ *
+ * An invented landscape is a pure function of its configuration, frame and evidence, which it keeps a copy of. One of
+ * files is its posts, cover classes and photograph as they were laid out in ENU. */
+#ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
+#define TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
+
+#include "terrain/landscape/ground_image.h"
+#include "terrain/landscape/landscape.h"
+
+typedef struct LandscapeParts {
+    LocalFrame        frame;
+    LandscapeConfig   config;
+    bool              invented;
+    LandscapeEvidence said;                /* invented: what it was fitted to */
+    Elevation         elevation;           /* of files: levels and posts; the pyramids are not looked at */
+    CoverGrid         cover[cover_windows];
+    Photo             photo;
+    uint64_t          cover_seed;
+    double            geoid_m, treeline_m;
+} LandscapeParts;
+
+/* Borrows from the landscape. */
+void landscape_parts(LandscapeParts *out, const Landscape *landscape);
+/* Copies. Parts may come from a hostile file: STATUS_BAD_VALUE, and what is wrong with them in *why (static storage).
+ * An invented one takes as long as landscape_create_from. */
+Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts);
+
+/* Bounds that landscape_from_parts keeps: posts of all levels, cells of a cover window, pixels of a photograph, and
+ * rows of each kind of evidence. */
+enum {
+    landscape_parts_posts = 1 << 26, landscape_parts_cells = 1 << 26, landscape_parts_pixels = 1 << 27,
+    landscape_parts_rows = 1 << 21,
+};
+
+#endif

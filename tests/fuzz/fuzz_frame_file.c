@@ -1,0 +1,156 @@
+/* tests/fuzz/fuzz_frame_file.c: any octets as a frame file; and its fields damaged behind checksums that are right.
+ * What is accepted must be what render() can be given: indices within their arrays, and ground that can be made.
+ * Without a fuzzer run_corpus.c drives it. */
+#include "tests/fuzz/fuzz_seed.h"
+
+#include "sensor/framefile/frame_file.h"
+#include "sensor/framefile/ground_cutout.h"
+
+#include <stdlib.h>
+
+const int fuzz_rounds = 3000;
+
+/* ---- a small file ------------------------------------------------------------------------------- */
+
+static void identity(double r[9]) { m3_identity(r); }
+
+/* Two entities, a puff; ground of two nested levels with cover and a photograph, or invented. */
+static void small_file(ByteSink *out, bool invented)
+{
+    static uint16_t fine[17 * 17], coarse[9 * 9];
+    static uint8_t  cover[16 * 16], rgba[3][16];
+    static NodePose node[2];
+    static SnapshotEntity entity[2];
+    static EffectPuff puff;
+    static FrameModel model = {.model = 3, .node_count = 1, .name = "box"};
+    static FramePlane plane = {.name = "lwir/Y", .mean = 1};
+    static GroundFix  fix = {{1, 2, 3}, 1};
+    static ClearLine  line = {{0, 0, 9}, {100, 0, 9}};
+    static CoastPlace place = {50, 60, true};
+    FrameFile file = {.version = "1", .host = "1:2:3", .config_sha256 = "", .settings = "seed: 1\n", .frame = 7};
+    file.tables.count = 1;
+    strcpy(file.tables.table[0].name, "heat.csv");
+    file.model = &model, file.model_count = 1;
+    file.plane = &plane, file.plane_count = 1;
+    for (int e = 0; e < 2; e++) {
+        entity[e] = (SnapshotEntity){.id = {1, 2, (uint16_t)(3 + e)}, .type = {.kind = 1, .domain = 1}, .model = 3,
+                                     .p_ecef = {6378137, e, 0}, .first_node = e};
+        identity(entity[e].r_ecef_from_body);
+        identity(node[e].r_body_from_node);
+    }
+    puff = (EffectPuff){.kind = EFFECT_SMOKE, .p_ecef = {6378137, 0, 0}, .up_ecef = {1, 0, 0}, .axis_ecef = {1, 0, 0},
+                        .throw_s = 1, .scale = 1, .mass_kg = 1};
+    file.snapshot = (Snapshot){.count = 2, .node_count = 2, .entity = entity, .node = node, .puff_count = 1,
+                               .puff = &puff};
+    file.request  = (RenderRequest){.view = {.width = 16, .height = 12, .focal_px = 30}, .bands = 15, .truth = true,
+                                    .samples = 1, .hidden_entity = 0, .profile_bins = 16, .profile_bin_m = 0.3};
+    identity(file.request.view.r_enu_from_cam);
+    identity(file.eye.r_ecef_from_cam);
+    identity(file.r_ecef_from_body);
+    file.ground = (LandscapeParts){.invented = invented, .config = landscape_default_config()};
+    if (invented) {
+        file.ground.said = (LandscapeEvidence){1, 1, 1, &fix, &line, &place, 0};
+    } else {
+        file.ground.elevation.level_count = 2;
+        file.ground.elevation.level[0] = (ElevationLevel){.nx = 17, .ny = 17, .x0_m = -8, .y0_m = -8, .spacing_m = 1,
+                                                          .step_m = 0.1, .post = fine};
+        file.ground.elevation.level[1] = (ElevationLevel){.nx = 9, .ny = 9, .x0_m = -32, .y0_m = -32, .spacing_m = 8,
+                                                          .step_m = 0.1, .post = coarse};
+        file.ground.cover[0] = (CoverGrid){16, 16, -8, -8, 1, cover};
+        file.ground.photo    = (Photo){.mips = 2, .nx = {2, 1}, .ny = {2, 1}, .cell_m = 8, .rgba = {rgba[0], rgba[1]}};
+    }
+    if (frame_file_pack(out, &file, NULL) != STATUS_OK) abort();
+}
+
+size_t fuzz_seed(uint8_t *out, uint32_t index)
+{
+    ByteSink file = {0};
+    small_file(&file, index % 2 == 0);
+    const size_t size = file.count;
+    if (size > fuzz_seed_octets) abort();
+    memcpy(out, file.bytes, size);
+    sink_free(&file);
+    return size;
+}
+
+/* ---- one input ---------------------------------------------------------------------------------- */
+
+/* Whether it was accepted, and its ground made where that is quick. */
+static bool parse(const uint8_t *data, size_t size)
+{
+    bool       made = false;
+    FrameFile *file = malloc(sizeof *file);
+    Arena     *arena = arena_create();
+    if (!file || !arena) abort();
+    if (frame_file_parse(file, data, size, "input", arena) == STATUS_OK) {
+        const Snapshot *s = &file->snapshot;
+        for (int e = 0; e < s->count; e++)
+            if (!v3_is_finite(s->entity[e].p_ecef) || s->entity[e].first_node > s->node_count) abort();
+        if (file->request.hidden_entity >= s->count || file->eye.host_index >= s->count) abort();
+        if (!(file->request.view.focal_px > 0) || file->plane_count > frame_max_planes) abort();
+        Landscape   landscape = {0};
+        const char *why = NULL;
+        size_t      posts = 0;
+        for (int n = 0; n < file->ground.elevation.level_count; n++)
+            posts += (size_t)file->ground.elevation.level[n].nx * (size_t)file->ground.elevation.level[n].ny;
+        if (!file->ground.invented && posts < 1 << 16 &&
+            landscape_from_parts(&landscape, &why, &file->ground) == STATUS_OK) {
+            float factor[albedo_channels];
+            for (int k = -40; k <= 40; k += 5) {
+                const double z_m = elevation_height(&landscape.elevation, k, 0.3 * k, NULL);
+                if (isinf(z_m)) abort();
+                if (landscape_surface(&landscape, k, 0.3 * k) >= SURFACE_COUNT) abort();
+                landscape_albedo(factor, &landscape, SURFACE_GRASS, k, 0.3 * k, 1);
+            }
+            landscape_destroy(&landscape);
+            made = true;
+        }
+        made |= file->ground.invented;
+    }
+    arena_destroy(arena);
+    free(file);
+    return made;
+}
+
+/* The same octets as they are, and with every chunk's plain octets packed anew: what a checksum would hide. */
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
+{
+    static bool begun = false;
+    log_set_level((LogLevel)(LOG_ERROR + 1));
+    for (int k = 0; k < 2 && !begun; k++) { /* an undamaged file is accepted, or nothing here is tried */
+        ByteSink whole = {0};
+        small_file(&whole, k == 0);
+        if (!parse(whole.bytes, whole.count)) abort();
+        sink_free(&whole);
+    }
+    begun = true;
+    (void)parse(data, size);
+
+    ChunkSource chunks;
+    ByteSink    again = {0};
+    char        name[chunk_name_size + 1];
+    ByteSource  content;
+    ByteSink    seed = {0};
+    Arena      *arena = arena_create();
+    if (!arena) abort();
+    small_file(&seed, size % 2 == 0);
+    if (chunks_open(&chunks, seed.bytes, seed.count, arena) != STATUS_OK) abort();
+    chunks_begin(&again);
+    for (int c = 0; chunks_next(&chunks, name, &content) == STATUS_OK && *name; c++) {
+        ByteSink     plain = {0};
+        const size_t octets = (size_t)(content.end - content.at);
+        sink_bytes(&plain, content.at, octets);
+        /* four octets say: which chunk, where, what */
+        for (size_t i = 0; i + 3 < size && i < 24; i += 4)
+            if (octets > 0 && data[i] % 8 == c)
+                plain.bytes[(data[i + 1] | (size_t)data[i + 2] << 8) % octets] ^= data[i + 3];
+        chunks_put(&again, name, &plain);
+        sink_free(&plain);
+    }
+    chunks_end(&again);
+    if (!again.failed) (void)parse(again.bytes, again.count);
+    sink_free(&again);
+    sink_free(&seed);
+    arena_destroy(arena);
+    return 0;
+}

@@ -1,0 +1,78 @@
+#!/usr/bin/env bash
+# A frame saved by replay is re-rendered by itself, in another folder and with another number of threads, to the same
+# bits; a damaged file is refused, and a table that differs is named. labels: small
+. "$(dirname "$0")/common.sh"
+
+pitviper=$(realpath "$pitviper")
+exercise demo "$tmp/demo.pcap"
+mkdir "$tmp/elsewhere"
+
+# saved NAME LOG FRAME options: a replay that saves a frame
+saved() {
+    local name=$1 log=$2 frame=$3; shift 3
+    run replay "$log" --out "$tmp/$name" --size 64x48 --only "$frame" --save-frame "$frame" --overwrite "$@"
+    check "$name: is saved" [ "$code" = 0 ]
+    [ "$code" = 0 ] || cat "$tmp/stderr"
+    mv "$tmp/$name"/frame_*.pvf "$tmp/elsewhere/$name.pvf"
+}
+# again NAME options: rendered in another folder, without data
+again() {
+    local name=$1 made was size; shift
+    (cd "$tmp/elsewhere" && env -u PITVIPER_DATA "$pitviper" frame "$name.pvf" --threads 3 "$@") \
+        >"$tmp/stdout" 2>"$tmp/stderr"
+    check "$name: rendered again" [ $? = 0 ]
+    made=$(grep -oE 'frame [0-9a-f]{64}' "$tmp/stdout")
+    was=$(grep -oE '[0-9a-f]{64}' "$tmp/$name/truth.jsonl" | tail -1)
+    check "$name: the frame of the replay" [ "$made" = "frame $was" ]
+    size=$(stat -c %s "$tmp/elsewhere/$name.pvf")
+    check "$name: $size octets" [ "$size" -lt 100000 ]
+}
+# a sensor's lens and detector, a channel in the place of a band, weather, seed, the user's own materials, smoke, a range
+# profile; an earlier run's frame file is removed with its other products
+grep -E '^(name|grass_green),' etc/materials.csv >"$tmp/own.csv"
+mkdir "$tmp/demo"
+echo '{"frame": 3}' >"$tmp/demo/truth.jsonl"
+touch "$tmp/demo/frame_000003.pvf"
+saved demo "$tmp/demo.pcap" 12 --bands swir,mwir,lwir,radar --set sensor.preset=staring_lwir --set sensor.lens_k1=-0.1 \
+    --set weather.visibility_m=5000 --set weather.air_temp_k=275 --seed 7 --set models.materials="$tmp/own.csv"
+check "demo: frame files of an earlier run are removed" [ ! -e "$tmp/demo/frame_000003.pvf" ]
+again demo --out "$tmp/again" --no-skip
+check "products: truth.jsonl is the replay's" cmp "$tmp/demo/truth.jsonl" "$tmp/again/truth.jsonl"
+for band in swir mwir lwir radar truth; do
+    png=frames/$band/000012.png
+    check "products: $band.png is the replay's" cmp "$tmp/demo/$png" "$tmp/again/$png"
+done
+run frame "$tmp/elsewhere/demo.pvf" --out "$tmp/again"
+check "products: kept without --overwrite" [ "$code" != 0 ]
+check "products: the message names --overwrite" complained 'overwrite'
+
+# damaged
+file=$tmp/elsewhere/demo.pvf
+size=$(stat -c %s "$file")
+refused() { # refused WHAT WORDS
+    run frame "$tmp/damaged.pvf"
+    check "$1: refused" [ "$code" = 1 ]
+    check "$1: it says $2" complained "$2"
+}
+head -c $((size / 2)) "$file" >"$tmp/damaged.pvf"; refused "cut" 'ends too early'
+cp "$file" "$tmp/damaged.pvf"
+printf '\377\377\377\377' | dd of="$tmp/damaged.pvf" bs=1 seek=$((size / 2)) conv=notrunc status=none
+refused "octets turned" 'damaged'
+printf '\002' | dd of="$tmp/damaged.pvf" bs=1 seek=8 conv=notrunc status=none; refused "a later format" 'another version'
+
+# another table, named; forced: the planes that it changes, named
+cp -r etc "$tmp/etc"
+sed '/^[a-z]/s/,0\.0\([0-9]\)/,0.1\1/g' etc/materials.csv >"$tmp/etc/materials.csv"
+check "the table is another" not cmp -s etc/materials.csv "$tmp/etc/materials.csv"
+export PITVIPER_ETC=$tmp/etc
+run frame "$file" --force
+check "another table: named" complained 'materials\.csv is not the table'
+check "another table: other bits" [ "$code" = 1 ]
+check "another table: planes named" complained 'swir/Y differs: mean'
+check "another table: range stays" not complained 'truth/range_m differs'
+unset PITVIPER_ETC
+sed -i 's/0\.0413/0.2413/' "$tmp/own.csv"
+run frame "$file"
+check "the user's own materials: refused" [ "$code" = 1 ]
+check "the user's own materials: named" complained 'models\.materials is not the table'
+finish
