@@ -1,8 +1,7 @@
-/* sensor/publish/image_file.h: pictures as files. Frames are written by exr_file.c and png_file.c, chunk by chunk;
- * read, and written in any other compression, through OpenImageIO (image_file.cpp, the only file that knows it).
+/* sensor/publish/image_file.h: pictures as files, through OpenImageIO (image_file.cpp, the only file that knows it).
  *
- * A file appears whole or not at all: it is written as `PATH.part` and renamed. Every failure is one log line with path
- * and reason, and a Status; nothing of a failed file is left behind.
+ * A file appears whole or not at all: it is written chunk by chunk as `PATH.part` and renamed. Every failure is one log
+ * line with path and reason, and a Status; nothing of a failed file is left behind.
  * Thread-safe for different paths. Each call allocates and frees its own memory. */
 #ifndef SENSOR_PUBLISH_IMAGE_FILE_H
 #define SENSOR_PUBLISH_IMAGE_FILE_H
@@ -46,16 +45,17 @@ static inline ImageAttribute image_double(const char *name, double number)
 
 enum { image_max_planes = 64, image_max_size_px = 32768 };
 
-/* EXR, one channel a plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float).
+/* EXR, one channel a plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a
+ * compression by name (`none`, `rle`, `zips`, `zip:1`, `piz`, ...; frame_files.c has measurements).
  * date_time: `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock
  * there; NULL: 1970:01:01 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64,
- * a name that is empty or used twice. STATUS_IO: the disk refused. */
-Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
-                       const ImageAttribute *attribute, int attribute_count);
-
-/* The same with a named compression (`none`, `rle`, `zips`, `zip:1`, `piz`, ...), encoded in memory. */
+ * a name that is empty or used twice. STATUS_IO: the disk or the library refused. */
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
                           const char *date_time, const ImageAttribute *attribute, int attribute_count);
+
+/* The same without compression. */
+Status image_write_exr(const char *path, const Plane *plane, int plane_count, const char *date_time,
+                       const ImageAttribute *attribute, int attribute_count);
 
 /* PNG, channels 1 (grey) or 3 (RGB interleaved), bits 8 (uint8_t) or 16 (uint16_t, machine order), rows
  * top down. Values are written as they are: display encoding is the caller's. */

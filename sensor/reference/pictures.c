@@ -54,11 +54,10 @@ const Reference reference_exr = {
     .topic = "exr",
     .file  = "frames/BAND/NNNNNN.exr",
     .title = "radiance per pixel, and in frames/truth/NNNNNN.exr ground truth per pixel",
-    .about = "OpenEXR, scan lines, ZIP. Rows from the top, columns from the left: [row][column] of a plane is the "
-             "pixel\n"
-             "whose centre is (column + 0.5, row + 0.5). Truth is that of the sample nearest the centre; radiance is "
-             "the\n"
-             "mean over the pixel. Python: `pip install OpenEXR numpy` (3.3 or later); OpenImageIO reads them as well.",
+    .about = "OpenEXR, scan lines; truth RLE, radar ZIP, others not compressed. Rows from the top, columns from the\n"
+             "left: [row][column] of a plane is the pixel whose centre is (column + 0.5, row + 0.5). Truth is that\n"
+             "of the sample nearest the centre; radiance is the mean over the pixel.\n"
+             "Python: `pip install OpenEXR numpy` (3.3 or later); OpenImageIO reads them as well.",
     .notation = "`channel BAND/NAME`: a channel, float (32 bits) or uint (32 bits, exact); `header NAME`: an "
                 "attribute.",
     .field = REFERENCE_FIELDS(exr_fields),

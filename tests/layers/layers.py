@@ -33,7 +33,7 @@ LIBRARIES = (
     ('cpl_*', 'terrain/elevation/raster.c'), ('ogr_*', 'terrain/elevation/raster.c'), ('erfa.h', 'terrain/*'),
     ('OpenImageIO/*', 'sensor/publish/*.cpp'), ('embree*', 'render/*'), ('pcap*', 'dis/*'),
     ('assimp/*', 'entities/import/assimp*.c'), ('fftw3.h', 'sensor/detector/transform.c'),
-    ('libdeflate.h', 'sensor/publish/*'), ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
+    ('jansson.h', 'sensor/publish/*'), ('yaml.h', 'pitviper_*.c'), ('yaml.h', 'sensor/commands/sweep_file.c'),
 )
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.

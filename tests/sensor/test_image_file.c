@@ -92,8 +92,8 @@ static void exr_round_trip_is_exact(void **state)
     fill();
     const Plane plane[] = {plane_f32("range_m", width, height, range_m), plane_u32("entity", width, height, entity),
                            plane_u32("part", width, height, part), plane_f32("temp_k", width, height, temp_k)};
-    const char *compressions[] = {NULL, "none", "zips", "zip:1", "piz"};
-    for (int k = 0; k < 5; k++) {
+    const char *compressions[] = {NULL, "none", "rle", "zips", "zip:1", "piz"};
+    for (int k = 0; k < 6; k++) {
         const char *path = in_folder("truth.exr");
         const Status status = compressions[k] ? image_write_exr_as(path, compressions[k], plane, 4, NULL, NULL, 0)
                                               : image_write_exr(path, plane, 4, NULL, NULL, 0);
@@ -122,9 +122,9 @@ static void exr_round_trip_is_exact(void **state)
     }
 }
 
-/* Chunks that shrink and chunks that do not, in one file: noise below a constant sky, and a sky again; the last chunk is
- * not whole. The sky costs next to nothing, noise no more than its size. */
-static void chunks_shrink_or_stay(void **state)
+/* Lines that shrink and lines that do not, in one file: noise below a constant sky, and a sky again; the last band of
+ * lines is not whole. The sky costs next to nothing, noise no more than its size. */
+static void lines_shrink_or_stay(void **state)
 {
     (void)state;
     enum { columns = 64, rows = 16 * 37 + 5, noisy_from = 16 * 3, noisy_to = 16 * 20 };
@@ -134,17 +134,19 @@ static void chunks_shrink_or_stay(void **state)
         const int y = i / columns;
         seed        = seed * 1664525u + 1013904223u;
         memcpy(&plane_in[i], &seed, sizeof seed);
-        if (y < noisy_from || y >= noisy_to || !isfinite(plane_in[i])) plane_in[i] = 273.15f;
+        if (y < noisy_from || y >= noisy_to || !isfinite(plane_in[i])) plane_in[i] = 0;
     }
-    const Plane plane = plane_f32("Y", columns, rows, plane_in);
-    const char *path = in_folder("chunks.exr");
+    const Plane plane[] = {plane_f32("Y", columns, rows, plane_in), plane_f32("Z", columns, rows, plane_in)};
+    const char *path = in_folder("lines.exr");
     struct stat about;
-    assert_int_equal(image_write_exr(path, &plane, 1, NULL, NULL, 0), STATUS_OK);
-    assert_int_equal(image_read_f32(plane_out, path, "Y"), STATUS_OK);
-    assert_memory_equal(plane_out, plane_in, sizeof plane_in);
-    assert_int_equal(stat(path, &about), 0);
-    const int noise = (noisy_to - noisy_from) * columns * 4, untried = 8 * 16 * columns * 4;
-    CHECK(about.st_size > noise * 9 / 10 && about.st_size < noise + untried + 4000);
+    const int noise = (noisy_to - noisy_from) * columns * 4, of_line = 16 + columns * 4 / 16;
+    for (int planes = 1; planes <= 2; planes++) { /* written as it is, and interleaved */
+        assert_int_equal(image_write_exr_as(path, "rle", plane, planes, NULL, NULL, 0), STATUS_OK);
+        assert_int_equal(image_read_f32(plane_out, path, plane[planes - 1].name), STATUS_OK);
+        assert_memory_equal(plane_out, plane_in, sizeof plane_in);
+        assert_int_equal(stat(path, &about), 0);
+        CHECK(about.st_size > planes * noise * 9 / 10 && about.st_size < planes * (noise + rows * of_line) + 4000);
+    }
 }
 
 /* No silent conversion: the wrong type or name is refused and the output stays. */
@@ -298,12 +300,20 @@ static void a_full_disk_leaves_the_old_file(void **state)
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
     lines = 0;
     log_set_sink(capture, NULL);
-    const Status status = image_write_exr(path, &plane, 1, NULL, NULL, 0);
+    const Status exr = image_write_exr(path, &plane, 1, NULL, NULL, 0);
+    char         exr_line[sizeof last_line];
+    strcpy(exr_line, last_line);
+    const int    exr_lines = lines;
+    lines = 0;
+    const Status png = image_write_png(path, entity, width, height, 1, 16);
     log_set_sink(NULL, NULL);
     setrlimit(RLIMIT_FSIZE, &before);
     signal(SIGXFSZ, handler);
 
-    check_refused(status, STATUS_IO, path, "File too large");
+    check_refused(png, STATUS_IO, path, "File too large");
+    lines = exr_lines;
+    strcpy(last_line, exr_line);
+    check_refused(exr, STATUS_IO, path, "File too large");
     assert_int_equal(files_in_folder(), 1); /* no .part */
     char text[64];
     assert_true(image_read_string(text, sizeof text, path, "DateTime"));
@@ -344,7 +354,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(exr_round_trip_is_exact),
-        cmocka_unit_test(chunks_shrink_or_stay),
+        cmocka_unit_test(lines_shrink_or_stay),
         cmocka_unit_test(reading_never_converts),
         cmocka_unit_test(attributes_come_back),
         cmocka_unit_test(file_bytes_repeat),
