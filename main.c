@@ -9,7 +9,7 @@
 #include "sensor/node/live.h"
 #include "sensor/commands/model.h"
 #include "sensor/commands/record.h"
-#include "sensor/node/replay.h"
+#include "sensor/commands/replay.h"
 #include "sensor/probe.h"
 #include "sensor/reference/reference.h"
 #include "sensor/regress/regress.h"

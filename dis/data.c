@@ -1,5 +1,6 @@
 /* dis/data.c: Data. */
-#include "dis/decode_private.h"
+#include "dis/data_private.h"
+
 #include "dis/reader.h"
 
 enum { data_octets = 40, fixed_datum_octets = 8, variable_datum_octets = 8, alignment = 8 };
@@ -23,7 +24,7 @@ static void read_datums(DisData *data, DisReader *r)
     }
 }
 
-Status dis_decode_data(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_data(DisData *out, const uint8_t *pdu, size_t octets)
 {
     DisReader r = dis_pdu_reader(pdu, octets);
     DisData   data;
@@ -44,9 +45,9 @@ Status dis_decode_data(DisPdu *out, const uint8_t *pdu, size_t octets)
     read_datums(&data, &r);
     if (r.truncated) return STATUS_BAD_VALUE;
 
-    memcpy(&out->data, &data, offsetof(DisData, fixed)); /* datums not counted stay as they are */
-    memcpy(out->data.fixed, data.fixed, fixed * sizeof *data.fixed);
-    memcpy(out->data.variable, data.variable, variable * sizeof *data.variable);
+    memcpy(out, &data, offsetof(DisData, fixed)); /* datums not counted stay as they are */
+    memcpy(out->fixed, data.fixed, fixed * sizeof *data.fixed);
+    memcpy(out->variable, data.variable, variable * sizeof *data.variable);
     return STATUS_OK;
 }
 

@@ -1,4 +1,5 @@
-/* dis/data.h: Data (type 20) and Set Data (19): fixed and variable datums, to one entity or to all. IEEE 1278.1-1995 5.4.6.10. */
+/* dis/data.h: Data (type 20) and Set Data (19): fixed and variable datums, to one entity or to all.
+ * IEEE 1278.1-1995 5.4.6.10. */
 #ifndef DIS_DATA_H
 #define DIS_DATA_H
 

@@ -1,10 +1,36 @@
 /* dis/decode.c: the table of PDU types, and through it from octets to a tagged PDU and back. */
 #include "dis/decode_private.h"
+
+#include "dis/data_private.h"
+#include "dis/entity_state_private.h"
 #include "dis/reader.h"
+#include "dis/simulation_management_private.h"
+#include "dis/warfare_private.h"
+
+/* From and to the member of the union that belongs to the type; dis_decode sets the tag. */
+static Status decode_entity_state(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_entity_state(&out->entity_state, pdu, octets);
+}
 
 static size_t encode_entity_state(uint8_t *out, size_t capacity, const DisPdu *pdu)
 {
     return dis_encode_entity_state(out, capacity, &pdu->entity_state);
+}
+
+static Status decode_entity_state_update(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_entity_state_update(&out->update, pdu, octets);
+}
+
+static size_t encode_entity_state_update(uint8_t *out, size_t capacity, const DisPdu *pdu)
+{
+    return dis_encode_entity_state_update(out, capacity, &pdu->update);
+}
+
+static Status decode_fire(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_fire(&out->fire, pdu, octets);
 }
 
 static size_t encode_fire(uint8_t *out, size_t capacity, const DisPdu *pdu)
@@ -12,9 +38,19 @@ static size_t encode_fire(uint8_t *out, size_t capacity, const DisPdu *pdu)
     return dis_encode_fire(out, capacity, &pdu->fire);
 }
 
+static Status decode_detonation(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_detonation(&out->detonation, pdu, octets);
+}
+
 static size_t encode_detonation(uint8_t *out, size_t capacity, const DisPdu *pdu)
 {
     return dis_encode_detonation(out, capacity, &pdu->detonation);
+}
+
+static Status decode_remove_entity(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_remove_entity(&out->remove, pdu, octets);
 }
 
 static size_t encode_remove_entity(uint8_t *out, size_t capacity, const DisPdu *pdu)
@@ -22,9 +58,19 @@ static size_t encode_remove_entity(uint8_t *out, size_t capacity, const DisPdu *
     return dis_encode_remove_entity(out, capacity, &pdu->remove);
 }
 
+static Status decode_start_resume(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_start_resume(&out->start, pdu, octets);
+}
+
 static size_t encode_start_resume(uint8_t *out, size_t capacity, const DisPdu *pdu)
 {
     return dis_encode_start_resume(out, capacity, &pdu->start);
+}
+
+static Status decode_stop_freeze(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_stop_freeze(&out->stop, pdu, octets);
 }
 
 static size_t encode_stop_freeze(uint8_t *out, size_t capacity, const DisPdu *pdu)
@@ -32,14 +78,14 @@ static size_t encode_stop_freeze(uint8_t *out, size_t capacity, const DisPdu *pd
     return dis_encode_stop_freeze(out, capacity, &pdu->stop);
 }
 
+static Status decode_data(DisPdu *out, const uint8_t *pdu, size_t octets)
+{
+    return dis_decode_data(&out->data, pdu, octets);
+}
+
 static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
 {
     return dis_encode_data(out, capacity, &pdu->data);
-}
-
-static size_t encode_entity_state_update(uint8_t *out, size_t capacity, const DisPdu *pdu)
-{
-    return dis_encode_entity_state_update(out, capacity, &pdu->update);
 }
 
 /* Types of IEEE 1278.1-2012, table of PDU types. Those with functions are decoded; of these, one that is acted upon has
@@ -48,15 +94,15 @@ static size_t encode_entity_state_update(uint8_t *out, size_t capacity, const Di
 typedef struct PduType {
     const char *name;
     unsigned    least_octets; /* before variable records; 0: not acted upon */
-    DisDecoder *decode;       /* NULL: not decoded */
+    Status    (*decode)(DisPdu *out, const uint8_t *pdu, size_t octets); /* NULL: not decoded */
     size_t    (*encode)(uint8_t *out, size_t capacity, const DisPdu *pdu);
 } PduType;
 
 static const PduType pdu_type[256] = {
     [0] = {"Other"},
-    [1] = {"Entity State", 144, dis_decode_entity_state, encode_entity_state},
-    [2] = {"Fire", 96, dis_decode_fire, encode_fire},
-    [3] = {"Detonation", 104, dis_decode_detonation, encode_detonation},
+    [1] = {"Entity State", 144, decode_entity_state, encode_entity_state},
+    [2] = {"Fire", 96, decode_fire, encode_fire},
+    [3] = {"Detonation", 104, decode_detonation, encode_detonation},
     [4] = {"Collision"},
     [5] = {"Service Request"},
     [6] = {"Resupply Offer"},
@@ -65,15 +111,15 @@ static const PduType pdu_type[256] = {
     [9] = {"Repair Complete"},
     [10] = {"Repair Response"},
     [11] = {"Create Entity"},
-    [12] = {"Remove Entity", 28, dis_decode_remove_entity, encode_remove_entity},
-    [13] = {"Start/Resume", 44, dis_decode_start_resume, encode_start_resume},
-    [14] = {"Stop/Freeze", 40, dis_decode_stop_freeze, encode_stop_freeze},
+    [12] = {"Remove Entity", 28, decode_remove_entity, encode_remove_entity},
+    [13] = {"Start/Resume", 44, decode_start_resume, encode_start_resume},
+    [14] = {"Stop/Freeze", 40, decode_stop_freeze, encode_stop_freeze},
     [15] = {"Acknowledge"},
     [16] = {"Action Request"},
     [17] = {"Action Response"},
     [18] = {"Data Query"},
-    [19] = {"Set Data", 0, dis_decode_data, encode_data},
-    [20] = {"Data", 0, dis_decode_data, encode_data},
+    [19] = {"Set Data", 0, decode_data, encode_data},
+    [20] = {"Data", 0, decode_data, encode_data},
     [21] = {"Event Report"},
     [22] = {"Comment"},
     [23] = {"Electromagnetic Emission"},
@@ -120,7 +166,7 @@ static const PduType pdu_type[256] = {
     [64] = {"Set Record-R"},
     [65] = {"Record Query-R"},
     [66] = {"Collision-Elastic"},
-    [67] = {"Entity State Update", 72, dis_decode_entity_state_update, encode_entity_state_update},
+    [67] = {"Entity State Update", 72, decode_entity_state_update, encode_entity_state_update},
     [68] = {"Directed Energy Fire"},
     [69] = {"Entity Damage Status"},
     [70] = {"Information Operations Action"},
@@ -138,10 +184,9 @@ unsigned dis_least_octets(uint8_t type)
 Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets)
 {
     if (octets < dis_header_octets) return STATUS_TRUNCATED;
-    const uint8_t     type   = dis_load_header(pdu).type;
-    DisDecoder *const decode = pdu_type[type].decode;
-    if (!decode) return STATUS_UNSUPPORTED;
-    const Status status = decode(out, pdu, octets);
+    const uint8_t type = dis_load_header(pdu).type;
+    if (!pdu_type[type].decode) return STATUS_UNSUPPORTED;
+    const Status status = pdu_type[type].decode(out, pdu, octets);
     if (status == STATUS_OK) out->type = type;
     return status;
 }

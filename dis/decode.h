@@ -33,5 +33,7 @@ Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);
 size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu);
 /* Counts a PDU that dis_decode refused, by reason; one of a type that is not acted upon is no drop. */
 void   dis_count_refused(DisCounters *counters, uint8_t type, Status status);
+/* `Entity State`, `Attribute`, ...; `unknown type` beyond 72. */
+const char *dis_pdu_type_name(uint8_t type);
 
 #endif

@@ -1,5 +1,6 @@
 /* dis/entity_state.c: Entity State and Entity State Update, by the offsets of IEEE 1278.1. */
-#include "dis/decode_private.h"
+#include "dis/entity_state_private.h"
+
 #include "dis/reader.h"
 
 enum { entity_state_octets = 144, entity_state_update_octets = 72 };
@@ -44,7 +45,7 @@ void dis_store_variable_parameters(uint8_t *records, const DisVariableParameter 
 
 /* Octets beyond the records that variable_count announces are ignored (and so not written again): no such
  * PDU occurs in the 1354 recorded ones this was checked on. */
-Status dis_decode_entity_state(DisPdu *to, const uint8_t *pdu, size_t octets)
+Status dis_decode_entity_state(DisEntityState *out, const uint8_t *pdu, size_t octets)
 {
     DisReader      r = dis_pdu_reader(pdu, octets);
     const uint8_t *p = dis_take(&r, entity_state_octets);
@@ -53,7 +54,6 @@ Status dis_decode_entity_state(DisPdu *to, const uint8_t *pdu, size_t octets)
     const uint8_t *records = dis_take(&r, (size_t)count * dis_variable_parameter_octets);
     if (!records) return STATUS_BAD_VALUE;
 
-    DisEntityState *out = &to->entity_state;
     out->header = dis_load_header(p);
     out->id = dis_load_entity_id(p + 12);
     out->force = p[18];
@@ -107,7 +107,7 @@ size_t dis_encode_entity_state(uint8_t *out, size_t capacity, const DisEntitySta
 
 /* ---- Entity State Update ----------------------------------------------------------------------- */
 
-Status dis_decode_entity_state_update(DisPdu *to, const uint8_t *pdu, size_t octets)
+Status dis_decode_entity_state_update(DisEntityStateUpdate *out, const uint8_t *pdu, size_t octets)
 {
     DisReader      r = dis_pdu_reader(pdu, octets);
     const uint8_t *p = dis_take(&r, entity_state_update_octets);
@@ -116,7 +116,6 @@ Status dis_decode_entity_state_update(DisPdu *to, const uint8_t *pdu, size_t oct
     const uint8_t *records = dis_take(&r, (size_t)count * dis_variable_parameter_octets);
     if (!records) return STATUS_BAD_VALUE;
 
-    DisEntityStateUpdate *out = &to->update;
     out->header = dis_load_header(p);
     out->id = dis_load_entity_id(p + 12);
     out->padding = p[18];

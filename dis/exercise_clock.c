@@ -6,6 +6,8 @@
  * the times of a sender whose stamps are a clock. */
 #include "dis/exercise_clock.h"
 
+#include "dis/datagram.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 

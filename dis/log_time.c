@@ -4,6 +4,7 @@
  * compressed or stretched; the stamps inside are then the better clock. They are believed only when they
  * behave like one, and when what the reports say of motion does not contradict them: an entity goes its speed times
  * the seconds that passed by the right clock. */
+#include "dis/datagram.h"
 #include "dis/log.h"
 
 #include "dis/decode.h"

@@ -1,4 +1,4 @@
-/* dis/pdu.h: what every PDU shares: identifiers, types, the header, and the walk through a datagram.
+/* dis/pdu.h: what every PDU shares: identifiers, types, the header, counters.
  *
  * Wire facts: IEEE 1278.1-1995 (version 5), 1278.1A-1998 (6), 1278.1-2012 (7). Structs are plain and keep
  * every octet, padding too, so that decode and encode are exact inverses. */
@@ -69,8 +69,6 @@ typedef enum DisDrop {
 } DisDrop;
 
 const char *dis_drop_name(DisDrop drop);
-/* `Entity State`, `Attribute`, ...; `unknown type` beyond 72. */
-const char *dis_pdu_type_name(uint8_t type);
 
 typedef struct DisCounters {
     uint64_t datagrams;
@@ -78,24 +76,6 @@ typedef struct DisCounters {
     uint64_t dropped[DIS_DROP_COUNT];
     uint64_t stamps_doubted; /* PDUs that count from their arrival although they are stamped: exercise_clock.h */
 } DisCounters;
-
-typedef struct DisReader DisReader;
-typedef struct DisWriter DisWriter;
-
-/* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
- * false at the end or at the first misfit, which is counted. PDUs returned are counted by type.
- *
- *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
- *
- * pdu: header.length octets starting at the header, inside the datagram. */
-bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
-                  DisCounters *counters);
-
-/* The sender of a PDU: every type of the standard names its site and application right after the header.
- * False, and out untouched, for a type outside it or one too short. */
-bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu);
-/* Of which of its sender's entities it is a report (Entity State, Entity State Update); -1: of none. */
-int  dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
 
 /* ---- arrival times ------------------------------------------------------------------------------- */
 

@@ -9,15 +9,15 @@
 
 #include "dis/pdu.h"
 
-struct DisReader {
+typedef struct DisReader {
     const uint8_t *at, *end;
     bool           truncated;
-};
+} DisReader;
 
-struct DisWriter {
+typedef struct DisWriter {
     uint8_t *at, *end;
     bool     overflow;
-};
+} DisWriter;
 
 /* ---- loads and stores at a known place ----------------------------------------------------- */
 
@@ -288,14 +288,5 @@ static inline void dis_write_entity_type(DisWriter *w, DisEntityType type)
     uint8_t *p = dis_give(w, 8);
     if (p) dis_store_entity_type(p, type);
 }
-
-/* ---- variable parameter records: Entity State, its Update, Detonation ----------------------- */
-
-enum { dis_variable_parameter_octets = 16 };
-
-struct DisVariableParameter;
-/* count records of 16 octets each; the caller has checked that they are there. */
-void dis_load_variable_parameters(struct DisVariableParameter *out, const uint8_t *records, int count);
-void dis_store_variable_parameters(uint8_t *records, const struct DisVariableParameter *from, int count);
 
 #endif

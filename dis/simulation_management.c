@@ -1,5 +1,6 @@
 /* dis/simulation_management.c: Remove Entity, Start/Resume, Stop/Freeze. */
-#include "dis/decode_private.h"
+#include "dis/simulation_management_private.h"
+
 #include "dis/reader.h"
 
 enum { remove_entity_octets = 28, start_resume_octets = 44, stop_freeze_octets = 40 };
@@ -18,7 +19,7 @@ static void write_clock_time(DisWriter *w, DisClockTime time)
     dis_write_u32(w, time.past_hour);
 }
 
-Status dis_decode_remove_entity(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_remove_entity(DisRemoveEntity *out, const uint8_t *pdu, size_t octets)
 {
     DisReader       r = dis_pdu_reader(pdu, octets);
     DisRemoveEntity remove;
@@ -27,7 +28,7 @@ Status dis_decode_remove_entity(DisPdu *out, const uint8_t *pdu, size_t octets)
     remove.receiving = dis_read_entity_id(&r);
     remove.request = dis_read_u32(&r);
     if (r.truncated) return STATUS_TRUNCATED;
-    out->remove = remove;
+    *out = remove;
     return STATUS_OK;
 }
 
@@ -42,7 +43,7 @@ size_t dis_encode_remove_entity(uint8_t *out, size_t capacity, const DisRemoveEn
     return remove_entity_octets;
 }
 
-Status dis_decode_start_resume(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_start_resume(DisStartResume *out, const uint8_t *pdu, size_t octets)
 {
     DisReader      r = dis_pdu_reader(pdu, octets);
     DisStartResume start;
@@ -53,7 +54,7 @@ Status dis_decode_start_resume(DisPdu *out, const uint8_t *pdu, size_t octets)
     start.simulation = read_clock_time(&r);
     start.request = dis_read_u32(&r);
     if (r.truncated) return STATUS_TRUNCATED;
-    out->start = start;
+    *out = start;
     return STATUS_OK;
 }
 
@@ -70,7 +71,7 @@ size_t dis_encode_start_resume(uint8_t *out, size_t capacity, const DisStartResu
     return start_resume_octets;
 }
 
-Status dis_decode_stop_freeze(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_stop_freeze(DisStopFreeze *out, const uint8_t *pdu, size_t octets)
 {
     DisReader     r = dis_pdu_reader(pdu, octets);
     DisStopFreeze stop;
@@ -83,7 +84,7 @@ Status dis_decode_stop_freeze(DisPdu *out, const uint8_t *pdu, size_t octets)
     dis_read_octets(stop.padding, &r, sizeof stop.padding);
     stop.request = dis_read_u32(&r);
     if (r.truncated) return STATUS_TRUNCATED;
-    out->stop = stop;
+    *out = stop;
     return STATUS_OK;
 }
 

@@ -4,7 +4,7 @@
 #ifndef DIS_UDP_RING_H
 #define DIS_UDP_RING_H
 
-#include "dis/udp.h"
+#include "pitviper.h"
 
 /* Record and octets are whole units, so that a gap at the end of the ring holds at least this. */
 typedef struct DisRingRecord {

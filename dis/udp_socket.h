@@ -2,7 +2,7 @@
 #ifndef DIS_UDP_SOCKET_H
 #define DIS_UDP_SOCKET_H
 
-#include "dis/udp.h"
+#include "dis/udp_config.h"
 
 #include <netinet/in.h>
 #include <sys/socket.h>

@@ -1,5 +1,7 @@
 /* dis/warfare.c: Fire and Detonation, field by field in the order of IEEE 1278.1. */
-#include "dis/decode_private.h"
+#include "dis/warfare_private.h"
+
+#include "dis/entity_state_private.h"
 #include "dis/reader.h"
 
 enum { fire_octets = 96, detonation_octets = 104 };
@@ -42,7 +44,7 @@ static void write_descriptor(DisWriter *w, const DisDescriptor *d)
     dis_write_u16(w, d->rate);
 }
 
-Status dis_decode_fire(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_fire(DisFire *out, const uint8_t *pdu, size_t octets)
 {
     DisReader r = dis_pdu_reader(pdu, octets);
     DisFire   fire;
@@ -57,7 +59,7 @@ Status dis_decode_fire(DisPdu *out, const uint8_t *pdu, size_t octets)
     dis_read_f32(fire.velocity_mps, &r, 3);
     dis_read_f32(&fire.range_m, &r, 1);
     if (r.truncated) return STATUS_TRUNCATED;
-    out->fire = fire;
+    *out = fire;
     return STATUS_OK;
 }
 
@@ -78,7 +80,7 @@ size_t dis_encode_fire(uint8_t *out, size_t capacity, const DisFire *pdu)
     return fire_octets;
 }
 
-Status dis_decode_detonation(DisPdu *out, const uint8_t *pdu, size_t octets)
+Status dis_decode_detonation(DisDetonation *out, const uint8_t *pdu, size_t octets)
 {
     DisReader     r = dis_pdu_reader(pdu, octets);
     DisDetonation d;
@@ -98,8 +100,8 @@ Status dis_decode_detonation(DisPdu *out, const uint8_t *pdu, size_t octets)
 
     const uint8_t *records = dis_take(&r, (size_t)d.variable_count * dis_variable_parameter_octets);
     if (!records) return STATUS_BAD_VALUE;
-    memcpy(&out->detonation, &d, offsetof(DisDetonation, variable)); /* 255 unused records stay where they are */
-    dis_load_variable_parameters(out->detonation.variable, records, d.variable_count);
+    memcpy(out, &d, offsetof(DisDetonation, variable)); /* 255 unused records stay where they are */
+    dis_load_variable_parameters(out->variable, records, d.variable_count);
     return STATUS_OK;
 }
 

@@ -1,5 +1,6 @@
 /* entities/survey/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
+#include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_index.h"
@@ -369,4 +370,23 @@ const Track *survey_track(const Survey *survey, DisEntityId id)
         else high = middle;
     }
     return NULL;
+}
+
+const Shot *survey_shot(const Survey *survey, DisEntityId munition)
+{
+    int low = 0, high = survey->shot_count;
+    if (!survey->shot_by_munition) { /* a survey made by hand */
+        for (int i = 0; i < survey->shot_count; i++)
+            if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return survey->shot + i;
+        return NULL;
+    }
+    while (low < high) { /* the first that is not before */
+        const int middle = low + (high - low) / 2;
+        const Shot *shot = survey->shot + survey->shot_by_munition[middle];
+        if (dis_entity_id_compare(shot->munition, munition) < 0) low = middle + 1;
+        else high = middle;
+    }
+    if (low == survey->shot_count) return NULL;
+    const Shot *found = survey->shot + survey->shot_by_munition[low];
+    return dis_entity_id_compare(found->munition, munition) == 0 ? found : NULL;
 }

@@ -6,6 +6,7 @@
 #include "dis/decode.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
+#include "entities/survey/shot.h"
 
 /* One report of where an entity was. */
 typedef struct TrackPoint {
@@ -23,15 +24,6 @@ typedef struct Track {
     int           count;
     TrackPoint   *point;          /* in order of time; of a munition heard to burst later, the burst is the last */
 } Track;
-
-typedef struct Shot {
-    DisEntityId firing, target, munition; /* as in Fire; target 0:0:0 when unknown */
-    double      fire_s;                   /* NaN: no Fire heard */
-    double      detonation_s;             /* NaN: no Detonation heard */
-    double      p_burst_ecef[3];
-    DisEntityId hit;                      /* target of the Detonation, 0:0:0: none */
-    uint8_t     result;
-} Shot;
 
 typedef struct Survey {
     int       track_count, shot_count;

@@ -202,21 +202,3 @@ Status survey_order_shots(int **by_munition, const Shot *shot, int count)
     *by_munition = order;
     return STATUS_OK;
 }
-
-const Shot *survey_shot(const Survey *survey, DisEntityId munition)
-{
-    int low = 0, high = survey->shot_count;
-    if (!survey->shot_by_munition) { /* a survey made by hand */
-        for (int i = 0; i < survey->shot_count; i++)
-            if (dis_entity_id_compare(survey->shot[i].munition, munition) == 0) return survey->shot + i;
-        return NULL;
-    }
-    while (low < high) { /* the first that is not before */
-        const int middle = low + (high - low) / 2;
-        if (dis_entity_id_compare(survey->shot[survey->shot_by_munition[middle]].munition, munition) < 0) low = middle + 1;
-        else high = middle;
-    }
-    if (low == survey->shot_count) return NULL;
-    const Shot *found = survey->shot + survey->shot_by_munition[low];
-    return dis_entity_id_compare(found->munition, munition) == 0 ? found : NULL;
-}

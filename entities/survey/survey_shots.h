@@ -2,7 +2,7 @@
 #ifndef ENTITIES_SURVEY_SURVEY_SHOTS_H
 #define ENTITIES_SURVEY_SURVEY_SHOTS_H
 
-#include "entities/survey/survey.h"
+#include "entities/survey/shot.h"
 
 /* One Fire or Detonation as heard. */
 typedef struct WarfareEvent {

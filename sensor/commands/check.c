@@ -9,7 +9,7 @@
 #include "terrain/earth/geoid.h"
 #include "terrain/landscape/ground_image.h"
 #include "terrain/elevation/raster.h"
-#include "sensor/commands/next_option.h"
+#include "sensor/settings/next_option.h"
 
 #include <errno.h>
 #include <stdio.h>

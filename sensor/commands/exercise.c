@@ -5,8 +5,8 @@
 #include "dis/recorder.h"
 #include "dis/udp.h"
 #include "entities/scenario/exercise.h"
-#include "sensor/commands/next_option.h"
-#include "sensor/commands/overwrite.h"
+#include "sensor/settings/next_option.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
 #include <errno.h>

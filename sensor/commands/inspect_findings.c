@@ -1,6 +1,8 @@
 /* sensor/commands/inspect_findings.c: one pass over a log: every PDU decoded once, rows by id. */
 #include "sensor/commands/inspect_findings.h"
 
+#include "dis/datagram.h"
+
 #include <math.h>
 #include <stdlib.h>
 

@@ -4,6 +4,7 @@
 
 #include "entities/catalog/catalog.h"
 #include "terrain/earth/geodesy.h"
+#include "dis/decode.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -4,6 +4,7 @@
  * held against the other. */
 #include "sensor/commands/inspect_private.h"
 
+#include "dis/datagram.h"
 #include "dis/decode.h"
 
 #include <stdio.h>

@@ -4,10 +4,10 @@
 
 #include "entities/import/model_import.h"
 #include "render/frame/render.h"
+#include "render/scene/upright.h"
 #include "sensor/detector/colour.h"
 #include "sensor/detector/level.h"
 #include "sensor/detector/quantise.h"
-#include "sensor/node/seeker.h"
 #include "sensor/publish/image_file.h"
 
 #include <stdlib.h>

@@ -3,8 +3,8 @@
 
 #include "dis/recorder.h"
 #include "dis/udp.h"
-#include "sensor/commands/next_option.h"
-#include "sensor/commands/overwrite.h"
+#include "sensor/settings/next_option.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/node/stop.h"
 
 #include <stdio.h>

@@ -2,28 +2,19 @@
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
 
+#include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "render/scene/view.h"
 #include "terrain/earth/sun.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/player.h"
 
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 enum { who_size = 80 };
 
 const char host_munition[] = "munition", host_observer[] = "observer";
-
-void choice_add(Choices *choices, const char *format, ...)
-{
-    if (choices->count >= choices_capacity) return;
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(choices->line[choices->count++], choice_text_size, format, arguments);
-    va_end(arguments);
-}
 
 bool choice_is_land(const Track *track)
 {

@@ -6,17 +6,9 @@
 
 #include "entities/catalog/catalog.h"
 #include "entities/survey/survey.h"
+#include "sensor/settings/choice_lines.h"
 #include "sensor/settings/config.h"
 #include "terrain/landscape/landscape.h"
-
-enum { choices_capacity = 32, choice_text_size = 200 };
-
-typedef struct Choices {
-    int  count;
-    char line[choices_capacity][choice_text_size];
-} Choices;
-
-void choice_add(Choices *choices, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Who carries the sensor, over which span of exercise time, and what it looks at. */
 typedef struct HostPlan {

@@ -2,6 +2,8 @@
 #include "sensor/node/health.h"
 
 #include "sensor/node/opening.h"
+#include "dis/datagram.h"
+#include "dis/decode.h"
 
 #include <errno.h>
 #include <stdio.h>

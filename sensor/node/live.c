@@ -8,7 +8,7 @@
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
-#include "sensor/commands/overwrite.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/quality/machine_factor.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/span.h"

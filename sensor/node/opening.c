@@ -1,6 +1,7 @@
 /* sensor/node/opening.c: which datagrams a causal run makes its choices from. */
 #include "sensor/node/opening.h"
 
+#include "dis/datagram.h"
 #include "dis/decode.h"
 
 bool opening_own(const DisDatagram *datagram, const Config *config)

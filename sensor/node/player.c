@@ -1,6 +1,7 @@
 /* sensor/node/player.c: PDUs in order of time into the entity table, each decoded once, when it is fed. */
 #include "sensor/node/player.h"
 
+#include "dis/datagram.h"
 #include "dis/enumerations.h"
 #include "dis/exercise_clock.h"
 

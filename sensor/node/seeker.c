@@ -39,31 +39,6 @@ void seeker_step(Seeker *seeker, const double d_body[3])
     seeker->elevation_rad += clamp(share * (elevation_rad - seeker->elevation_rad), -most, most);
 }
 
-/* right = d x top: of unit vectors that are not parallel. */
-static void camera_topped(double r_enu_from_cam[9], const double d_enu[3], const double top_enu[3])
-{
-    double right[3], down[3];
-    v3_cross(right, d_enu, top_enu);
-    v3_normalize(right, right);
-    v3_cross(down, d_enu, right);
-    for (int i = 0; i < 3; i++) {
-        r_enu_from_cam[3 * i]     = right[i];
-        r_enu_from_cam[3 * i + 1] = down[i];
-        r_enu_from_cam[3 * i + 2] = d_enu[i];
-    }
-}
-
-static bool near_vertical(const double d_enu[3]) { return !(hypot(d_enu[0], d_enu[1]) > sin(seeker_vertical_rad)); }
-
-void camera_upright(double r_enu_from_cam[9], const double d_enu[3])
-{
-    static const double north[3] = {0, 1, 0}, up[3] = {0, 0, 1};
-    double              d[3] = {d_enu[0], d_enu[1], d_enu[2]};
-    /* what is unit to rounding keeps its bits */
-    if (!(fabs(v3_dot(d, d) - 1) <= 1e-14) && !v3_normalize(d, d)) memcpy(d, north, sizeof d);
-    camera_topped(r_enu_from_cam, d, near_vertical(d) ? north : up);
-}
-
 /* Part of a vector across d, unit; false where it has none to speak of. */
 static bool across(double out[3], const double v[3], const double d[3])
 {
@@ -93,7 +68,7 @@ void seeker_roll(Seeker *seeker, const double r_enu_from_body[9])
     static const double up[3] = {0, 0, 1}, tick_s = 1.0 / seeker_ticks_per_s;
     double              d[3], upright[3], carried[3], side[3];
     boresight(d, seeker, r_enu_from_body);
-    const bool vertical = near_vertical(d);
+    const bool vertical = camera_near_vertical(d);
     const bool kept     = seeker->top_known && across(carried, seeker->top_enu, d);
     seeker->upright     = !vertical;
     if (!vertical) {
@@ -125,7 +100,7 @@ void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double 
 {
     double d_enu[3], top_enu[3];
     boresight(d_enu, seeker, r_enu_from_body);
-    const bool upright = !seeker->top_known || (seeker->upright && !near_vertical(d_enu));
+    const bool upright = !seeker->top_known || (seeker->upright && !camera_near_vertical(d_enu));
     if (upright || !across(top_enu, seeker->top_enu, d_enu)) camera_upright(r_enu_from_cam, d_enu);
     else camera_topped(r_enu_from_cam, d_enu, top_enu);
     if (seeker->config.roll_rad == 0) return;

@@ -6,7 +6,7 @@
  * fixed grid of exercise time, so where it points at t does not depend on which frames are made.
  *
  * Near the vertical that plane means nothing: the roll of the picture is the error of the boresight over the angle to
- * the vertical, and an attitude in float32 (as DIS sends it) has steps of 2.4e-7 rad. Within seeker_vertical_rad of
+ * the vertical, and an attitude in float32 (as DIS sends it) has steps of 2.4e-7 rad. Within camera_vertical_rad of
  * straight up or down the picture therefore keeps the top it had, carried along without roll, and out of there it turns
  * back to upright no faster than seeker_roll_rps, the short way. A head that is first seen within starts with its top
  * towards the body's nose, or, looking along the nose, towards the body's top. Outside, three angles that are each wrong
@@ -15,11 +15,10 @@
 #ifndef SENSOR_NODE_SEEKER_H
 #define SENSOR_NODE_SEEKER_H
 
-#include "pitviper.h"
+#include "render/scene/upright.h"
 
 enum { seeker_ticks_per_s = 100 };
 
-static const double seeker_vertical_rad = 2e-3;
 static const double seeker_roll_rps = 1.5707963267948966; /* 90 deg/s; estimate: roll gimbals of public data sheets
                                                            * reach 60 .. 200 */
 
@@ -47,9 +46,5 @@ void seeker_roll(Seeker *seeker, const double r_enu_from_body[9]);
 /* Camera axes of the present gimbal angles: r_enu_from_cam, for a body whose attitude is r_enu_from_body. Upright where
  * seeker_roll was never called. */
 void seeker_camera(double r_enu_from_cam[9], const Seeker *seeker, const double r_enu_from_body[9]);
-
-/* Camera looking along a direction of any length, upright in ENU; within seeker_vertical_rad of straight up or down, and
- * along no direction (zero, not finite: taken as north), the top is north. */
-void camera_upright(double r_enu_from_cam[9], const double d_enu[3]);
 
 #endif

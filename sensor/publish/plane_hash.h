@@ -14,14 +14,12 @@
 #define SENSOR_PUBLISH_PLANE_HASH_H
 
 #include "sensor/publish/plane.h"
+#include "sensor/settings/sha256.h"
 
-enum { sha256_text_size = 65, plane_hash_max_planes = 256 };
+enum { plane_hash_max_planes = 256 };
 
 /* STATUS_BAD_VALUE: too many planes, an empty or repeated name, a size below 1. No planes: the hash of
  * nothing. out is untouched on failure. */
 Status plane_hash(char out[sha256_text_size], const Plane *plane, int plane_count);
-Status sha256_bytes(char out[sha256_text_size], const void *bytes, size_t count);
-/* Of a file's bytes. Logs path and reason on failure. */
-Status sha256_file(char out[sha256_text_size], const char *path);
 
 #endif

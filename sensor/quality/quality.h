@@ -6,7 +6,8 @@
 #ifndef SENSOR_QUALITY_QUALITY_H
 #define SENSOR_QUALITY_QUALITY_H
 
-#include "sensor/node/choices.h"
+#include "sensor/settings/choice_lines.h"
+#include "sensor/settings/config.h"
 
 /* The bands with an error in the table; not the radar. */
 enum { quality_bands = BAND_LWIR + 1, quality_rows_max = 256 };

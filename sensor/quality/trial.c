@@ -2,7 +2,7 @@
 #include "sensor/quality/trial.h"
 
 #include "entities/motion/dead_reckoning.h"
-#include "sensor/node/seeker.h"
+#include "render/scene/upright.h"
 
 /* ---- who is there ----------------------------------------------------------------------------- */
 

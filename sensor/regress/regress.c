@@ -1,9 +1,10 @@
 /* sensor/regress/regress.c: the command `pitviper regress`: its options, the cases given, their output and summary. */
 #include "sensor/regress/regress.h"
 
-#include "sensor/commands/next_option.h"
 #include "sensor/node/stop.h"
+#include "sensor/publish/frame_files.h"
 #include "sensor/regress/report.h"
+#include "sensor/settings/next_option.h"
 
 #include <dirent.h>
 #include <errno.h>
@@ -279,7 +280,7 @@ static void remove_made(const char *folder) { nftw(folder, remove_one, 16, FTW_D
 static bool open_work(Suite *s, char own[case_path_size])
 {
     *own = 0;
-    if (s->o.work) return make_folder(s->o.work);
+    if (s->o.work) return frame_files_folder(s->o.work) == STATUS_OK;
     if (!temp_folder(own)) return false;
     s->o.work = own;
     return true;

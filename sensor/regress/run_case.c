@@ -246,14 +246,12 @@ static void compare_case(CaseResult *r)
     if (r->verdict.other_log) snprintf(r->line + n, sizeof r->line - n, "; and the log is not that of the baseline");
 }
 
-bool make_folder(const char *path) { return frame_files_folder(path) == STATUS_OK; }
-
 static void run_steps(CaseResult *r, const CaseHow *how)
 {
     char log[path_size], config[path_size];
     if (*r->c.log && !find_log(log, r, how)) return;
     if (!how->update && !has_record(r)) return;
-    if (!make_folder(r->work)) {
+    if (frame_files_folder(r->work) != STATUS_OK) {
         end_case(r, CASE_BROKEN, "cannot make the folder %.300s; choose another place with --work", r->work);
         return;
     }

@@ -1,6 +1,8 @@
 /* sensor/regress/update.c: approves the output of a run: writes the baseline (record/) and card.md. */
 #include "sensor/regress/update.h"
 
+#include "sensor/publish/frame_files.h"
+
 #include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
@@ -79,7 +81,7 @@ static bool move_files(const char *folder, const char *to)
 
 static Status write_products(const CaseResult *r, const char *out, const char *to, char date[32])
 {
-    Status status = make_folder(to) && move_files(to, NULL) ? STATUS_OK : STATUS_IO;
+    Status status = frame_files_folder(to) == STATUS_OK && move_files(to, NULL) ? STATUS_OK : STATUS_IO;
     for (int i = 0; i < r->c.frames.count && status == STATUS_OK; i++) {
         RecordFrame frame = {0};
         status = frame_from_run(&frame, out, (int)r->c.frames.number[i]);
@@ -224,7 +226,8 @@ void update_case(CaseResult *r, const char *why)
     Status status = read_run(&run, out);
     if (status == STATUS_OK) take_choices(r, &run);
     if (status == STATUS_OK) status = write_products(r, out, fresh, date);
-    if (status == STATUS_OK && !(make_folder(record) && move_files(record, NULL) && move_files(fresh, record))) {
+    if (status == STATUS_OK && (frame_files_folder(record) != STATUS_OK || !move_files(record, NULL) ||
+                                !move_files(fresh, record))) {
         log_error("regress: cannot write in %s: %s", record, strerror(errno));
         status = STATUS_IO;
     }

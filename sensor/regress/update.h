@@ -2,7 +2,7 @@
 #ifndef SENSOR_REGRESS_UPDATE_H
 #define SENSOR_REGRESS_UPDATE_H
 
-#include "sensor/regress/run_case.h"
+#include "sensor/regress/case_result.h"
 
 /* The products in result->work become result->c.folder/record, all or none of them; card.md gets an entry: why, what
  * differs from the previous baseline, date of the exercise, version, hash of the settings. Sets the result: CASE_OK,

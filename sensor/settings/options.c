@@ -2,7 +2,7 @@
  * passed to its variants. */
 #include "sensor/settings/options.h"
 
-#include "sensor/commands/next_option.h"
+#include "sensor/settings/next_option.h"
 
 #include <getopt.h>
 #include <stdio.h>

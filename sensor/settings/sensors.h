@@ -3,7 +3,7 @@
 #define SENSOR_SETTINGS_SENSORS_H
 
 #include "sensor/detector/chain.h"
-#include "sensor/node/choices.h"
+#include "sensor/settings/choice_lines.h"
 #include "sensor/settings/config.h"
 
 typedef struct Sensors {

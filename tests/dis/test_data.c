@@ -3,6 +3,7 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
+#include "dis/datagram.h"
 #include "dis/log.h"
 #include "dis/reader.h"
 

@@ -1,6 +1,7 @@
 /* tests/dis/test_pdu.c: layouts octet by octet, exact inverses, and what a datagram may do wrong. */
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
+#include "dis/datagram.h"
 
 static DisPdu decoded, again;
 

@@ -2,6 +2,7 @@
 #include "tests/check.h"
 #include "tests/dis/random_pdu.h"
 
+#include "dis/datagram.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
 

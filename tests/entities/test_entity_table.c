@@ -1,5 +1,6 @@
 /* tests/entities/test_entity_table.c: who is there, since when, until when, and where. */
 #include "tests/entities/entity_fixture.h"
+#include "dis/datagram.h"
 #include "dis/log.h"
 #include "entities/table/entity_index.h"
 

@@ -6,6 +6,7 @@
 #include "tests/entities/entity_fixture.h"
 
 #include "entities/scenario/exercise.h"
+#include "dis/datagram.h"
 
 typedef struct Heard {
     Fixture   *fixture;      /* NULL: only counted */

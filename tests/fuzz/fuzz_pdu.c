@@ -3,6 +3,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 #include "tests/dis/random_pdu.h"
 
+#include "dis/datagram.h"
 #include "dis/exercise_clock.h"
 
 #include <stdlib.h>

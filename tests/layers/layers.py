@@ -40,20 +40,10 @@ LIBRARIES = (
 WING_EXCEPTIONS = {
     ('render/light', 'render/air'): 'paths are shaded with the air that is made of their Planck tables',
     ('render/scene', 'render/parts'): 'a visibility pass asks the traced parts, which know its hits',
-    ('sensor/publish', 'sensor/node'): 'a pair\'s record names the files of a frame',
-    ('sensor/node', 'sensor/commands'): 'replay is the sweep\'s child, and asks before it overwrites',
-    ('sensor/settings', 'sensor/node'): 'the list of choices',
-    ('sensor/settings', 'sensor/commands'): 'the next option of a command line',
-    ('sensor/quality', 'sensor/node'): 'the list of choices; an upright camera',
 }
 # Circles between files (x.c, x.h and x_private.h are one), each as its sorted members, with the reason.
 FILE_EXCEPTIONS = {
-    ('dis/pdu', 'dis/reader'): 'the reader is the PDU\'s cursor',
-    ('dis/udp', 'dis/udp_link', 'dis/udp_socket'): 'one socket in three files',
-    ('entities/survey/survey', 'entities/survey/survey_shots'): 'one survey in two files',
     ('render/parts/parts', 'render/scene/visibility'): 'as the wings',
-    ('sensor/node/pairs', 'sensor/node/session'): 'one session in two files',
-    ('sensor/regress/run_case', 'sensor/regress/update'): 'an update runs its case again',
 }
 
 

@@ -219,7 +219,7 @@ static void a_dive_through_the_vertical_rolls_steadily(void **state)
 static void beside_the_vertical_the_picture_is_upright(void **state)
 {
     (void)state;
-    for (double off = 1.05 * seeker_vertical_rad; off < 0.1; off *= 1.3)
+    for (double off = 1.05 * camera_vertical_rad; off < 0.1; off *= 1.3)
         for (double heading = 0; heading < 6.2; heading += 0.3) {
             Seeker s = head(60, 1e4, 0);
             double cam[9], exact[9], meant[9], r[9], d[3];
@@ -228,7 +228,7 @@ static void beside_the_vertical_the_picture_is_upright(void **state)
             camera_upright(exact, d);
             as_sent(r, meant);
             tick(cam, &s, r);
-            CHECK(fabs(roll_between(exact, cam)) * 434 < 0.1 * seeker_vertical_rad / off);
+            CHECK(fabs(roll_between(exact, cam)) * 434 < 0.1 * camera_vertical_rad / off);
         }
 }
 

@@ -4,6 +4,7 @@
 
 #include "sensor/bench/dis/network.h"
 #include "sensor/bench/dis/stability.h"
+#include "dis/datagram.h"
 #include "dis/decode.h"
 #include "dis/log.h"
 #include "dis/reader.h"

@@ -2,6 +2,7 @@
  * refused and counted, or every snapshot that follows must be finite. */
 #include "sensor/bench/entities/stability.h"
 
+#include "dis/datagram.h"
 #include "dis/reader.h"
 #include "entities/motion/dead_reckoning.h"
 #include "entities/table/entity_table.h"

@@ -3,6 +3,7 @@
  * finite. */
 #include "sensor/bench/entities/stability.h"
 
+#include "dis/datagram.h"
 #include "dis/decode.h"
 #include "entities/effects/effects.h"
 #include "entities/scenario/exercise.h"

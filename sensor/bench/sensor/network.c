@@ -7,6 +7,7 @@
  * run beside other work, times and losses are shown and not judged. */
 #include "sensor/bench/sensor/network.h"
 
+#include "dis/datagram.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
 #include "sensor/settings/config.h"

@@ -1,5 +1,5 @@
-/* sensor/commands/overwrite.c: refuses to replace existing products unless --overwrite is given. */
-#include "sensor/commands/overwrite.h"
+/* sensor/node/overwrite.c: refuses to replace existing products unless --overwrite is given. */
+#include "sensor/node/overwrite.h"
 
 #include "sensor/publish/frame_files.h"
 

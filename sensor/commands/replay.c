@@ -1,10 +1,10 @@
-/* sensor/node/replay.c: a recorded exercise played to pictures and truth. */
-#include "sensor/node/replay.h"
+/* sensor/commands/replay.c: a recorded exercise played to pictures and truth. */
+#include "sensor/commands/replay.h"
 
 #include "sensor/publish/frame_files.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
-#include "sensor/commands/overwrite.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/commands/sweep.h"

@@ -1,5 +1,5 @@
-/* sensor/commands/next_option.c: one option of a command line, or an error message. */
-#include "sensor/commands/next_option.h"
+/* sensor/settings/next_option.c: one option of a command line, or an error message. */
+#include "sensor/settings/next_option.h"
 
 #include "pitviper.h"
 

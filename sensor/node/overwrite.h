@@ -1,6 +1,6 @@
-/* sensor/commands/overwrite.h: existing products are only replaced with --overwrite. */
-#ifndef SENSOR_COMMANDS_OVERWRITE_H
-#define SENSOR_COMMANDS_OVERWRITE_H
+/* sensor/node/overwrite.h: existing products are only replaced with --overwrite. */
+#ifndef SENSOR_NODE_OVERWRITE_H
+#define SENSOR_NODE_OVERWRITE_H
 
 #include "pitviper.h"
 

@@ -1,0 +1,22 @@
+/* dis/datagram.h: the PDUs of a datagram, one behind the other, and whose a PDU is. */
+#ifndef DIS_DATAGRAM_H
+#define DIS_DATAGRAM_H
+
+#include "dis/pdu.h"
+
+/* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
+ * false at the end or at the first misfit, which is counted. PDUs returned are counted by type.
+ *
+ *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
+ *
+ * pdu: header.length octets starting at the header, inside the datagram. */
+bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, const uint8_t *end,
+                  DisCounters *counters);
+
+/* The sender of a PDU: every type of the standard names its site and application right after the header.
+ * False, and out untouched, for a type outside it or one too short. */
+bool dis_pdu_sender(uint16_t site_application[2], const DisHeader *header, const uint8_t *pdu);
+/* Of which of its sender's entities it is a report (Entity State, Entity State Update); -1: of none. */
+int  dis_pdu_entity(const DisHeader *header, const uint8_t *pdu);
+
+#endif

@@ -1,0 +1,35 @@
+/* dis/log_datagrams.h: what is kept of a capture: its datagrams, and how many packets gave none. */
+#ifndef DIS_LOG_DATAGRAMS_H
+#define DIS_LOG_DATAGRAMS_H
+
+#include "pitviper.h"
+
+typedef struct DisDatagram {
+    double         capture_s;  /* Unix time: dis_unix_s */
+    double         packet_s;   /* the same as in the file, where dis_log_retime made another */
+    uint32_t       packet;     /* 1-based number of the packet in the file, as tshark's frame.number */
+    uint32_t       octets;
+    const uint8_t *bytes;      /* owned by the log */
+} DisDatagram;
+
+/* Packets that gave no datagram, by reason. */
+typedef struct DisLogCounters {
+    uint64_t packets, other_link, other_protocol, other_port, cut_short, bad_fragment;
+} DisLogCounters;
+
+static inline uint64_t dis_log_dropped(const DisLogCounters *c)
+{
+    return c->other_link + c->other_protocol + c->other_port + c->cut_short + c->bad_fragment;
+}
+
+typedef struct DisLog {
+    int            count;
+    DisDatagram   *datagram; /* in file order */
+    DisLogCounters counters;
+    bool           truncated; /* the file ended inside a packet; what came before is here */
+    bool           retimed;   /* packet times did not keep pace with the stamps: made from these */
+    bool           any_port;  /* datagrams of any port were taken */
+    void          *storage;
+} DisLog;
+
+#endif
