@@ -3,7 +3,7 @@
 #define RENDER_AIR_ATMOSPHERE_PRIVATE_H
 
 #include "render/air/atmosphere.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 /* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
 enum { air_tabled_count = 6 };

@@ -4,7 +4,7 @@
  * brightness as twilight does. */
 #include "render/air/daylight_private.h"
 
-#include "render/light/surface_balance.h"
+#include "render/materials/surface_balance.h"
 
 /* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
  * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of

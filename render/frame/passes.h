@@ -12,9 +12,9 @@
 #define RENDER_FRAME_PASSES_H
 
 #include "render/frame/pixels.h"
-#include "render/frame/render.h"
 #include "render/frame/shade.h"
 #include "render/frame/target_sums.h"
+#include "render/frame/world.h"
 
 enum { tile_side_samples = 32 };
 

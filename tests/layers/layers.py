@@ -38,8 +38,6 @@ LIBRARIES = (
 
 # Includes from one wing into another that are left out when circles between wings are looked for, with the reason.
 WING_EXCEPTIONS = {
-    ('render/light', 'render/air'): 'paths are shaded with the air that is made of their Planck tables',
-    ('render/scene', 'render/parts'): 'a visibility pass asks the traced parts, which know its hits',
     ('sensor/publish', 'sensor/node'): 'a pair\'s record names the files of a frame',
     ('sensor/node', 'sensor/commands'): 'replay is the sweep\'s child, and asks before it overwrites',
     ('sensor/settings', 'sensor/node'): 'the list of choices',
@@ -51,7 +49,6 @@ FILE_EXCEPTIONS = {
     ('dis/pdu', 'dis/reader'): 'the reader is the PDU\'s cursor',
     ('dis/udp', 'dis/udp_link', 'dis/udp_socket'): 'one socket in three files',
     ('entities/survey/survey', 'entities/survey/survey_shots'): 'one survey in two files',
-    ('render/parts/parts', 'render/scene/visibility'): 'as the wings',
     ('sensor/node/pairs', 'sensor/node/session'): 'one session in two files',
     ('sensor/regress/run_case', 'sensor/regress/update'): 'an update runs its case again',
 }

@@ -1,5 +1,5 @@
-/* render/scene/visibility.c: what rays meet first, and what stands between a place and the sun. */
-#include "render/scene/visibility_private.h"
+/* render/visibility/visibility.c: what rays meet first, and what stands between a place and the sun. */
+#include "render/visibility/visibility_private.h"
 
 /* ---- which entities a block may see ------------------------------------------------------- */
 
