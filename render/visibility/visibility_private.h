@@ -1,4 +1,4 @@
-/* render/visibility/visibility_private.h: one frame's world, as visibility.c, visibility_pose.c and visibility_crowd.c share it. */
+/* render/visibility/visibility_private.h: one frame's world, as the files visibility*.c share it. */
 #ifndef RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
 #define RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
 
