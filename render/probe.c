@@ -4,7 +4,7 @@
 #include "entities/import/model_import.h"
 #include "render/air/atmosphere.h"
 #include "render/parts/parts.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 #include <stdlib.h>
 

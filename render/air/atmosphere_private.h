@@ -3,7 +3,7 @@
 #define RENDER_AIR_ATMOSPHERE_PRIVATE_H
 
 #include "render/air/atmosphere.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 /* Bands that have tables of their own; AIR_PAN is the sum of b, g and r. */
 enum { air_tabled_count = 6 };
@@ -144,6 +144,14 @@ typedef struct Blend {
 /* The air of any visibility, from the tables' own slices, of which one at least has paths, one scattered light. */
 Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m);
 void   slice_close(Slice *slice);
+/* From the files of a visibility's folder, atmosphere_read.c: the haze, the sun and the sky's own light; paths and
+ * scattered light where the slice says that it has them. */
+Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder);
+/* What all visibilities share: of a model's folder; of etc/atmosphere/bands.csv. */
+Status clear_open(Atmosphere *atmosphere, const char *folder);
+Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT]);
+/* FOLDER/NAME; a logged error where that is too long. */
+Status atmosphere_file(char path[1024], const char *folder, const char *name);
 /* Visibilities so close together that straight lines will do, in rising order: the tables', the ends, some between. */
 int    visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
 

@@ -14,8 +14,8 @@
 
 #include "render/air/atmosphere.h"
 #include "render/scene/hits.h"
-#include "render/light/materials.h"
-#include "render/light/planck.h"
+#include "render/materials/materials.h"
+#include "render/materials/planck.h"
 #include "terrain/earth/sun.h"
 #include "terrain/weather.h"
 

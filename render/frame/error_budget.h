@@ -19,8 +19,9 @@
 #ifndef RENDER_FRAME_ERROR_BUDGET_H
 #define RENDER_FRAME_ERROR_BUDGET_H
 
-#include "render/frame/render.h"
 #include "render/frame/sampling_variance.h"
+#include "render/materials/planck.h"
+#include "terrain/elevation/elevation.h"
 
 /* Of the ground at every second post: its normal less that of all posts there, and its height less theirs, m. False
  * where there is no ground, or its level ends within two posts. */

@@ -8,36 +8,9 @@
  * pixel is its own value times what the footprints leave of it, plus the footprints.
  *
  * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
-#include "render/frame/footprint.h"
-
-#include "render/frame/sampling_variance.h"
+#include "render/frame/footprint_private.h"
 
 #include <stdlib.h>
-
-/* The target's sample nearest the centre of a pixel. */
-typedef struct FootprintTruth {
-    double   square_px; /* of its distance */
-    float    range_m, temp_k, normal[3];
-    uint16_t part, material;
-} FootprintTruth;
-
-struct Footprint {
-    int     entity;                    /* snapshot index */
-    double  box[4];                    /* of all its vertices, px */
-    int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
-    int     x0, y0, x1, y1;            /* pixels that it may touch */
-    double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
-    double *area;                      /* px, a pixel */
-    FootprintTruth *truth;             /* a pixel; NULL: not wanted */
-    /* over the target, px within the image */
-    double  visible, amodal, hidden_ground, hidden_entity;
-    double  veiled[BAND_COUNT];          /* area x what the veil takes */
-    double  square[picture_plane_count]; /* area x radiance^2 */
-    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
-    float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
-    bool   *met;                       /* cells that show the target */
-    int     amodal_box[4];
-};
 
 /* ---- planning ------------------------------------------------------------------------------- */
 
@@ -278,11 +251,7 @@ static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y,
 static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y, double area)
 {
     (void)f, (void)pixel, (void)area;
-    int *box = user;
-    box[0] = box[2] == 0 || x < box[0] ? x : box[0];
-    box[1] = box[3] == 0 || y < box[1] ? y : box[1];
-    box[2] = x + 1 > box[2] ? x + 1 : box[2];
-    box[3] = y + 1 > box[3] ? y + 1 : box[3];
+    grow_pixel_box(user, x, y);
 }
 
 /* Cells whose ray would meet the target with nothing else in the world, close together: no other ray is traced.
@@ -424,169 +393,4 @@ void footprint_task(void *user, int worker, int index)
     const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
     for (int cell = 0; cell < cells; cell += block)
         sample_cells(f, w, job, cell, cells - cell < block ? cells - cell : block, listed);
-}
-
-/* ---- into the picture ----------------------------------------------------------------------- */
-
-void footprints_cover(Job *job)
-{
-    for (int n = 0; n < job->footprints; n++) {
-        const Footprint *f = &job->footprint[n];
-        for (int y = f->y0, k = 0; y < f->y1; y++)
-            for (int x = f->x0; x < f->x1; x++, k++) {
-                const size_t px = pixel_index(job, x, y);
-                if (!(f->area[k] > 0)) continue;
-                /* float sums, one order; two that overlap share the pixel, and their own samples saw to it */
-                job->picture->covered[px] = fminf(job->picture->covered[px] + (float)f->area[k], 1);
-                if (f->area[k] > 0.5 * job->picture->covered[px]) job->coverer[px] = f->entity;
-            }
-    }
-}
-
-/* ---- how wrong -------------------------------------------------------------------------------- */
-
-/* Squared differences of neighbouring cells: as the picture shows them, beside the pixels behind them, and of the
- * target's own radiance. */
-static void cell_pairs(double sums[2], const Footprint *f, const Job *job, int plane)
-{
-    const float *value = picture_plane(job->picture, plane);
-    const int    beside[2] = {1, f->columns};
-    sums[0] = sums[1] = 0;
-    for (int cell = 0; cell < f->columns * f->rows; cell++)
-        for (int k = 0; k < 2; k++) {
-            if (k == 0 ? cell % f->columns == f->columns - 1 : cell / f->columns == f->rows - 1) continue;
-            const int other = cell + beside[k], here = f->met[cell] ? cell : other;
-            if (!f->met[cell] && !f->met[other]) continue;
-            double own = f->cell[plane][here], shown = own;
-            if (f->met[cell] && f->met[other]) {
-                shown = own -= f->cell[plane][other];
-            } else {
-                const int column = (int)(f->box[0] + (here % f->columns + 0.5) * (f->box[2] - f->box[0]) / f->columns);
-                const int row = (int)(f->box[1] + (here / f->columns + 0.5) * (f->box[3] - f->box[1]) / f->rows);
-                if (column >= f->x0 && column < f->x1 && row >= f->y0 && row < f->y1)
-                    shown -= (double)value[pixel_index(job, column, row)];
-            }
-            sums[0] += shown * shown;
-            sums[1] += own * own;
-        }
-}
-
-/* Behind a target the pixel's mean stands for what is hidden: wrong by (1 - covered) covered of what the ground there
- * differs by, and that is taken to be what neighbours do. */
-static double hidden_ground(const Footprint *f, const Job *job, const float *value)
-{
-    double sum = 0;
-    for (int y = f->y0; y < f->y1; y++)
-        for (int x = f->x0; x < f->x1; x++) {
-            const size_t px = pixel_index(job, x, y);
-            const double covered = (double)job->picture->covered[px], share = covered * (1 - covered);
-            if (job->coverer[px] == f->entity && share > 0)
-                sum += share * share * plane_contrast(job->picture, value, x, y);
-        }
-    return sum;
-}
-
-void footprints_error(Job *job)
-{
-    for (int n = 0; n < job->footprints; n++) {
-        const Footprint *f = &job->footprint[n];
-        const int        cells = f->columns * f->rows;
-        if (cells == 0) continue;
-        const double cell_px = (f->box[2] - f->box[0]) * (f->box[3] - f->box[1]) / cells;
-        for (int plane = 0; plane < picture_plane_count; plane++) {
-            double sums[2];
-            if (!f->cell[plane]) continue;
-            cell_pairs(sums, f, job, plane);
-            job->footprint_law[plane] += mean_law * cell_px * cell_px * sums[0] +
-                                         hidden_ground(f, job, picture_plane(job->picture, plane));
-            if (job->picture->target)
-                job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_law * sums[1]);
-        }
-    }
-}
-
-static void put_truth_on(const Job *job, const Footprint *f, int k, size_t px)
-{
-    Picture              *picture = job->picture;
-    const FootprintTruth *t = &f->truth[k];
-    if (!(f->area[k] > 0.5)) return;
-    picture->entity[px]   = (uint32_t)f->entity + 1;
-    picture->range_m[px]  = t->range_m;
-    picture->part[px]     = t->part;
-    picture->material[px] = t->material;
-    picture->temp_k[px]   = t->temp_k;
-    for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
-}
-
-/* The cells and the pixels behind them, as they are before anything is put on. */
-static void hand_over(const Job *job, Footprint *f)
-{
-    SmallTargets *small = &job->picture->small;
-    if (!(f->visible > 0)) return;
-    SmallTarget *t = &small->target[small->count++];
-    *t = (SmallTarget){.columns = f->columns, .rows = f->rows, .x0 = f->x0, .y0 = f->y0, .x1 = f->x1, .y1 = f->y1,
-                       .met = f->met, .area = f->area};
-    memcpy(t->box_px, f->box, sizeof t->box_px);
-    for (int plane = 0; plane < picture_plane_count; plane++) {
-        const float *value = picture_plane(job->picture, plane);
-        if (!f->behind[plane]) continue;
-        for (int y = f->y0, k = 0; y < f->y1; y++)
-            for (int x = f->x0; x < f->x1; x++, k++) f->behind[plane][k] = value[pixel_index(job, x, y)];
-        t->cell[plane]   = f->cell[plane];
-        t->behind[plane] = f->behind[plane];
-    }
-}
-
-void footprints_put_on(Job *job)
-{
-    for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
-    /* first all that they hide, then all that they show: a pixel may hold parts of several */
-    for (int show = 0; show < 2; show++)
-        for (int n = 0; n < job->footprints; n++) {
-            const Footprint *f = &job->footprint[n];
-            for (int y = f->y0, k = 0; y < f->y1; y++)
-                for (int x = f->x0; x < f->x1; x++, k++) {
-                    const size_t px = pixel_index(job, x, y);
-                    if (!(f->area[k] > 0)) continue;
-                    for (int plane = 0; plane < picture_plane_count; plane++) {
-                        float *value = picture_plane(job->picture, plane);
-                        if (!value) continue;
-                        if (show) value[px] += (float)f->sum[plane][k];
-                        else if (job->coverer[px] == f->entity) value[px] *= 1 - job->picture->covered[px];
-                    }
-                    if (show && f->truth) put_truth_on(job, f, k, px);
-                }
-        }
-}
-
-static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
-{
-    target->small           = true;
-    target->visible         = f->visible;
-    target->amodal          = f->amodal;
-    target->occluded_ground = f->hidden_ground;
-    target->occluded_entity = f->hidden_entity;
-    for (int b = 0; b < BAND_COUNT; b++) target->veiled[b] = f->visible > 0 ? f->veiled[b] / f->visible : 0;
-    memcpy(target->amodal_box, f->amodal_box, sizeof f->amodal_box);
-    for (int y = f->y0, k = 0; y < f->y1; y++)
-        for (int x = f->x0; x < f->x1; x++, k++) {
-            if (!(f->area[k] > 0)) continue;
-            grow_amodal(target->box, f, k, x, y, f->area[k]);
-            target->peak_area = fmax(target->peak_area, f->area[k]);
-            for (int plane = 0; plane < picture_plane_count; plane++) {
-                if (!f->sum[plane]) continue;
-                target->radiance[plane] += f->sum[plane][k] * pixel_cosine3(&job->request->view, x, y);
-                target->mean[plane] += f->sum[plane][k];
-            }
-        }
-    for (int plane = 0; plane < picture_plane_count && f->visible > 0; plane++) {
-        target->mean[plane] /= f->visible;
-        target->variance[plane] = fmax(0, f->square[plane] / f->visible - target->mean[plane] * target->mean[plane]);
-    }
-}
-
-void footprints_gather(const Job *job)
-{
-    for (int n = 0; n < job->footprints; n++)
-        gather_one(&job->picture->target[job->footprint[n].entity], job, &job->footprint[n]);
 }

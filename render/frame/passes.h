@@ -5,16 +5,16 @@
  *   small targets  sampled over their own boxes                            footprint.c
  *   base           every pixel, small targets taken away                   base.c
  *   edges          pixels whose neighbours disagree, with more rays        edges.c decides, refine.c samples
- *   put on         the small targets, over the pixels                      footprint.c
+ *   put on         the small targets, over the pixels                      footprint_picture.c
  *   error estimate a few pixels, looked at again                           error_budget.c
  * Each of them has samples shaded (shade.h) and adds the results up in its own way; render.c runs them in turn. */
 #ifndef RENDER_FRAME_PASSES_H
 #define RENDER_FRAME_PASSES_H
 
 #include "render/frame/pixels.h"
-#include "render/frame/render.h"
 #include "render/frame/shade.h"
 #include "render/frame/target_sums.h"
+#include "render/frame/world.h"
 
 enum { tile_side_samples = 32 };
 

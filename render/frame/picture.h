@@ -3,9 +3,9 @@
 #define RENDER_FRAME_PICTURE_H
 
 #include "render/air/air.h"
+#include "render/frame/request.h"
 #include "render/radar/radar_image.h"
-#include "render/scene/view.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/visibility.h"
 
 /* Planes that carry radiance. */
 enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, picture_radar, picture_plane_count };

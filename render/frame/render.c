@@ -1,5 +1,7 @@
 /* render/frame/render.c: a frame: what its passes share is prepared, they run one after the other, and their sums are
  * gathered. */
+#include "render/frame/render.h"
+
 #include "render/frame/base.h"
 #include "render/frame/edges.h"
 #include "render/frame/error_estimate.h"

@@ -6,6 +6,7 @@
 #ifndef RENDER_FRAME_SHADE_H
 #define RENDER_FRAME_SHADE_H
 
+#include "render/frame/request.h"
 #include "render/frame/world.h"
 #include "render/light/gather.h"
 #include "render/light/sky_visibility.h"

@@ -4,7 +4,7 @@
 
 #include "render/air/air.h"
 #include "render/radar/radar_image.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/visibility.h"
 
 typedef struct World {
     const Catalog   *catalog;

@@ -9,7 +9,7 @@
 #define RENDER_LIGHT_GATHER_H
 
 #include "render/air/air.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/visibility.h"
 
 enum { gather_samples_limit = 4096 };
 

@@ -1,66 +1,21 @@
-/* render/light/sky_visibility.c: see sky_visibility.h. Places of a hit, rounds of refinement, and what is kept. */
-#include "render/light/sky_visibility.h"
+/* render/light/sky_visibility.c: see sky_visibility.h. Places on the ground about a hit, rounds of refinement, and what
+ * is kept. */
+#include "render/light/sky_visibility_private.h"
 
 #include "render/light/optical.h"
-#include "render/parts/parts.h"
 #include "pitviper_simd.h"
 
-#include <stdatomic.h>
-
 enum {
-    ground_directions = 32, grid_directions = 28, /* a place */
+    ground_directions = 32,    /* a place */
     kept_slots    = 1 << 15,   /* places on the ground, of the frame */
     kept_probes   = 16,
-    known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */
     finer_most    = 3,         /* times that a cell of the ground is halved */
-    lattice_steps = 4,         /* the ground's finest lattice: 2^-4 m */
-    coarsest_log2_m = 4,
-    grid_least = 3, grid_most = 48, /* places over an entity's box, a side */
-    task_places = 32,
 };
-static const double look_m = 50;          /* what is farther from a place changes nothing there */
 static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
 static const double differ = 0.15;        /* shares of directions: places that differ more are looked at more finely */
 static const double cell_reach = 0.45; /* coarsest cells, of the reach */
-static const double grid_px = 2.75, lattice_px = 3.5;
-
-/* What a place answered. */
-typedef struct SkyAnswer {
-    float factor[8]; /* by AirBand, and one to spare */
-    float blocked, sunlit, inside; /* as GatherChange; inside 1: nor is it there */
-} SkyAnswer;
-
-/* Places on an entity, in columns; where nothing of it was met the normal is 0. */
-enum { SPOT_X, SPOT_Y, SPOT_Z, SPOT_NORMAL_X, SPOT_NORMAL_Y, SPOT_NORMAL_Z, SPOT_PART, spot_values };
-typedef struct SkySpots {
-    float *value[spot_values]; /* m, ENU, from the entity's centre; and which part */
-    float (*factor)[8];        /* by AirBand, and one to spare */
-} SkySpots;
-
-/* An entity of the frame. */
-typedef struct SkyEntity {
-    int      index;          /* in the snapshot */
-    int      columns, rows;  /* of its grid; 0: not on the image */
-    double   x0_px, y0_px, step_px[2];
-    double   pitch_m;        /* of the grid at its distance */
-    SkySpots spot;           /* [rows * columns], and eight more */
-} SkyEntity;
-
-struct SkyVisibility {
-    SkyVisibilityScene scene;
-    int                count, on_image;
-    int               *grid_of;   /* [entities]: index into entity + 1 of those on the image; 0: of none */
-    SkyEntity         *entity;    /* [on_image] */
-    double             cells_per_m[coarsest_log2_m + lattice_steps + 1]; /* by step */
-    int               *task_entity, *task_first; /* [tasks] */
-    int                tasks;
-    double             px_rad;
-    double             level_w_m2[AIR_BAND_COUNT]; /* of open, level ground */
-    _Atomic uint64_t  *kept_key;  /* [kept_slots]; 0: free */
-    _Atomic uint8_t   *kept_done; /* [kept_slots]: 1: the place may be read */
-    SkyAnswer         *kept;
-};
+static const double lattice_px = 3.5;
 
 /* ---- the frame -------------------------------------------------------------------------------- */
 
@@ -77,44 +32,6 @@ static double reach_of(const PosedEntity *e)
 static int8_t first_step_of(double reach_m)
 {
     return (int8_t)clamp(floor(log2(fmax(cell_reach * reach_m, 1e-9))), -lattice_steps, coarsest_log2_m);
-}
-
-/* The grid over what of the box lies on the image. */
-static Status plan_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
-                        Arena *arena)
-{
-    const View  *view = v->scene.view;
-    const double x0 = fmax(box_px[0], 0), x1 = fmin(box_px[2], view->width);
-    const double y0 = fmax(box_px[1], 0), y1 = fmin(box_px[3], view->height);
-    double       offset_enu[3];
-    if (!(x1 > x0 && y1 > y0)) return STATUS_OK;
-    v3_sub(offset_enu, posed->centre_enu, view->p_enu);
-    e->columns = (int)clamp(ceil((x1 - x0) / grid_px), grid_least, grid_most);
-    e->rows    = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
-    e->x0_px = x0, e->y0_px = y0;
-    e->step_px[0] = (x1 - x0) / e->columns, e->step_px[1] = (y1 - y0) / e->rows;
-    e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step_px[0], e->step_px[1]);
-    const size_t spots = (size_t)(e->columns * e->rows) + 8;
-    bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL;
-    for (int k = 0; k < spot_values; k++)
-        got = (e->spot.value[k] = arena_alloc(arena, spots, sizeof *e->spot.value[k])) != NULL && got;
-    return got ? STATUS_OK : STATUS_NO_MEMORY;
-}
-
-static Status plan_tasks(SkyVisibility *v, Arena *arena)
-{
-    int count = 0;
-    for (int k = 0; k < v->on_image; k++)
-        count += (v->entity[k].columns * v->entity[k].rows + task_places - 1) / task_places;
-    v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
-    v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
-    if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
-    for (int k = 0; k < v->on_image; k++)
-        for (int first = 0; first < v->entity[k].columns * v->entity[k].rows; first += task_places) {
-            v->task_entity[v->tasks]  = k;
-            v->task_first[v->tasks++] = first;
-        }
-    return STATUS_OK;
 }
 
 Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scene, Arena *arena)
@@ -137,7 +54,7 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
         v->entity[at].index = k;
         v->grid_of[k] = at + 1;
-        if (posed->model >= 0 && plan_grid(&v->entity[at], v, posed, scene->box_px[k], arena) != STATUS_OK)
+        if (posed->model >= 0 && sky_entities_grid(&v->entity[at], v, posed, scene->box_px[k], arena) != STATUS_OK)
             return STATUS_NO_MEMORY;
         at++;
     }
@@ -145,20 +62,15 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
         v->level_w_m2[b] = b >= AIR_MWIR ? scene->gather.air->light.ground_w_m2_sr[b] * pi_rad
                                          : optical_ground_w_m2(b, scene->gather.air, scene->gather.materials);
     *out = v;
-    return plan_tasks(v, arena);
+    return sky_entities_tasks(v, arena);
 }
 
 /* ---- names of places ------------------------------------------------------------------------------ */
 
-/* Ground: 1, then 31 bits of each place on the lattice. Entities: 2, the entity, the spot of its grid. */
+/* Ground: 1, then 31 bits of each place on the lattice. Entities have 2 there: sky_entities.c. */
 static uint64_t ground_key(int64_t i, int64_t j)
 {
     return (uint64_t)1 << 62 | ((uint64_t)i & 0x7fffffff) << 31 | ((uint64_t)j & 0x7fffffff);
-}
-
-static uint64_t spot_key(int entity, int spot)
-{
-    return (uint64_t)2 << 62 | (uint64_t)entity << 20 | (uint64_t)spot;
 }
 
 static double lattice_m(uint64_t bits)
@@ -168,52 +80,6 @@ static double lattice_m(uint64_t bits)
 }
 
 /* ---- a thread's block ------------------------------------------------------------------------------- */
-
-typedef struct SkySlot {
-    uint64_t key;
-    uint32_t block;  /* in which it was written: others are free */
-    bool     known;
-    SkyAnswer place;
-} SkySlot;
-
-/* A hit on the ground near an entity. */
-typedef struct SkyHit {
-    int8_t step, last_step; /* log2 of the cell, m: from the first down to the last */
-    bool   force;           /* close to a body: looked at finely whatever the places say */
-    float  weight;          /* 0: none near */
-} SkyHit;
-
-/* The cell that was asked last of each size: neighbouring hits lie in it. */
-typedef struct SkyCell {
-    int64_t  column, row;
-    uint32_t block;
-    bool     known, differ, any_inside; /* all corners; they do; of those */
-    const SkySlot *corner[4];
-} SkyCell;
-
-/* At which step hits of a finest cell ended. */
-typedef struct SkyEnd {
-    double   column, row;
-    uint32_t block;
-    int8_t   from, last, step;
-    bool     force;
-} SkyEnd;
-
-struct SkyWorker {
-    SkyEnd       end;
-    SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
-    SkySlot      slot[known_slots];
-    uint32_t     block;
-    int          queue[known_slots], queued; /* slots to be asked */
-    SkyHit       hit[hits_capacity];
-    Hits         places, met;
-    Rays         rays;
-    uint64_t     key[hits_capacity];
-    GatherChange change[hits_capacity];
-    int         *near;       /* [entities] */
-    double      *near_reach_m; /* of each: from its box the ground is looked at */
-    int8_t      *near_step;  /* of each: first_step_of */
-};
 
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
 {
@@ -290,7 +156,7 @@ static void place_ground(Hits *to, int i, const SkyVisibility *v, uint64_t key)
     for (int c = 0; c < 3; c++) to->n_geo[c][i] = to->n_enu[c][i] = (float)n_enu[c];
 }
 
-static void answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const GatherChange *change)
+void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const GatherChange *change)
 {
     *out = (SkyAnswer){.blocked = change->blocked, .sunlit = change->sunlit, .inside = change->inside};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
@@ -316,7 +182,7 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];
         const double n_enu[3] = {places->n_enu[0][i], places->n_enu[1][i], places->n_enu[2][i]};
-        answer(&s->place, v, n_enu, &w->change[i]);
+        sky_answer(&s->place, v, n_enu, &w->change[i]);
         s->known = true;
         keep(v, s->key, &s->place);
     }
@@ -447,7 +313,7 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const SkyWorker *w, c
     if (h->last_step > h->step) h->step = h->last_step;
 }
 
-static void grow(double box[2][3], const Hits *hits, int i)
+void sky_box_grow(double box[2][3], const Hits *hits, int i)
 {
     for (int c = 0; c < 3; c++) {
         const double at = hits->p_enu[c][i];
@@ -456,8 +322,7 @@ static void grow(double box[2][3], const Hits *hits, int i)
     }
 }
 
-/* Entities whose spheres, grown by more_m (and their reach), touch the box, to w->near and what goes with it. */
-static int list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach)
+int sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach)
 {
     int       count = 0;
     const int asked = visibility_near(w->near, v->scene.gather.visibility, box[0], box[1],
@@ -480,152 +345,6 @@ static int list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], dou
     return count;
 }
 
-/* ---- entities -------------------------------------------------------------------------------------------- */
-
-int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
-
-/* What the eye sees of the entity on some of its grid, and what light comes there. */
-void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
-{
-    const SkyEntity    *e = &v->entity[v->task_entity[task]];
-    const int           index = e->index, first = v->task_first[task];
-    const View         *view = v->scene.view;
-    const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
-    const GatherScene  *scene = &v->scene.gather;
-    VisibilityCounters  unused = {0};
-    Rays               *rays = &w->rays;
-    Hits               *met = &w->met, *places = &w->places;
-    int                 of[task_places];
-    double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-    for (int i = 0; i < count; i++) {
-        double d_enu[3];
-        view_ray(d_enu, view, e->x0_px + e->step_px[0] * ((first + i) % e->columns + 0.5),
-                 e->y0_px + e->step_px[1] * ((first + i) / e->columns + 0.5));
-        for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
-        rays->far_m[i] = INFINITY;
-    }
-    rays->count = count, rays->columns = 0;
-    /* those that the rows of these places may see: in a crowd a fraction of all */
-    const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
-                 end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
-    const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
-                                                  e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
-                                                  &unused);
-    visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
-    places->count = 0;
-    for (int i = 0; i < count; i++) {
-        if (met->entity[i] != (uint32_t)index + 1) continue;
-        const int to = places->count++;
-        of[to] = first + i;
-        w->key[to] = spot_key(index, first + i);
-        places->entity[to] = met->entity[i], places->part[to] = met->part[i];
-        for (int c = 0; c < 3; c++) {
-            places->p_enu[c][to] = met->p_enu[c][i];
-            places->n_geo[c][to] = places->n_enu[c][to] = met->n_geo[c][i];
-        }
-        grow(box, places, to);
-    }
-    if (places->count == 0) return;
-    const int listed = list_near(w, v, box, look_m, false);
-    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key, w->near,
-                  listed, &unused);
-    for (int k = 0; k < places->count; k++) {
-        const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;
-        SkyAnswer     found;
-        double        n_enu[3];
-        for (int c = 0; c < 3; c++) {
-            n_enu[c] = places->n_geo[c][k];
-            e->spot.value[SPOT_NORMAL_X + c][of[k]] = (float)n_enu[c];
-            e->spot.value[SPOT_X + c][of[k]] = (float)(places->p_enu[c][k] - centre_enu[c]);
-        }
-        answer(&found, v, n_enu, &w->change[k]);
-        memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
-        e->spot.value[SPOT_PART][of[k]] = places->part[k];
-    }
-}
-
-/* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
- * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
-static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
-                       const float n_enu[3], uint16_t part)
-{
-    static const float    other_part = 0.05f;
-    const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
-    const float *const   *value = (const float *const *)e->spot.value;
-    const F32x8           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
-    const F32x8           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
-    float                 all = 0, each[8];
-    F32x8                 p[3], n[3];
-    for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
-    for (int row = span[1]; row < span[3]; row += step)
-        for (int column = span[0]; column < span[2]; column += 8) {
-            const int   at = row * e->columns + column;
-            const int   lanes = span[2] - column < 8 ? span[2] - column : 8;
-            const F32x8 along = n[0] * f32x8_load(value[SPOT_NORMAL_X] + at) +
-                                n[1] * f32x8_load(value[SPOT_NORMAL_Y] + at) +
-                                n[2] * f32x8_load(value[SPOT_NORMAL_Z] + at);
-            const F32x8 x = f32x8_load(value[SPOT_X] + at) - p[0], y = f32x8_load(value[SPOT_Y] + at) - p[1];
-            const F32x8 z = f32x8_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
-            const F32x8 facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
-            const F32x8 same = _mm256_cmp_ps(f32x8_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
-            const F32x8 share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
-            f32x8_store(each, share * a4 * a4 * square_m2 * square_m2 /
-                                  ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
-            for (int k = 0; k < lanes; k++) {
-                if (!(each[k] > 0)) continue; /* faces away, or is not there */
-                all += each[k];
-                *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
-            }
-        }
-    return all;
-}
-
-static void span_about(int span[4], const SkyEntity *e, int column, int row, int more)
-{
-    span[0] = column > more ? column - more : 0, span[1] = row > more ? row - more : 0;
-    span[2] = column + more + 1 < e->columns ? column + more + 1 : e->columns;
-    span[3] = row + more + 1 < e->rows ? row + more + 1 : e->rows;
-}
-
-static void open_on_entity(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits)
-{
-    static const float enough = 0.3f; /* one spot of the part two steps away */
-    const int          index = (int)hits->entity[i] - 1;
-    if (v->grid_of[index] == 0) return;
-    const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
-    const View        *view = v->scene.view;
-    const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
-    const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
-    double             offset_enu[3], p_cam[3], image_px[2];
-    float              p_m[3], factor[8];
-    int                span[4];
-    if (e->columns == 0) return;
-    for (int c = 0; c < 3; c++) {
-        offset_enu[c] = hits->p_enu[c][i] - view->p_enu[c];
-        p_m[c] = (float)(hits->p_enu[c][i] - centre_enu[c]);
-    }
-    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
-    view_project(image_px, view, p_cam);
-    const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
-    const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
-    F32x8        sum = f32x8_set(0);
-    float        all = 0;
-    for (int more = 1; more <= 4 && !(all > enough); more += 3) {
-        span_about(span, e, column, row, more);
-        sum = f32x8_set(0);
-        all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
-    }
-    if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
-        span_about(span, e, 0, 0, grid_most);
-        sum = f32x8_set(0);
-        all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
-    }
-    if (!(all > 1e-12f)) return;
-    f32x8_store(factor, sum * f32x8_set(1 / (double)all));
-    for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
-}
-
 /* ---- a block --------------------------------------------------------------------------------------------- */
 
 bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, const Hits *hits,
@@ -636,8 +355,8 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
     int    undone[hits_capacity], left = 0;
     memcpy(near_box, box, sizeof box);
     for (int i = 0; i < hits->count; i++)
-        if (hits->range_m[i] < INFINITY) grow(box, hits, i);
-    int near_count = list_near(w, v, box, 0, true);
+        if (hits->range_m[i] < INFINITY) sky_box_grow(box, hits, i);
+    int near_count = sky_list_near(w, v, box, 0, true);
     if (near_count == 0) return false;
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
@@ -645,16 +364,16 @@ bool sky_visibility_open(SkyOpen *out, const SkyVisibility *v, SkyWorker *w, con
             for (int i = 0; i < hits->count; i++) out->factor[b][i] = 1;
     for (int i = 0; i < hits->count; i++) {
         if (!(hits->range_m[i] < INFINITY)) continue;
-        if (hits->entity[i]) open_on_entity(out, i, v, hits);
+        if (hits->entity[i]) sky_entities_open(out, i, v, hits);
         if (hits->entity[i] || !v->scene.landscape) continue;
         find_ground(&w->hit[i], v, w, hits, i, near_count);
         if (!(w->hit[i].weight > 0)) continue;
-        grow(near_box, hits, i);
+        sky_box_grow(near_box, hits, i);
         undone[left++] = i;
     }
     if (skips(v->scene.skips_off, SKIP_LIGHT)) counters->skipped[SKIP_LIGHT] += (uint64_t)left;
     /* a corner lies within a cell of its hit */
-    near_count = list_near(w, v, near_box, look_m + 32, false);
+    near_count = sky_list_near(w, v, near_box, look_m + 32, false);
 
     w->block++;
     while (left > 0) {

@@ -9,7 +9,7 @@
  * everything reads Planck(T), whatever the material (tests/render/test_thermal.c). */
 #include "render/light/thermal.h"
 
-#include "render/light/surface_balance.h"
+#include "render/materials/surface_balance.h"
 #include "pitviper_simd.h"
 
 /* ---- temperature -------------------------------------------------------------------------- */

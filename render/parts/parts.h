@@ -9,7 +9,7 @@
 #define RENDER_PARTS_PARTS_H
 
 #include "entities/models/model.h"
-#include "render/scene/visibility.h"
+#include "render/parts/tracer.h"
 
 /* As tracer_create, with the models given directly; they must outlive the tracer. NULL among them: not drawable. */
 Status tracer_create_models(Tracer **out, const Model *const *models, int count, const char *isa);

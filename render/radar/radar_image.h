@@ -9,7 +9,7 @@
 #define RENDER_RADAR_RADAR_IMAGE_H
 
 #include "render/air/air.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/visibility.h"
 
 enum { radar_bounces = 3 /* that are reported */, radar_mirrors = 6 /* that are followed */ };
 

@@ -1,7 +1,7 @@
 /* sensor/detector/chain.c: the stages of a detector in order, from radiance to raw counts. */
 #include "sensor/detector/chain.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/bad_pixels.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/coupling.h"

@@ -1,7 +1,7 @@
 /* sensor/detector/photons.c: in-band photon radiance, electrons, and noise-equivalent temperature difference. */
 #include "sensor/detector/photons.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
 /* sensor/regress/compare.c: pixel-wise comparison of planes of numbers and of ids. */
 #include "sensor/regress/compare.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 static double difference_of(float expected, float got)
 {

@@ -7,7 +7,7 @@
 #include "entities/catalog/catalog.h"
 #include "entities/effects/effects.h"
 #include "entities/effects/heat.h"
-#include "render/light/materials.h"
+#include "render/materials/materials.h"
 #include "sensor/detector/sheet.h"
 
 #include <stdlib.h>

@@ -2,7 +2,7 @@
  * hold, and at the ends. */
 #include "tests/render/atmosphere_errors.h"
 #include "render/air/atmosphere.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "render/probe.h"
 
 static Atmosphere *us1976, *midlat_summer;

@@ -2,8 +2,8 @@
  * stacked, far away, huge and without sense; and what rays meet by it is what they meet without. */
 #include "tests/render/hand_models.h"
 
-#include "render/scene/broad_phase.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/broad_phase.h"
+#include "render/visibility/visibility.h"
 
 enum { most = 600, scenes = 6 };
 

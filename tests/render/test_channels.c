@@ -2,7 +2,7 @@
  * people's figures, and who is in a place. */
 #include "pitviper_channels.h"
 #include "render/air/atmosphere.h"
-#include "render/light/materials.h"
+#include "render/materials/materials.h"
 #include "tests/check.h"
 
 static void choose(const char *name)

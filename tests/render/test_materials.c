@@ -1,6 +1,6 @@
 /* The table of materials: what it must hold, what it must refuse, and a lobe that makes no light. */
 #include "tests/check.h"
-#include "render/light/materials.h"
+#include "render/materials/materials.h"
 
 #include <unistd.h>
 

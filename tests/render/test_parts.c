@@ -6,6 +6,7 @@
 
 #include "entities/import/model_import.h"
 #include "render/parts/parts.h"
+#include "render/scene/hits.h"
 
 typedef struct Scene {
     Tracer     *tracer;

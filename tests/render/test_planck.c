@@ -1,6 +1,6 @@
 /* Blackbody radiance against 25-digit values, Stefan-Boltzmann, and itself by other roads. */
 #include "tests/check.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 static const double h_j_s = 6.62607015e-34, c_mps = 299792458.0, k_j_k = 1.380649e-23;
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include "render/parts/parts.h"
+#include "render/visibility/visibility.h"
 
 enum { model_box, model_plate, model_sphere, model_count, most_entities = 240 };
 

@@ -1,7 +1,7 @@
 /* A whole sensor: what a row of the table promises, measured on the counts it puts out. */
 #include "tests/check.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/level.h"
 

@@ -9,7 +9,7 @@
  * starting from half the prediction. labels: slow */
 #include "tests/check.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/mrtd.h"
 

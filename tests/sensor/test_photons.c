@@ -2,7 +2,7 @@
  * elsewhere. */
 #include "tests/check.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/photons.h"
 
 static void photons_agree_with_25_digits(void **state)

@@ -1,7 +1,7 @@
 /* Comparison of planes and records in the regression, on planes of a few pixels whose answers are worked out by hand. */
 #include "tests/check.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/regress/verdict.h"
 
 /* 2 x 3; differences 0, 0.02, 0.3, -0.4, 0, 0: two of six beyond 0.05. */

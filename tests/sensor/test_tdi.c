@@ -3,7 +3,7 @@
  * square root of their number. */
 #include "tests/check.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/chain.h"
 
 enum { width = 160, height = 120, pixels = width * height, frames = 40 };

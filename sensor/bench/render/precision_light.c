@@ -3,7 +3,7 @@
 #include "sensor/bench/render/rows.h"
 
 #include "render/light/optical.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "render/light/surface_light.h"
 #include "render/light/thermal.h"
 #include "render/smoke/veil.h"
@@ -108,7 +108,7 @@ static Status knob_planck(Bench *bench)
                                          : set[k].way == PLANCK_EIGHT   ? planck_table_cells * 4.0 * sizeof(float) : 1};
     }
     bench_turn(bench,
-               &(BenchKnob){"radiance of a black body", "render/light/planck.c", "a temperature, 3.4-4.8 um", "K",
+               &(BenchKnob){"radiance of a black body", "render/materials/planck.c", "a temperature, 3.4-4.8 um", "K",
                             "largest, closed form, 180 .. 1500 K", 5e-4},
                work, point, settings);
     planck_table_destroy(table);
@@ -159,7 +159,7 @@ static Status knob_inverse(Bench *bench)
         work[k]  = (BenchWork){ask_inverse, &set[k], temps};
         point[k] = (BenchPoint){.setting = name[k], .error = worst, .is_default = k == 2};
     }
-    bench_turn(bench, &(BenchKnob){"temperature of a radiance", "render/light/planck.c", "a radiance, 3.4-4.8 um", "K",
+    bench_turn(bench, &(BenchKnob){"temperature of a radiance", "render/materials/planck.c", "a radiance, 3.4-4.8 um", "K",
                                    "largest, closed form, 180 .. 1500 K", 1e-6}, work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;

@@ -2,7 +2,7 @@
  * thick as a wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy,
  * and the cavity in which everything looks alike. */
 #include "sensor/bench/render/stability.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "render/light/surface_light.h"
 #include "render/smoke/veil.h"
 

@@ -1,7 +1,7 @@
 /* sensor/bench/sensor/precision_detector.c: from radiance to what is stored: blur, photons, counts, displays. */
 #include "sensor/bench/sensor/precision.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/photons.h"
 #include "sensor/detector/quantise.h"

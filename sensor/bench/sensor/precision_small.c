@@ -1,7 +1,7 @@
 /* sensor/bench/sensor/precision_small.c: where a target of less than a pixel seems to be behind a detector's optics. */
 #include "sensor/bench/sensor/precision.h"
 
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/blur.h"
 #include "sensor/detector/subpixel.h"
 

@@ -3,7 +3,7 @@
 #include "sensor/bench/sensor/stability.h"
 
 #include "sensor/bench/render/stability.h"
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 #include "sensor/detector/chain.h"
 #include "sensor/detector/quantise.h"
 

@@ -1,5 +1,5 @@
-/* render/scene/broad_phase.c: a bounding-volume tree over spheres. */
-#include "render/scene/broad_phase.h"
+/* render/visibility/broad_phase.c: a bounding-volume tree over spheres. */
+#include "render/visibility/broad_phase.h"
 
 #include <immintrin.h>
 #include <stdlib.h>

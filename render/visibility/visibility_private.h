@@ -1,14 +1,14 @@
-/* render/scene/visibility_private.h: one frame's world, as visibility.c, visibility_pose.c and visibility_crowd.c share it. */
-#ifndef RENDER_SCENE_VISIBILITY_PRIVATE_H
-#define RENDER_SCENE_VISIBILITY_PRIVATE_H
+/* render/visibility/visibility_private.h: one frame's world, as the files visibility*.c share it. */
+#ifndef RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
+#define RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
 
 #include <pthread.h>
 #include <stdatomic.h>
 
 #include "render/ground/ground.h"
 #include "render/parts/parts.h"
-#include "render/scene/broad_phase.h"
-#include "render/scene/visibility.h"
+#include "render/visibility/broad_phase.h"
+#include "render/visibility/visibility.h"
 
 /* Up to so many entities are asked about one after the other, all rays of a block together; more go through the tree, a
  * few rays at a time. Which of the two shows in no bit. */

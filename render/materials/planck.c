@@ -1,9 +1,9 @@
-/* render/light/planck.c: blackbody radiance, spectral, in band, and from a table.
+/* render/materials/planck.c: blackbody radiance, spectral, in band, and from a table.
  *
  * With x = h c / (wavelength k T) the in-band radiance is 2 k^4 T^4 / (h^3 c^2) times the integral of
  * x^3 / (e^x - 1) between the band's edges. Everything below is that integral, taken the way that loses
  * nothing: positive terms summed where the edges are close, tails subtracted where they are not. */
-#include "render/light/planck.h"
+#include "render/materials/planck.h"
 
 #include "pitviper_simd.h"
 

@@ -1,8 +1,8 @@
-/* render/light/materials.h: optics of every material, from etc/materials.csv (source a row).
+/* render/materials/materials.h: optics of every material, from etc/materials.csv (source a row).
  *
  * Reflectances are hemispherical band averages; emissivity = 1 - reflectance (Kirchhoff, opaque). */
-#ifndef RENDER_LIGHT_MATERIALS_H
-#define RENDER_LIGHT_MATERIALS_H
+#ifndef RENDER_MATERIALS_MATERIALS_H
+#define RENDER_MATERIALS_MATERIALS_H
 
 #include "pitviper_channels.h"
 #include "entities/catalog/catalog.h"

@@ -1,6 +1,6 @@
-/* render/scene/visibility_crowd.c: rays through the tree of entities, a few together, nearest first. What is met is what
+/* render/visibility/visibility_crowd.c: rays through the tree of entities, a few together, nearest first. What is met is what
  * asking for one entity after the other finds: the nearest, of equals that of the lowest index. */
-#include "render/scene/visibility_private.h"
+#include "render/visibility/visibility_private.h"
 
 typedef struct Walk {
     const Visibility *v;

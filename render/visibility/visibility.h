@@ -1,4 +1,4 @@
-/* render/scene/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
+/* render/visibility/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
  * parts; nobody else knows how they are traced.
  *
  * The ground is our own height field, in double, scalar and eight wide with the same bits. Each moving part is
@@ -6,12 +6,12 @@
  * narrowed once, and given to Embree, which only nominates triangles; who is met, range and normal are found in
  * double. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
  * entity's triangles, within 0.1 mm, to the lowest. */
-#ifndef RENDER_SCENE_VISIBILITY_H
-#define RENDER_SCENE_VISIBILITY_H
+#ifndef RENDER_VISIBILITY_VISIBILITY_H
+#define RENDER_VISIBILITY_VISIBILITY_H
 
-#include "entities/catalog/catalog.h"
 #include "entities/table/snapshot.h"
-#include "render/light/materials.h"
+#include "render/materials/materials.h"
+#include "render/parts/tracer.h"
 #include "render/scene/hits.h"
 #include "render/scene/skip.h"
 #include "render/scene/view.h"
@@ -19,14 +19,7 @@
 #include "terrain/landscape/landscape.h"
 #include "terrain/earth/local_frame.h"
 
-/* Lives across frames: the Embree device, the geometry of every model. */
-typedef struct Tracer Tracer;
-
-/* isa: NULL or "" leaves the choice to Embree; else "avx512", "avx2", "sse4.2" (passed as its isa setting). */
-Status tracer_create(Tracer **out, const Catalog *catalog, const char *isa);
-void   tracer_destroy(Tracer *tracer);
-
-/* One frame's world: a tree over the spheres of all entities (render/scene/broad_phase.h), and the nodes of those that
+/* One frame's world: a tree over the spheres of all entities (render/visibility/broad_phase.h), and the nodes of those that
  * anything asks for. Posing costs transforms only; nothing is committed or kept between frames, so any number of them may
  * be alive and traced at once. */
 typedef struct Visibility Visibility;

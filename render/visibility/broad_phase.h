@@ -1,12 +1,12 @@
-/* render/scene/broad_phase.h: a bounding-volume tree over spheres: which of many things may be met by a ray, or lie in
+/* render/visibility/broad_phase.h: a bounding-volume tree over spheres: which of many things may be met by a ray, or lie in
  * a volume. It only filters candidates: what it leaves out cannot be met, and what it lists must still be tested.
  *
  * Built anew each frame, O(n): the spheres are sorted along a Morton curve, four to a leaf, and the leaves are the last
  * row of a complete binary tree, so that node n has the children 2 n and 2 n + 1. Immutable once built, any number of
  * threads may ask. Boxes have room for the roundings of every test here: what begins strictly beyond a ray's limit is
  * left out, what begins at it is not. */
-#ifndef RENDER_SCENE_BROAD_PHASE_H
-#define RENDER_SCENE_BROAD_PHASE_H
+#ifndef RENDER_VISIBILITY_BROAD_PHASE_H
+#define RENDER_VISIBILITY_BROAD_PHASE_H
 
 #include "pitviper.h"
 

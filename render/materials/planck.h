@@ -1,6 +1,6 @@
-/* render/light/planck.h: blackbody radiance, spectral and in band. */
-#ifndef RENDER_LIGHT_PLANCK_H
-#define RENDER_LIGHT_PLANCK_H
+/* render/materials/planck.h: blackbody radiance, spectral and in band. */
+#ifndef RENDER_MATERIALS_PLANCK_H
+#define RENDER_MATERIALS_PLANCK_H
 
 #include "pitviper.h"
 

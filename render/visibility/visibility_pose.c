@@ -1,5 +1,5 @@
-/* render/scene/visibility_pose.c: the entities of a frame: their spheres for all of them, their nodes when they are asked for. */
-#include "render/scene/visibility_private.h"
+/* render/visibility/visibility_pose.c: the entities of a frame: their spheres for all of them, their nodes when they are asked for. */
+#include "render/visibility/visibility_private.h"
 
 static const PosedEntity not_drawn = {.model = -1};
 

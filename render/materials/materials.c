@@ -1,6 +1,6 @@
-/* render/light/materials.c: reads what things are made of, and ties names to rows once so that nobody compares
+/* render/materials/materials.c: reads what things are made of, and ties names to rows once so that nobody compares
  * strings again. */
-#include "render/light/materials.h"
+#include "render/materials/materials.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,0 +1,103 @@
+/* render/air/daylight_sums.c: what sun and sky give to a place in sum, and so what warms it.
+ *
+ * The tables know the sun above the horizon only. Below 5 degrees the sky keeps the shape it has there and loses
+ * brightness as twilight does. */
+#include "render/air/daylight_private.h"
+
+#include "render/materials/surface_balance.h"
+
+/* Twilight: daylight below an elevation of 5 degrees, over its value there. Straight lines in its logarithm
+ * through rounded values for a clear, moonless sky: 0.17 at the horizon, 8e-4 at the end of civil, 2e-6 of
+ * nautical, 3e-7 (airglow and stars) of astronomical twilight. Right within a factor of two. */
+static double twilight(double elevation_rad)
+{
+    static const double at_deg[] = {-18, -12, -6, 0, 5}, decades[] = {-6.5, -5.7, -3.1, -0.77, 0};
+    const double e_deg = elevation_rad / rad_per_deg;
+    if (e_deg <= at_deg[0]) return pow(10, decades[0]);
+    for (int i = 1; i < 5; i++)
+        if (e_deg <= at_deg[i]) {
+            const double f = (e_deg - at_deg[i - 1]) / (at_deg[i] - at_deg[i - 1]);
+            return pow(10, decades[i - 1] + f * (decades[i] - decades[i - 1]));
+        }
+    return 1;
+}
+
+static const double sun_radius_rad = 0.2665 * 0.017453292519943295769; /* mean over the year */
+
+/* Share of the sun's disc above the horizon. */
+static double disc_above(double elevation_rad)
+{
+    return clamp((elevation_rad + sun_radius_rad) / (2 * sun_radius_rad), 0, 1);
+}
+
+double daylight_sun_disc(const Daylight *light, const double d_enu[3])
+{
+    /* by the chord, since the cosine of so small an angle has lost half its digits */
+    double chord[3];
+    v3_sub(chord, d_enu, light->sun_d_enu);
+    const double disc = 2 * sin(0.5 * sun_radius_rad), disc2 = disc * disc;
+    return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
+}
+
+/* For temperatures: all wavelengths. sky_w_m2 is still the tables' own: the sum over our sky is there only where pan
+ * is asked for. */
+static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
+{
+    /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
+     * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
+    static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
+    light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
+    light->solar_diffuse_w_m2 = light->sky_w_m2[AIR_PAN] / visible_share;
+
+    /* What a black horizontal plane at air temperature loses to a clear sky. */
+    const double t_k = light->weather.air_temp_k, ratio = t_k / model_temp_k;
+    const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
+    light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
+
+    /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
+    const double share = ground_heat_share(light->weather.wind_mps, emission_w_m2_k(1, t_k));
+    const double ground_temp_k =
+        t_k + share * 0.018 * (light->solar_direct_w_m2 * fmax(light->sun_d_enu[2], 0) + light->solar_diffuse_w_m2);
+    light->ground_w_m2_sr[AIR_MWIR] = planck_table_radiance(light->planck_mwir, ground_temp_k);
+    light->ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(light->planck_lwir, ground_temp_k);
+}
+
+void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
+                   double diffuse_w_m2[AIR_BAND_COUNT])
+{
+    const Atmosphere *atmosphere = source->atmosphere;
+    const double model_temp_k = atmosphere_temp_k(atmosphere, 0);
+    out->weather = *weather;
+    out->planck_mwir = source->planck_mwir, out->planck_lwir = source->planck_lwir;
+    memcpy(out->sun_d_enu, sun->d_enu, sizeof out->sun_d_enu);
+    if (isnan(out->weather.air_temp_k)) out->weather.air_temp_k = model_temp_k;
+    for (int i = 0; i < air_warmer_nodes; i++)
+        out->warmer_k[i] = (float)(atmosphere_temp_k(atmosphere, i * air_warmer_step_m) - model_temp_k);
+    const PlanckTable *planck[2] = {source->planck_mwir, source->planck_lwir};
+    for (int k = 0; k < 2; k++)
+        out->thermal_scale[k] =
+            planck_table_radiance(planck[k], out->weather.air_temp_k) / planck_table_radiance(planck[k], model_temp_k);
+    const double zenith_rad = 0.5 * pi_rad - sun->elevation_rad, per_au2 = 1 / (sun->distance_au * sun->distance_au);
+    out->day_zenith_rad = fmin(zenith_rad, 85 * rad_per_deg);
+    out->scattered_scale = per_au2 * twilight(sun->elevation_rad);
+    out->sun_above = per_au2 * disc_above(sun->elevation_rad);
+
+    const double low_rad = fmin(zenith_rad, 0.5 * pi_rad);
+    for (int b = 0; b < AIR_BAND_COUNT; b++) {
+        diffuse_w_m2[b] = 0;
+        if (!((bands | 1 << AIR_PAN) >> b & 1)) continue;
+        SunAir direct, diffuse;
+        atmosphere_sun(&direct, atmosphere, weather->visibility_m, (AirBand)b, 0, low_rad);
+        atmosphere_sun(&diffuse, atmosphere, weather->visibility_m, (AirBand)b, 0, out->day_zenith_rad);
+        out->sun_w_m2[b] = direct.direct_normal_w_m2 * out->sun_above;
+        out->sky_w_m2[b] = diffuse_w_m2[b] = diffuse.diffuse_horizontal_w_m2 * out->scattered_scale;
+    }
+    heat_balance(out, atmosphere, model_temp_k);
+}
+
+void daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun)
+{
+    double diffuse_w_m2[AIR_BAND_COUNT];
+    memset(out, 0, offsetof(Daylight, sky));
+    daylight_sums(out, source, weather, sun, 0, diffuse_w_m2);
+}

@@ -1,0 +1,41 @@
+/* render/frame/footprint_private.h: a small target as footprint.c samples it and footprint_picture.c puts it on. */
+#ifndef RENDER_FRAME_FOOTPRINT_PRIVATE_H
+#define RENDER_FRAME_FOOTPRINT_PRIVATE_H
+
+#include "render/frame/footprint.h"
+
+/* The target's sample nearest the centre of a pixel. */
+typedef struct FootprintTruth {
+    double   square_px; /* of its distance */
+    float    range_m, temp_k, normal[3];
+    uint16_t part, material;
+} FootprintTruth;
+
+struct Footprint {
+    int     entity;                    /* snapshot index */
+    double  box[4];                    /* of all its vertices, px */
+    int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
+    int     x0, y0, x1, y1;            /* pixels that it may touch */
+    double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
+    double *area;                      /* px, a pixel */
+    FootprintTruth *truth;             /* a pixel; NULL: not wanted */
+    /* over the target, px within the image */
+    double  visible, amodal, hidden_ground, hidden_entity;
+    double  veiled[BAND_COUNT];          /* area x what the veil takes */
+    double  square[picture_plane_count]; /* area x radiance^2 */
+    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
+    float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
+    bool   *met;                       /* cells that show the target */
+    int     amodal_box[4];
+};
+
+/* The first and last pixels, of a box that is all 0 at first. */
+static inline void grow_pixel_box(int box[4], int x, int y)
+{
+    box[0] = box[2] == 0 || x < box[0] ? x : box[0];
+    box[1] = box[3] == 0 || y < box[1] ? y : box[1];
+    box[2] = x + 1 > box[2] ? x + 1 : box[2];
+    box[3] = y + 1 > box[3] ? y + 1 : box[3];
+}
+
+#endif

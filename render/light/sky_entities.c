@@ -1,0 +1,196 @@
+/* render/light/sky_entities.c: places on what the eye sees of an entity: their grid, their light, and what a hit
+ * takes of it. See sky_visibility.h. */
+#include "render/light/sky_visibility_private.h"
+
+#include "pitviper_simd.h"
+
+enum { grid_directions = 28 /* a place */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
+enum { task_places = 32 };
+static const double grid_px = 2.75;
+
+Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
+                        Arena *arena)
+{
+    const View  *view = v->scene.view;
+    const double x0 = fmax(box_px[0], 0), x1 = fmin(box_px[2], view->width);
+    const double y0 = fmax(box_px[1], 0), y1 = fmin(box_px[3], view->height);
+    double       offset_enu[3];
+    if (!(x1 > x0 && y1 > y0)) return STATUS_OK;
+    v3_sub(offset_enu, posed->centre_enu, view->p_enu);
+    e->columns = (int)clamp(ceil((x1 - x0) / grid_px), grid_least, grid_most);
+    e->rows    = (int)clamp(ceil((y1 - y0) / grid_px), grid_least, grid_most);
+    e->x0_px = x0, e->y0_px = y0;
+    e->step_px[0] = (x1 - x0) / e->columns, e->step_px[1] = (y1 - y0) / e->rows;
+    e->pitch_m = fmax(v3_length(offset_enu), 1) * v->px_rad * fmax(e->step_px[0], e->step_px[1]);
+    const size_t spots = (size_t)(e->columns * e->rows) + 8;
+    bool         got = (e->spot.factor = arena_alloc(arena, spots, sizeof *e->spot.factor)) != NULL;
+    for (int k = 0; k < spot_values; k++)
+        got = (e->spot.value[k] = arena_alloc(arena, spots, sizeof *e->spot.value[k])) != NULL && got;
+    return got ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
+{
+    int count = 0;
+    for (int k = 0; k < v->on_image; k++)
+        count += (v->entity[k].columns * v->entity[k].rows + task_places - 1) / task_places;
+    v->task_entity = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_entity);
+    v->task_first  = arena_alloc(arena, (size_t)count + 1, sizeof *v->task_first);
+    if (!v->task_entity || !v->task_first) return STATUS_NO_MEMORY;
+    for (int k = 0; k < v->on_image; k++)
+        for (int first = 0; first < v->entity[k].columns * v->entity[k].rows; first += task_places) {
+            v->task_entity[v->tasks]  = k;
+            v->task_first[v->tasks++] = first;
+        }
+    return STATUS_OK;
+}
+
+/* The place's name: 2, the entity, the spot of its grid. The ground's: sky_visibility.c. */
+static uint64_t spot_key(int entity, int spot)
+{
+    return (uint64_t)2 << 62 | (uint64_t)entity << 20 | (uint64_t)spot;
+}
+
+int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
+
+/* What the eye sees of the entity on some of its grid, and what light comes there. */
+void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
+{
+    const SkyEntity    *e = &v->entity[v->task_entity[task]];
+    const int           index = e->index, first = v->task_first[task];
+    const View         *view = v->scene.view;
+    const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
+    const GatherScene  *scene = &v->scene.gather;
+    VisibilityCounters  unused = {0};
+    Rays               *rays = &w->rays;
+    Hits               *met = &w->met, *places = &w->places;
+    int                 of[task_places];
+    double              box[2][3] = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    for (int i = 0; i < count; i++) {
+        double d_enu[3];
+        view_ray(d_enu, view, e->x0_px + e->step_px[0] * ((first + i) % e->columns + 0.5),
+                 e->y0_px + e->step_px[1] * ((first + i) / e->columns + 0.5));
+        for (int c = 0; c < 3; c++) rays->o_enu[c][i] = view->p_enu[c], rays->d_enu[c][i] = d_enu[c];
+        rays->far_m[i] = INFINITY;
+    }
+    rays->count = count, rays->columns = 0;
+    /* those that the rows of these places may see: in a crowd a fraction of all */
+    const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
+                 end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
+    const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
+                                                  e->x0_px + e->step_px[0] * e->columns, end_px, v->scene.hidden_entity,
+                                                  &unused);
+    visibility_first_hit(met, scene->visibility, rays, w->near, seen, v->scene.hidden_entity, &unused);
+    places->count = 0;
+    for (int i = 0; i < count; i++) {
+        if (met->entity[i] != (uint32_t)index + 1) continue;
+        const int to = places->count++;
+        of[to] = first + i;
+        w->key[to] = spot_key(index, first + i);
+        places->entity[to] = met->entity[i], places->part[to] = met->part[i];
+        for (int c = 0; c < 3; c++) {
+            places->p_enu[c][to] = met->p_enu[c][i];
+            places->n_geo[c][to] = places->n_enu[c][to] = met->n_geo[c][i];
+        }
+        sky_box_grow(box, places, to);
+    }
+    if (places->count == 0) return;
+    const int listed = sky_list_near(w, v, box, look_m, false);
+    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key,
+                  w->near, listed, &unused);
+    for (int k = 0; k < places->count; k++) {
+        const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;
+        SkyAnswer     found;
+        double        n_enu[3];
+        for (int c = 0; c < 3; c++) {
+            n_enu[c] = places->n_geo[c][k];
+            e->spot.value[SPOT_NORMAL_X + c][of[k]] = (float)n_enu[c];
+            e->spot.value[SPOT_X + c][of[k]] = (float)(places->p_enu[c][k] - centre_enu[c]);
+        }
+        sky_answer(&found, v, n_enu, &w->change[k]);
+        memcpy(e->spot.factor[of[k]], found.factor, sizeof found.factor);
+        e->spot.value[SPOT_PART][of[k]] = places->part[k];
+    }
+}
+
+/* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
+ * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
+static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
+                       const float n_enu[3], uint16_t part)
+{
+    static const float    other_part = 0.05f;
+    const float           pitch_m2 = (float)(e->pitch_m * e->pitch_m);
+    const float *const   *value = (const float *const *)e->spot.value;
+    const F32x8           square_m2 = _mm256_set1_ps(pitch_m2), least_m2 = _mm256_set1_ps(0.1f * pitch_m2);
+    const F32x8           zero = _mm256_setzero_ps(), of_part = _mm256_set1_ps(part);
+    float                 all = 0, each[8];
+    F32x8                 p[3], n[3];
+    for (int c = 0; c < 3; c++) p[c] = _mm256_set1_ps(p_m[c]), n[c] = _mm256_set1_ps(n_enu[c]);
+    for (int row = span[1]; row < span[3]; row += step)
+        for (int column = span[0]; column < span[2]; column += 8) {
+            const int   at = row * e->columns + column;
+            const int   lanes = span[2] - column < 8 ? span[2] - column : 8;
+            const F32x8 along = n[0] * f32x8_load(value[SPOT_NORMAL_X] + at) +
+                                n[1] * f32x8_load(value[SPOT_NORMAL_Y] + at) +
+                                n[2] * f32x8_load(value[SPOT_NORMAL_Z] + at);
+            const F32x8 x = f32x8_load(value[SPOT_X] + at) - p[0], y = f32x8_load(value[SPOT_Y] + at) - p[1];
+            const F32x8 z = f32x8_load(value[SPOT_Z] + at) - p[2], off = n[0] * x + n[1] * y + n[2] * z;
+            const F32x8 facing = _mm256_max_ps(along, zero), a2 = facing * facing, a4 = a2 * a2;
+            const F32x8 same = _mm256_cmp_ps(f32x8_load(value[SPOT_PART] + at), of_part, _CMP_EQ_OQ);
+            const F32x8 share = _mm256_blendv_ps(_mm256_set1_ps(other_part), _mm256_set1_ps(1), same);
+            f32x8_store(each, share * a4 * a4 * square_m2 * square_m2 /
+                                  ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
+            for (int k = 0; k < lanes; k++) {
+                if (!(each[k] > 0)) continue; /* faces away, or is not there */
+                all += each[k];
+                *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
+            }
+        }
+    return all;
+}
+
+static void span_about(int span[4], const SkyEntity *e, int column, int row, int more)
+{
+    span[0] = column > more ? column - more : 0, span[1] = row > more ? row - more : 0;
+    span[2] = column + more + 1 < e->columns ? column + more + 1 : e->columns;
+    span[3] = row + more + 1 < e->rows ? row + more + 1 : e->rows;
+}
+
+void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits)
+{
+    static const float enough = 0.3f; /* one spot of the part two steps away */
+    const int          index = (int)hits->entity[i] - 1;
+    if (v->grid_of[index] == 0) return;
+    const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
+    const View        *view = v->scene.view;
+    const double      *centre_enu = visibility_posed(v->scene.gather.visibility, index)->centre_enu;
+    const float        n_enu[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};
+    double             offset_enu[3], p_cam[3], image_px[2];
+    float              p_m[3], factor[8];
+    int                span[4];
+    if (e->columns == 0) return;
+    for (int c = 0; c < 3; c++) {
+        offset_enu[c] = hits->p_enu[c][i] - view->p_enu[c];
+        p_m[c] = (float)(hits->p_enu[c][i] - centre_enu[c]);
+    }
+    m3_tmul_v3(p_cam, view->r_enu_from_cam, offset_enu);
+    view_project(image_px, view, p_cam);
+    const int    column = (int)clamp(floor((image_px[0] - e->x0_px) / e->step_px[0]), 0, e->columns - 1);
+    const int    row = (int)clamp(floor((image_px[1] - e->y0_px) / e->step_px[1]), 0, e->rows - 1);
+    F32x8        sum = f32x8_set(0);
+    float        all = 0;
+    for (int more = 1; more <= 4 && !(all > enough); more += 3) {
+        span_about(span, e, column, row, more);
+        sum = f32x8_set(0);
+        all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
+    }
+    if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
+        span_about(span, e, 0, 0, grid_most);
+        sum = f32x8_set(0);
+        all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);
+    }
+    if (!(all > 1e-12f)) return;
+    f32x8_store(factor, sum * f32x8_set(1 / (double)all));
+    for (int b = 0; b < AIR_BAND_COUNT; b++)
+        if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
+}

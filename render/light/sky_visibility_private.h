@@ -1,0 +1,113 @@
+/* render/light/sky_visibility_private.h: a frame's places as sky_visibility.c (the ground) and sky_entities.c share
+ * them. */
+#ifndef RENDER_LIGHT_SKY_VISIBILITY_PRIVATE_H
+#define RENDER_LIGHT_SKY_VISIBILITY_PRIVATE_H
+
+#include <stdatomic.h>
+
+#include "render/light/sky_visibility.h"
+#include "render/parts/parts.h"
+
+enum {
+    known_slots   = 1 << 15,   /* of a block: more than 1024 hits x 4 places x 4 levels */
+    lattice_steps = 4,         /* the ground's finest lattice: 2^-4 m */
+    coarsest_log2_m = 4,
+};
+static const double look_m = 50;          /* what is farther from a place changes nothing there */
+
+/* What a place answered. */
+typedef struct SkyAnswer {
+    float factor[8]; /* by AirBand, and one to spare */
+    float blocked, sunlit, inside; /* as GatherChange; inside 1: nor is it there */
+} SkyAnswer;
+
+/* Places on an entity, in columns; where nothing of it was met the normal is 0. */
+enum { SPOT_X, SPOT_Y, SPOT_Z, SPOT_NORMAL_X, SPOT_NORMAL_Y, SPOT_NORMAL_Z, SPOT_PART, spot_values };
+typedef struct SkySpots {
+    float *value[spot_values]; /* m, ENU, from the entity's centre; and which part */
+    float (*factor)[8];        /* by AirBand, and one to spare */
+} SkySpots;
+
+/* An entity of the frame. */
+typedef struct SkyEntity {
+    int      index;          /* in the snapshot */
+    int      columns, rows;  /* of its grid; 0: not on the image */
+    double   x0_px, y0_px, step_px[2];
+    double   pitch_m;        /* of the grid at its distance */
+    SkySpots spot;           /* [rows * columns], and eight more */
+} SkyEntity;
+
+struct SkyVisibility {
+    SkyVisibilityScene scene;
+    int                count, on_image;
+    int               *grid_of;   /* [entities]: index into entity + 1 of those on the image; 0: of none */
+    SkyEntity         *entity;    /* [on_image] */
+    double             cells_per_m[coarsest_log2_m + lattice_steps + 1]; /* by step */
+    int               *task_entity, *task_first; /* [tasks] */
+    int                tasks;
+    double             px_rad;
+    double             level_w_m2[AIR_BAND_COUNT]; /* of open, level ground */
+    _Atomic uint64_t  *kept_key;  /* [kept_slots]; 0: free */
+    _Atomic uint8_t   *kept_done; /* [kept_slots]: 1: the place may be read */
+    SkyAnswer         *kept;
+};
+
+typedef struct SkySlot {
+    uint64_t key;
+    uint32_t block;  /* in which it was written: others are free */
+    bool     known;
+    SkyAnswer place;
+} SkySlot;
+
+/* A hit on the ground near an entity. */
+typedef struct SkyHit {
+    int8_t step, last_step; /* log2 of the cell, m: from the first down to the last */
+    bool   force;           /* close to a body: looked at finely whatever the places say */
+    float  weight;          /* 0: none near */
+} SkyHit;
+
+/* The cell that was asked last of each size: neighbouring hits lie in it. */
+typedef struct SkyCell {
+    int64_t  column, row;
+    uint32_t block;
+    bool     known, differ, any_inside; /* all corners; they do; of those */
+    const SkySlot *corner[4];
+} SkyCell;
+
+/* At which step hits of a finest cell ended. */
+typedef struct SkyEnd {
+    double   column, row;
+    uint32_t block;
+    int8_t   from, last, step;
+    bool     force;
+} SkyEnd;
+
+struct SkyWorker {
+    SkyEnd       end;
+    SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
+    SkySlot      slot[known_slots];
+    uint32_t     block;
+    int          queue[known_slots], queued; /* slots to be asked */
+    SkyHit       hit[hits_capacity];
+    Hits         places, met;
+    Rays         rays;
+    uint64_t     key[hits_capacity];
+    GatherChange change[hits_capacity];
+    int         *near;       /* [entities] */
+    double      *near_reach_m; /* of each: from its box the ground is looked at */
+    int8_t      *near_step;  /* of each: first_step_of */
+};
+
+/* What the light at a place of this normal is of the open. */
+void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const GatherChange *change);
+void sky_box_grow(double box[2][3], const Hits *hits, int i);
+/* Entities whose spheres, grown by more_m (and their reach), touch the box, to w->near and what goes with it. */
+int  sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach);
+
+/* sky_entities.c. The grid over what of the box lies on the image; tasks of all grids; a hit's factors. */
+Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
+                         Arena *arena);
+Status sky_entities_tasks(SkyVisibility *v, Arena *arena);
+void   sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits);
+
+#endif
