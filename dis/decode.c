@@ -89,8 +89,8 @@ static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
 }
 
 /* Types of IEEE 1278.1-2012, table of PDU types. Those with functions are decoded; of these, one that is acted upon has
- * its length judged by the walk through a datagram, and a PDU that cannot be decoded is counted as dropped. Of the others
- * the length is not judged. */
+ * its length judged by the walk through a datagram, and a PDU that cannot be decoded is counted as dropped. Of the
+ * others the length is not judged. */
 typedef struct PduType {
     const char *name;
     unsigned    least_octets; /* before variable records; 0: not acted upon */

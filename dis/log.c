@@ -80,7 +80,8 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
     const char  *problem = dis_capture_problem(capture);
     const Status status  = dis_capture_status(capture);
     if (status != STATUS_OK) {
-        log_error("log: cannot use %s: after packet %llu: %s", path, (unsigned long long)scan->log->counters.packets, problem);
+        log_error("log: cannot use %s: after packet %llu: %s", path, (unsigned long long)scan->log->counters.packets,
+                  problem);
         return status;
     }
     int link;

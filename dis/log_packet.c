@@ -89,7 +89,7 @@ static void keep_datagram(DisPacketReader *reader, Span payload)
 {
     DisLog *log = reader->log;
     if (log->count == reader->capacity) {
-        const int    capacity = reader->capacity ? reader->capacity > INT_MAX / 2 ? INT_MAX : 2 * reader->capacity : 1024;
+        const int capacity = reader->capacity ? reader->capacity > INT_MAX / 2 ? INT_MAX : 2 * reader->capacity : 1024;
         DisDatagram *grown = log->count == INT_MAX ? NULL
                                                    : realloc(log->datagram, (size_t)capacity * sizeof *log->datagram);
         if (!grown) {
@@ -175,7 +175,8 @@ static Assembly *find_assembly(DisPacketReader *reader, const uint8_t key[40])
 
 /* Puts one fragment where it belongs. Octets that came first stay, so an overlap has one outcome. Returns the
  * assembly when it is whole, to be released by the caller; NULL otherwise. */
-static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], size_t offset, bool more, uint8_t next, Span part)
+static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], size_t offset, bool more, uint8_t next,
+                              Span part)
 {
     Assembly *a = find_assembly(reader, key);
     if (!a) return NULL;
@@ -251,8 +252,8 @@ static void read_ipv4(DisPacketReader *reader, Span packet)
 
 /* Extension headers from `next` on, then UDP. whole: this payload has been put together already, and a
  * fragment in it is an error. */
-static void read_ipv6_payload(DisPacketReader *reader, const uint8_t *addresses, uint8_t next, Span payload, uint32_t packets,
-                              bool whole)
+static void read_ipv6_payload(DisPacketReader *reader, const uint8_t *addresses, uint8_t next, Span payload,
+                              uint32_t packets, bool whole)
 {
     DisLogCounters *counters = &reader->log->counters;
     for (;;) {
@@ -384,8 +385,8 @@ static size_t link_header_octets(int link)
 
 bool dis_packet_reads(int link)
 {
-    return link_header_octets(link) || link == link_raw || link == link_ipv4 || link == link_ipv6 || link == link_raw_bsd ||
-           link == link_raw_openbsd;
+    return link_header_octets(link) || link == link_raw || link == link_ipv4 || link == link_ipv6 ||
+           link == link_raw_bsd || link == link_raw_openbsd;
 }
 
 static void read_frame(DisPacketReader *reader, int link, Span frame)

@@ -65,7 +65,8 @@ static uint16_t load_u16(const DisCapture *c, const uint8_t *p)
 
 static uint32_t load_u32(const DisCapture *c, const uint8_t *p)
 {
-    return c->big ? (uint32_t)load_u16(c, p) << 16 | load_u16(c, p + 2) : (uint32_t)load_u16(c, p + 2) << 16 | load_u16(c, p);
+    return c->big ? (uint32_t)load_u16(c, p) << 16 | load_u16(c, p + 2)
+                  : (uint32_t)load_u16(c, p + 2) << 16 | load_u16(c, p);
 }
 
 /* In the other order than a little-endian reader would have it? */
@@ -169,7 +170,8 @@ static bool take_packet(DisCapturePacket *out, DisCapture *c, const uint8_t *at,
 }
 
 /* looked_at: octets of the block's body that are in memory, of `octets`. found: it was a packet. */
-static bool read_block(bool *found, DisCapturePacket *out, DisCapture *c, uint32_t type, size_t looked_at, uint64_t octets)
+static bool read_block(bool *found, DisCapturePacket *out, DisCapture *c, uint32_t type, size_t looked_at,
+                       uint64_t octets)
 {
     const bool old = type == block_old_packet, simple = type == block_simple_packet;
     *found = false;
@@ -210,7 +212,8 @@ static bool next_block(bool *found, DisCapturePacket *out, DisCapture *c)
     if (dis_stream_read(c->stream, c->body, looked_at) < looked_at || !dis_stream_skip(c->stream, octets - looked_at) ||
         dis_stream_read(c->stream, tail, 4) < 4)
         return stop(c, "it ends inside a block");
-    if (load_u32(c, tail) != length) return stop(c, "a block says %u octets at its begin, %u at its end", length, load_u32(c, tail));
+    if (load_u32(c, tail) != length)
+        return stop(c, "a block says %u octets at its begin, %u at its end", length, load_u32(c, tail));
     if (section) return load_u16(c, c->body) == 1 || stop(c, "version %u of pcapng", load_u16(c, c->body));
     return read_block(found, out, c, load_u32(c, head), looked_at, octets);
 }
@@ -281,10 +284,11 @@ Status dis_capture_open(DisCapture **out, const char *path)
         const char *packing = dis_stream_packing(c->stream);
         status              = c->status != STATUS_OK ? c->status : STATUS_UNSUPPORTED;
         if (status != STATUS_NO_MEMORY)
-            log_error("log: %s is not a capture (%s%s%s): pcap and pcapng files are read, as written by tcpdump -w, dumpcap "
-                      "or Wireshark, also compressed with gzip, zstd, bzip2 or xz; a text log (.dislog, .kdislog) is none: "
-                      "wrap its datagrams with text2pcap -u 3000,3000",
-                      path, packing ? packing : "", packing ? ": " : "", c->problem);
+            log_error(
+                "log: %s is not a capture (%s%s%s): pcap and pcapng files are read, as written by tcpdump -w, dumpcap "
+                "or Wireshark, also compressed with gzip, zstd, bzip2 or xz; a text log (.dislog, .kdislog) is none: "
+                "wrap its datagrams with text2pcap -u 3000,3000",
+                path, packing ? packing : "", packing ? ": " : "", c->problem);
     }
     if (status == STATUS_OK) *out = c;
     else dis_capture_close(c);

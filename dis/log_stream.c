@@ -68,7 +68,8 @@ static Packing packing_of(const uint8_t *p, size_t octets)
 {
     if (octets >= 3 && p[0] == 0x1F && p[1] == 0x8B && p[2] == 8) return PACKING_GZIP;
     if (octets >= 4 && p[0] == 0x28 && p[1] == 0xB5 && p[2] == 0x2F && p[3] == 0xFD) return PACKING_ZSTD;
-    if (octets >= 4 && p[0] >> 4 == 5 && p[1] == 0x2A && p[2] == 0x4D && p[3] == 0x18) return PACKING_ZSTD; /* skippable */
+    if (octets >= 4 && p[0] >> 4 == 5 && p[1] == 0x2A && p[2] == 0x4D && p[3] == 0x18)
+        return PACKING_ZSTD; /* skippable */
     if (octets >= 4 && memcmp(p, "BZh", 3) == 0 && p[3] >= '1' && p[3] <= '9') return PACKING_BZIP2;
     if (octets >= 6 && memcmp(p, "\xFD" "7zXZ", 6) == 0) return PACKING_XZ;
     return PACKING_NONE;

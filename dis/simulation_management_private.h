@@ -1,5 +1,5 @@
-/* dis/simulation_management_private.h: from octets to Remove Entity, Start/Resume and Stop/Freeze, for decode.c; contract:
- * dis_decode. */
+/* dis/simulation_management_private.h: from octets to Remove Entity, Start/Resume and Stop/Freeze, for decode.c;
+ * contract: dis_decode. */
 #ifndef DIS_SIMULATION_MANAGEMENT_PRIVATE_H
 #define DIS_SIMULATION_MANAGEMENT_PRIVATE_H
 

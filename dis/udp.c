@@ -1,8 +1,8 @@
 /* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
  *
- * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or for a
- * moment the one that closes a tick). sending: the socket itself, which a network that went and came back replaces. queue:
- * the ring and the counters, held for as long as some copies take. */
+ * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or
+ * for a moment the one that closes a tick). sending: the socket itself, which a network that went and came back
+ * replaces. queue: the ring and the counters, held for as long as some copies take. */
 #include "dis/udp.h"
 #include "dis/steady_clock.h"
 #include "dis/udp_link.h"

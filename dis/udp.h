@@ -1,9 +1,9 @@
 /* dis/udp.h: DIS datagrams over UDP: unicast, broadcast or multicast, IPv4 or IPv6, on a chosen interface.
  *
  * A thread of its own takes datagrams off the socket as they come, so that a busy caller loses none; what it took
- * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds; when the system's clock
- * is set they go on as if it had not been. Memory is taken at
- * dis_udp_open and never grows, whatever the network sends. Linux only.
+ * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds; when the system's
+ * clock is set they go on as if it had not been. Memory is taken at dis_udp_open and never grows, whatever the network
+ * sends. Linux only.
  *
  * A network that goes away - its interface deleted or set down, its address taken, the way to the group lost - is said
  * once, and once when it is back; what must be bound or joined anew then is. */
@@ -48,9 +48,9 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends o
 /* NULL is fine. No thread may be inside another function by then. */
 void   dis_udp_close(DisUdp *udp);
 
-/* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue has
- * room: by the receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is not
- * inside. It must not call anything here. */
+/* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue
+ * has room: by the receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is
+ * not inside. It must not call anything here. */
 typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
 void   dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
 /* What has arrived by now is in the queue, and after this has returned nothing more gets an arrival time at or before
@@ -65,7 +65,8 @@ bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
 /* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
 Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
 DisUdpCounters dis_udp_counters(const DisUdp *udp);
-/* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is set. */
+/* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is
+ * set. */
 int64_t dis_udp_now_ns(void);
 /* Until it is that, or a signal comes. */
 void    dis_udp_sleep_until(int64_t until_ns);

@@ -131,7 +131,8 @@ static bool atmosphere_is_valid(const Check *c)
 /* Catalog, its models and sidecars, and the materials of their parts. */
 static bool models_are_valid(Check *c)
 {
-    static const double coarse_sag_m = 0.1; /* built-in shapes are valid at any chord error; model files are read in full */
+    /* built-in shapes are valid at any chord error; model files are read in full */
+    static const double coarse_sag_m = 0.1;
     char      catalog[4096], materials[4096], surfaces[4096];
     Materials read = {0};
     const bool own = etc_own("catalog.csv") || etc_own("materials.csv");

@@ -1,4 +1,5 @@
-/* sensor/commands/exercise.h: `pitviper exercise`: an invented exercise, written as a recording or sent on the network. */
+/* sensor/commands/exercise.h: `pitviper exercise`: an invented exercise, written as a recording or sent on the
+ * network. */
 #ifndef SENSOR_COMMANDS_EXERCISE_H
 #define SENSOR_COMMANDS_EXERCISE_H
 

@@ -149,7 +149,8 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
     static DisPdu  decoded; /* 11 KiB, and the command has one thread */
     ExerciseClock *clock = NULL;
     Status         status = exercise_clock_create(&clock);
-    *f = (Findings){.entities.size = sizeof(EntityRow), .senders.size = sizeof(SenderRow), .events.size = sizeof(EventRow)};
+    *f = (Findings){
+        .entities.size = sizeof(EntityRow), .senders.size = sizeof(SenderRow), .events.size = sizeof(EventRow)};
     f->first_s = INFINITY;
     f->last_s = -INFINITY;
     for (int i = 0; i < log->count && status == STATUS_OK; i++) {

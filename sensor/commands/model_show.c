@@ -220,8 +220,13 @@ static Status draw_side(float *const plane[3], double white[3], double *px_per_m
     SnapshotEntity entity;
     Picture        picture;
     arena_reset(stage->arena);
-    const RenderRequest request = {.view = view_of(px_per_m, stage), .bands = 1u << BAND_OPTICAL, .optical = OPTICAL_RGB,
-                                   .sky_visibility = true, .samples = 1, .edge_samples = 4, .target_samples = 48,
+    const RenderRequest request = {.view = view_of(px_per_m, stage),
+                                   .bands = 1u << BAND_OPTICAL,
+                                   .optical = OPTICAL_RGB,
+                                   .sky_visibility = true,
+                                   .samples = 1,
+                                   .edge_samples = 4,
+                                   .target_samples = 48,
                                    .hidden_entity = -1};
     /* first nose on, then clockwise from above: right side, tail ... */
     Status status = put_model(&snapshot, &entity, stage, -0.5 * pi_rad - side * 0.25 * pi_rad);
@@ -233,7 +238,8 @@ static Status draw_side(float *const plane[3], double white[3], double *px_per_m
     const size_t left = (size_t)(side % columns) * tile_width, top = (size_t)(side / columns) * tile_height;
     for (int c = 0; c < 3; c++)
         for (size_t y = 0; y < tile_height; y++)
-            memcpy(plane[c] + (top + y) * width + left, picture.optical[c] + y * tile_width, tile_width * sizeof(float));
+            memcpy(plane[c] + (top + y) * width + left, picture.optical[c] + y * tile_width,
+                   tile_width * sizeof(float));
     return STATUS_OK;
 }
 

@@ -21,8 +21,8 @@ static void show_progress(double n, double first, double last, double begun_s)
 {
     const double done = (n - first + 1) / (last - first + 1), spent_s = wall_clock_s() - begun_s;
     char         text[96];
-    snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1, 100 * done,
-             spent_s * (1 - done) / done);
+    snprintf(text, sizeof text, "frame %.0f of %.0f  %3.0f %%  %.0f s left", n - first + 1, last - first + 1,
+             100 * done, spent_s * (1 - done) / done);
     log_status(text);
 }
 
@@ -79,10 +79,11 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
     const bool single = to_s >= from_s && !(last >= first); /* too short for the grid: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
-        log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), %s can be "
+        log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), "
+                  "%s can be "
                   "shown from %.3f s on; widen --from and --to or change --rate%s",
-                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s, last_s,
-                  last_s - first_s, session_host(session), plan->start_s,
+                  last >= first ? "more than a million frames" : "no frame", from_s, to_s, grid->rate_hz, first_s,
+                  last_s, last_s - first_s, session_host(session), plan->start_s,
                   config->causal ? ", or listen less (exercise.listen_s)" : "");
         return STATUS_BAD_VALUE;
     }

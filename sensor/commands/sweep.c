@@ -219,7 +219,8 @@ static Status check_folders(const SweepRun *s)
         snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name);
         bool other = read_run(&run, folder, "run.json") && run.complete && !is_run(&run, s, v);
         made_run_free(&run);
-        if (!other && read_run(&run, folder, "variant.json")) { /* settings outside of config_sha256: time span, planes */
+        /* settings outside of config_sha256: time span, planes */
+        if (!other && read_run(&run, folder, "variant.json")) {
             other = strcmp(run.settings_sha256, v->settings_sha256) != 0;
             made_run_free(&run);
         }
@@ -367,7 +368,8 @@ static Status write_settings(const char *path, const Options *o, const Variant *
     return status;
 }
 
-static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder, const Config *config)
+static void make_variant(Outcome *outcome, const SweepRun *s, const Variant *v, const char *folder,
+                         const Config *config)
 {
     char path[path_size + 32];
     *outcome = (Outcome){.status = "failed"};
@@ -401,7 +403,8 @@ static void report_variant(SweepRun *s, const Variant *v, const Outcome *outcome
     settings_words(words, &s->sweep, v->number, "\n");
     snprintf(text, sizeof text, "%s%s%s\n%s", v->name, *outcome->why ? ": " : "", outcome->why, words);
     /* the middle frame of the run: the target is usually in view */
-    sheet_add(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text, *outcome->why);
+    sheet_add(&s->sheet, s->options->out, v->name, outcome->has_run ? outcome->run.middle_frame : -1, text,
+              *outcome->why);
     settings_words(words, &s->sweep, v->number, ", ");
     if (*outcome->why)
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
@@ -428,7 +431,8 @@ static Status one_variant(SweepRun *s, int place)
     const Variant *v = &s->variant[place];
     char           folder[path_size], path[path_size + 32], part[path_size + 48];
     Outcome        outcome;
-    if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder) return STATUS_BAD_VALUE;
+    if (snprintf(folder, sizeof folder, "%s/%s", s->options->out, v->name) >= (int)sizeof folder)
+        return STATUS_BAD_VALUE;
     Status status = make_or_keep(&outcome, s, v, folder);
     if (status != STATUS_OK) return status;
     s->stopped = strcmp(outcome.status, "stopped") == 0;

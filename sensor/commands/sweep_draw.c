@@ -71,7 +71,8 @@ static Status count_kinds(SweepAxis *axis)
 
 static double uniform(const Sweep *sweep, int draw, const SweepAxis *axis)
 {
-    uint64_t key = 14695981039346656037u; /* of the key's name, FNV-1a: an additional axis changes no draw of the others */
+    /* of the key's name, FNV-1a: an additional axis changes no draw of the others */
+    uint64_t key = 14695981039346656037u;
     for (const char *at = axis->key; *at; at++) key = (key ^ (uint8_t)*at) * 1099511628211u;
     return random_uniform((uint64_t)sweep->draw, 0x53770000u, (uint32_t)draw, key);
 }

@@ -59,7 +59,8 @@ static Status read_range(SweepAxis *axis, const Reading *r, const yaml_node_t *n
         if (!(is_from || is_to) || (is_from && from) || (is_to && to)) return refuse(r, name, axis->key, form);
         const Status status = try_value(r, axis->key, text_of(value), line_of(value));
         if (status != STATUS_OK) return status;
-        if (!text_to_double(is_from ? &axis->low : &axis->high, text_of(value))) return refuse(r, value, axis->key, form);
+        if (!text_to_double(is_from ? &axis->low : &axis->high, text_of(value)))
+            return refuse(r, value, axis->key, form);
         from |= is_from;
         to |= is_to;
     }
@@ -91,7 +92,8 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
     if (!(axis->value = calloc(count, sizeof *axis->value))) return STATUS_NO_MEMORY;
     if (!list) return add_value(axis, r, node);
     for (size_t i = 0; i < count; i++) {
-        const Status status = add_value(axis, r, yaml_document_get_node(r->document, node->data.sequence.items.start[i]));
+        const Status status =
+            add_value(axis, r, yaml_document_get_node(r->document, node->data.sequence.items.start[i]));
         if (status != STATUS_OK) return status;
     }
     return STATUS_OK;
@@ -101,7 +103,8 @@ static Status read_axis(const Reading *r, const char *key, const yaml_node_t *na
 static Status read_axes(const Reading *r, const char *section, const yaml_node_t *mapping)
 {
     if (mapping->type != YAML_MAPPING_NODE) return refuse(r, mapping, "axes", "needs `key: [values]` below it");
-    for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start; pair < mapping->data.mapping.pairs.top; pair++) {
+    for (const yaml_node_pair_t *pair = mapping->data.mapping.pairs.start; pair < mapping->data.mapping.pairs.top;
+         pair++) {
         const yaml_node_t *name = yaml_document_get_node(r->document, pair->key);
         const yaml_node_t *node = yaml_document_get_node(r->document, pair->value);
         char               key[96];
@@ -122,7 +125,8 @@ static Status read_whole(long long *out, const Reading *r, const char *key, cons
 {
     char range[80];
     snprintf(range, sizeof range, "is not a whole number in %lld .. %lld", low, high);
-    if (node->type == YAML_SCALAR_NODE && text_to_long(out, text_of(node)) && *out >= low && *out <= high) return STATUS_OK;
+    if (node->type == YAML_SCALAR_NODE && text_to_long(out, text_of(node)) && *out >= low && *out <= high)
+        return STATUS_OK;
     return refuse(r, node, key, range);
 }
 

@@ -117,7 +117,8 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
         span = fmax(fmax(span, config->min_span), fmax(relative_floor * fabs(middle), absolute_floor));
         level.low = middle - 0.5 * span;
         level.high = middle + 0.5 * span;
-        if (span == config->min_span && level.low < 0 && middle >= 0) level = (DetectorLevel){0, span}; /* a dark picture is dark */
+        if (span == config->min_span && level.low < 0 && middle >= 0)
+            level = (DetectorLevel){0, span}; /* a dark picture is dark */
     }
     return level;
 }

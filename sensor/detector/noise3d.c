@@ -33,7 +33,8 @@ static void add(float *plane, int width, int height, const Noise3d *noise, uint6
     const double  whole = axis[0] < noise_axes && sigma[axis[0]] > 0
                               ? sigma[axis[0]] * noise3d_unit(axis[0], seed, stream, frame, 0, 0) : 0;
     for (int c = 0; c < width; c++)
-        columns[c] = sigma[axis[2]] > 0 ? whole + sigma[axis[2]] * noise3d_unit(axis[2], seed, stream, frame, 0, c) : whole;
+        columns[c] =
+            sigma[axis[2]] > 0 ? whole + sigma[axis[2]] * noise3d_unit(axis[2], seed, stream, frame, 0, c) : whole;
     for (int r = 0; r < height; r++) {
         const double line = sigma[axis[1]] > 0 ? sigma[axis[1]] * noise3d_unit(axis[1], seed, stream, frame, r, 0) : 0;
         float       *at   = plane + (size_t)r * (size_t)width;

@@ -104,7 +104,8 @@ static Status read_row(SensorPreset *out, const Table *t, int row)
 
     const char *text = table_text(t, row, band);
     p.channel        = channel_named(text, strlen(text));
-    if (p.channel ? p.channel->place < (p.channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR) : strcmp(text, "optical") != 0)
+    if (p.channel ? p.channel->place < (p.channel->standard ? SPECTRAL_MWIR : SPECTRAL_NIR)
+                  : strcmp(text, "optical") != 0)
         return bad_word(t, row, "band", text, "optical, mwir, lwir, or another channel of etc/channels.csv");
     p.band = !p.channel || p.channel->place == SPECTRAL_NIR ? BAND_OPTICAL
              : p.channel->place == SPECTRAL_MWIR            ? BAND_MWIR

@@ -143,7 +143,8 @@ static Status aim_is_heard(const Survey *survey, const Config *config)
         return STATUS_BAD_VALUE;
     }
     if (!survey_track(survey, aim) && !config->causal) {
-        log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists who is", config->exercise.aim);
+        log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists who is",
+                  config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;
@@ -273,7 +274,8 @@ static bool may_fly(const Track *track)
            (track->type.category == dis_munition_guided || !lies(track));
 }
 
-/* From the first report of any munition that flies to the end of the last; the frame is where the longest flight goes. */
+/* From the first report of any munition that flies to the end of the last; the frame is where the longest flight
+ * goes. */
 static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Config *config)
 {
     int munitions = 0;
@@ -335,7 +337,8 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
         const Track *flight = impact ? impact : longest_flight(survey, config, guided, false);
         if (!flight) continue;
         choice_add(choices, "host: %s, %s%s; its seeker is a notional one (exercise.host)",
-                   who(name, survey, flight->id), impact ? "the longest flight that hit an entity" : "the longest flight",
+                   who(name, survey, flight->id),
+                   impact ? "the longest flight that hit an entity" : "the longest flight",
                    guided ? "" : ", of unguided munitions");
         return plan_host(out, choices, survey, config, flight->id);
     }
@@ -373,7 +376,8 @@ static void say_doubts(Choices *choices, const Survey *survey)
                    (unsigned long long)(survey->doubts.unstamped + survey->doubts.stamped));
 }
 
-Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame)
+Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
+                   const LocalFrame *frame)
 {
     double first_unix_s;
     char   left_out[80] = "";
@@ -416,12 +420,15 @@ void choice_say_night(Choices *choices, unsigned bands, double unix_s, const Hos
     if (!(bands >> BAND_OPTICAL & 1)) return;
     for (int k = 0; k < 2; k++) {
         Sun sun;
-        if (!isfinite(at_s[k]) || sun_at(&sun, unix_s + at_s[k], &frame->origin, 1013.25, 15, NAN) != STATUS_OK) continue;
+        if (!isfinite(at_s[k]) || sun_at(&sun, unix_s + at_s[k], &frame->origin, 1013.25, 15, NAN) != STATUS_OK)
+            continue;
         lowest_deg = fmin(lowest_deg, sun.elevation_rad / rad_per_deg);
     }
     if (lowest_deg < dark_deg)
-        choice_add(choices, "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
-                   "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)", -lowest_deg);
+        choice_add(choices,
+                   "optical: black or nearly so, the sun is %.0f degrees below the horizon and neither moon nor "
+                   "lamps are modelled; lwir and mwir see (exercise.utc, sensor.bands)",
+                   -lowest_deg);
 }
 
 /* ---- ground --------------------------------------------------------------------------------- */

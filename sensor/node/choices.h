@@ -35,7 +35,8 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 /* Frames a second of exercise time, into the plan. */
 void choose_rate(HostPlan *plan, Choices *choices, const Config *config);
 /* Unix time of exercise time 0. Also says whose time stamps are no clock. */
-Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config, const LocalFrame *frame);
+Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const Config *config,
+                   const LocalFrame *frame);
 /* A line when optical pictures of this place will be black: the sun more than 6 degrees below the horizon, the end of
  * civil twilight, at the beginning or the end of the plan. */
 void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame);
@@ -49,8 +50,8 @@ typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_MISFITS, GROUND
 
 /* The ground: of the files of terrain.*, else the invented landscape with its sea, fitted to the log (see
  * ground_evidence.h). contact: which entities are set onto it (terrain.ground); later ones too. */
-Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
-                     const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
+Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey,
+                     const Config *config, const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan);
 
 /* Shared by the files of choices. */
 bool        choice_is_land(const Track *track);

@@ -65,8 +65,8 @@ static void say_cover(Choices *choices, const CoverReport *cover)
             if (!said[s] && cover->share[s] > (best ? cover->share[best] : 0)) best = s;
         if (!best) break;
         said[best] = true;
-        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s %.0f %%", n ? ", " : "", surface_name((SurfaceClass)best),
-                      100 * cover->share[best]);
+        n += snprintf(text + n, sizeof text - (size_t)n, "%s%s %.0f %%", n ? ", " : "",
+                      surface_name((SurfaceClass)best), 100 * cover->share[best]);
         if (n >= (int)sizeof text) break;
     }
     choice_add(choices, "cover: %s (band %d, table %s)%s", text, cover->band, cover->table,
@@ -78,21 +78,27 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
 {
     LandscapeReport r;
     const char *vertical = config->terrain.vertical;
-    const LandscapeFiles files = {
-        .elevation = {.paths = config->terrain.elevation, .geoid_path = config->terrain.geoid,
-                      .vertical = strcmp(vertical, "geoid") == 0       ? ELEVATION_GEOID
-                                  : strcmp(vertical, "ellipsoid") == 0 ? ELEVATION_ELLIPSOID
-                                                                       : ELEVATION_BY_FILE,
-                      .spacing_m = config->terrain.spacing_m,
-                      .horizon_m = landscape_default_config().horizon_m},
-        .cover = config->terrain.cover, .cover_table = config->terrain.cover_table, .cover_band = config->terrain.cover_band,
-        .photo = config->terrain.orthophoto, .seed = (uint64_t)config->seed};
+    const LandscapeFiles files = {.elevation = {.paths = config->terrain.elevation,
+                                                .geoid_path = config->terrain.geoid,
+                                                .vertical = strcmp(vertical, "geoid") == 0       ? ELEVATION_GEOID
+                                                            : strcmp(vertical, "ellipsoid") == 0 ? ELEVATION_ELLIPSOID
+                                                                                                 : ELEVATION_BY_FILE,
+                                                .spacing_m = config->terrain.spacing_m,
+                                                .horizon_m = landscape_default_config().horizon_m},
+                                  .cover = config->terrain.cover,
+                                  .cover_table = config->terrain.cover_table,
+                                  .cover_band = config->terrain.cover_band,
+                                  .photo = config->terrain.orthophoto,
+                                  .seed = (uint64_t)config->seed};
     const Status status = landscape_import(out, &r, &files, frame, e->fix, fit ? e->said.fix_count : 0);
     if (status != STATUS_OK) return status;
 
-    choice_add(choices, "ground: %d elevation sheet%s, posts %.3g m apart shown at %.3g m over %.1f x %.1f km (terrain.elevation, "
-               "terrain.spacing_m)", r.elevation.sheets, r.elevation.sheets == 1 ? "" : "s", r.elevation.posting_m,
-               r.elevation.spacing_m, 1e-3 * r.elevation.width_m[0], 1e-3 * r.elevation.width_m[1]);
+    choice_add(
+        choices,
+        "ground: %d elevation sheet%s, posts %.3g m apart shown at %.3g m over %.1f x %.1f km (terrain.elevation, "
+        "terrain.spacing_m)",
+        r.elevation.sheets, r.elevation.sheets == 1 ? "" : "s", r.elevation.posting_m, r.elevation.spacing_m,
+        1e-3 * r.elevation.width_m[0], 1e-3 * r.elevation.width_m[1]);
     if (r.elevation.ellipsoidal)
         choice_add(choices, "ground: heights taken as above the ellipsoid%s (terrain.vertical)",
                    strcmp(vertical, "auto") == 0 ? ", as the files' CRS says" : "");
@@ -102,16 +108,22 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
     if (r.elevation.places > 0)
         choice_add(choices, "ground: resampling left %.2f m rms, p99 %.2f, at most %.2f; %ld void posts filled",
                    r.elevation.error_rms_m, r.elevation.error_p99_m, r.elevation.error_max_m, r.elevation.voids);
-    choice_add(choices, "ground: real %s %.1f km to the nearest edge and %.1f to the farthest; then a plain at %.0f m, over %.1f km",
-               r.elevation.reach_m[0] < 0 ? "data begin" : "for", 1e-3 * fabs(r.elevation.reach_m[0]), 1e-3 * r.elevation.reach_m[1],
-               r.elevation.beyond_h_m, 1e-3 * r.elevation.blend_m);
+    choice_add(
+        choices,
+        "ground: real %s %.1f km to the nearest edge and %.1f to the farthest; then a plain at %.0f m, over %.1f km",
+        r.elevation.reach_m[0] < 0 ? "data begin" : "for", 1e-3 * fabs(r.elevation.reach_m[0]),
+        1e-3 * r.elevation.reach_m[1], r.elevation.beyond_h_m, 1e-3 * r.elevation.blend_m);
     if (fit)
-        choice_add(choices, "ground: led through %d land entities and %d ground impacts by a smooth correction of at most %.1f m "
-                   "(terrain.ground)", on_land(e), e->impacts, r.elevation.correction_m);
+        choice_add(
+            choices,
+            "ground: led through %d land entities and %d ground impacts by a smooth correction of at most %.1f m "
+            "(terrain.ground)",
+            on_land(e), e->impacts, r.elevation.correction_m);
     if (*config->terrain.cover) say_cover(choices, &r.cover);
     else choice_add(choices, "cover: by slope and height, no file says what grows there (terrain.cover)");
     if (*config->terrain.orthophoto)
-        choice_add(choices, "photograph: %.2g m pixels, scaled to each class's reflectance (terrain.orthophoto)", r.photo_posting_m);
+        choice_add(choices, "photograph: %.2g m pixels, scaled to each class's reflectance (terrain.orthophoto)",
+                   r.photo_posting_m);
     return STATUS_OK;
 }
 
@@ -148,11 +160,14 @@ static Status say_contact(Choices *choices, bool clamp, const Landscape *landsca
     if (count > 0) {
         qsort(off_m, count, sizeof *off_m, by_value);
         const double median_m = off_m[count / 2];
-        choice_add(choices, "contact: land entities %s; they were sent %.2f m (median), at most %.1f m %s it (terrain.ground)",
+        choice_add(choices,
+                   "contact: land entities %s; they were sent %.2f m (median), at most %.1f m %s it (terrain.ground)",
                    clamp ? "are set onto the ground" : "stay where they were sent", median_m, off_m[count - 1],
                    sum > 0 ? "mostly above" : "mostly below");
         if (clamp && median_m > 20)
-            choice_add(choices, "contact: the exercise was run over other ground; terrain.ground: fit leads this one through it");
+            choice_add(
+                choices,
+                "contact: the exercise was run over other ground; terrain.ground: fit leads this one through it");
     }
     free(off_m);
     return STATUS_OK;
@@ -234,12 +249,12 @@ static void say_sunken_aim(Choices *choices, const Survey *survey, const GroundE
     const Track *aim = survey_track(survey, plan->aim);
     if (!aim || e->stance[aim - survey->track] != STANCE_SUBMERGED) return;
     dis_entity_id_text(id, plan->aim);
-    choice_add(choices, "aim: %s is under water, so pictures show the sea above it; exercise.aim=ID looks at another%s", id,
-               dis_entity_id_is_none(plan->host) ? ", --host ID rides on one" : "");
+    choice_add(choices, "aim: %s is under water, so pictures show the sea above it; exercise.aim=ID looks at another%s",
+               id, dis_entity_id_is_none(plan->host) ? ", --host ID rides on one" : "");
 }
 
-Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey, const Config *config,
-                     const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
+Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, const Survey *survey,
+                     const Config *config, const LocalFrame *frame, const Catalog *catalog, const HostPlan *plan)
 {
     GroundEvidence      e = {0};
     const char         *said = config->terrain.ground;

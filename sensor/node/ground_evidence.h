@@ -1,12 +1,12 @@
 /* sensor/node/ground_evidence.h: what an exercise says of its ground and its sea.
  *
- * On the ground: land platforms, life forms, cultural features, supplies and sensors on land, mines, landed aircraft and
- * bursts that say ground impact. Not: what is carried or falls, and what is aboard a ship. An aircraft has landed that
- * stands still to 5 mm for 5 s and is a fixed-wing one, or has its engine off where its sender is known to say so, or
- * stands as high as the entities around it: a helicopter that only hangs in the air is none.
- * The sea: wherever surface and subsurface platforms were. Its level is the median of the ships' own, one ship one
- * vote; of submarines alone 0 or the highest of them. What stands on land is on land even amid ships, unless it is
- * within a ship's hull or on its deck: an amphibious vehicle among ships makes its own small island. */
+ * On the ground: land platforms, life forms, cultural features, supplies and sensors on land, mines, landed aircraft
+ * and bursts that say ground impact. Not: what is carried or falls, and what is aboard a ship. An aircraft has landed
+ * that stands still to 5 mm for 5 s and is a fixed-wing one, or has its engine off where its sender is known to say so,
+ * or stands as high as the entities around it: a helicopter that only hangs in the air is none. The sea: wherever
+ * surface and subsurface platforms were. Its level is the median of the ships' own, one ship one vote; of submarines
+ * alone 0 or the highest of them. What stands on land is on land even amid ships, unless it is within a ship's hull or
+ * on its deck: an amphibious vehicle among ships makes its own small island. */
 #ifndef SENSOR_NODE_GROUND_EVIDENCE_H
 #define SENSOR_NODE_GROUND_EVIDENCE_H
 

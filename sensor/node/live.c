@@ -276,7 +276,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
     const Options *o      = &run->options;
     Status         status = STATUS_OK;
     double         last   = -1; /* number of the last frame */
-    const double   from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
+    const double from_s = fmax(plan->start_s, span_time_s(o->config.exercise.from, plan->start_s, NAN)); /* NaN: none */
     const double   to_s   = span_time_s(o->config.exercise.to, plan->start_s, NAN);
     const double   first  = fmax(ceil(from_s * grid->rate_hz - 1e-9) - grid->origin, 0);
     l->player = player;
@@ -337,8 +337,8 @@ static Status open_network(Live *l)
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, udp.port);
 }
 
-/* How long this machine takes over a frame, once: the one clock that a choice of quality hangs on. Said so that a replay
- * with the same quality.machine_factor makes the same pictures. */
+/* How long this machine takes over a frame, once: the one clock that a choice of quality hangs on. Said so that a
+ * replay with the same quality.machine_factor makes the same pictures. */
 static Status measure_machine(Live *l)
 {
     Config *config = &l->run.options.config;
@@ -350,7 +350,8 @@ static Status measure_machine(Live *l)
     Status status = machine_factor(&factor, path, l->run.options.threads);
     if (status != STATUS_OK) return status;
     snprintf(text, sizeof text, "%g", factor);
-    choice_add(&l->run.choices, "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);
+    choice_add(&l->run.choices,
+               "machine: %s times the time in the table of settings, measured (quality.machine_factor)", text);
     return config_set(config, "quality.machine_factor", text, "run");
 }
 
@@ -401,7 +402,8 @@ static Status run_node(Live *l)
     bool   heard;
     const Options *o = &l->run.options;
     Status status = overwrite_folder("run", o->out, o->overwrite);
-    if (status == STATUS_OK && *o->config.record.path) status = overwrite_file("run", o->config.record.path, o->overwrite);
+    if (status == STATUS_OK && *o->config.record.path)
+        status = overwrite_file("run", o->config.record.path, o->overwrite);
     if (status == STATUS_OK) status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
     /* now, not when the first entity is heard, hours later */

@@ -1,5 +1,5 @@
-/* sensor/node/live_recording.h: what a live node hears into a file, in the thread that takes it off the socket: a node that
- * is busy with a frame, or a queue that is full, leaves nothing out of it. */
+/* sensor/node/live_recording.h: what a live node hears into a file, in the thread that takes it off the socket: a node
+ * that is busy with a frame, or a queue that is full, leaves nothing out of it. */
 #ifndef SENSOR_NODE_LIVE_RECORDING_H
 #define SENSOR_NODE_LIVE_RECORDING_H
 

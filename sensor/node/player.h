@@ -35,9 +35,10 @@ enum { munition_still_mps = 1 }; /* an unguided munition slower than this lies t
 /* Target of the latest Fire fed that names this munition. */
 bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
 /* Of the munitions that were fed, who carries the sensor now. munition: in, who does (0:0:0: none so far). A guided one
- * (SISO-REF-010, category 1) that is in the table stays; else the guided one heard first of those in the table; else who
- * carries it, while it is there; else the one heard first that is neither guided nor fixed and has moved. Fixed ones
- * (category 3: mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are known. */
+ * (SISO-REF-010, category 1) that is in the table stays; else the guided one heard first of those in the table; else
+ * who carries it, while it is there; else the one heard first that is neither guided nor fixed and has moved. Fixed
+ * ones (category 3: mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are
+ * known. */
 bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
 /* Fire PDUs and munitions that went for newer ones, since only the latest are known. */

@@ -9,9 +9,9 @@
  * the vertical, and an attitude in float32 (as DIS sends it) has steps of 2.4e-7 rad. Within camera_vertical_rad of
  * straight up or down the picture therefore keeps the top it had, carried along without roll, and out of there it turns
  * back to upright no faster than seeker_roll_rps, the short way. A head that is first seen within starts with its top
- * towards the body's nose, or, looking along the nose, towards the body's top. Outside, three angles that are each wrong
- * by half such a step (2e-7 rad together) roll the picture by 1e-4 rad at most, 0.04 px at the corner of 720 x 486.
- * tests/sensor/test_seeker.c */
+ * towards the body's nose, or, looking along the nose, towards the body's top. Outside, three angles that are each
+ * wrong by half such a step (2e-7 rad together) roll the picture by 1e-4 rad at most, 0.04 px at the corner of 720 x
+ * 486. tests/sensor/test_seeker.c */
 #ifndef SENSOR_NODE_SEEKER_H
 #define SENSOR_NODE_SEEKER_H
 

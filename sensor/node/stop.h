@@ -9,8 +9,8 @@
  * script. nohup's SIGHUP stays ignored. A signal may come to any thread and ends no wait: look now and then. */
 void stop_by_signals(void);
 bool stop_asked(void);
-/* 128 and the number of the signal that asked, as a shell says it of what a signal ended: 130 of Ctrl-C, 143 of SIGTERM,
- * 129 of SIGHUP; 0: none has. */
+/* 128 and the number of the signal that asked, as a shell says it of what a signal ended: 130 of Ctrl-C, 143 of
+ * SIGTERM, 129 of SIGHUP; 0: none has. */
 int  stop_exit_code(void);
 
 #endif

@@ -67,8 +67,8 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
     dis_entity_type_text(type, entity->type);
     json_t *out = json_pack("{s:I,s:I,s:i,s:[i,i,i,i],s:I,s:i,s:i,s:s,s:i,s:s,s:s,s:f,s:{s:[i,i],s:s}}", "id",
                             (json_int_t)c->file.annotations + 1, "image_id", (json_int_t)image, "category_id",
-                            target_class(entity->type), "bbox", box[0], box[1], box[2] - box[0], box[3] - box[1], "area",
-                            (json_int_t)extent->pixels, "iscrowd", crowd, "ignore", crowd, "entity", name,
+                            target_class(entity->type), "bbox", box[0], box[1], box[2] - box[0], box[3] - box[1],
+                            "area", (json_int_t)extent->pixels, "iscrowd", crowd, "ignore", crowd, "entity", name,
                             "plane_value", t->index + 1, "type", type, "model",
                             catalog_model(r->catalog, entity->model)->name, "pixels", t->pixels, "segmentation", "size",
                             r->request->view.height, r->request->view.width, "counts", c->text);

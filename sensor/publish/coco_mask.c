@@ -51,7 +51,8 @@ void mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int
     long long end = 0; /* of the last run */
     bool      on  = false;
     for (int x = extent->box[0]; x < extent->box[2]; x++) {
-        /* from row 0 on where the column before ended within the mask, to the row behind the box or the picture's last */
+        /* from row 0 on where the column before ended within the mask, to the row behind the box or the picture's
+         * last */
         const int first = on ? 0 : extent->box[1], behind = extent->box[3] < height ? extent->box[3] + 1 : height;
         for (int y = first; y < behind; y++) {
             if ((plane[(size_t)y * (size_t)width + (size_t)x] == value) == on) continue;

@@ -102,8 +102,10 @@ Status coco_merge_close(CocoMerge *m, bool whole)
     Status status = STATUS_OK;
     if (!m) return status;
     if (m->open)
-        status = coco_file_close(&m->file, json_pack("{s:s,s:s,s:i}", "description", "pitviper replay --sweep", "version",
-                                                     PITVIPER_VERSION, "variants", m->variants), whole);
+        status = coco_file_close(&m->file,
+                                 json_pack("{s:s,s:s,s:i}", "description", "pitviper replay --sweep", "version",
+                                           PITVIPER_VERSION, "variants", m->variants),
+                                 whole);
     char path[coco_path_size + 16];
     snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* beside it: coco.json is that run's own */
     if ((!m->open || !whole || status != STATUS_OK) && access(path, F_OK) != 0) {

@@ -1,6 +1,6 @@
 /* sensor/publish/coco_merge.h: one coco.json of several, of the variants of a sweep: ids anew from 1 on, in the order
- * of the variants; images are named from the sweep's folder, and say whose they are (`variant`). Categories are the same
- * in all. */
+ * of the variants; images are named from the sweep's folder, and say whose they are (`variant`). Categories are the
+ * same in all. */
 #ifndef SENSOR_PUBLISH_COCO_MERGE_H
 #define SENSOR_PUBLISH_COCO_MERGE_H
 

@@ -27,11 +27,20 @@ void chains_destroy(Chains *chains)
 
 static FrameFiles files_of(const Pictures *p, const Frame *frame, const Chains *chains)
 {
-    return (FrameFiles){.out = p->of.out, .config = p->of.config, .world = frame->world, .picture = &frame->seen.picture,
-                        .snapshot = &frame->seen.snapshot, .request = &frame->request, .host = frame->host,
-                        .config_sha256 = frame->provenance.config_sha256, .frame = frame->number,
-                        .time_s = frame->time_s, .unix_s = frame->unix_s, .png = p->of.config->publish.png,
-                        .chain = chains->band, .level = p->of.level,
+    return (FrameFiles){.out = p->of.out,
+                        .config = p->of.config,
+                        .world = frame->world,
+                        .picture = &frame->seen.picture,
+                        .snapshot = &frame->seen.snapshot,
+                        .request = &frame->request,
+                        .host = frame->host,
+                        .config_sha256 = frame->provenance.config_sha256,
+                        .frame = frame->number,
+                        .time_s = frame->time_s,
+                        .unix_s = frame->unix_s,
+                        .png = p->of.config->publish.png,
+                        .chain = chains->band,
+                        .level = p->of.level,
                         .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}};
 }
 

@@ -18,7 +18,7 @@ typedef struct FrameArray {
     const char *group;                   /* `lwir`, `radar`, `truth`: what goes into a file together */
     const char *name;                    /* within the group: `Y`, `R`, `range_m`, `profile` */
     const char *unit;
-    const char *model, *wavelengths_um;  /* of radiance: what made it, what it sees in the order of the group's planes */
+    const char *model, *wavelengths_um; /* of radiance: what made it, what it sees in the order of the group's planes */
     PlaneKind   kind;
     PlaneType   type;
     int         axes;

@@ -13,9 +13,15 @@ static void add(PlaneList *list, const char *group, PlaneKind kind, const char *
                 const void *values)
 {
     if (values)
-        list->plane[list->count++] = (FrameArray){.group = group, .name = name, .unit = unit, .kind = kind, .type = type,
-                                                  .axes = 2, .axis = {"row", "column"},
-                                                  .size = {list->height, list->width}, .values = values};
+        list->plane[list->count++] = (FrameArray){.group = group,
+                                                  .name = name,
+                                                  .unit = unit,
+                                                  .kind = kind,
+                                                  .type = type,
+                                                  .axes = 2,
+                                                  .axis = {"row", "column"},
+                                                  .size = {list->height, list->width},
+                                                  .values = values};
 }
 
 int frame_planes(FrameArray plane[frame_max_planes], const Picture *p, const RenderRequest *request)

@@ -13,7 +13,8 @@ static const char style[] =
     "h1{font-size:1.5rem}h2{font-size:1.2rem;margin-top:2.2rem}h3{font-size:1rem}\n"
     "table{border-collapse:collapse;font-variant-numeric:tabular-nums}\n"
     "td,th{padding:.2rem .7rem;border-bottom:1px solid var(--line);text-align:left;vertical-align:top}\n"
-    "td.n,th.n{text-align:right;white-space:nowrap}.good{color:var(--good)}.bad{color:var(--bad);font-weight:600}.dim{opacity:.65}\n"
+    "td.n,th.n{text-align:right;white-space:nowrap}.good{color:var(--good)}.bad{color:var(--bad);font-weight:600}.dim{"
+    "opacity:.65}\n"
     "img{max-width:100%;image-rendering:pixelated}figure{display:inline-block;margin:.3rem .8rem .8rem 0}\n"
     "figcaption{font-size:.85rem}code{font-family:ui-monospace,monospace}\n";
 

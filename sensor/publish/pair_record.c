@@ -22,7 +22,8 @@ static json_t *member_json(const PairRecord *r, const PairMember *m)
         json_t     *band = json_object();
         set_file(band, "radiance", m->radiance, "frames", name, r->frame, "exr");
         /* radar holds no detector noise: its picture goes with its radiance */
-        if (r->png) set_file(band, "display", b == BAND_RADAR ? m->radiance : m->shown, "frames", name, r->frame, "png");
+        if (r->png)
+            set_file(band, "display", b == BAND_RADAR ? m->radiance : m->shown, "frames", name, r->frame, "png");
         if (r->raw >> b & 1) set_file(band, "raw", m->shown, "raw", name, r->frame, "png");
         if (r->png && b != BAND_RADAR)
             json_object_set_new(band, "level", json_pack("[f,f]", m->level[b].shown.low, m->level[b].shown.high));

@@ -45,10 +45,17 @@ static Status close_pairs(Consumer *consumer)
 
 static Status write_line(const Pairs *p, const Frame *frame)
 {
-    PairRecord r = {.frame = frame->number, .time_s = frame->time_s, .seed = p->of.config->seed, .removed = frame->taken,
-                    .removed_count = frame->taken_count, .frame_sha256 = frame->seen.sha256,
-                    .background_sha256 = frame->without->sha256, .bands = frame->request.bands, .raw = p->of.raw,
-                    .png = p->of.config->publish.png, .truth = frame_files_truth(p->of.config)};
+    PairRecord r = {.frame = frame->number,
+                    .time_s = frame->time_s,
+                    .seed = p->of.config->seed,
+                    .removed = frame->taken,
+                    .removed_count = frame->taken_count,
+                    .frame_sha256 = frame->seen.sha256,
+                    .background_sha256 = frame->without->sha256,
+                    .bands = frame->request.bands,
+                    .raw = p->of.raw,
+                    .png = p->of.config->publish.png,
+                    .truth = frame_files_truth(p->of.config)};
     for (int m = WITH; m < pair_members; m++)
         r.member[m] = (PairMember){
             .target   = m < BACKGROUND,

@@ -8,10 +8,11 @@
  *     OUT/pairs.jsonl                 a line a frame: what was taken away, every file, what black and white stand for
  *
  * Radiance and radar hold no detector noise: a noiseless member names those of its noisy one. Without: the entity is
- * not drawn, and with it go its shadow, its echoes and the light it threw on others. All else stays: the ground, the other
- * entities, smoke and dust, its own too (they hang in the air; their veil is the same in both), motion for the smear.
- * Each member has detectors of its own: exposure, gain, level and coupling follow what it sees. Noise is a function of
- * (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the frame with the target.
+ * not drawn, and with it go its shadow, its echoes and the light it threw on others. All else stays: the ground, the
+ * other entities, smoke and dust, its own too (they hang in the air; their veil is the same in both), motion for the
+ * smear. Each member has detectors of its own: exposure, gain, level and coupling follow what it sees. Noise is a
+ * function of (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the frame with the
+ * target.
  *
  * A frame costs a second rendering, the files of a second frame, and three more runs of each band's detector
  * (tests/system/test_pairs.sh). */

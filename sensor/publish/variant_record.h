@@ -1,5 +1,5 @@
-/* sensor/publish/variant_record.h: manifest.jsonl and variant.json of a sweep (sensor/commands/sweep.h), and what they and
- * run.json say of a run that has been made. */
+/* sensor/publish/variant_record.h: manifest.jsonl and variant.json of a sweep (sensor/commands/sweep.h), and what they
+ * and run.json say of a run that has been made. */
 #ifndef SENSOR_PUBLISH_VARIANT_RECORD_H
 #define SENSOR_PUBLISH_VARIANT_RECORD_H
 

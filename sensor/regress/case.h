@@ -45,7 +45,7 @@ typedef struct Tolerance {
     double radar_span_db;          /* power this far below the brightest counts as zero */
     double share;                  /* of pixels, temperature and radiance */
     double edge_share;             /* of edge pixels whose ids may differ; only under other libraries or another ISA */
-    double truth;                  /* factor on the tolerances of the fields of truth.jsonl (sensor/regress/truth_diff.c) */
+    double truth; /* factor on the tolerances of the fields of truth.jsonl (sensor/regress/truth_diff.c) */
 } Tolerance;
 
 typedef struct Case {

@@ -46,15 +46,15 @@ static const char help[] =
     "\n"
     "compared, in the order of the data path; the first failed channel is named, as the probable cause of the others\n"
     "  counters, time, pose of the sensor, sun, motion of the targets; entity, part, range, normal, visible targets;\n"
-    "  material; temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and counters\n"
-    "  must be equal; radiance may differ by 0.05 K apparent, 1 % of optical radiance, 0.1 dB, in all but 0.1 % of the\n"
-    "  pixels. The rounding of the baseline is within these tolerances.\n"
+    "  material; temperature; optical, mwir, lwir, radar, radar profile; target signals; error budget. Ids and\n"
+    "  counters must be equal; radiance may differ by 0.05 K apparent, 1 % of optical radiance, 0.1 dB, in all but\n"
+    "  0.1 % of the pixels. The rounding of the baseline is within these tolerances.\n"
     "\n"
     "Differences of the inputs from those of the baseline (tables, models, settings, log, libraries, choices) are\n"
     "reported before any channel, by hashes in run.json. Each case runs in processes of its own: a crash or a timeout\n"
     "fails only that case. A missing log or baseline fails the case, unless allowed. --update prints the automatic\n"
-    "choices: host, aim, terrain, time. Exit code: 0: nothing failed; 1: a case failed; 2: usage; 130, 143: stopped by\n"
-    "Ctrl-C, by SIGTERM.\n";
+    "choices: host, aim, terrain, time. Exit code: 0: nothing failed; 1: a case failed; 2: usage; 130, 143: stopped\n"
+    "by Ctrl-C, by SIGTERM.\n";
 
 typedef struct Options {
     bool        update, allow_missing;

@@ -102,7 +102,8 @@ static bool make_log(char log[path_size], CaseResult *r)
         return end_case(r, CASE_BROKEN, "scenario: there is no file %.400s", scenario);
     snprintf(log, path_size, "%.4080s/log.pcapng", r->work);
     bool fits = child_add(&line, "pitviper") && child_add(&line, "exercise") &&
-                child_add(&line, is_file ? scenario : r->c.scenario) && child_add(&line, "--overwrite") && child_add(&line, "-o") && child_add(&line, log);
+                child_add(&line, is_file ? scenario : r->c.scenario) && child_add(&line, "--overwrite") &&
+                child_add(&line, "-o") && child_add(&line, log);
     memcpy(set, r->c.scenario_set, sizeof set);
     char *rest = set;
     for (char *one; (one = strtok_r(rest, " \t\r\n", &rest));)
@@ -177,9 +178,9 @@ static bool replay_case(CaseResult *r, const CaseHow *how, const char *log, cons
         n += (size_t)snprintf(only + n, sizeof only - n, "%s%.0f", i ? "," : "", r->c.frames.number[i]);
     snprintf(out, sizeof out, "%.4080s/out", r->work);
     snprintf(threads, sizeof threads, "%d", how->threads);
-    const char *const fixed[] = {"pitviper", "replay",    log,     "--out",    out,     "--only",
-                                 only,       "--threads", threads, "--no-png", "--overwrite", "--set", "publish.files=true",
-                                 "--set", "publish.planes=all"};
+    const char *const fixed[] = {"pitviper", "replay", log, "--out", out, "--only", only, "--threads", threads,
+                                 "--no-png", "--overwrite", "--set", "publish.files=true", "--set",
+                                 "publish.planes=all"};
     for (size_t i = 0; i < sizeof fixed / sizeof *fixed; i++) child_add(&line, fixed[i]);
     if (*config) {
         child_add(&line, "--config");

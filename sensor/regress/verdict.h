@@ -45,7 +45,7 @@ typedef struct Verdict {
     int           first;        /* first channel that failed; -1: none */
     bool          same_build;   /* version, libraries and ISA are those of the baseline */
     bool          other_log;    /* the log is not that of the baseline: its generator may be the cause */
-    char          remarks[16384]; /* lines: inputs that differ from the baseline's: tables, settings, log, build, choices */
+    char remarks[16384]; /* lines: inputs that differ from the baseline's: tables, settings, log, build, choices */
 } Verdict;
 
 const char *channel_name(Channel channel);

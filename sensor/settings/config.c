@@ -373,7 +373,8 @@ static bool is_readable(const char *key, const char *path)
 Status config_own_tables(const Config *config)
 {
     if (!is_readable("models.catalog", config->models.catalog) ||
-        !is_readable("models.materials", config->models.materials) || !is_readable("sensor.table", config->sensor.table))
+        !is_readable("models.materials", config->models.materials) ||
+        !is_readable("sensor.table", config->sensor.table))
         return STATUS_BAD_VALUE;
     const bool fits = etc_own_set("catalog.csv", config->models.catalog) &&
                       etc_own_set("materials.csv", config->models.materials) &&

@@ -80,7 +80,8 @@ static Status take_sensor(Sensors *s, int *first_band, Config *config, const cha
 /* Refuses a noise setting for a band whose sensor has its own noise. */
 static Status one_noise(const Sensors *s, const Config *config)
 {
-    static const char *const key[BAND_COUNT] = {"detector.noise_optical", "detector.netd_mwir_k", "detector.netd_lwir_k"};
+    static const char *const key[BAND_COUNT] = {"detector.noise_optical", "detector.netd_mwir_k",
+                                                "detector.netd_lwir_k"};
     for (int b = 0; b < BAND_COUNT; b++)
         if (s->has[b] && key[b] && config_given(config, key[b])) {
             log_error("replay: %s: the noise of %s is set by its sensor, %s; remove one of them (detector.noise is a "

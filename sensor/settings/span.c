@@ -40,8 +40,10 @@ bool span_outside(const char *from, const char *to, double first_s, double last_
     if (backward && !late && !early) snprintf(which, sizeof which, "--from %s is after --to %s", from, to);
     else snprintf(which, sizeof which, late ? "--from %s is after its end" : "--to %s is before its "
                                               "start", late ? from : to);
-    log_error("replay: %s: the recording runs from %.3f to %.3f s of exercise time, +0 to +%.3f from its start, -%.3f to "
-              "-0 from its "
-              "end", which, first_s, last_s, last_s - first_s, last_s - first_s);
+    log_error(
+        "replay: %s: the recording runs from %.3f to %.3f s of exercise time, +0 to +%.3f from its start, -%.3f to "
+        "-0 from its "
+        "end",
+        which, first_s, last_s, last_s - first_s, last_s - first_s);
     return true;
 }

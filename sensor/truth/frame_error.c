@@ -7,8 +7,9 @@
 /* Rows of a target that are looked at, at most about so many pixels. */
 enum { most_px = 4096 };
 
-/* Of one target in one plane: squared differences of neighbours, one of them at least the target's, less what the ground
- * of those pixels differs by itself, as it does about it; and of its pixels to the mean about it. Sums over pixels. */
+/* Of one target in one plane: squared differences of neighbours, one of them at least the target's, less what the
+ * ground of those pixels differs by itself, as it does about it; and of its pixels to the mean about it. Sums over
+ * pixels. */
 typedef struct Outline {
     double steps, apart;
 } Outline;
@@ -23,7 +24,8 @@ static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, si
 }
 
 typedef struct Steps {
-    double on, ground, ground_pairs, ground_seen; /* squares with the target and without; squared shares of ground with */
+    /* squares with the target and without; squared shares of ground with */
+    double on, ground, ground_pairs, ground_seen;
 } Steps;
 
 static void add_step(Steps *s, double share_a, double share_b, double step)
@@ -40,7 +42,8 @@ static void add_step(Steps *s, double share_a, double share_b, double step)
 static Outline outline_of(const Picture *p, const TargetPixels *px, int index, const float *value)
 {
     const int box[4] = {px->box[0] > 0 ? px->box[0] - 1 : 0, px->box[1] > 0 ? px->box[1] - 1 : 0,
-                        px->box[2] < p->width ? px->box[2] + 1 : p->width, px->box[3] < p->height ? px->box[3] + 1 : p->height};
+                        px->box[2] < p->width ? px->box[2] + 1 : p->width,
+                        px->box[3] < p->height ? px->box[3] + 1 : p->height};
     const int      area = (box[2] - box[0]) * (box[3] - box[1]), stride = 1 + area / most_px;
     const uint32_t id = (uint32_t)index + 1;
     Outline        o = {0, 0};
@@ -52,8 +55,10 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
             const double on = share_of(p, px, id, at);
             if (on > 0) sum += value[at], sum_2 += square(value[at]), on_px++;
             else ring += value[at], ring_px++;
-            if (x + 1 < p->width) add_step(&s, on, share_of(p, px, id, right), (double)value[right] - (double)value[at]);
-            if (y + 1 < p->height) add_step(&s, on, share_of(p, px, id, below), (double)value[below] - (double)value[at]);
+            if (x + 1 < p->width)
+                add_step(&s, on, share_of(p, px, id, right), (double)value[right] - (double)value[at]);
+            if (y + 1 < p->height)
+                add_step(&s, on, share_of(p, px, id, below), (double)value[below] - (double)value[at]);
         }
     const double mean = ring_px > 0 ? ring / ring_px : on_px > 0 ? sum / on_px : 0;
     o.apart = fmax(sum_2 - 2 * mean * sum + mean * mean * on_px, 0);
@@ -62,8 +67,8 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
     return o;
 }
 
-/* Squared error over the picture of showing it `way` pixels off: by the square of the way below a pixel, as what is swept
- * beyond, and at most as if it were somewhere else altogether. */
+/* Squared error over the picture of showing it `way` pixels off: by the square of the way below a pixel, as what is
+ * swept beyond, and at most as if it were somewhere else altogether. */
 static double shifted(const Outline *o, double way_px)
 {
     const double swept = o->steps * way_px * way_px / (2 + 0.5 * pi_rad * way_px), most = 2 * o->apart;
@@ -72,11 +77,14 @@ static double shifted(const Outline *o, double way_px)
 
 static Band band_of(int plane)
 {
-    return plane == picture_mwir ? BAND_MWIR : plane == picture_lwir ? BAND_LWIR : plane == picture_radar ? BAND_RADAR : BAND_OPTICAL;
+    return plane == picture_mwir    ? BAND_MWIR
+           : plane == picture_lwir  ? BAND_LWIR
+           : plane == picture_radar ? BAND_RADAR
+                                    : BAND_OPTICAL;
 }
 
-/* How far the ground under four places of it, half its radius from its middle, may be from where it should be shifts and
- * leans who stands on it. */
+/* How far the ground under four places of it, half its radius from its middle, may be from where it should be shifts
+ * and leans who stands on it. */
 static double ground_way_m(const World *world, const SnapshotEntity *e, const Model *model)
 {
     static const double place[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -114,14 +122,16 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
             const double  per_m = request->view.focal_px / target[i].range_m;
             const Model  *model = catalog_model(world->catalog, e->model);
             const Outline o = outline_of(picture, px, target[i].index, value);
-            /* of a way in space two of three directions show; a turn moves the outline by half the radius, in the mean */
+            /* of a way in space two of three directions show; a turn moves the outline by half the radius, in the
+             * mean */
             const double way_m = hypot(sqrt(2.0 / 3) * e->drift_m, 0.5 * model->radius_m * e->drift_rad);
             drift += shifted(&o, way_m * per_m);
             const double ground_m = clamped ? ground_way_m(world, e, model) : 0;
             facets += shifted(&o, hypot(2.0 / 3 * sag_m, ground_m) * per_m);
         }
         const double square_of_mean = square(budget->mean[k]);
-        const double squares[ERROR_TOTAL] = {square(budget->sampling[k]), square(budget->level_of_detail[k]) + facets / pixels,
+        const double squares[ERROR_TOTAL] = {square(budget->sampling[k]),
+                                             square(budget->level_of_detail[k]) + facets / pixels,
                                              square(budget->tables[k]), drift / pixels};
         for (int s = 0; s < ERROR_TOTAL; s++) {
             sums[b][s] += squares[s] / square_of_mean;
@@ -134,9 +144,10 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
         const PlanckTable *planck = b == BAND_MWIR ? world->planck_mwir : world->planck_lwir;
         for (int s = 0; s < error_sources; s++) {
             out->share[b][s]  = planes[b] > 0 ? sqrt(sums[b][s] / planes[b]) : NAN;
-            out->kelvin[b][s] = planes[b] > 0 && (b == BAND_MWIR || b == BAND_LWIR)
-                                    ? error_budget_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
-                                    : NAN;
+            out->kelvin[b][s] =
+                planes[b] > 0 && (b == BAND_MWIR || b == BAND_LWIR)
+                    ? error_budget_kelvin(planck, budget->mean[plane], out->share[b][s] * budget->mean[plane])
+                    : NAN;
         }
     }
     return true;

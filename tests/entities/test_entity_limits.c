@@ -1,6 +1,7 @@
 /* tests/entities/test_entity_limits.c: ends that are remembered, against a list of all; how many entities a sender may
  * add; and shots found among many. */
 #include "tests/entities/entity_fixture.h"
+#include "entities/survey/survey.h"
 #include "entities/survey/survey_shots.h"
 #include "entities/table/entity_rate.h"
 #include "entities/table/tombstones.h"

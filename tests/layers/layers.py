@@ -213,7 +213,7 @@ def twins():
         render/air/air.c pitviper_simd.h                entities/table/entity_table.c dis/entity_state.h
         render/frame/render.c entities/table/snapshot.h sensor/node/loop.c dis/log.h
         sensor/publish/truth.c <jansson.h>              tests/dis/test_pdu.c tests/check.h
-        main.c sensor/node/replay.h"""):
+        main.c sensor/commands/replay.h"""):
         one(False, path, header)
     # circles: of two files, through a third, of wings by different files; a line of wings, a file and its own headers
     plant(True, **{'dis/a.c': 'dis/a.h dis/b.h', 'dis/a.h': '', 'dis/b.h': '', 'dis/b.c': 'dis/a.h'})

@@ -1,4 +1,4 @@
 # What follows the first PDU of a datagram is lost.
-set(source dis/pdu.c)
+set(source dis/datagram.c)
 set(from [=[*at += next.length;]=])
 set(to [=[*at = end;]=])
