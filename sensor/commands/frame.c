@@ -2,8 +2,8 @@
  * whether the planes are the same to the bit. */
 #include "sensor/commands/frame.h"
 
-#include "sensor/commands/next_option.h"
-#include "sensor/commands/overwrite.h"
+#include "sensor/settings/next_option.h"
+#include "sensor/node/overwrite.h"
 #include "sensor/framefile/frame_again.h"
 #include "sensor/framefile/frame_scene.h"
 #include "sensor/publish/frame_files.h"
