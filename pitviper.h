@@ -40,10 +40,10 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
  * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below; at first below LOG_INFO.
- * log_hush: what the calling thread says, and it alone, until told otherwise. */
+ * log_suppress: what the calling thread says, and it alone, until told otherwise. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
-void log_hush(bool hushed);
+void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
 void log_status(const char *text);
@@ -52,7 +52,7 @@ void log_status(const char *text);
 bool log_is_quiet(void);
 bool log_is_verbose(void);
 /* To standard output, what was not asked for: choices, a summary at the end. Nothing when quiet. */
-void log_say(const char *format, ...) __attribute__((format(printf, 1, 2)));
+void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
@@ -252,7 +252,7 @@ void   settings_write(FILE *to, const SettingTable *table, const void *from, con
 /* Every key with what it accepts and its help. */
 void   settings_write_keys(FILE *to, const SettingTable *table);
 
-/* ---- probes: one model at a time, held against anybody else's numbers --------------------------- */
+/* ---- probes: one model at a time, held against any_sender else's numbers --------------------------- */
 
 enum { probe_max_columns = 24, probe_text_size = 96 };
 

@@ -10,7 +10,7 @@ static pthread_mutex_t log_lock = PTHREAD_MUTEX_INITIALIZER;
 static LogSink        *log_sink;
 static void           *log_user;
 static LogLevel        log_lowest = LOG_INFO;
-static _Thread_local bool hushed_here;
+static _Thread_local bool suppressed_here;
 static char            status_line[256]; /* what the terminal shows below what is logged */
 
 const char *status_name(Status status)
@@ -52,12 +52,12 @@ static LogLevel lowest_shown(void)
 bool log_is_quiet(void) { return lowest_shown() > LOG_INFO; }
 bool log_is_verbose(void) { return lowest_shown() <= LOG_DETAIL; }
 
-void log_hush(bool hushed) { hushed_here = hushed; }
+void log_suppress(bool hushed) { suppressed_here = hushed; }
 
 static void log_line(LogLevel level, const char *format, va_list arguments)
 {
     char raw[1024], line[4 * sizeof raw];
-    if (hushed_here) return;
+    if (suppressed_here) return;
     vsnprintf(raw, sizeof raw, format, arguments);
     text_show(line, sizeof line, raw, false); /* names in files and what libraries say may hold anything */
     pthread_mutex_lock(&log_lock);
@@ -86,7 +86,7 @@ void log_status(const char *text)
     pthread_mutex_unlock(&log_lock);
 }
 
-void log_say(const char *format, ...)
+void log_print(const char *format, ...)
 {
     va_list arguments;
     if (log_is_quiet()) return;

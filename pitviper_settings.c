@@ -89,7 +89,7 @@ void settings_accepted(char *out, size_t out_size, const Setting *row)
                  row->unit);
 }
 
-static void say_bad(const SettingTable *table, const char *source, const Setting *row, const char *value)
+static void report_bad(const SettingTable *table, const char *source, const Setting *row, const char *value)
 {
     char       shown[160], accepted[512];
     const bool long_text = !row->choices && (row->type == SETTING_TEXT || settings_is_path(row));
@@ -173,7 +173,7 @@ Status settings_store(void *out, const SettingTable *table, const Setting *row, 
     case SETTING_EACH:
     case SETTING_MAP: break; /* in files alone */
     }
-    say_bad(table, source, row, value);
+    report_bad(table, source, row, value);
     return STATUS_BAD_VALUE;
 }
 

@@ -38,7 +38,7 @@ typedef struct Moment {
     double   capture_s;
 } Moment;
 
-typedef enum Standing { SENDER_NEW, SENDER_PROVEN, SENDER_DOUBTED } Standing;
+typedef enum Standing { SENDER_NEW, SENDER_PROVEN, SENDER_INCONSISTENT } Standing;
 
 typedef struct Sender {
     uint32_t key; /* site, application */
@@ -69,7 +69,7 @@ struct ExerciseClock {
     double  start_capture_s; /* and when it was captured */
     double  last_capture_s;
     int     senders;
-    ExerciseClockDoubts doubts;
+    ExerciseClockAnomalies doubts;
     Sender  slot[slot_count];
     Memory  memory[memory_slots];
 };
@@ -84,7 +84,7 @@ Status exercise_clock_create(ExerciseClock **out)
 
 void exercise_clock_destroy(ExerciseClock *clock) { free(clock); }
 
-const ExerciseClockDoubts *exercise_clock_doubts(const ExerciseClock *clock) { return &clock->doubts; }
+const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock) { return &clock->doubts; }
 
 /* NULL when the table is full and this one is not in it. */
 static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
@@ -121,7 +121,7 @@ static void tie(Sender *sender, Moment now, double t_s)
     sender->mark       = now;
     sender->agree = sender->odd = 0;
     sender->disagrees  = false;
-    const int times = sender->standing == SENDER_DOUBTED ? 1 << (sender->failures - 1) : 1;
+    const int times = sender->standing == SENDER_INCONSISTENT ? 1 << (sender->failures - 1) : 1;
     sender->next_vote_s = now.capture_s + vote_s * times;
 }
 
@@ -174,13 +174,13 @@ static bool is_overtaken(const Sender *sender, uint32_t stamp)
 
 static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler_s, ExerciseClockReason reason)
 {
-    if (sender->standing != SENDER_DOUBTED && sender->failures < most_failures) sender->failures++;
-    if (sender->standing != SENDER_DOUBTED && sender->doubt < 0 && clock->doubts.count < exercise_clock_doubts_listed) {
+    if (sender->standing != SENDER_INCONSISTENT && sender->failures < most_failures) sender->failures++;
+    if (sender->standing != SENDER_INCONSISTENT && sender->doubt < 0 && clock->doubts.count < exercise_clock_anomalies_listed_max) {
         sender->doubt = clock->doubts.count++;
-        clock->doubts.sender[sender->doubt] = (ExerciseClockDoubt){
+        clock->doubts.sender[sender->doubt] = (ExerciseClockAnomaly){
             .site = (uint16_t)(sender->key >> 16), .application = (uint16_t)sender->key, .reason = reason};
     }
-    sender->standing = SENDER_DOUBTED;
+    sender->standing = SENDER_INCONSISTENT;
     tie(sender, now, ruler_s);
 }
 
@@ -208,11 +208,11 @@ static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s,
     sender->next_vote_s = now.capture_s + (span_s >= longest_vote_s ? longest_vote_s : fmax(span_s, vote_s));
 }
 
-static void note_doubted(ExerciseClock *clock, const Sender *sender, Moment now)
+static void note_inconsistent(ExerciseClock *clock, const Sender *sender, Moment now)
 {
     clock->doubts.by_arrival++;
     if (sender->doubt < 0) return;
-    ExerciseClockDoubt *d = &clock->doubts.sender[sender->doubt];
+    ExerciseClockAnomaly *d = &clock->doubts.sender[sender->doubt];
     const double        passed_s = now.capture_s - sender->first.capture_s;
     d->by_arrival++;
     d->pdus = sender->pdus;
@@ -275,8 +275,8 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     } else {
         vote(clock, sender, now, off_s, ruler_s);
     }
-    if (sender->standing != SENDER_DOUBTED) return leaves ? ruler_s : stamped_time(sender, timestamp, ruler_s);
-    note_doubted(clock, sender, now);
+    if (sender->standing != SENDER_INCONSISTENT) return leaves ? ruler_s : stamped_time(sender, timestamp, ruler_s);
+    note_inconsistent(clock, sender, now);
     return ruler_s;
 }
 
@@ -296,7 +296,7 @@ static bool near_rate(double hz, double of_hz, double passed_s)
     return hz > 0 && passed_s >= 4 && fabs(hz - of_hz) <= 0.03 * of_hz + 1 / passed_s;
 }
 
-void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *d)
+void exercise_clock_anomaly_text(char *out, size_t size, const ExerciseClockAnomaly *d)
 {
     static const struct { double hz; const char *what; } unit[] = {
         {1e6, "look like microseconds"}, {2e6, "look like microseconds"}, {1e3, "look like milliseconds"},

@@ -43,28 +43,28 @@ double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, co
 
 typedef enum ExerciseClockReason { EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP } ExerciseClockReason;
 
-typedef struct ExerciseClockDoubt {
+typedef struct ExerciseClockAnomaly {
     uint16_t            site, application;
     ExerciseClockReason reason;           /* of the first doubt */
     uint64_t            pdus, by_arrival; /* stamped ones heard; of them, how many count from their arrival */
     double              passed_s;         /* since its first PDU */
     double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
     double              counted;          /* units of the field a PDU */
-} ExerciseClockDoubt;
+} ExerciseClockAnomaly;
 
-enum { exercise_clock_doubts_listed = 16, exercise_clock_doubt_text_size = 160 };
+enum { exercise_clock_anomalies_listed_max = 16, exercise_clock_anomaly_text_size = 160 };
 
-typedef struct ExerciseClockDoubts {
+typedef struct ExerciseClockAnomalies {
     uint64_t           by_arrival; /* PDUs of all senders that count from their arrival, though stamped; also those of
                                     * senders beyond the 4096 that are judged */
     uint64_t           stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
     int                count;      /* senders below, in the order of their first doubt; later ones are not listed */
-    ExerciseClockDoubt sender[exercise_clock_doubts_listed];
-} ExerciseClockDoubts;
+    ExerciseClockAnomaly sender[exercise_clock_anomalies_listed_max];
+} ExerciseClockAnomalies;
 
-const ExerciseClockDoubts *exercise_clock_doubts(const ExerciseClock *clock);
+const ExerciseClockAnomalies *exercise_clock_anomalies(const ExerciseClock *clock);
 /* "time stamps of 1:2 stand still: 98 of its 99 PDUs count from their arrival" */
-void exercise_clock_doubt_text(char *out, size_t size, const ExerciseClockDoubt *doubt);
+void exercise_clock_anomaly_text(char *out, size_t size, const ExerciseClockAnomaly *doubt);
 
 /* Of an instant in seconds, >= 0, from any full hour; towards the past. */
 static inline uint32_t dis_timestamp(double t_s, bool absolute)

@@ -8,7 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { foreign_links_told = 8 };
+enum { foreign_links_reported = 8 };
 
 typedef struct Scan {
     DisLog          *log;
@@ -17,7 +17,7 @@ typedef struct Scan {
     struct {
         int      link;
         uint64_t packets;
-    } foreign[foreign_links_told];
+    } foreign[foreign_links_reported];
 } Scan;
 
 static void name_link(char out[32], int link)
@@ -32,12 +32,12 @@ static void skip_packet(Scan *scan, int link)
     scan->log->counters.other_link++;
     int i = 0;
     while (i < scan->foreign_links && scan->foreign[i].link != link) i++;
-    if (i == foreign_links_told) return;
+    if (i == foreign_links_reported) return;
     if (i == scan->foreign_links) scan->foreign[scan->foreign_links++].link = link;
     scan->foreign[i].packets++;
 }
 
-static void tell_skipped(const Scan *scan, const char *path)
+static void report_skipped(const Scan *scan, const char *path)
 {
     char name[32];
     for (int i = 0; i < scan->foreign_links; i++) {
@@ -93,7 +93,7 @@ static Status scan_capture(Scan *scan, DisCapture *capture, const char *path)
                   path, name);
         return STATUS_UNSUPPORTED;
     }
-    tell_skipped(scan, path);
+    report_skipped(scan, path);
     if (problem) {
         scan->log->truncated = true;
         log_warn("log: %s ends early after packet %llu: %s; what came before is used", path,

@@ -22,7 +22,7 @@
 #include <time.h>
 #include <unistd.h>
 
-enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, pause_ms = 100, look_ms = 1000 };
+enum { batch = 64, buffer_octets = dis_max_datagram + 1, control_octets = 128, pause_ms = 100, check_interval_ms = 1000 };
 
 static const int64_t ns_per_s = 1000000000;
 
@@ -34,7 +34,7 @@ struct DisUdp {
     DisTie           tie;
     DisLink          link;         /* of the receiving thread; in a sender under sending */
     pthread_mutex_t  sending;      /* socket and to are replaced under it, and under receive */
-    int64_t          looked_ns;    /* sender: when the link was looked at last */
+    int64_t          checked_ns;    /* sender: when the link was looked at last */
 
     /* under receive */
     pthread_mutex_t  receive;
@@ -259,9 +259,9 @@ static bool remake_socket(DisUdp *u)
     DisSocketAddress to;
     DisTie           tie;
     const bool       listens = u->link.listens;
-    log_hush(true); /* it is tried again each second */
+    log_suppress(true); /* it is tried again each second */
     const Status status = dis_udp_socket(&made, &to, &tie, &u->config, listens);
-    log_hush(false);
+    log_suppress(false);
     if (status != STATUS_OK) return false;
     if (listens) {
         dis_udp_counters(u); /* what the old one lost */
@@ -280,18 +280,18 @@ static bool remake_socket(DisUdp *u)
 }
 
 /* True: all is well now. */
-static bool look_after_link(DisUdp *u)
+static bool check_link(DisUdp *u)
 {
     bool remake;
     dis_link_read(&u->link, u->socket, &u->to, &u->tie);
-    dis_link_say(&u->link, u->name, &u->config);
-    dis_link_look(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
+    dis_link_report(&u->link, u->name, &u->config);
+    dis_link_check(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
     if (remake) {
         const bool made = remake_socket(u);
-        if (made) dis_link_look(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
+        if (made) dis_link_check(&u->link, &remake, u->socket, &u->to, &u->tie, &u->config);
         else u->link.lost = true;
     }
-    dis_link_say(&u->link, u->name, &u->config);
+    dis_link_report(&u->link, u->name, &u->config);
     const DisLinkState state = u->link.lost ? DIS_LINK_GONE : u->link.state;
     atomic_store(&u->away, (int)state);
     return state == DIS_LINK_UP;
@@ -303,16 +303,16 @@ static void *receive_loop(void *user)
     struct pollfd what[3] = {{.fd = u->socket, .events = POLLIN},
                              {.fd = u->wake, .events = POLLIN},
                              {.fd = u->link.watch, .events = POLLIN}};
-    int64_t       looked_ns = dis_udp_now_ns();
+    int64_t       checked_ns = dis_udp_now_ns();
     while (!atomic_load(&u->stopping)) {
         int64_t newest_ns;
-        const int ready = poll(what, 3, dis_link_unsaid(&u->link) ? pause_ms : look_ms);
+        const int ready = poll(what, 3, dis_link_unreported(&u->link) ? pause_ms : check_interval_ms);
         const int64_t now_ns = dis_udp_now_ns();
-        if (ready == 0 || what[2].revents || llabs(now_ns - looked_ns) >= look_ms * 1000000ll) {
+        if (ready == 0 || what[2].revents || llabs(now_ns - checked_ns) >= check_interval_ms * 1000000ll) {
             pthread_mutex_lock(&u->receive);
-            look_after_link(u);
+            check_link(u);
             pthread_mutex_unlock(&u->receive);
-            looked_ns = now_ns;
+            checked_ns = now_ns;
         }
         if (ready <= 0 || !what[0].revents) continue;
         pthread_mutex_lock(&u->receive);
@@ -368,9 +368,9 @@ static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
 static bool sender_may_go_on(DisUdp *u)
 {
     const int64_t now_ns = dis_udp_now_ns();
-    if (u->link.listens || llabs(now_ns - u->looked_ns) < pause_ms * 1000000ll) return false;
-    u->looked_ns = now_ns;
-    return look_after_link(u);
+    if (u->link.listens || llabs(now_ns - u->checked_ns) < pause_ms * 1000000ll) return false;
+    u->checked_ns = now_ns;
+    return check_link(u);
 }
 
 Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
@@ -433,7 +433,7 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config)
         dis_udp_close(u);
         return status;
     }
-    look_after_link(u);
+    check_link(u);
     *out = u;
     return STATUS_OK;
 }
@@ -446,7 +446,7 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     u->link.watch   = dis_link_watch(); /* first: what happens while the socket is made is announced */
     Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
-    look_after_link(u);
+    check_link(u);
 
     const bool ring = dis_ring_create(&u->ring, (uint64_t)config->queue_octets) == STATUS_OK;
     u->buffer = malloc((size_t)batch * buffer_octets);

@@ -99,7 +99,7 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
     return tie->own && !dis_udp_is_own(to) ? DIS_LINK_NO_ADDRESS : DIS_LINK_UP;
 }
 
-void dis_link_look(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
+void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
                    const DisUdpConfig *config)
 {
     *remake = false;
@@ -144,7 +144,7 @@ static void say(const char *where, DisLinkState state, const DisUdpConfig *confi
     log_warn("udp: %s: %s; nothing is heard or sent until it is back", where, text);
 }
 
-void dis_link_say(DisLink *link, const char *where, const DisUdpConfig *config)
+void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config)
 {
     if (link->lost && link->said == DIS_LINK_UP) /* whatever is there now */
         say(where, link->said = DIS_LINK_GONE, config);

@@ -32,12 +32,12 @@ int  dis_link_watch(void);
 void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const DisTie *tie);
 /* Looks, and joins the group anew where no interface was named. remake: the socket must be made anew; lost is cleared
  * by the caller then. Once a second and after announcements. */
-void dis_link_look(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
+void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
                    const DisUdpConfig *config);
 /* Of the last read or look: one line when it is no longer up, one when it is again; one more when the reason is another
- * for two seconds. where: of dis_udp_where. dis_link_unsaid: it wants to be asked again in a tenth of a second. */
-static inline bool dis_link_unsaid(const DisLink *link) { return link->state != link->said; }
-void dis_link_say(DisLink *link, const char *where, const DisUdpConfig *config);
+ * for two seconds. where: of dis_udp_where. dis_link_unreported: it wants to be asked again in a tenth of a second. */
+static inline bool dis_link_unreported(const DisLink *link) { return link->state != link->said; }
+void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);
 /* `the interface eth0 is down`, for people. */
 enum { dis_link_text_size = 256 };
 void dis_link_text(char out[dis_link_text_size], DisLinkState state, const DisUdpConfig *config);

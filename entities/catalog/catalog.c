@@ -48,7 +48,7 @@ struct Catalog {
     pthread_mutex_t *building;
 };
 
-static const double coarse_sag_m = 0.1;
+static const double coarse_chord_error_m = 0.1;
 
 /* Dotted numbers and stars; what is left out at the end is a star. Fields are 8 bits, the country 16. */
 static bool parse_type(int field[type_fields], const char *text)
@@ -102,7 +102,7 @@ static Status find_or_add(int *out, Catalog *catalog, const char *name, const Mo
     Status status = STATUS_OK;
     double factor[3];
     if (added->shape == catalog->model_count)
-        status = parametric_known(source) ? parametric_build(&added->first, source, coarse_sag_m)
+        status = parametric_known(source) ? parametric_build(&added->first, source, coarse_chord_error_m)
                                           : open_file(added, &imported, source, catalog->sag_m);
     if (status == STATUS_OK && !model_scale_to(factor, &catalog->model[added->shape].first, size)) {
         const Model *own = &catalog->model[added->shape].first;
@@ -217,7 +217,7 @@ static const CatalogRow *row_behind(const Catalog *catalog, const CatalogRow *ro
         int f = 0;
         if (other->own || other == row || !parametric_known(catalog->model[other->model].source)) continue;
         while (f < type_fields && (other->field[f] == any || other->field[f] == row->field[f])) f++;
-        if (f == type_fields && other->length > 1) return catalog_shows(catalog, other->model) ? other : NULL;
+        if (f == type_fields && other->length > 1) return catalog_has_shape(catalog, other->model) ? other : NULL;
     }
     return NULL;
 }
@@ -393,7 +393,7 @@ bool catalog_is_built(const Catalog *catalog, int model)
     return atomic_load(&m->fine) || atomic_load(&m->failed) || !parametric_known(m->source);
 }
 
-bool catalog_shows(const Catalog *catalog, int model)
+bool catalog_has_shape(const Catalog *catalog, int model)
 {
     return model < 0 || model >= catalog->model_count || strcmp(catalog->model[model].source, "none") != 0;
 }

@@ -28,7 +28,7 @@ void   catalog_close(Catalog *catalog);
 /* One model for each shape and size; those of one shape have one name. */
 int    catalog_model_count(const Catalog *catalog);
 /* False: entities of this model are heard and tracked, but there is nothing of them to be seen. */
-bool   catalog_shows(const Catalog *catalog, int model);
+bool   catalog_has_shape(const Catalog *catalog, int model);
 /* The first model of the same name: what a class of targets is called and counted by, whatever their sizes. */
 int    catalog_class(const Catalog *catalog, int model);
 /* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose

@@ -21,7 +21,7 @@ static double misfit(const double has_m[3], const double want_m[3], const int ax
 }
 
 /* The same in the mean, to choose among several that agree. */
-static double rms_misfit(const double has_m[3], const double want_m[3], const int axis[3], double factor)
+static double rms_size_error(const double has_m[3], const double want_m[3], const int axis[3], double factor)
 {
     double sum = 0;
     for (int k = 0; k < 3; k++)
@@ -81,7 +81,7 @@ void model_fit(ModelFit *out, const Model *model, const ModelImport *import, con
     for (size_t o = 0; o < 6; o++)
         for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
             const double wrong = misfit(has_m, want_m, orders[o], units[u].factor);
-            const double cost = rms_misfit(has_m, want_m, orders[o], units[u].factor) + dearer * ((o > 0) + (u > 0));
+            const double cost = rms_size_error(has_m, want_m, orders[o], units[u].factor) + dearer * ((o > 0) + (u > 0));
             if (wrong > most || cost >= best) continue;
             best = cost;
             memcpy(out->axis, orders[o], sizeof out->axis);

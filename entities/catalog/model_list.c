@@ -40,12 +40,12 @@ static void parts_of(char *out, size_t out_size, const Model *model)
 
 static Status list_shapes(FILE *to)
 {
-    static const double coarse_sag_m = 0.1; /* nodes and sizes do not depend on it */
+    static const double coarse_chord_error_m = 0.1; /* nodes and sizes do not depend on it */
     text_print(to, "Built-in shapes: name, size in metres (length x width x height), articulated parts\n\n");
     for (int i = 0; i < parametric_count(); i++) {
         Model model;
         char parts[400], size[40];
-        const Status status = parametric_build(&model, parametric_name(i), coarse_sag_m);
+        const Status status = parametric_build(&model, parametric_name(i), coarse_chord_error_m);
         if (status != STATUS_OK) return status;
         parts_of(parts, sizeof parts, &model);
         snprintf(size, sizeof size, "%.2f x %.2f x %.2f", model.length_m, model.width_m,
@@ -70,7 +70,7 @@ Status model_list(FILE *to, const char *catalog_path)
         char size[40] = "not seen", parts[400] = "";
         catalog_row(&row, catalog, r);
         catalog_size(m, catalog, row.model);
-        if (catalog_shows(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);
+        if (catalog_has_shape(catalog, row.model)) snprintf(size, sizeof size, "%.2f x %.2f x %.2f", m[0], m[1], m[2]);
         const char *slash = strrchr(row.path, '/');
         text_print(to, "  %-22s %-12s %-18s %-24s %s:%d  %s", row.type, kind_name(row.kind, row.domain), row.source,
                    size, slash ? slash + 1 : row.path, row.line, row.note);

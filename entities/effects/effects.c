@@ -17,19 +17,19 @@ static const struct {
     size_t      offset;
     double      low, high;
 } columns[] = {
-    {"asymmetry", offsetof(EffectLaw, asymmetry), -0.95, 0.95},
-    {"mass_kg", offsetof(EffectLaw, mass_kg), 0, 1e4},
-    {"radius_start_m", offsetof(EffectLaw, radius_start_m), 0.01, 100},
-    {"radius_end_m", offsetof(EffectLaw, radius_end_m), 0.01, 1000},
-    {"grow_s", offsetof(EffectLaw, grow_s), 1e-4, 1e4},
-    {"spread_mps", offsetof(EffectLaw, spread_mps), 0, 10},
-    {"rise_mps", offsetof(EffectLaw, rise_mps), 0, 50},
-    {"rise_s", offsetof(EffectLaw, rise_s), 0.01, 1e4},
-    {"temp_rise_k", offsetof(EffectLaw, temp_rise_k), 0, 5000},
-    {"cool_s", offsetof(EffectLaw, cool_s), 1e-4, 1e4},
-    {"life_s", offsetof(EffectLaw, life_s), 1e-3, 1e4},
-    {"time_power", offsetof(EffectLaw, time_power), 0, 1},
-    {"billow", offsetof(EffectLaw, billow), 0, 1},
+    {"asymmetry", offsetof(EffectModel, asymmetry), -0.95, 0.95},
+    {"mass_kg", offsetof(EffectModel, mass_kg), 0, 1e4},
+    {"radius_start_m", offsetof(EffectModel, radius_start_m), 0.01, 100},
+    {"radius_end_m", offsetof(EffectModel, radius_end_m), 0.01, 1000},
+    {"grow_s", offsetof(EffectModel, grow_s), 1e-4, 1e4},
+    {"spread_mps", offsetof(EffectModel, spread_mps), 0, 10},
+    {"rise_mps", offsetof(EffectModel, rise_mps), 0, 50},
+    {"rise_s", offsetof(EffectModel, rise_s), 0.01, 1e4},
+    {"temp_rise_k", offsetof(EffectModel, temp_rise_k), 0, 5000},
+    {"cool_s", offsetof(EffectModel, cool_s), 1e-4, 1e4},
+    {"life_s", offsetof(EffectModel, life_s), 1e-3, 1e4},
+    {"time_power", offsetof(EffectModel, time_power), 0, 1},
+    {"billow", offsetof(EffectModel, billow), 0, 1},
 };
 enum { column_count = sizeof columns / sizeof *columns };
 
@@ -68,7 +68,7 @@ static Status read_row(EffectTable *effects, bool seen[EFFECT_KIND_COUNT], const
         return STATUS_BAD_VALUE;
     }
     seen[kind] = true;
-    EffectLaw *law = &effects->law[kind];
+    EffectModel *law = &effects->law[kind];
     for (int c = 0; c < column_count; c++) {
         double *to = (double *)((char *)law + columns[c].offset);
         const Status status = table_number(to, table, row, column[c], columns[c].low, columns[c].high);
@@ -119,14 +119,14 @@ Status effect_table_open(EffectTable *out, const char *path)
 
 /* ---- a puff's life ------------------------------------------------------------------------ */
 
-static double time_scale(const EffectLaw *law, double scale)
+static double time_scale(const EffectModel *law, double scale)
 {
     return law->time_power > 0 ? pow(scale, law->time_power) : 1;
 }
 
 double effect_life_s(const EffectTable *table, EffectKind kind, double scale)
 {
-    const EffectLaw *law = &table->law[kind];
+    const EffectModel *law = &table->law[kind];
     return law->life_s * time_scale(law, scale);
 }
 
@@ -136,7 +136,7 @@ static double dying_way(double first, double tau_s, double t_s) { return first *
 bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
                    const LocalFrame *frame)
 {
-    const EffectLaw *law = &table->law[puff->kind];
+    const EffectModel *law = &table->law[puff->kind];
     const double     times = time_scale(law, puff->scale), age_s = puff->age_s, lived = age_s / (law->life_s * times);
     double           p_ecef[3], way[3];
 

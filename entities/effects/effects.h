@@ -24,7 +24,7 @@ enum { effect_band_b = SPECTRAL_B, effect_band_g = SPECTRAL_G, effect_band_r = S
        effect_band_count = SPECTRAL_PLACES };
 
 /* One row of etc/effects.csv. */
-typedef struct EffectLaw {
+typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
     double mass_kg;                     /* of a puff; per second for what an entity gives off */
@@ -34,10 +34,10 @@ typedef struct EffectLaw {
     double life_s;
     double time_power;
     double billow;
-} EffectLaw;
+} EffectModel;
 
 typedef struct EffectTable {
-    EffectLaw law[EFFECT_KIND_COUNT];
+    EffectModel law[EFFECT_KIND_COUNT];
 } EffectTable;
 
 /* Every kind must have its row. Failures are logged with file, line and range. */

@@ -304,7 +304,7 @@ static double share_of(int64_t number, double age_s, double full_s, double *toge
 
 static void put_source(PuffList *list, const EffectSource *source, double t_s)
 {
-    const EffectLaw *law = &list->table->law[source->kind];
+    const EffectModel *law = &list->table->law[source->kind];
     const double     life_s = effect_life_s(list->table, source->kind, source->scale);
     double           interval_s, full_s;
 

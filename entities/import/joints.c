@@ -80,7 +80,7 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
             affine_mul(place[i].m, place[node->parent].m, node->m);
             snprintf(path, sizeof path, "%s/%s", place[node->parent].path, node->name);
         }
-        /* a deeper path than anybody writes a pattern for: the name alone, so that memory does not grow with depth */
+        /* a deeper path than any_sender writes a pattern for: the name alone, so that memory does not grow with depth */
         place[i].path = strdup(strlen(path) < path_max ? path : node->name);
         if (!place[i].path) return STATUS_NO_MEMORY;
         place[i].joint = -1;
@@ -320,7 +320,7 @@ static Status assign_joints(Builder *b)
     }
     for (int j = 0; j < b->sidecar->joint_count; j++)
         if (b->first[j] < 0) {
-            import_say_no_node(b->scene, b->out->place, b->sidecar, j);
+            import_report_missing_node(b->scene, b->out->place, b->sidecar, j);
             return STATUS_BAD_VALUE;
         }
     return STATUS_OK;

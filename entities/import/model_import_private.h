@@ -1,4 +1,4 @@
-/* entities/import/model_import_private.h: what a file holds, flat, before anybody knows which way is up.
+/* entities/import/model_import_private.h: what a file holds, flat, before any_sender knows which way is up.
  *
  * A reader fills it from a format; model_import.c makes a Model of it. The readers check indices and counts, so that
  * everything here is in range; coordinates may still be anything (NaN too). */
@@ -113,7 +113,7 @@ const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *sce
 /* ---- model_import_names.c -------------------------------------------------------------------- */
 
 /* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
-void import_say_no_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
+void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
 /* Warns of names that a sidecar goes by and that several nodes share, and of nodes without one. */
 void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
 /* How many nodes have no name, and how many share theirs. */

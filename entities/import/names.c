@@ -33,7 +33,7 @@ static int nearest(const ImportScene *scene, const char *pattern)
     return -1;
 }
 
-void import_say_no_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint)
+void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint)
 {
     enum { most_listed = 16 };
     const SidecarJoint *spec = &sidecar->joint[joint];

@@ -128,7 +128,7 @@ bool parametric_known(const char *name) { return find_builder(name) >= 0; }
 int parametric_count(void) { return builder_count; }
 const char *parametric_name(int index) { return builders[index].name; }
 
-static bool sag_is_fit(const char *name, double sag_m)
+static bool chord_error_is_valid(const char *name, double sag_m)
 {
     if (sag_m >= 1e-5 && sag_m <= 0.1) return true;
     log_error("parametric: sag out of range: model=%s sag_m=%g range=1e-5..0.1", name, sag_m);
@@ -145,7 +145,7 @@ static Status build(Model *out, const char *name, double sag_m)
 
 Status parametric_build(Model *out, const char *name, double sag_m)
 {
-    return sag_is_fit(name, sag_m) ? build(out, name, sag_m) : STATUS_BAD_VALUE;
+    return chord_error_is_valid(name, sag_m) ? build(out, name, sag_m) : STATUS_BAD_VALUE;
 }
 
 Status parametric_build_size(Model *out, const char *name, const ModelSize *size, double sag_m)
@@ -155,7 +155,7 @@ Status parametric_build_size(Model *out, const char *name, const ModelSize *size
     double factor[3];
     if (!size || !(size->length_m > 0 || size->width_m > 0 || size->height_m > 0))
         return parametric_build(out, name, sag_m);
-    if (!sag_is_fit(name, sag_m)) return STATUS_BAD_VALUE;
+    if (!chord_error_is_valid(name, sag_m)) return STATUS_BAD_VALUE;
     /* once coarsely, for the factors; then with facets that keep to the sag when they have grown */
     Status status = build(&model, name, coarsest_m);
     if (status != STATUS_OK) return status;

@@ -157,8 +157,8 @@ static void build_superstructure(MeshBuilder *b)
     mesh_part(b, 0, "superstructure", "paint_ship_grey", HEAT_CABIN);
     /* deckhouse of the full breadth, bridge, hangar; sides lean in */
     static const double house[6][2] = {{-21, -6.7}, {12, -6.7}, {18.8, -5.9}, {18.8, 5.9}, {12, 6.7}, {-21, 6.7}};
-    static const double house_top[6][2] = {{-21, -6.2}, {12, -6.2}, {18, -5.4}, {18, 5.4}, {12, 6.2}, {-21, 6.2}};
-    mesh_slab(b, parts_upright(0, 0, 0), 6, house, 4.9, house_top, 7.9);
+    static const double deckhouse_top[6][2] = {{-21, -6.2}, {12, -6.2}, {18, -5.4}, {18, 5.4}, {12, 6.2}, {-21, 6.2}};
+    mesh_slab(b, parts_upright(0, 0, 0), 6, house, 4.9, deckhouse_top, 7.9);
     parts_block(b, (Rectangle){4, 17, -5.9, 5.9}, 7.85, (Rectangle){4, 15.5, -5.5, 5.5}, 10.5);
     parts_block(b, (Rectangle){6, 14.8, -5.2, 5.2}, 10.45, (Rectangle){6, 14.0, -4.9, 4.9}, 13.1);
     for (int side = -1; side <= 1; side += 2) /* bridge wings */

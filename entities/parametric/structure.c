@@ -215,7 +215,7 @@ static void build_animal(MeshBuilder *b)
     }
 }
 
-/* What has no shape: a stand-in of a centimetre that is never placed in a scene (catalog_shows). */
+/* What has no shape: a stand-in of a centimetre that is never placed in a scene (catalog_has_shape). */
 static void build_none(MeshBuilder *b)
 {
     mesh_part(b, 0, "nothing", "paint_grey", HEAT_PASSIVE);

@@ -438,4 +438,4 @@ void exercise_finish(Exercise *x) { link_finish(&x->link, fmin(exercise_time(x),
 
 const ExerciseCounts *exercise_counts(const Exercise *exercise) { return &exercise->link.counts; }
 
-int exercise_heard(const Exercise *exercise) { return exercise->heard; }
+int exercise_most_received(const Exercise *exercise) { return exercise->heard; }

@@ -26,7 +26,7 @@ bool   exercise_step(Exercise *exercise);
 /* Hands out what the network still held back; exercise_step does it at the end. */
 void   exercise_finish(Exercise *exercise);
 const ExerciseCounts *exercise_counts(const Exercise *exercise);
-int    exercise_heard(const Exercise *exercise); /* entities that were sent */
+int    exercise_most_received(const Exercise *exercise); /* entities that were sent */
 
 /* Private to the exercise: exercise_bad.c. */
 enum { exercise_bad_kinds = 14 };

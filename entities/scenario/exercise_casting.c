@@ -187,7 +187,7 @@ static bool needs_models(const Scenario *s)
 
 static Status fill(Cast *cast, int *ids, int *first)
 {
-    static const double coarse_sag_m = 0.1; /* joints are asked for, not shapes */
+    static const double coarse_chord_error_m = 0.1; /* joints are asked for, not shapes */
     const Scenario *s = cast->scenario;
     char     path[4096];
     Table    types;
@@ -196,7 +196,7 @@ static Status fill(Cast *cast, int *ids, int *first)
     if (!etc_path(path, sizeof path, "catalog.csv")) return STATUS_BAD_VALUE;
     Status status = table_open(&types, path);
     if (status != STATUS_OK) return status;
-    if (needs_models(s)) status = catalog_open(&catalog, path, coarse_sag_m);
+    if (needs_models(s)) status = catalog_open(&catalog, path, coarse_chord_error_m);
     for (int g = 0; g < s->group_count && status == STATUS_OK; g++) {
         first[g] = entity;
         status   = cast_group(cast, g, entity, ids[g], &types, catalog);

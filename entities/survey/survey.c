@@ -103,7 +103,7 @@ static Status add_point(Building *b, int t, const double p_ecef[3], const float 
     return STATUS_OK;
 }
 
-static Status hear_entity_state(Building *b, const DisEntityState *pdu, double t_s)
+static Status receive_entity_state(Building *b, const DisEntityState *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
     DisDrop why;
@@ -127,7 +127,7 @@ static Status hear_entity_state(Building *b, const DisEntityState *pdu, double t
     return add_point(b, t, pdu->p_ecef, pdu->velocity_mps, euler_rad, pdu->appearance, t_s);
 }
 
-static Status hear_entity_state_update(Building *b, const DisEntityStateUpdate *pdu, double t_s)
+static Status receive_entity_state_update(Building *b, const DisEntityStateUpdate *pdu, double t_s)
 {
     const float euler_rad[3] = {pdu->psi_rad, pdu->theta_rad, pdu->phi_rad};
     DisDrop why;
@@ -156,7 +156,7 @@ static Status add_warfare(Building *b, const WarfareEvent *event)
 }
 
 /* A burst must be somewhere: the ground is fitted through it. */
-static Status hear_detonation(Building *b, const DisDetonation *pdu, double t_s)
+static Status receive_detonation(Building *b, const DisDetonation *pdu, double t_s)
 {
     const DisEntityId any_id = {1, 1, 1}; /* the place alone is judged */
     const float euler_rad[3] = {0, 0, 0};
@@ -173,7 +173,7 @@ static Status hear_detonation(Building *b, const DisDetonation *pdu, double t_s)
 }
 
 /* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, says nothing. */
-static void hear_start(Building *b, const DisStartResume *pdu, double t_s)
+static void receive_start(Building *b, const DisStartResume *pdu, double t_s)
 {
     const double unix_s = pdu->simulation.hour * 3600.0 + dis_timestamp_seconds(pdu->simulation.past_hour);
     if (pdu->simulation.hour == 0 || !(unix_s < year_2100_s) || !isnan(b->survey->clock_start_unix_s)) return;
@@ -181,7 +181,7 @@ static void hear_start(Building *b, const DisStartResume *pdu, double t_s)
 }
 
 /* An absolute stamp gives the second of the hour; the capture date gives the hour. */
-static Status hear_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
+static Status receive_time_stamp(Building *b, uint32_t timestamp, double capture_s, double t_s)
 {
     if (!dis_timestamp_is_absolute(timestamp) || !b->date_is_credible) return STATUS_OK;
     if (!(capture_s >= year_1990_s && capture_s < year_2100_s)) return STATUS_OK;
@@ -228,18 +228,18 @@ static Status settle_date(Building *b)
 static Status hear(Building *b, const DisPdu *pdu, double t_s)
 {
     switch (pdu->type) {
-    case dis_pdu_entity_state: return hear_entity_state(b, &pdu->entity_state, t_s);
-    case dis_pdu_entity_state_update: return hear_entity_state_update(b, &pdu->update, t_s);
+    case dis_pdu_entity_state: return receive_entity_state(b, &pdu->entity_state, t_s);
+    case dis_pdu_entity_state_update: return receive_entity_state_update(b, &pdu->update, t_s);
     case dis_pdu_fire:
         return add_warfare(b, &(WarfareEvent){.t_s = t_s, .firing = pdu->fire.firing, .target = pdu->fire.target,
                                               .munition = pdu->fire.munition, .event = pdu->fire.event});
-    case dis_pdu_detonation: return hear_detonation(b, &pdu->detonation, t_s);
-    case dis_pdu_start_resume: hear_start(b, &pdu->start, t_s); return STATUS_OK;
+    case dis_pdu_detonation: return receive_detonation(b, &pdu->detonation, t_s);
+    case dis_pdu_start_resume: receive_start(b, &pdu->start, t_s); return STATUS_OK;
     default: return STATUS_OK;
     }
 }
 
-static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
+static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, int exercise)
 {
     Survey *survey = b->survey;
     const uint8_t *at = datagram->bytes, *pdu;
@@ -251,15 +251,15 @@ static Status hear_datagram(Building *b, int d, const DisDatagram *datagram, int
             survey->counters.dropped[DIS_DROP_OTHER_EXERCISE]++;
             continue;
         }
-        const uint64_t doubted = exercise_clock_doubts(b->clock)->by_arrival;
+        const uint64_t doubted = exercise_clock_anomalies(b->clock)->by_arrival;
         const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
         if (isnan(t_s)) continue; /* of no type that we know, and from nobody */
         if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
         Status status = STATUS_OK;
-        if (exercise_clock_doubts(b->clock)->by_arrival == doubted)
-            status = hear_stamp(b, header.timestamp, datagram->capture_s, t_s);
+        if (exercise_clock_anomalies(b->clock)->by_arrival == doubted)
+            status = receive_time_stamp(b, header.timestamp, datagram->capture_s, t_s);
         const Status refused = dis_decode(&b->pdu, pdu, header.length);
         if (refused != STATUS_OK) dis_count_refused(&survey->counters, header.type, refused);
         else if (status == STATUS_OK) status = hear(b, &b->pdu, t_s);
@@ -324,14 +324,14 @@ Status survey_log(Survey *out, const DisLog *log, int exercise)
 
     for (int d = 0; d < log->count && status == STATUS_OK; d++) {
         survey.datagram_s[d] = NAN;
-        status = hear_datagram(&b, d, log->datagram + d, exercise);
+        status = receive_datagram(&b, d, log->datagram + d, exercise);
     }
     if (status == STATUS_OK) status = survey_join_shots(&survey.shot, &survey.shot_count, b.warfare, b.warfare_count);
     if (status == STATUS_OK) status = survey_order_shots(&survey.shot_by_munition, survey.shot, survey.shot_count);
     if (status == STATUS_OK) status = end_flights(&b);
     if (status == STATUS_OK) status = settle_date(&b);
     if (status == STATUS_OK) {
-        survey.doubts                  = *exercise_clock_doubts(b.clock);
+        survey.doubts                  = *exercise_clock_anomalies(b.clock);
         survey.counters.stamps_doubted = survey.doubts.by_arrival;
         drop_empty_tracks(&survey);
         if (survey.track_count > 1) qsort(survey.track, (size_t)survey.track_count, sizeof *survey.track, track_order);

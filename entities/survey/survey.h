@@ -36,7 +36,7 @@ typedef struct Survey {
                                            * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
                                            * 10 s, when they are two at least and more than half; NaN: none */
     int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
-    ExerciseClockDoubts doubts;           /* senders whose stamps are no clock */
+    ExerciseClockAnomalies doubts;           /* senders whose stamps are no clock */
     DisCounters counters;                 /* everything heard and dropped, whole log */
     double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
     uint64_t  refused;                    /* track points dropped because they exceed the memory bound */

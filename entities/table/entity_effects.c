@@ -33,7 +33,7 @@ static void open_source(EntityTable *table, EntitySlot *slot, int place, EffectS
 
 void entity_effects_end(EntityTable *table, EntitySlot *slot, double t_s)
 {
-    for (int i = 0; i < entity_effect_places; i++) {
+    for (int i = 0; i < entity_effect_positions; i++) {
         effect_history_close(table->effects, slot->effect[i], t_s);
         slot->effect[i] = 0;
     }

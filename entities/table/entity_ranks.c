@@ -191,7 +191,7 @@ static void change_list(EntityRanks *r, int slot, int list)
 
 /* ---- the order in which all were heard ------------------------------------------------------------- */
 
-static void hear_last(EntityRanks *r, int slot)
+static void receive_last(EntityRanks *r, int slot)
 {
     Node *n = r->node + slot;
     n->before = r->last;
@@ -224,7 +224,7 @@ void entity_ranks_put(EntityRanks *r, int slot, DisEntityId id, bool known, int 
         append_node(r, slot, n->sender, list);
         add_to_count(r, n->sender, tier_of(list), 1);
     }
-    hear_last(r, slot);
+    receive_last(r, slot);
 }
 
 void entity_ranks_again(EntityRanks *r, int (*distance_class)(const void *user, int slot), const void *user)

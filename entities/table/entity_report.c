@@ -156,11 +156,11 @@ Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, 
         }
         if (exceeds_rate(table, pdu->id, t_s)) return STATUS_OK;
         slot = entity_slot_new(table, pdu->id, t_s);
-        entity_room_rank(table, slot, pdu->p_ecef, t_s);
-        if (!entity_room_make(table, slot, t_s)) return STATUS_UNSUPPORTED;
+        entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
+        if (!entity_table_evict(table, slot, t_s)) return STATUS_UNSUPPORTED;
         table->counters.created++;
     } else {
-        entity_room_rank(table, slot, pdu->p_ecef, t_s);
+        entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
     }
     if (is_first || !same_type(slot->type, pdu->type)) {
         slot->type = pdu->type;
@@ -199,7 +199,7 @@ Status entity_table_entity_state_update(EntityTable *table, const DisEntityState
         entity_slot_remove(table, slot, t_s, &table->counters.deactivated);
         return STATUS_OK;
     }
-    entity_room_rank(table, slot, pdu->p_ecef, t_s);
+    entity_eviction_rank(table, slot, pdu->p_ecef, t_s);
     take_place(table, slot, pdu->p_ecef, pdu->velocity_mps, euler_rad, false, t_s);
     take_state(table, slot, pdu->header.version, pdu->appearance, pdu->variable, pdu->variable_count, false, t_s);
     return STATUS_OK;

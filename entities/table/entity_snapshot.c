@@ -369,7 +369,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
             __builtin_prefetch((const char *)(slot + ahead) + 64);
         }
         if (!entity_slot_lives(slot) || entity_slot_silent(slot, t_s)) continue;
-        if (!catalog_shows(table->catalog, slot->model)) continue;
+        if (!catalog_has_shape(table->catalog, slot->model)) continue;
         order[snapshot.count++] = (Ordered){entity_key(slot->id), s};
     }
     if (snapshot.count > 0) order = sort_by_id(order, scratch, snapshot.count);

@@ -13,7 +13,7 @@
 #include "entities/effects/heat.h"
 #include "entities/table/tombstones.h"
 
-enum { entity_effect_places = 4 }; /* flame, smoke, engine smoke, trail */
+enum { entity_effect_positions = 4 }; /* flame, smoke, engine smoke, trail */
 
 typedef struct EntitySlot {
     uint32_t      generation; /* odd while an entity has it */
@@ -39,7 +39,7 @@ typedef struct EntitySlot {
     Kinematics    reported;   /* as sanitized: entity_report.c */
     HeatState     heat;
     Articulation  articulation;
-    uint64_t      effect[entity_effect_places]; /* what it gives off now: handles of effects_history.h */
+    uint64_t      effect[entity_effect_positions]; /* what it gives off now: handles of effects_history.h */
 } EntitySlot;
 
 /* Where what matters is: entity_table_focus. */
@@ -90,7 +90,7 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
 }
 
 EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
-/* There is room for one more than the table keeps: entity_room_make. */
+/* There is room for one more than the table keeps: entity_table_evict. */
 EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s);
 /* Out of the table, uncounted. */
 void entity_slot_free(EntityTable *table, EntitySlot *slot);
@@ -98,9 +98,9 @@ void entity_slot_free(EntityTable *table, EntitySlot *slot);
 void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
 
 /* entity_room.c: of a report of it that was heard now. */
-void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
+void entity_eviction_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
 /* A newcomer that is ranked comes in, if need be for another. False: it is the one to go, and is gone. */
-bool entity_room_make(EntityTable *table, EntitySlot *newcomer, double t_s);
+bool entity_table_evict(EntityTable *table, EntitySlot *newcomer, double t_s);
 
 /* The running clock of rotors at t_s. */
 double entity_slot_spin(const EntitySlot *slot, double t_s);

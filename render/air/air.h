@@ -22,7 +22,7 @@ typedef struct Air {
 /* What an eye asks for. */
 typedef struct AirEye {
     double      height_m; /* clamped to the tables */
-    unsigned    bands;    /* 1 << AirBand, those that are asked for; air_veils answers no others */
+    unsigned    bands;    /* 1 << AirBand, those that are asked for; air_path answers no others */
     const View *view;     /* where to, so that only its azimuths are filled in; NULL: all round */
 } AirEye;
 
@@ -41,21 +41,21 @@ void air_even(Air *out, const double sun_d_enu[3], double sun_w_m2, const double
  * in LWIR, sun_transmittance is the air's.
  * A ray that met nothing ends on the ground beyond the terrain's edge, when it goes down far enough to reach the round
  * Earth (its range is then in range_m), or in the sky: transmittance 0, and added is the sky's radiance. */
-typedef struct Veils {
+typedef struct AirPaths {
     float transmittance[hits_capacity], sun_transmittance[hits_capacity], air_transmittance[hits_capacity];
     float added_w_m2_sr[hits_capacity];
     float range_m[hits_capacity];       /* of the path; INFINITY: sky */
-} Veils;
+} AirPaths;
 
 /* bands: 1 << AirBand, those of out to fill, of the AirEye's; asking for several at once costs less, and gives the same
  * bits. temp_k: of what emits, [hits->count], NaN where nothing does; NULL: nothing does (transmittance: the sun's). */
-void air_veils_of(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+void air_paths_of(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
                   const float *temp_k);
 /* The same answers asked of the atmosphere path by path, no table between: air_direct.c. A microsecond or two a ray.
- * tables: what air_veils_of said of these rays. Even air: the tables' own. */
-void air_veils_directly(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
-                        const float *temp_k, const Veils tables[AIR_BAND_COUNT]);
+ * tables: what air_paths_of said of these rays. Even air: the tables' own. */
+void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+                        const float *temp_k, const AirPaths tables[AIR_BAND_COUNT]);
 /* One band. */
-void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
+void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k);
 
 #endif

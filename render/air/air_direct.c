@@ -1,7 +1,7 @@
-/* render/air/air_direct.c: what air_veils.c says, without its tables: each path asked of the atmosphere by itself.
+/* render/air/air_direct.c: what air_path.c says, without its tables: each path asked of the atmosphere by itself.
  *
  * The measure of the tables for a few rays of a frame (render/frame/error_budget.c). Places and heights of paths are as
- * air_veils.c has them. */
+ * air_path.c has them. */
 #include "render/air/air_private.h"
 
 static double straight(double low, double high, double share) { return low + share * (high - low); }
@@ -21,7 +21,7 @@ static double azimuth_from_sun_rad(const Air *air, const double d_enu[3])
     return level > 1e-12 ? acos(clamp((d_enu[0] * s[0] + d_enu[1] * s[1]) / level, -1, 1)) : 0;
 }
 
-static void sky_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double d_enu[3], int i)
+static void sky_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double d_enu[3], int i)
 {
     double       seen[1][AIR_BAND_COUNT], thermal[2];
     const double azimuth_rad = azimuth_from_sun_rad(air, d_enu);
@@ -35,7 +35,7 @@ static void sky_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, c
     }
 }
 
-static void solid_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double o_enu[3],
+static void solid_ray(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const double o_enu[3],
                       const double d_enu[3], double range_m, double temp_k, int i)
 {
     double       seen[1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
@@ -62,8 +62,8 @@ static void solid_ray(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands,
     }
 }
 
-void air_veils_directly(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
-                        const float *temp_k, const Veils tables[AIR_BAND_COUNT])
+void air_paths_directly(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+                        const float *temp_k, const AirPaths tables[AIR_BAND_COUNT])
 {
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (bands >> b & 1) out[b] = tables[b];

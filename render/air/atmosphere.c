@@ -143,7 +143,7 @@ typedef struct Look {
 
 static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
 {
-    const double sag_m = mean_sag_m(path->range_m), a_m = path->observer_m - sag_m, b_m = path->target_m - sag_m;
+    const double sag_m = mean_chord_error_m(path->range_m), a_m = path->observer_m - sag_m, b_m = path->target_m - sag_m;
     out->atmosphere = atmosphere;
     out->blend = blend;
     out->band = band;

@@ -337,7 +337,7 @@ typedef struct Depths {
 
 static void begin_depths(Depths *out, const AirDay *day, const AirPath *path)
 {
-    const double sag_m = mean_sag_m(path->range_m);
+    const double sag_m = mean_chord_error_m(path->range_m);
     out->stencils.count = 0;
     out->path = *path;
     out->span = span_of(&day->column, path->observer_m - sag_m, path->target_m - sag_m);

@@ -83,7 +83,7 @@ static Status find_axes(Grid *grid, const Table *table, const GridColumn *axis, 
 }
 
 /* The first combination that no row has, named; the rows that there are do not repeat. */
-static void say_missing(const Grid *grid, const Table *table, const GridColumn *axis, const bool *seen)
+static void report_missing(const Grid *grid, const Table *table, const GridColumn *axis, const bool *seen)
 {
     size_t node = 0;
     while (seen[node]) node++;
@@ -149,7 +149,7 @@ Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, 
                 goto done;
     }
     if (nodes > (size_t)table.rows) {
-        say_missing(&grid, &table, axis, seen);
+        report_missing(&grid, &table, axis, seen);
         goto done;
     }
     status = STATUS_OK;

@@ -173,7 +173,7 @@ static inline double path_up(const AirPath *path)
 }
 /* How far, on the average, a straight path is below the one that rises evenly through flat layers: the Earth is
  * round, and light bends after it by a seventh. */
-static inline double mean_sag_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
+static inline double mean_chord_error_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
 
 /* A table's value: of its weights at a temperature (NAN: sunlight), straight in 1 / temperature; of scattered light. */
 double path_weight_value(const PathTable *table, const Stencil *at, double temp_k);

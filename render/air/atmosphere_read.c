@@ -65,7 +65,7 @@ static void flat_clear_depths(double *out, const Atmosphere *atmosphere, AirBand
                               const double *temp_k, int temps)
 {
     const AirColumn *clear = &atmosphere->clear;
-    const double sag_m = mean_sag_m(path->range_m);
+    const double sag_m = mean_chord_error_m(path->range_m);
     const double flat = column_mean(clear, band, path->observer_m, path->target_m);
     const double bent = column_mean(clear, band, path->observer_m - sag_m, path->target_m - sag_m);
     clear_depths(out, atmosphere, band, path, temp_k, temps);

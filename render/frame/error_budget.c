@@ -43,7 +43,7 @@ typedef struct Budget {
     Candidate  *candidate;
     ProbeOf    *probe, tables_probe[tables_probes];
     ProbeTask  *task;      /* [blocks + tables_blocks] */
-    Veils     (*direct)[AIR_BAND_COUNT]; /* [workers] */
+    AirPaths     (*direct)[AIR_BAND_COUNT]; /* [workers] */
 } Budget;
 
 double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, double rms_w_m2_sr)
@@ -199,7 +199,7 @@ static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, i
         if (!(c->planes >> plane & 1)) continue;
         double square, sum = 0;
         if (law) {
-            square = error_budget_law(value + p * samples, n);
+            square = error_budget_sampling_variance(value + p * samples, n);
         } else {
             for (int k = 0; k < samples; k++) sum += (double)value[p * samples + k];
             square = sum / samples - (double)c->value[plane];
@@ -368,7 +368,7 @@ Status error_estimate(const Job *job, Pool *pool, Arena *arena)
     double    tables_px = 0;
     for (int t = 0; t < tasks; t++) tables_px += b.task[t].tables_px;
     for (int k = 0; k < picture_plane_count; k++) {
-        double sampling = job->footprint_law[k], detail = 0, tables = 0;
+        double sampling = job->target_variance[k], detail = 0, tables = 0;
         for (int t = 0; t < tiles; t++) sampling += job->law[t][k];
         for (int t = 0; t < tasks; t++) {
             sampling += b.task[t].sampling[k];

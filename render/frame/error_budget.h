@@ -2,7 +2,7 @@
  * not:
  *
  *   sampling         Pixels of edge_samples x edge_samples rays: from the differences among their own samples, by
- *                    mean_law. Small targets: the same of their cells, and what the pixel behind them differs by. All
+ *                    mean_variance_factor. Small targets: the same of their cells, and what the pixel behind them differs by. All
  *                    others: some are traced again with four times the rays a side; which, is drawn by how much they
  *                    differ from their neighbours. Nothing that is thinner than those rays lie apart is found.
  *   level_of_detail  Ground: what the picked pixels would show if the ground were known at every second post, by its
@@ -11,7 +11,7 @@
  *                    each halving of that distance brings half of what is left. Shadows and what stands behind a crest
  *                    are left out.
  *   tables           A few pixels, the bright ones first, their air asked path by path and their light in double
- *                    (air_veils_directly, optical_shade, thermal_shade), against what the frame's tables and eight-wide
+ *                    (air_paths_directly, optical_shade, thermal_shade), against what the frame's tables and eight-wide
  *                    shading give. The light of the sky on a plane is the table's in both; errors of the atmosphere
  *                    itself are no part.
  *

@@ -35,7 +35,7 @@ void ask_smoke(Worker *w, const Job *job, const double box_px[4])
     int                volumes = effects->count;
     for (int n = 0; n < volumes; n++) w->volume[n] = n;
     if (volumes > 0 && skips(job->request->skips_off, SKIP_SMOKE)) {
-        volumes = veil_block(w->volume, effects->volume, volumes, &job->request->view, box_px[0], box_px[1], box_px[2],
+        volumes = smoke_cull_block(w->volume, effects->volume, volumes, &job->request->view, box_px[0], box_px[1], box_px[2],
                              box_px[3]);
         w->shader.counters.skipped[SKIP_SMOKE] += (uint64_t)(effects->count - volumes);
     }

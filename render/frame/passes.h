@@ -34,7 +34,7 @@ typedef struct Worker {
     Rays           rays;
 } Worker;
 
-typedef struct Footprint Footprint; /* a small target: footprint.h */
+typedef struct TargetGrid TargetGrid; /* a small target: footprint.h */
 
 /* What the passes of one frame read and write. */
 typedef struct Job {
@@ -49,11 +49,11 @@ typedef struct Job {
     TargetPixels        *boxes;     /* [snapshot count]: projected and projected_box only */
     bool                *is_small;  /* [snapshot count]: left to its footprint; pixels do not see it */
     /* small targets */
-    Footprint           *footprint; /* [footprints], by entity */
+    TargetGrid           *footprint; /* [footprints], by entity */
     int                  footprints;
-    int                 *footprint_turn; /* [footprints]: in which order they are sampled */
+    int                 *target_grid_order; /* [footprints]: in which order they are sampled */
     int32_t             *coverer;   /* a pixel: snapshot index of the small target that covers most; where any does */
-    double               footprint_law[picture_plane_count]; /* squared errors over the pixels, summed */
+    double               target_variance[picture_plane_count]; /* squared errors over the pixels, summed */
     /* edges; NULL: not looked for */
     uint8_t             *refine;    /* a pixel: RefineFlag */
     float               *sun;       /* a pixel: Samples.sun of the sample that truth is of */

@@ -74,7 +74,7 @@ void render_counters_add(RenderCounters *sum, const RenderCounters *more);
 
 typedef struct RenderTimes {
     double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads but prepare */
-    double footprints_ms, base_ms, edges_ms; /* wall times of the passes */
+    double target_grids_ms, base_ms, edges_ms; /* wall times of the passes */
 } RenderTimes;
 
 /* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena.

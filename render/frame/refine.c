@@ -68,7 +68,7 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
         for (int p = 0; value && p < block->pixels; p++) {
             const size_t px = pixel_index(job, block->x[p], block->y[p]);
             const double open = job->picture->covered ? 1 - (double)job->picture->covered[px] : 1;
-            sum[plane] += open * open * error_budget_law(value + p * samples, block->n);
+            sum[plane] += open * open * error_budget_sampling_variance(value + p * samples, block->n);
         }
     }
 }

@@ -5,7 +5,7 @@
 #include "render/frame/base.h"
 #include "render/frame/edges.h"
 #include "render/frame/error_estimate.h"
-#include "render/frame/footprint.h"
+#include "render/frame/target_grid.h"
 #include "render/frame/passes.h"
 #include "render/frame/refine.h"
 #include "render/frame/target_boxes.h"
@@ -87,7 +87,7 @@ static bool request_is_good(const RenderRequest *r)
            r->view.height >= 1 && r->view.width <= 8192 && r->view.height <= 8192 && r->view.focal_px > 0 &&
            v3_is_finite(r->view.p_enu) && r->profile_bins >= 0 && fabs(r->lateral[0]) <= view_most_lateral &&
            fabs(r->lateral[1]) <= view_most_lateral &&
-           r->sky_samples >= 0 && r->sky_samples <= gather_samples_limit;
+           r->sky_samples >= 0 && r->sky_samples <= hemisphere_samples_max;
 }
 
 static void choose_rules(Job *job)
@@ -122,7 +122,7 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     if (request->truth || request->target_samples > 0 || looks_for_edges(request) || request->sky_visibility)
         pool_run(pool, scene->snapshot->count, project_target, job);
     status = prepare_sky(job, pool, arena);
-    if (status == STATUS_OK && request->target_samples > 0) status = footprints_plan(job, arena);
+    if (status == STATUS_OK && request->target_samples > 0) status = target_grids_plan(job, arena);
     job->rules.coverer = job->coverer;
     if (status == STATUS_OK && looks_for_edges(request)) mark_boxes(job);
     return status;
@@ -147,7 +147,7 @@ static Status gather_sums(Job *job, int workers, Arena *arena)
     }
     const Status status = target_sums_gather(picture, &job->rules, sums, workers, job->boxes,
                                              job->scene.snapshot->count, job->request->profile_bins, arena);
-    if (status == STATUS_OK && picture->target) footprints_gather(job);
+    if (status == STATUS_OK && picture->target) target_grids_sample(job);
     return status;
 }
 
@@ -157,20 +157,20 @@ static Status run_passes(Job *job, Pool *pool, Arena *arena)
     Picture             *picture = job->picture;
     const double         prepared_s = wall_clock_s();
     if (job->footprints > 0) {
-        pool_run(pool, job->footprints, footprint_task, job);
-        footprints_cover(job);
+        pool_run(pool, job->footprints, target_grid_task, job);
+        target_grids_cover(job);
     }
     const double small_s = wall_clock_s();
     pool_run(pool, job->tiles_x * job->tiles_y, base_tile, job);
     const double base_s = wall_clock_s();
     if (looks_for_edges(request)) pool_run(pool, job->tiles_x * job->tiles_y, refine_tile, job);
-    picture->times.footprints_ms = 1e3 * (small_s - prepared_s);
+    picture->times.target_grids_ms = 1e3 * (small_s - prepared_s);
     picture->times.base_ms       = 1e3 * (base_s - small_s);
     picture->times.edges_ms      = 1e3 * (wall_clock_s() - base_s);
     const Status status = gather_sums(job, pool_threads(pool), arena);
     if (status != STATUS_OK) return status;
-    if (request->budget) footprints_error(job);
-    footprints_put_on(job);
+    if (request->budget) target_grids_error(job);
+    target_grids_composite(job);
     return request->budget ? error_estimate(job, pool, arena) : STATUS_OK;
 }
 
@@ -218,7 +218,7 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
         render_counters_add(&picture.counters, &colour.counters);
         picture.times.prepare_ms += colour.times.prepare_ms, picture.times.visibility_ms += colour.times.visibility_ms;
         picture.times.shadow_ms += colour.times.shadow_ms, picture.times.shade_ms += colour.times.shade_ms;
-        picture.times.footprints_ms += colour.times.footprints_ms, picture.times.base_ms += colour.times.base_ms;
+        picture.times.target_grids_ms += colour.times.target_grids_ms, picture.times.base_ms += colour.times.base_ms;
         picture.times.edges_ms += colour.times.edges_ms;
     }
     if (status == STATUS_OK) *out = picture;

@@ -1,7 +1,7 @@
 /* render/frame/sampling_variance.c: squared error of a pixel's mean, by its own samples. */
 #include "render/frame/sampling_variance.h"
 
-double error_budget_law(const float *out, int n)
+double error_budget_sampling_variance(const float *out, int n)
 {
     double sum = 0;
     for (int row = 0; row < n; row++)
@@ -10,5 +10,5 @@ double error_budget_law(const float *out, int n)
             if (column + 1 < n) sum += (out[row * n + column + 1] - here) * (out[row * n + column + 1] - here);
             if (row + 1 < n) sum += (out[(row + 1) * n + column] - here) * (out[(row + 1) * n + column] - here);
         }
-    return mean_law * sum / ((double)n * n * n * n);
+    return mean_variance_factor * sum / ((double)n * n * n * n);
 }

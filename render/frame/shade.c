@@ -59,7 +59,7 @@ void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s)
 
 void samples_smoke(const ShadeScene *scene, Samples *s)
 {
-    veil_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
+    smoke_trace_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
 }
 
 /* ---- what was met ----------------------------------------------------------------------------- */
@@ -129,7 +129,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
         thermal_temperature(s->temp_k, scene->air, &world->materials, world->catalog, scene->snapshot, &s->hits,
                             s->hits.material, shader->texture[optical_channel_pan]);
     if (!s->channels) return;
-    air_veils_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
+    air_paths_of(shader->air, scene->air, s->channels, &s->hits, &s->rays, s->temp_k);
 
     SurfaceBlock block = {.hits = &s->hits, .rays = &s->rays, .material = s->hits.material, .temp_k = s->temp_k,
                           .sun = s->sun, .veils = shader->air};
@@ -144,7 +144,7 @@ static void light_channels(Shader *shader, const ShadeScene *scene, Samples *s)
     surface_light_shade(out, &scene->surface_light, &block);
     shade_beyond(shader, scene, s, out);
     for (int b = 0; b < AIR_BAND_COUNT; b++)
-        if (out[b]) veil_apply(out[b], &s->smoke, b, s->hits.count);
+        if (out[b]) smoke_apply(out[b], &s->smoke, b, s->hits.count);
 }
 
 static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
@@ -161,12 +161,12 @@ static void light_radar(Shader *shader, const ShadeScene *scene, Samples *s)
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s)
 {
     const double      t0 = wall_clock_s();
-    const GatherScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
+    const HemisphereScene around = {scene->visibility, scene->air, &scene->world->materials, scene->world->catalog,
                                 scene->snapshot};
     resolve_textures(shader, scene, s);
     samples_smoke(scene, s);
     if (scene->sky_samples > 0)
-        gather_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
+        hemisphere_light(&shader->gathered, &around, &s->hits, s->channels, scene->sky_samples, s->key, &shader->counters);
     shader->any_open = scene->sky && s->channels &&
                        sky_visibility_open(&shader->open, scene->sky, shader->sky, &s->hits, &shader->counters);
     light_channels(shader, scene, s);
@@ -202,10 +202,10 @@ static const float *light_around(float room[hits_capacity], const Shader *shader
     return room;
 }
 
-void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, Veils direct[AIR_BAND_COUNT])
+void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT])
 {
     const Materials *materials = &scene->world->materials;
-    air_veils_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
+    air_paths_directly(direct, scene->air, s->channels, &s->hits, &s->rays, s->temp_k, shader->air);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         float        room[hits_capacity], *out = s->radiance[b];
         if (!(s->channels >> b & 1)) continue;
@@ -216,6 +216,6 @@ void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s,
         else
             optical_shade(out, b, scene->air, materials, &s->hits, &s->rays, s->hits.material, shader->texture[b], s->sun,
                           around, &direct[b], NULL);
-        veil_apply(out, &s->smoke, b, s->hits.count);
+        smoke_apply(out, &s->smoke, b, s->hits.count);
     }
 }

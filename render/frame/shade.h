@@ -8,7 +8,7 @@
 
 #include "render/frame/request.h"
 #include "render/frame/world.h"
-#include "render/light/gather.h"
+#include "render/light/hemisphere.h"
 #include "render/light/sky_visibility.h"
 #include "render/light/surface_light.h"
 #include "render/smoke/effects.h"
@@ -50,7 +50,7 @@ typedef struct Samples {
     float    *temp_k;                   /* NaN: sky */
     float    *radiance[AIR_BAND_COUNT]; /* at the eye, W/(m2 sr); of the channels asked for */
     float    *radar_power;              /* sum over the bounces, relative */
-    VeilRays     smoke;                 /* what smoke and dust before the hits take and add */
+    SmokeRays     smoke;                 /* what smoke and dust before the hits take and add */
     RadarReturns returns;
 } Samples;
 
@@ -60,10 +60,10 @@ Status samples_create(Samples *out, int capacity, Arena *arena);
 /* A thread's own working memory. */
 typedef struct Shader {
     SkyWorker         *sky;           /* with ShadeScene.sky */
-    Veils              air[AIR_BAND_COUNT];
+    AirPaths              air[AIR_BAND_COUNT];
     float              texture[optical_channel_count][hits_capacity]; /* relative brightness of the ground */
     float              footprint_m[hits_capacity];                    /* of a sample along the ground */
-    Gathered           gathered;      /* with sky_samples only */
+    HemisphereLight           gathered;      /* with sky_samples only */
     SkyOpen            open;
     bool               any_open;      /* `open` has factors of these hits */
     VisibilityCounters counters;
@@ -81,9 +81,9 @@ void samples_light(Shader *shader, const ShadeScene *scene, Samples *s);
 /* All of them: from the rays to their light. */
 void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
 
-/* After samples_light: the same light again, without tables: the air asked path by path (air_veils_directly), in double
+/* After samples_light: the same light again, without tables: the air asked path by path (air_paths_directly), in double
  * (optical_shade, thermal_shade). Replaces radiance; direct: room for it. */
-void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, Veils direct[AIR_BAND_COUNT]);
+void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT]);
 
 /* Share of a sample's light that smoke takes in a channel, 0 .. 1; 0 of channels that were not asked for. */
 static inline double samples_smoke_taken(const Samples *s, int channel, int i)

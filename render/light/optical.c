@@ -18,7 +18,7 @@ void optical_white(double w_m2_sr[3], const Air *air)
         w_m2_sr[c] = (air->light.sun_w_m2[rgb[c]] * fmax(air->light.sun_d_enu[2], 0) + air->light.sky_w_m2[rgb[c]]) / pi_rad;
 }
 
-float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *v, int i)
+float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const AirPaths *v, int i)
 {
     double seen = ground_w_m2 / pi_rad * v->sun_transmittance[i] + v->added_w_m2_sr[i];
     if (!(v->range_m[i] < INFINITY)) seen += air->sun_eye_w_m2[channel] * daylight_sun_disc(&air->light, d_enu);
@@ -27,14 +27,14 @@ float optical_beyond(int channel, const Air *air, double ground_w_m2, const doub
 
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const float *sun,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing)
+                   const float *around_w_m2, const AirPaths *veils, const Facing *facing)
 {
     const AirBand band = (AirBand)channel;
     const double *sun_d_enu = air->light.sun_d_enu, sun_w_m2 = air->light.sun_w_m2[channel];
     const double ground_w_m2 = optical_ground_w_m2(channel, air, materials);
-    Veils own;
-    if (!veils) air_veils(&own, air, band, hits, rays, NULL);
-    const Veils *v = veils ? veils : &own;
+    AirPaths own;
+    if (!veils) air_path(&own, air, band, hits, rays, NULL);
+    const AirPaths *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);

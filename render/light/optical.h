@@ -7,16 +7,16 @@
 
 /* channel: optical_channel_b .. optical_channel_nir. material: row of each hit (0 for sky). texture: reflectance of the
  * ground in this channel over its material's, 1 elsewhere. d_enu: the eye rays' directions. sun: share of the direct sun that arrives, 0 .. 1; NULL: all of it.
- * around_w_m2: what sky and surroundings send to each hit (render/light/gather.h); NULL: sky and ground by the share of each
+ * around_w_m2: what sky and surroundings send to each hit (render/light/hemisphere.h); NULL: sky and ground by the share of each
  * that the surface faces. veils: of this band; facing: of these hits; either
  * NULL: asked for here. out: W/(m2 sr) [hits->count]. Frames take the quicker way of render/light/surface_light.h, whose
  * measure this is. */
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *texture, const float *sun,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing);
+                   const float *around_w_m2, const AirPaths *veils, const Facing *facing);
 
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. ground_w_m2: optical_ground_w_m2. */
-float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const Veils *veils, int hit);
+float optical_beyond(int channel, const Air *air, double ground_w_m2, const double d_enu[3], const AirPaths *veils, int hit);
 
 /* What level, sunlit ground of the mean land sends up, W/m2. */
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials);

@@ -60,7 +60,7 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     const int           index = e->index, first = v->task_first[task];
     const View         *view = v->scene.view;
     const int           all = e->columns * e->rows, count = all - first < task_places ? all - first : task_places;
-    const GatherScene  *scene = &v->scene.gather;
+    const HemisphereScene  *scene = &v->scene.gather;
     VisibilityCounters  unused = {0};
     Rays               *rays = &w->rays;
     Hits               *met = &w->met, *places = &w->places;
@@ -96,7 +96,7 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     }
     if (places->count == 0) return;
     const int listed = sky_list_near(w, v, box, look_m, false);
-    gather_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key,
+    hemisphere_change(w->change, scene, places, v->scene.air_bands, grid_directions, look_m, w->near_reach_m, w->key,
                   w->near, listed, &unused);
     for (int k = 0; k < places->count; k++) {
         const double *centre_enu = visibility_posed(scene->visibility, index)->centre_enu;

@@ -7,8 +7,8 @@
 
 enum {
     ground_directions = 32,    /* a place */
-    kept_slots    = 1 << 15,   /* places on the ground, of the frame */
-    kept_probes   = 16,
+    cached_slots    = 1 << 15,   /* places on the ground, of the frame */
+    cached_probes   = 16,
     finer_most    = 3,         /* times that a cell of the ground is halved */
 };
 static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
@@ -45,10 +45,10 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     for (int k = 0; k < v->count; k++) v->on_image += !isnan(scene->box_px[k][0]);
     v->entity = arena_alloc(arena, (size_t)v->on_image + 1, sizeof *v->entity);
     for (int k = 0; k <= coarsest_log2_m + lattice_steps; k++) v->cells_per_m[k] = ldexp(1, lattice_steps - k);
-    v->kept_key  = arena_alloc(arena, kept_slots, sizeof *v->kept_key);
-    v->kept_done = arena_alloc(arena, kept_slots, sizeof *v->kept_done);
-    v->kept      = arena_alloc(arena, kept_slots, sizeof *v->kept);
-    if (!v->entity || !v->kept_key || !v->kept_done || !v->kept) return STATUS_NO_MEMORY;
+    v->cached_key  = arena_alloc(arena, cached_slots, sizeof *v->cached_key);
+    v->cached_done = arena_alloc(arena, cached_slots, sizeof *v->cached_done);
+    v->kept      = arena_alloc(arena, cached_slots, sizeof *v->kept);
+    if (!v->entity || !v->cached_key || !v->cached_done || !v->kept) return STATUS_NO_MEMORY;
     for (int k = 0, at = 0; k < v->count; k++) {
         if (isnan(scene->box_px[k][0])) continue;
         const PosedEntity *posed = visibility_posed(scene->gather.visibility, k);
@@ -97,15 +97,15 @@ static uint64_t scramble(uint64_t key)
     return key ^ key >> 29;
 }
 
-static bool find_kept(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
+static bool find_cached(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
 {
     if (!skips(v->scene.skips_off, SKIP_LIGHT)) return false;
-    for (uint64_t n = 0, at = scramble(key); n < kept_probes; n++, at++) {
-        const size_t   k = at & (kept_slots - 1);
-        const uint64_t there = atomic_load_explicit(&v->kept_key[k], memory_order_relaxed);
+    for (uint64_t n = 0, at = scramble(key); n < cached_probes; n++, at++) {
+        const size_t   k = at & (cached_slots - 1);
+        const uint64_t there = atomic_load_explicit(&v->cached_key[k], memory_order_relaxed);
         if (there == 0) return false;
         if (there != key) continue;
-        if (!atomic_load_explicit(&v->kept_done[k], memory_order_acquire)) return false;
+        if (!atomic_load_explicit(&v->cached_done[k], memory_order_acquire)) return false;
         *out = v->kept[k];
         return true;
     }
@@ -116,13 +116,13 @@ static bool find_kept(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
 static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
 {
     if (!skips(v->scene.skips_off, SKIP_LIGHT)) return;
-    for (uint64_t n = 0, at = scramble(key); n < kept_probes; n++, at++) {
-        const size_t k = at & (kept_slots - 1);
+    for (uint64_t n = 0, at = scramble(key); n < cached_probes; n++, at++) {
+        const size_t k = at & (cached_slots - 1);
         uint64_t     there = 0;
-        if (atomic_compare_exchange_strong_explicit(&v->kept_key[k], &there, key, memory_order_relaxed,
+        if (atomic_compare_exchange_strong_explicit(&v->cached_key[k], &there, key, memory_order_relaxed,
                                                     memory_order_relaxed)) {
             v->kept[k] = *place;
-            atomic_store_explicit(&v->kept_done[k], 1, memory_order_release);
+            atomic_store_explicit(&v->cached_done[k], 1, memory_order_release);
             return;
         }
         if (there == key) return;
@@ -138,7 +138,7 @@ static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key
         if (s->block == w->block) continue;
         s->block = w->block;
         s->key   = key;
-        s->known = find_kept(&s->place, v, key);
+        s->known = find_cached(&s->place, v, key);
         if (!s->known) w->queue[w->queued++] = (int)(at & (known_slots - 1));
         return s;
     }
@@ -156,7 +156,7 @@ static void place_ground(Hits *to, int i, const SkyVisibility *v, uint64_t key)
     for (int c = 0; c < 3; c++) to->n_geo[c][i] = to->n_enu[c][i] = (float)n_enu[c];
 }
 
-void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const GatherChange *change)
+void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const HemisphereChange *change)
 {
     *out = (SkyAnswer){.blocked = change->blocked, .sunlit = change->sunlit, .inside = change->inside};
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
@@ -177,7 +177,7 @@ static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, i
         w->key[i] = w->slot[slots[i]].key;
         place_ground(places, i, v, w->key[i]);
     }
-    gather_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
+    hemisphere_change(w->change, &v->scene.gather, places, v->scene.air_bands, ground_directions, look_m,
                   w->near_reach_m, w->key, list, listed, &unused);
     for (int i = 0; i < count; i++) {
         SkySlot     *s = &w->slot[slots[i]];

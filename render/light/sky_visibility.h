@@ -2,7 +2,7 @@
  *
  * By its tilt alone a surface sees the whole sky above it and level, sunlit ground below. Beside a vehicle, under a
  * hull and on a side whose own shadow lies before it that is wrong by factors. Here directions from a set of places
- * find what stands there instead (gather_change), and a hit takes the factor interpolated between the places about it:
+ * find what stands there instead (hemisphere_change), and a hit takes the factor interpolated between the places about it:
  *
  *   ground    places of a square lattice that is fixed to the ground, finer where they disagree and never finer than
  *             the picture shows; computed when a hit needs them, kept for the frame
@@ -14,12 +14,12 @@
  * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Terrain that
  * hides the sky is not seen, and mirrors see none of this.
  *
- * Error against gather_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 2 to 4 % rms on shadowed ground,
+ * Error against hemisphere_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 2 to 4 % rms on shadowed ground,
  * 5 to 13 % where less than 40 % of the open light comes, 4 to 13 % on sides away from the sun. */
 #ifndef RENDER_LIGHT_SKY_VISIBILITY_H
 #define RENDER_LIGHT_SKY_VISIBILITY_H
 
-#include "render/light/gather.h"
+#include "render/light/hemisphere.h"
 #include "render/scene/view.h"
 #include "terrain/landscape/landscape.h"
 
@@ -27,7 +27,7 @@ typedef struct SkyVisibility SkyVisibility; /* a frame's; threads share it */
 typedef struct SkyWorker     SkyWorker;     /* a thread's own */
 
 typedef struct SkyVisibilityScene {
-    GatherScene      gather;
+    HemisphereScene      gather;
     const Landscape *landscape;   /* NULL: no ground */
     const View      *view;
     const double   (*box_px)[4];  /* [entities]: on the image, as TargetPixels.projected_box; NaN: not there */

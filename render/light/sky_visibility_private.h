@@ -18,7 +18,7 @@ static const double look_m = 50;          /* what is farther from a place change
 /* What a place answered. */
 typedef struct SkyAnswer {
     float factor[8]; /* by AirBand, and one to spare */
-    float blocked, sunlit, inside; /* as GatherChange; inside 1: nor is it there */
+    float blocked, sunlit, inside; /* as HemisphereChange; inside 1: nor is it there */
 } SkyAnswer;
 
 /* Places on an entity, in columns; where nothing of it was met the normal is 0. */
@@ -47,8 +47,8 @@ struct SkyVisibility {
     int                tasks;
     double             px_rad;
     double             level_w_m2[AIR_BAND_COUNT]; /* of open, level ground */
-    _Atomic uint64_t  *kept_key;  /* [kept_slots]; 0: free */
-    _Atomic uint8_t   *kept_done; /* [kept_slots]: 1: the place may be read */
+    _Atomic uint64_t  *cached_key;  /* [cached_slots]; 0: free */
+    _Atomic uint8_t   *cached_done; /* [cached_slots]: 1: the place may be read */
     SkyAnswer         *kept;
 };
 
@@ -92,14 +92,14 @@ struct SkyWorker {
     Hits         places, met;
     Rays         rays;
     uint64_t     key[hits_capacity];
-    GatherChange change[hits_capacity];
+    HemisphereChange change[hits_capacity];
     int         *near;       /* [entities] */
     double      *near_reach_m; /* of each: from its box the ground is looked at */
     int8_t      *near_step;  /* of each: first_step_of */
 };
 
 /* What the light at a place of this normal is of the open. */
-void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const GatherChange *change);
+void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const HemisphereChange *change);
 void sky_box_grow(double box[2][3], const Hits *hits, int i);
 /* Entities whose spheres, grown by more_m (and their reach), touch the box, to w->near and what goes with it. */
 int  sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach);

@@ -252,7 +252,7 @@ static void shade_eight(float *const out[AIR_BAND_COUNT], const SurfaceLight *li
     }
     for (int band = 0; band < AIR_BAND_COUNT; band++) {
         if (!out[band]) continue;
-        const Veils *veil = &b->veils[band];
+        const AirPaths *veil = &b->veils[band];
         const F32x8 level = _mm256_set1_ps(light->level_w_m2_sr[band]),
                     sun_w_m2 = _mm256_set1_ps(light->sun_w_m2[band]);
         const F32x8 all_rho =

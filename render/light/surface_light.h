@@ -35,7 +35,7 @@ typedef struct SurfaceBlock {
     const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
     const float   *around_w_m2[AIR_BAND_COUNT]; /* gathered; NULL: sky and ground by what the slope sees of them */
     const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1 */
-    const Veils   *veils;                       /* [AIR_BAND_COUNT] */
+    const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
 /* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:

@@ -116,7 +116,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* ---- radiance ----------------------------------------------------------------------------- */
 
-float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Veils *v, int i)
+float thermal_beyond(Band band, const Air *air, const double d_enu[3], const AirPaths *v, int i)
 {
     const AirBand air_band = band == BAND_MWIR ? AIR_MWIR : AIR_LWIR;
     double seen = air->light.ground_w_m2_sr[air_band] * v->air_transmittance[i] + v->added_w_m2_sr[i];
@@ -126,7 +126,7 @@ float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Vei
 
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing)
+                   const float *around_w_m2, const AirPaths *veils, const Facing *facing)
 {
     const bool mwir = band == BAND_MWIR;
     const AirBand air_band = mwir ? AIR_MWIR : AIR_LWIR;
@@ -134,9 +134,9 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
     const double ground_w_m2_sr = air->light.ground_w_m2_sr[air_band];
     /* the sun's share of 8-12 um is below a thousandth of what the scene emits, and left out */
     const double sun_w_m2 = mwir ? air->light.sun_w_m2[AIR_MWIR] : 0;
-    Veils own;
-    if (!veils) air_veils(&own, air, air_band, hits, rays, temp_k);
-    const Veils *v = veils ? veils : &own;
+    AirPaths own;
+    if (!veils) air_path(&own, air, air_band, hits, rays, temp_k);
+    const AirPaths *v = veils ? veils : &own;
     Facing found;
     if (!facing) {
         daylight_facing(&found, &air->light, materials, hits, rays, material);

@@ -14,13 +14,13 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
                          const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture);
 
 /* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2: what sky and surroundings send
- * to each hit (render/light/gather.h); NULL: sky and ground by what its tilt sees of them. veils: of this band and these
+ * to each hit (render/light/hemisphere.h); NULL: sky and ground by what its tilt sees of them. veils: of this band and these
  * temperatures; facing: of these hits; either NULL: asked for here. out: W/(m2 sr). Frames take the quicker way of
  * render/light/surface_light.h, whose measure this is. */
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
-                   const float *around_w_m2, const Veils *veils, const Facing *facing);
+                   const float *around_w_m2, const AirPaths *veils, const Facing *facing);
 /* One ray that met nothing: ground beyond the terrain's edge, or sky. */
-float thermal_beyond(Band band, const Air *air, const double d_enu[3], const Veils *veils, int hit);
+float thermal_beyond(Band band, const Air *air, const double d_enu[3], const AirPaths *veils, int hit);
 
 #endif

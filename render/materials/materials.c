@@ -127,7 +127,7 @@ static Status find_surface(SurfaceClass *out, const Table *table, int row, int c
 }
 
 /* Each class exactly once. */
-static Status check_all_seen(const bool seen[SURFACE_COUNT], const char *path)
+static Status check_materials_used(const bool seen[SURFACE_COUNT], const char *path)
 {
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++)
         if (!seen[s]) {
@@ -164,7 +164,7 @@ static Status read_surfaces(Materials *m, const char *path)
         seen[surface] = true;
         m->surface[surface] = material;
     }
-    status = check_all_seen(seen, path);
+    status = check_materials_used(seen, path);
     if (status != STATUS_OK) goto done;
 
     int land = 0;
@@ -211,7 +211,7 @@ static Status read_ground_heat(Materials *m)
         m->ground_rise_k[surface] = (float)rise_k;
         m->ground_fall_k[surface] = (float)fall_k;
     }
-    status = check_all_seen(seen, path);
+    status = check_materials_used(seen, path);
 done:
     table_close(&table);
     return status;

@@ -1,14 +1,14 @@
 /* render/smoke/effects.c: the light of a puff: its own by Planck, the sun's and the surroundings' by its albedo.
  *
  * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean of what arrives. The sun arrives with a
- * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in veil_orders orders, each
+ * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in smoke_scatter_orders orders, each
  * with half the share, half the asymmetry and half the depth of the one before (Wrenninge, Kulla, Lundqvist 2013): an
  * approximation for pictures, that leaves a thick white cloud lit from behind the eye at a reflectance of about 0.4. */
 #include "render/smoke/effects.h"
 
 #include <stdlib.h>
 
-_Static_assert((int)effect_band_count == (int)veil_bands, "a volume's bands are the effects'");
+_Static_assert((int)effect_band_count == (int)smoke_bands, "a volume's bands are the effects'");
 _Static_assert((int)effect_band_count == (int)AIR_BAND_COUNT && (int)effect_band_pan == (int)AIR_PAN &&
                (int)effect_band_mwir == (int)AIR_MWIR && (int)optical_channel_count == (int)effect_band_mwir,
                "effects, air and materials have their bands in one order");
@@ -29,17 +29,17 @@ static double glow_w_m2_sr(int band, double temp_k)
 }
 
 typedef struct Placed {
-    VeilVolume       volume;
-    const EffectLaw *law;
+    SmokeVolume       volume;
+    const EffectModel *law;
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
     uint32_t         group;
     int              index; /* in the snapshot: decides between equals */
 } Placed;
 
 /* Source terms of one volume in one band. i: its path among the veils. */
-static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const Veils *veils, int i)
+static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const AirPaths *veils, int i)
 {
-    VeilVolume  *v = &p->volume;
+    SmokeVolume  *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
     const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
     /* mean radiances from above and below: thermal ground shines by itself, ground in daylight by what falls on it */
@@ -53,7 +53,7 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
 
     const double cosine = v3_dot(p->d_eye_enu, air->light.sun_d_enu); /* forward: the sun behind the puff */
     double       share = veils->sun_transmittance[i] * albedo * sun_w_m2, asymmetry = optical ? p->law->asymmetry : 0;
-    for (int order = 0; order < veil_orders; order++) {
+    for (int order = 0; order < smoke_scatter_orders; order++) {
         v->sun[band][order] = share * phase_per_sr(asymmetry, cosine);
         share *= 0.5;
         asymmetry *= 0.5;
@@ -66,7 +66,7 @@ static Status light_volumes(Placed *placed, int count, const View *view, const A
 {
     Rays  *rays = arena_alloc(arena, 1, sizeof *rays);
     Hits  *hits = arena_alloc(arena, 1, sizeof *hits);
-    Veils *veils = arena_alloc(arena, 1, sizeof *veils);
+    AirPaths *veils = arena_alloc(arena, 1, sizeof *veils);
     float  temp_k[hits_capacity];
     if (!rays || !hits || !veils) return STATUS_NO_MEMORY;
     for (int first = 0; first < count; first += hits_capacity) {
@@ -83,7 +83,7 @@ static Status light_volumes(Placed *placed, int count, const View *view, const A
         }
         for (int b = 0; b < effect_band_count; b++) {
             if (!(bands >> b & 1)) continue;
-            air_veils(veils, air, (AirBand)b, hits, rays, b < effect_band_mwir ? NULL : temp_k);
+            air_path(veils, air, (AirBand)b, hits, rays, b < effect_band_mwir ? NULL : temp_k);
             for (int i = 0; i < rays->count; i++) light_volume(&some[i], b, air, ground_rho, veils, i);
         }
     }
@@ -112,11 +112,11 @@ static void shade_group(Placed *first, int count, unsigned bands)
     for (int i = 0; i < count; i++)
         for (int k = 0; k < count; k++) {
             if (k == i) continue;
-            VeilVolume       *to = &first[i].volume;
-            const VeilVolume *from = &first[k].volume;
-            const double      column_m = veil_column_m(from, to->p_enu, to->d_sun_enu, 0, INFINITY);
+            SmokeVolume       *to = &first[i].volume;
+            const SmokeVolume *from = &first[k].volume;
+            const double      column_m = smoke_column_m(from, to->p_enu, to->d_sun_enu, 0, INFINITY);
             if (!(column_m > 0)) continue;
-            for (int b = 0; b < veil_bands; b++)
+            for (int b = 0; b < smoke_bands; b++)
                 if (bands >> b & 1) to->sun_depth[b] += from->extinction_per_m[b] * column_m;
         }
 }
@@ -145,15 +145,15 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
     int count = 0;
     for (int i = 0; i < snapshot->puff_count; i++) {
         const EffectPuff *puff = &snapshot->puff[i];
-        const EffectLaw  *law = &snapshot->effect_table->law[puff->kind];
+        const EffectModel  *law = &snapshot->effect_table->law[puff->kind];
         EffectVolume      volume;
         if (hidden >= 0 && snapshot_owns_puff(snapshot, hidden, puff)) continue;
         if (!effect_volume(&volume, snapshot->effect_table, puff, &air->light.weather, frame)) continue;
         if (!may_matter(view, &volume)) continue;
 
-        VeilVolume *v = &placed[count].volume;
+        SmokeVolume *v = &placed[count].volume;
         double     *d_eye_enu = placed[count].d_eye_enu;
-        *v = (VeilVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
+        *v = (SmokeVolume){.along_m = volume.along_m, .across_m = volume.across_m, .billow = law->billow};
         memcpy(v->p_enu, volume.p_enu, sizeof v->p_enu);
         memcpy(v->axis_enu, volume.axis_enu, sizeof v->axis_enu);
         memcpy(v->d_sun_enu, air->light.sun_d_enu, sizeof v->d_sun_enu);
@@ -177,7 +177,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         shade_group(placed + first, end - first, bands);
     }
     qsort(placed, (size_t)count, sizeof *placed, by_range);
-    VeilVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);
+    SmokeVolume *volume = arena_alloc(arena, (size_t)count + 1, sizeof *volume);
     if (!volume) return STATUS_NO_MEMORY;
     for (int i = 0; i < count; i++) volume[i] = placed[i].volume;
     *out = (EffectScene){count, volume};

@@ -4,11 +4,11 @@
 
 #include "entities/table/snapshot.h"
 #include "render/air/air.h"
-#include "render/smoke/veil.h"
+#include "render/smoke/smoke_volume.h"
 
 typedef struct EffectScene {
     int         count;
-    VeilVolume *volume; /* sorted by range */
+    SmokeVolume *volume; /* sorted by range */
 } EffectScene;
 
 /* Volumes that the view can see, with the air between them and the eye. hidden: the snapshot index of the host, whose own

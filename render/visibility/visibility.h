@@ -72,7 +72,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters);
 
-/* 1 where something (anybody, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
+/* 1 where something (any_sender, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
  * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
                        VisibilityCounters *counters);

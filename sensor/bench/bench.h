@@ -68,37 +68,37 @@ static inline void bench_keep(const void *memory) { __asm__ volatile("" : : "g"(
 /* ---- time against error: the settings of one approximation ---------------------------------------- */
 
 /* One setting. */
-typedef struct BenchPoint {
+typedef struct BenchSetting {
     const char *setting;     /* "2 x 2" */
     BenchTime   time;        /* all settings of a knob are timed in turn, by one bench_time */
-    double      error;       /* in BenchKnob.error_unit, against a reference that does not approximate */
+    double      error;       /* in BenchTunable.error_unit, against a reference that does not approximate */
     double      also;        /* a second error of the same setting, which is judged by both; 0: there is none */
     const char *also_is;     /* what that is, of the first point: "of 8-12 um, K" */
     double      bytes;       /* memory it needs; 0: the same for all; 1: as good as none */
     bool        is_default;  /* exactly one is */
-} BenchPoint;
+} BenchSetting;
 
-typedef struct BenchKnob {
+typedef struct BenchTunable {
     const char *name;        /* "rays a pixel" */
     const char *turned_by;   /* the configuration's key, or where the constant stands: "render/air/air.c" */
     const char *of;          /* what is timed: "a frame of 320 x 216, three bands" */
     const char *error_unit, *against; /* "%"; "256 rays a pixel" */
     double      stated;      /* the largest error that is promised of the default */
-} BenchKnob;
+} BenchTunable;
 
 /* Rows of the table, a plot, and the verdict: the default must keep what is stated, and no other setting may be better
  * beyond noise in time, error or memory without being worse in another of them: the Pareto front, marked `*`. The rule
  * stands in pitviper_bench_knob.c. */
-void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count);
-bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b); /* a dominates b */
-bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, int index);
+void bench_knob(Bench *bench, const BenchTunable *knob, const BenchSetting *point, int count);
+bool bench_dominates(const BenchTunable *knob, const BenchSetting *a, const BenchSetting *b); /* a dominates b */
+bool bench_on_front(const BenchTunable *knob, const BenchSetting *point, int count, int index);
 /* The default's place in words: what it keeps, and what better settings there are. quick: times judge nobody. */
-void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick);
+void bench_verdict(char out[512], const BenchTunable *knob, const BenchSetting *point, int count, bool quick);
 /* More rounds of the same works, behind those that there are, up to bench_rounds_max. */
 void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int count);
 /* Run time against error, log-log, as SVG of its own style, for light and dark: each setting with its name, the front
  * as a line, the default ringed, what is stated dashed. */
-void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count);
+void plot_knob(FILE *to, const BenchTunable *knob, const BenchSetting *point, int count);
 
 /* The command: argv[0] NAME, then options; suites are walked by next(&state) from a zeroed state. Exit code: 1 when a
  * suite failed or an error is beyond its limit. */

@@ -20,7 +20,7 @@
 
 typedef enum Verdict { WORSE, SAME, BETTER } Verdict;
 
-static Verdict by_time(const BenchPoint *a, const BenchPoint *b)
+static Verdict by_time(const BenchSetting *a, const BenchSetting *b)
 {
     double    ratio[bench_rounds_max];
     const int rounds = a->time.rounds < b->time.rounds ? a->time.rounds : b->time.rounds;
@@ -31,25 +31,25 @@ static Verdict by_time(const BenchPoint *a, const BenchPoint *b)
     return middle <= 1.05 && low <= 1 ? SAME : WORSE; /* NaN is worse */
 }
 
-static Verdict by_error(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b)
+static Verdict by_error(const BenchTunable *knob, const BenchSetting *a, const BenchSetting *b)
 {
     const double floor_error = isfinite(knob->stated) ? 0.01 * knob->stated : 0;
     if (a->error < 0.9 * b->error && b->error - a->error > floor_error) return BETTER;
     return a->error <= 1.02 * b->error ? SAME : WORSE;
 }
 
-static Verdict by_also(const BenchPoint *a, const BenchPoint *b)
+static Verdict by_also(const BenchSetting *a, const BenchSetting *b)
 {
     return a->also < 0.9 * b->also ? BETTER : a->also <= 1.02 * b->also ? SAME : WORSE;
 }
 
-static Verdict by_bytes(const BenchPoint *a, const BenchPoint *b)
+static Verdict by_bytes(const BenchSetting *a, const BenchSetting *b)
 {
     if (!(a->bytes > 0) || !(b->bytes > 0)) return SAME;
     return a->bytes < 0.9 * b->bytes ? BETTER : a->bytes <= b->bytes ? SAME : WORSE;
 }
 
-bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoint *b)
+bool bench_dominates(const BenchTunable *knob, const BenchSetting *a, const BenchSetting *b)
 {
     const Verdict verdict[4] = {by_time(a, b), by_error(knob, a, b), by_also(a, b), by_bytes(a, b)};
     bool          better = false;
@@ -60,7 +60,7 @@ bool bench_dominates(const BenchKnob *knob, const BenchPoint *a, const BenchPoin
     return better;
 }
 
-bool bench_on_front(const BenchKnob *knob, const BenchPoint *point, int count, int index)
+bool bench_on_front(const BenchTunable *knob, const BenchSetting *point, int count, int index)
 {
     if (isnan(point[index].error)) return false;
     for (int i = 0; i < count; i++)
@@ -84,7 +84,7 @@ static void file_name(char out[64], const char *name)
     strcpy(out + n, ".svg");
 }
 
-static char *plot_text(const BenchKnob *knob, const BenchPoint *point, int count)
+static char *plot_text(const BenchTunable *knob, const BenchSetting *point, int count)
 {
     char  *text = NULL;
     size_t octets;
@@ -96,7 +96,7 @@ static char *plot_text(const BenchKnob *knob, const BenchPoint *point, int count
     return NULL;
 }
 
-static void write_plot(Bench *bench, const BenchKnob *knob, const char *text)
+static void write_plot(Bench *bench, const BenchTunable *knob, const char *text)
 {
     char path[4096], name[64];
     file_name(name, knob->name);
@@ -114,10 +114,10 @@ static void write_plot(Bench *bench, const BenchKnob *knob, const char *text)
 /* ---- rows ------------------------------------------------------------------------------------- */
 
 /* Who dominates the default: the best of those that do, NULL: nobody, and how many. */
-static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, const BenchPoint *point, int count,
+static const BenchSetting *who_dominates(int *how_many, const BenchTunable *knob, const BenchSetting *point, int count,
                                        int chosen)
 {
-    const BenchPoint *best = NULL;
+    const BenchSetting *best = NULL;
     *how_many = 0;
     for (int i = 0; i < count; i++) {
         if (i == chosen || !bench_dominates(knob, &point[i], &point[chosen])) continue;
@@ -126,7 +126,7 @@ static const BenchPoint *who_dominates(int *how_many, const BenchKnob *knob, con
     return best;
 }
 
-static int default_of(const BenchPoint *point, int count)
+static int default_of(const BenchSetting *point, int count)
 {
     int chosen = -1;
     for (int i = 0; i < count; i++)
@@ -134,11 +134,11 @@ static int default_of(const BenchPoint *point, int count)
     return chosen;
 }
 
-static void add_verdict(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen)
+static void add_verdict(Bench *bench, const BenchTunable *knob, const BenchSetting *point, int count, int chosen)
 {
     char              what[160], against[256];
     int               better;
-    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen), *held = &point[chosen];
+    const BenchSetting *best = who_dominates(&better, knob, point, count, chosen), *held = &point[chosen];
     snprintf(what, sizeof what, "%s: settings better than the default", knob->name);
     BenchRow row = bench_row(what);
     row.error    = better;
@@ -168,7 +168,7 @@ __attribute__((format(printf, 3, 4))) static void say(char *out, size_t size, co
     va_end(arguments);
 }
 
-static void say_trade(char *out, size_t size, const char *what, const BenchPoint *other, const BenchPoint *held)
+static void say_trade(char *out, size_t size, const char *what, const BenchSetting *other, const BenchSetting *held)
 {
     const double ratio = bench_ratio(&other->time, &held->time);
     if (other->error > 0 && held->error > 0)
@@ -181,7 +181,7 @@ static void say_trade(char *out, size_t size, const char *what, const BenchPoint
         say(out, size, ", %.2g x the memory", other->bytes / held->bytes);
 }
 
-void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point, int count, bool quick)
+void bench_verdict(char out[512], const BenchTunable *knob, const BenchSetting *point, int count, bool quick)
 {
     const size_t size = 512;
     const int    chosen = default_of(point, count);
@@ -191,7 +191,7 @@ void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point
         say(out, size, "No setting is the default: nothing is judged.");
         return;
     }
-    const BenchPoint *held = &point[chosen], *faster = NULL, *closer = NULL;
+    const BenchSetting *held = &point[chosen], *faster = NULL, *closer = NULL;
     bench_show(error, held->error, knob->error_unit);
     bench_show(stated, knob->stated, knob->error_unit);
     if (isnan(held->error)) say(out, size, "The error of the default, '%.40s', is unknown.", held->setting);
@@ -199,7 +199,7 @@ void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point
     else say(out, size, "The default, '%.40s', %s: %s, stated at most %s.", held->setting,
              held->error <= knob->stated ? "keeps its stated error" : "MISSES its stated error", error, stated);
     int better;
-    const BenchPoint *best = who_dominates(&better, knob, point, count, chosen);
+    const BenchSetting *best = who_dominates(&better, knob, point, count, chosen);
     if (best) {
         say(out, size, " %d better setting%s", better, better > 1 ? "s;" : ":");
         say_trade(out, size, "", best, held);
@@ -222,7 +222,7 @@ void bench_verdict(char out[512], const BenchKnob *knob, const BenchPoint *point
     say(out, size, ".");
 }
 
-static void keep_block(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count, int chosen, int first)
+static void keep_block(Bench *bench, const BenchTunable *knob, const BenchSetting *point, int count, int chosen, int first)
 {
     if (bench->blocks == bench->blocks_capacity) {
         const int   larger = bench->blocks_capacity ? 2 * bench->blocks_capacity : 32;
@@ -244,7 +244,7 @@ static void keep_block(Bench *bench, const BenchKnob *knob, const BenchPoint *po
     for (int i = first; i < bench->kept_count; i++) b->broken |= !bench_holds(&bench->kept[i].row);
 }
 
-void bench_knob(Bench *bench, const BenchKnob *knob, const BenchPoint *point, int count)
+void bench_knob(Bench *bench, const BenchTunable *knob, const BenchSetting *point, int count)
 {
     const int chosen = default_of(point, count), before = bench->kept_count;
     char      what[256];

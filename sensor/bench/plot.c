@@ -165,7 +165,7 @@ static Box place_label(const Plot *p, int k, double near_px, double wide_px, dou
     return best;
 }
 
-static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const char *class, bool with_bytes)
+static void draw_label(FILE *to, Plot *p, int k, const BenchSetting *point, const char *class, bool with_bytes)
 {
     char   text[96], memory[24] = "";
     double leader = 0;
@@ -188,7 +188,7 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchPoint *point, const 
 
 /* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no
  * point past another. */
-static double shown_s(const BenchPoint *point, int count, int index)
+static double shown_s(const BenchSetting *point, int count, int index)
 {
     for (int i = 0; i < count; i++)
         if (point[i].is_default && i != index && point[i].time.rounds > 0 &&
@@ -197,7 +197,7 @@ static double shown_s(const BenchPoint *point, int count, int index)
     return point[index].time.median_s;
 }
 
-static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int count, double unit_s)
+static void lay_out(Plot *p, const BenchTunable *knob, const BenchSetting *point, int count, double unit_s)
 {
     double fast = INFINITY, slow = 0, least = INFINITY, most = 0;
     bool   zero = false;
@@ -220,7 +220,7 @@ static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int
     if (zero) p->zero_y_px = floor_px - 0.4 * zero_px;
     if (stated) p->stated_y_px = at_px(&p->error, knob->stated);
     for (int k = 0; k < p->points; k++) {
-        const BenchPoint *at = &point[p->index[k]];
+        const BenchSetting *at = &point[p->index[k]];
         p->x_px[k]  = at_px(&p->time, shown_s(point, count, p->index[k]) / unit_s);
         p->y_px[k]  = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
         p->front[k] = bench_on_front(knob, point, count, p->index[k]);
@@ -235,7 +235,7 @@ static void lay_out(Plot *p, const BenchKnob *knob, const BenchPoint *point, int
     }
 }
 
-static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char *unit)
+static void draw_axes(FILE *to, const Plot *p, const BenchTunable *knob, const char *unit)
 {
     const double floor_px = height_px - bottom_px;
     char         text[24];
@@ -270,7 +270,7 @@ static void draw_axes(FILE *to, const Plot *p, const BenchKnob *knob, const char
 }
 
 /* What is what, below the axis; and how the default does, above the plot. */
-static void draw_legend(FILE *to, const Plot *p, const BenchPoint *point)
+static void draw_legend(FILE *to, const Plot *p, const BenchSetting *point)
 {
     const int y = height_px - 10;
     fprintf(to,
@@ -300,7 +300,7 @@ static void draw_legend(FILE *to, const Plot *p, const BenchPoint *point)
     }
 }
 
-void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int count)
+void plot_knob(FILE *to, const BenchTunable *knob, const BenchSetting *point, int count)
 {
     static const struct { double s; const char *name; } units[] = {{1, "s"}, {1e-3, "ms"}, {1e-6, "us"}, {1e-9, "ns"}};
     double fast = INFINITY;
@@ -347,7 +347,7 @@ void plot_knob(FILE *to, const BenchKnob *knob, const BenchPoint *point, int cou
         fprintf(to, "%c%.1f %.1f", k ? 'L' : 'M', p->x_px[p->line[k]], p->y_px[p->line[k]]);
     fputs("\"/>\n", to);
     for (int k = 0; k < p->points; k++) {
-        const BenchPoint *at = &point[p->index[k]];
+        const BenchSetting *at = &point[p->index[k]];
         if (at->is_default)
             fprintf(to, "<circle class=\"df\" cx=\"%.1f\" cy=\"%.1f\" r=\"%.1f\"/>", p->x_px[k], p->y_px[k],
                     dot_px + 4);

@@ -6,7 +6,7 @@
 
 enum { bench_settings_max = 16 };
 
-static inline bool bench_default_dominated(const BenchKnob *knob, const BenchPoint *point, int count)
+static inline bool bench_default_dominated(const BenchTunable *knob, const BenchSetting *point, int count)
 {
     for (int k = 0; k < count; k++)
         if (point[k].is_default) return !bench_on_front(knob, point, count, k);
@@ -15,7 +15,7 @@ static inline bool bench_default_dominated(const BenchKnob *knob, const BenchPoi
 
 /* Times the settings of a knob in turn, work[k] being point[k]'s, and hands them on. A default that would fail is given
  * twice as many rounds before it does: a busy minute should not decide. */
-static inline void bench_turn(Bench *bench, const BenchKnob *knob, const BenchWork *work, BenchPoint *point, int count)
+static inline void bench_tunable(Bench *bench, const BenchTunable *knob, const BenchWork *work, BenchSetting *point, int count)
 {
     BenchTime time[bench_settings_max];
     bench_progress(bench, knob->name);

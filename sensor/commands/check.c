@@ -132,7 +132,7 @@ static bool atmosphere_is_valid(const Check *c)
 static bool models_are_valid(Check *c)
 {
     /* built-in shapes are valid at any chord error; model files are read in full */
-    static const double coarse_sag_m = 0.1;
+    static const double coarse_chord_error_m = 0.1;
     char      catalog[4096], materials[4096], surfaces[4096];
     Materials read = {0};
     const bool own = etc_own("catalog.csv") || etc_own("materials.csv");
@@ -144,7 +144,7 @@ static bool models_are_valid(Check *c)
     Status status = materials_open(&read, materials, surfaces, NULL);
     materials_close(&read);
     if (status != STATUS_OK) return report(c, "models.materials", "etc/ADDING.md describes a row of materials");
-    if (catalog_open(&c->catalog, catalog, coarse_sag_m) != STATUS_OK)
+    if (catalog_open(&c->catalog, catalog, coarse_chord_error_m) != STATUS_OK)
         return report(c, "models.catalog", "etc/ADDING.md describes how to add a vehicle; `pitviper model info FILE` "
                          "checks "
                                           "one model");
@@ -191,7 +191,7 @@ static bool check_file(const char *path)
         log_error("check: %s: not valid", path);
         return false;
     }
-    log_say("%s: valid\n", path);
+    log_print("%s: valid\n", path);
     if (!log_is_quiet()) config_write_given(stdout, &given);
     return true;
 }

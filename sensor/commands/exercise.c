@@ -272,7 +272,7 @@ static void show_progress(const Exercise *exercise)
     const ExerciseCounts *counts = exercise_counts(exercise);
     char                  text[160];
     snprintf(text, sizeof text, "%.0f s  %d entities  %llu PDUs  %llu datagrams", exercise_time(exercise),
-             exercise_heard(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams);
+             exercise_most_received(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams);
     log_status(text);
 }
 
@@ -309,14 +309,14 @@ static Status play(Run *run, const Cast *cast, double epoch_unix_s, double speed
     exercise_finish(exercise);
 
     const ExerciseCounts *counts = exercise_counts(exercise);
-    log_say("%.1f s, %d entities, %llu PDUs, %llu datagrams, %llu octets", fmin(time_s, cast->scenario->duration_s),
-           exercise_heard(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams,
+    log_print("%.1f s, %d entities, %llu PDUs, %llu datagrams, %llu octets", fmin(time_s, cast->scenario->duration_s),
+           exercise_most_received(exercise), (unsigned long long)counts->pdus, (unsigned long long)counts->datagrams,
            (unsigned long long)counts->octets);
-    if (counts->malformed) log_say(", %llu malformed", (unsigned long long)counts->malformed);
+    if (counts->malformed) log_print(", %llu malformed", (unsigned long long)counts->malformed);
     if (counts->lost || counts->duplicated || counts->overtaken)
-        log_say(", %llu lost, %llu twice, %llu overtaken", (unsigned long long)counts->lost,
+        log_print(", %llu lost, %llu twice, %llu overtaken", (unsigned long long)counts->lost,
                (unsigned long long)counts->duplicated, (unsigned long long)counts->overtaken);
-    log_say("\n");
+    log_print("\n");
     exercise_destroy(exercise);
     return run->failed ? STATUS_IO : STATUS_OK;
 }

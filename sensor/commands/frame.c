@@ -81,7 +81,7 @@ static void describe_ground(const LandscapeParts *g)
 {
     char size[64 * elevation_max_levels] = "";
     if (g->invented) {
-        log_say("ground: invented, from %d places, %d clear lines, %d places of sea and land\n", g->said.fix_count,
+        log_print("ground: invented, from %d places, %d clear lines, %d places of sea and land\n", g->said.fix_count,
                 g->said.line_count, g->said.place_count);
         return;
     }
@@ -90,7 +90,7 @@ static void describe_ground(const LandscapeParts *g)
         at += snprintf(size + at, sizeof size - (size_t)at, "%s%d x %d at %.4g m", n ? ", " : "", l->nx, l->ny,
                        l->spacing_m);
     }
-    log_say("ground: of files, %s%s%s\n", size, g->cover[0].nx ? ", cover" : "", g->photo.mips ? ", photograph" : "");
+    log_print("ground: of files, %s%s%s\n", size, g->cover[0].nx ? ", cover" : "", g->photo.mips ? ", photograph" : "");
 }
 
 static void describe(const FrameFile *file)
@@ -105,12 +105,12 @@ static void describe(const FrameFile *file)
             at += snprintf(bands + at, sizeof bands - (size_t)at, "%s%s", at ? "," : "", band_name((Band)b));
     text_escape(host, sizeof host, file->host, strlen(file->host));
     text_escape(version, sizeof version, file->version, strlen(file->version));
-    log_say("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc, version,
+    log_print("frame %d of host %s at %.3f s, %s; made by pitviper %s%s\n", file->frame, host, file->time_s, utc, version,
             strcmp(file->version, PITVIPER_VERSION) == 0 ? "" : ", this is " PITVIPER_VERSION);
-    log_say("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
+    log_print("picture: %d x %d, %s; %d entities of %d models, %d puffs of smoke and dust\n", r->view.width,
             r->view.height, bands, file->snapshot.count, file->model_count, file->snapshot.puff_count);
     describe_ground(&file->ground);
-    log_say("tables: %d of etc/ and models, by SHA-256\n", file->tables.count);
+    log_print("tables: %d of etc/ and models, by SHA-256\n", file->tables.count);
     for (int i = 0; i < file->tables.count; i++)
         log_detail("frame: %s %.64s", file->tables.table[i].name, file->tables.table[i].sha256);
 }
@@ -173,7 +173,7 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
         status = frame_files_write(hash, &files, pool);
     }
     if (status == STATUS_OK && again->picture.target) status = write_truth(o->out, file, s, again, &noise, arena);
-    if (status == STATUS_OK) log_say("its pictures are in %s/frames\n", o->out);
+    if (status == STATUS_OK) log_print("its pictures are in %s/frames\n", o->out);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(chain[b]);
     return status;
 }
@@ -190,7 +190,7 @@ static Status show(int *differ, const FrameOptions *o, const FrameFile *file, Fr
     log_detail("frame: rendered in %.0f ms", 1e3 * (wall_clock_s() - begun_s));
     *differ = frame_differences(file, &again->made, true);
     if (*differ == 0)
-        log_say("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
+        log_print("the same: all %d planes, to the bit; frame %.64s\n", file->plane_count, again->made.sha256);
     else
         log_error("frame: %d of %d planes differ; frame %.64s, was %.64s%s", *differ, file->plane_count,
                    again->made.sha256, file->frame_sha256,

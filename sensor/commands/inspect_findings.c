@@ -184,7 +184,7 @@ Status findings_gather(Findings *f, const DisLog *log, int exercise)
             else status = note_pdu(f, &decoded, t_s);
         }
     }
-    if (clock) f->doubts = *exercise_clock_doubts(clock);
+    if (clock) f->doubts = *exercise_clock_anomalies(clock);
     exercise_clock_destroy(clock);
     if (f->entities.count) qsort(f->entities.row, (size_t)f->entities.count, f->entities.size, compare_rows);
     if (f->senders.count) qsort(f->senders.row, (size_t)f->senders.count, f->senders.size, compare_rows);

@@ -49,7 +49,7 @@ typedef struct Findings {
     double      first_s, last_s;
     Rows        entities, senders, events;
     uint64_t    removed, started, stopped;
-    ExerciseClockDoubts doubts; /* senders whose stamps are no clock */
+    ExerciseClockAnomalies doubts; /* senders whose stamps are no clock */
 } Findings;
 
 static inline void *findings_row(const Rows *rows, int i) { return rows->row + (size_t)i * rows->size; }

@@ -85,8 +85,8 @@ static void print_senders(const Findings *f)
         printf("  %-12s %-8s %8llu  %s\n", name, versions, (unsigned long long)row->pdus, stamps);
     }
     for (int i = 0; i < f->doubts.count; i++) {
-        char text[exercise_clock_doubt_text_size];
-        exercise_clock_doubt_text(text, sizeof text, &f->doubts.sender[i]);
+        char text[exercise_clock_anomaly_text_size];
+        exercise_clock_anomaly_text(text, sizeof text, &f->doubts.sender[i]);
         printf("  %s\n", text);
     }
 }
@@ -183,7 +183,7 @@ static Status print_shapes(const Findings *f)
         const int    index = catalog_find(catalog, row[i].type, NULL, NULL);
         const Model *model = catalog_model(catalog, index);
         dis_entity_type_text(text, row[i].type);
-        if (!catalog_shows(catalog, index))
+        if (!catalog_has_shape(catalog, index))
             printf("  %-22s nothing is seen of it\n", text);
         else
             text_print(stdout, "  %-22s %s, %.3g x %.3g x %.3g%s\n", text, model->name, model->length_m, model->width_m,

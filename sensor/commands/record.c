@@ -136,7 +136,7 @@ static void show_progress(Recording *r, double now_s)
 /* Records until a stop by signal or by an option; then what had arrived by that moment, and no more. */
 static Status record(Recording *r, double for_s)
 {
-    const int64_t look_ns = 100000000; /* a signal does not end a wait */
+    const int64_t check_ns = 100000000; /* a signal does not end a wait */
     const double  flush_s = 0.5, show_s = 1;
     const double  end_s = r->begun_s + for_s;
     Status        status = STATUS_OK;
@@ -150,7 +150,7 @@ static Status record(Recording *r, double for_s)
             r->flushed_s = now_s;
             if (status != STATUS_OK) break;
         }
-        const int64_t wait_ns = (int64_t)(1e9 * fmin(1e-9 * (double)look_ns, end_s - now_s));
+        const int64_t wait_ns = (int64_t)(1e9 * fmin(1e-9 * (double)check_ns, end_s - now_s));
         if (more || dis_udp_wait(r->udp, dis_udp_now_ns() + wait_ns)) status = write_waiting(r, INT64_MAX, &more);
     }
     log_status(NULL);

@@ -410,7 +410,7 @@ static void report_variant(SweepRun *s, const Variant *v, const Outcome *outcome
         log_error("sweep: variant %d, %s, %s: %s (%s/%s/log.txt)", v->number + 1, v->name, words, outcome->why,
                   s->options->out, v->name);
     else
-        log_say("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
+        log_print("%d of %d: %s %s, %s: %d frames, %.1f s\n", place + 1, s->count, v->name, outcome->status, words,
                outcome->run.frames, outcome->seconds);
     fflush(stdout);
 }
@@ -463,7 +463,7 @@ static Status run_all(SweepRun *s)
 {
     Status status = open_products(s);
     if (status == STATUS_OK && s->repeated > 0)
-        log_say("%d variant%s left out: equal to others\n", s->repeated, s->repeated == 1 ? "" : "s");
+        log_print("%d variant%s left out: equal to others\n", s->repeated, s->repeated == 1 ? "" : "s");
     for (int i = 0; i < s->count && status == STATUS_OK && !s->stopped; i++) {
         s->stopped = stop_asked();
         if (!s->stopped) status = one_variant(s, i);
@@ -479,7 +479,7 @@ static Status run_all(SweepRun *s)
         log_warn("sweep: stopped with %d of %d variants made; the same command resumes "
                  "it", s->made + s->kept, s->count);
     if (status == STATUS_OK)
-        log_say("%d variants in %s: %d made, %d kept, %d failed; see "
+        log_print("%d variants in %s: %d made, %d kept, %d failed; see "
                 "manifest.html\n", s->count, s->options->out, s->made,
                s->kept, s->failed);
     return status;

@@ -31,7 +31,7 @@ void bad_pixels_make(uint8_t *map, int width, int height, double share, double c
         }
 }
 
-void bad_pixels_show(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full, uint64_t seed,
+void bad_pixels_insert(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full, uint64_t seed,
                      uint32_t stream, int frame)
 {
     const size_t pixels = (size_t)width * (size_t)height;

@@ -13,7 +13,7 @@ enum { PIXEL_GOOD, PIXEL_DEAD, PIXEL_HOT, PIXEL_BLINKING };
 void bad_pixels_make(uint8_t *map, int width, int height, double share, double clustered, uint64_t seed,
                      uint32_t stream);
 /* Dead: 0. Hot: full. Blinking: full scale in a random half of the periods of 8 frames, else unchanged. */
-void bad_pixels_show(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full, uint64_t seed,
+void bad_pixels_insert(uint16_t *count, const uint8_t *map, int width, int height, uint16_t full, uint64_t seed,
                      uint32_t stream, int frame);
 /* Each becomes the mean of the nearest good pixels (a ring of 1, then 2, ... to 8 px; if none: unchanged). */
 void bad_pixels_replace(uint16_t *count, const uint8_t *map, int width, int height);

@@ -18,7 +18,7 @@ struct Blur {
  * without a kink. A kink rings: 1 / n^2 with alternating sign, 0.4 % of a contrast four pixels away, visible as
  * stripes next to an exhaust. Tapered, the point spread of a chain with optics is positive to within rounding,
  * as a real one is. */
-double blur_bent(double f_cyc_px)
+double blur_tapered(double f_cyc_px)
 {
     static const double from = 0.4, width = 0.1;
     const double f = fabs(f_cyc_px), u = (f - from) / width;
@@ -35,7 +35,7 @@ static double odd_share(double f_cyc_px)
 
 double blur_smear_pass(const double smear_px[2], double fx, double fy)
 {
-    const double along = smear_px[0] * blur_bent(fx), down = smear_px[1] * blur_bent(fy);
+    const double along = smear_px[0] * blur_tapered(fx), down = smear_px[1] * blur_tapered(fy);
     const double plus = mtf_sinc(along + down), minus = mtf_sinc(along - down);
     return 0.5 * (plus + minus) + 0.5 * (plus - minus) * odd_share(fx) * odd_share(fy);
 }
@@ -68,7 +68,7 @@ Status blur_create(Blur **out, int width, int height, const MtfChain *chain)
     for (int r = 0; r < height; r++)
         for (int c = 0; c < width; c++)
             b->pass[(size_t)r * (size_t)width + (size_t)c] =
-                mtf_chain(&still, blur_bent(0.5 * c / width), blur_bent(0.5 * r / height)) / (4.0 * (double)count);
+                mtf_chain(&still, blur_tapered(0.5 * c / width), blur_tapered(0.5 * r / height)) / (4.0 * (double)count);
     *out = b;
     return STATUS_OK;
 }
@@ -94,11 +94,11 @@ static void smear(Blur *b, const double smear_px[2], bool oblique)
     const int w = b->width, h = b->height;
     if (oblique) memset(b->odd, 0, (size_t)w * (size_t)h * sizeof *b->odd);
     for (int c = 0; c < w; c++) {
-        b->along[c]     = smear_px[0] * blur_bent(0.5 * c / w);
+        b->along[c]     = smear_px[0] * blur_tapered(0.5 * c / w);
         b->odd_along[c] = odd_share(0.5 * c / w);
     }
     for (int r = 0; r < h; r++) {
-        const double down = smear_px[1] * blur_bent(0.5 * r / h), share = odd_share(0.5 * r / h);
+        const double down = smear_px[1] * blur_tapered(0.5 * r / h), share = odd_share(0.5 * r / h);
         for (int c = 0; c < w; c++) {
             const size_t at = (size_t)r * (size_t)w + (size_t)c;
             const double along = b->along[c];

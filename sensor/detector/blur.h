@@ -20,7 +20,7 @@ typedef struct Blur Blur;
 /* Without the smear of the chain, which changes per frame. STATUS_NO_MEMORY. One user at a time. */
 Status blur_create(Blur **out, int width, int height, const MtfChain *chain);
 /* The frequency at which the chain is evaluated for frequency f of a row or column, -0.5 .. 0.5. */
-double blur_bent(double f_cyc_px);
+double blur_tapered(double f_cyc_px);
 /* Transfer of a smear at (fx, fy), tapered; the difference between fx and -fx fades from 0.4 to 0.5. */
 double blur_smear_pass(const double smear_px[2], double fx, double fy);
 void   blur_destroy(Blur *blur);

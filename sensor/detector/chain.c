@@ -277,7 +277,7 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
 
     quantise_counts(ch->count, e, count, c->step_e, c->full);
     if (ch->bad) {
-        bad_pixels_show(ch->count, ch->bad, w, h, c->full, c->seed, stream, frame);
+        bad_pixels_insert(ch->count, ch->bad, w, h, c->full, c->seed, stream, frame);
         bad_pixels_replace(ch->count, ch->patched, w, h);
     }
     for (size_t i = 0; i < count; i++) ch->value[i] = ch->count[i];

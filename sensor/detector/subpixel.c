@@ -61,7 +61,7 @@ static void make_passes(SubPixel *s)
         }
     for (int j = 0; j < period_px; j++)
         for (int k = 0; k < coarse_half; k++) {
-            const double fx = blur_bent(frequency(k, period_px)), fy = blur_bent(frequency(j, period_px));
+            const double fx = blur_tapered(frequency(k, period_px)), fy = blur_tapered(frequency(j, period_px));
             s->pixel_pass[j * coarse_half + k] = area * mtf_optics(c, fx, fy) * mtf_footprint(c, fx, fy) *
                                                  mtf_jitter(c, fx, fy);
         }

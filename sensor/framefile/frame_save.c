@@ -212,10 +212,10 @@ Status frame_save(const FrameSave *save)
     if (status == STATUS_OK) status = pack_proved(&bytes, &reach_m, file, save, arena);
     if (status == STATUS_OK) status = write_file(path, &bytes);
     if (status == STATUS_OK && !file->ground.invented && isfinite(reach_m))
-        log_say("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path,
+        log_print("frame %d: %s, %.0f KB; ground within %.0f m of what is seen\n", file->frame, path,
                 1e-3 * (double)bytes.count, reach_m);
     else if (status == STATUS_OK)
-        log_say("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
+        log_print("frame %d: %s, %.0f KB\n", file->frame, path, 1e-3 * (double)bytes.count);
     free(settings);
     sink_free(&bytes);
     arena_destroy(arena);

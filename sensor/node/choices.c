@@ -134,7 +134,7 @@ static void choose_aim(HostPlan *plan, Choices *choices, const Survey *survey, c
         choice_add(choices, "aim: along the body axis, no target is known (exercise.aim)");
 }
 
-static Status aim_is_heard(const Survey *survey, const Config *config)
+static Status aim_is_known(const Survey *survey, const Config *config)
 {
     DisEntityId aim;
     if (!*config->exercise.aim) return STATUS_OK;
@@ -196,7 +196,7 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
 {
     char         text[dis_id_text_size];
     const Track *track = survey_track(survey, host);
-    Status       status = aim_is_heard(survey, config);
+    Status       status = aim_is_known(survey, config);
     if (status != STATUS_OK) return status;
     if (dis_entity_id_is_none(host)) return plan_observer(out, choices, survey, config, true);
     if (!track && config->causal) {
@@ -320,7 +320,7 @@ Status choose_host(HostPlan *out, Choices *choices, const Survey *survey, const 
 {
     char        name[who_size];
     DisEntityId host;
-    Status      status = aim_is_heard(survey, config);
+    Status      status = aim_is_known(survey, config);
     if (status != STATUS_OK) return status;
     if (strcmp(config->exercise.host, host_munition) == 0) return plan_munitions(out, choices, survey, config);
     if (strcmp(config->exercise.host, host_observer) == 0) return plan_observer(out, choices, survey, config, true);
@@ -356,17 +356,17 @@ void choose_rate(HostPlan *plan, Choices *choices, const Config *config)
 /* ---- time of day ---------------------------------------------------------------------------- */
 
 /* Of senders that do not write the time into their stamps. */
-static void say_doubts(Choices *choices, const Survey *survey)
+static void report_anomalies(Choices *choices, const Survey *survey)
 {
     enum { most_lines = 4 };
-    char text[exercise_clock_doubt_text_size];
+    char text[exercise_clock_anomaly_text_size];
     for (int i = 0; i < survey->doubts.count && i < most_lines; i++) {
-        exercise_clock_doubt_text(text, sizeof text, &survey->doubts.sender[i]);
+        exercise_clock_anomaly_text(text, sizeof text, &survey->doubts.sender[i]);
         choice_add(choices, "%s", text);
     }
     if (survey->doubts.count > most_lines)
         choice_add(choices, "time stamps of %s%d more senders are no clock: `pitviper inspect` lists them",
-                   survey->doubts.count == exercise_clock_doubts_listed ? "at least " : "",
+                   survey->doubts.count == exercise_clock_anomalies_listed_max ? "at least " : "",
                    survey->doubts.count - most_lines);
     if (survey->doubts.unstamped > 0 && survey->doubts.stamped == 0)
         choice_add(choices, "clock: no PDU has a time stamp, all are 0: every PDU counts from its arrival");
@@ -381,7 +381,7 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
 {
     double first_unix_s;
     char   left_out[80] = "";
-    say_doubts(choices, survey);
+    report_anomalies(choices, survey);
     if (survey->absolute_left_out > 0)
         snprintf(left_out, sizeof left_out, "; %d of %d absolute stamps disagree and are left out",
                  survey->absolute_left_out, survey->absolute_stamps);
@@ -412,7 +412,7 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
     return STATUS_OK;
 }
 
-void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame)
+void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame)
 {
     static const double dark_deg = -6;
     const double        at_s[2] = {plan->start_s, plan->end_s};

@@ -39,14 +39,14 @@ Status choose_time(double *unix_s, Choices *choices, const Survey *survey, const
                    const LocalFrame *frame);
 /* A line when optical pictures of this place will be black: the sun more than 6 degrees below the horizon, the end of
  * civil twilight, at the beginning or the end of the plan. */
-void choice_say_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame);
+void choice_report_night(Choices *choices, unsigned bands, double unix_s, const HostPlan *plan, const LocalFrame *frame);
 /* The exercise identifier to hear: as configured, or the one with most usable Entity States; -1: all. Causal: also
  * where there is but one, others may come. */
 int    choose_exercise(Choices *choices, const DisLog *log, const Config *config);
 /* The local frame amid the action. */
 Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan);
 /* Which entities are set onto the ground: none, those that invented ground does not fit, or all that stand on it. */
-typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_MISFITS, GROUND_CONTACT_ALL } GroundContact;
+typedef enum GroundContact { GROUND_CONTACT_NONE, GROUND_CONTACT_INCONSISTENT, GROUND_CONTACT_ALL } GroundContact;
 
 /* The ground: of the files of terrain.*, else the invented landscape with its sea, fitted to the log (see
  * ground_evidence.h). contact: which entities are set onto it (terrain.ground); later ones too. */

@@ -12,7 +12,7 @@
 
 static int on_land(const GroundEvidence *e) { return e->count[STANCE_GROUND] + e->count[STANCE_LANDED]; }
 
-static void say_sea(Choices *choices, const GroundEvidence *e)
+static void report_sea(Choices *choices, const GroundEvidence *e)
 {
     const int afloat = e->count[STANCE_AFLOAT], submerged = e->count[STANCE_SUBMERGED];
     if (afloat + submerged == 0) return;
@@ -26,7 +26,7 @@ static void say_sea(Choices *choices, const GroundEvidence *e)
 }
 
 /* After the misfits are known: those it is not fitted to. */
-static void say_invented(Choices *choices, const Landscape *landscape, const GroundEvidence *e, int misfits)
+static void report_synthetic(Choices *choices, const Landscape *landscape, const GroundEvidence *e, int misfits)
 {
     const int fitted = on_land(e) - misfits;
     if (fitted == 0 && e->impacts == 0)
@@ -35,7 +35,7 @@ static void say_invented(Choices *choices, const Landscape *landscape, const Gro
         choice_add(choices,
                    "ground: invented, fitted to %d land entit%s and %d ground impact%s within %.2f m (terrain.*)",
                    fitted, fitted == 1 ? "y" : "ies", e->impacts, e->impacts == 1 ? "" : "s", landscape->fit_worst_m);
-    say_sea(choices, e);
+    report_sea(choices, e);
     if (landscape->fixes_dropped > 0)
         choice_add(choices, "ground: %d of %d places contradict others or a flight path and were left out",
                    landscape->fixes_dropped, e->said.fix_count);
@@ -54,7 +54,7 @@ static Status invent(Landscape *out, const Config *config, const LocalFrame *fra
 
 /* ---- from files ------------------------------------------------------------------------------- */
 
-static void say_cover(Choices *choices, const CoverReport *cover)
+static void report_cover(Choices *choices, const CoverReport *cover)
 {
     char text[choice_text_size / 2] = "";
     bool said[SURFACE_COUNT] = {false};
@@ -119,7 +119,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
             "ground: led through %d land entities and %d ground impacts by a smooth correction of at most %.1f m "
             "(terrain.ground)",
             on_land(e), e->impacts, r.elevation.correction_m);
-    if (*config->terrain.cover) say_cover(choices, &r.cover);
+    if (*config->terrain.cover) report_cover(choices, &r.cover);
     else choice_add(choices, "cover: by slope and height, no file says what grows there (terrain.cover)");
     if (*config->terrain.orthophoto)
         choice_add(choices, "photograph: %.2g m pixels, scaled to each class's reflectance (terrain.orthophoto)",
@@ -136,7 +136,7 @@ static int by_value(const void *a, const void *b)
 }
 
 /* How far the senders' own places are from this ground. */
-static Status say_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey,
+static Status report_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey,
                           const GroundEvidence *e)
 {
     const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
@@ -173,14 +173,14 @@ static Status say_contact(Choices *choices, bool clamp, const Landscape *landsca
     return STATUS_OK;
 }
 
-typedef struct Misfit {
+typedef struct InconsistentPosition {
     int    track;
     double above_m;
-} Misfit;
+} InconsistentPosition;
 
 static int worst_first(const void *pa, const void *pb)
 {
-    const Misfit *a = pa, *b = pb;
+    const InconsistentPosition *a = pa, *b = pb;
     const double  x = fabs(a->above_m), y = fabs(b->above_m);
     if (x != y) return x > y ? -1 : 1;
     return (a->track > b->track) - (a->track < b->track);
@@ -201,12 +201,12 @@ static double farthest_m(const ContactGround *ground, const Track *track, const 
 }
 
 /* The invented ground, and who stands on it only because of being set onto it, the worst by name. */
-static Status say_fit(Choices *choices, GroundContact contact, const Landscape *landscape, const Survey *survey,
+static Status report_fit(Choices *choices, GroundContact contact, const Landscape *landscape, const Survey *survey,
                       const GroundEvidence *e)
 {
     enum { most_named = 3 };
     const ContactGround ground = {.frame = &landscape->frame, .elevation = &landscape->elevation};
-    Misfit *misfit = calloc((size_t)survey->track_count + 1, sizeof *misfit);
+    InconsistentPosition *misfit = calloc((size_t)survey->track_count + 1, sizeof *misfit);
     int     count = 0, n = 0, on_ground = 0;
     char    text[choice_text_size / 2] = "";
     if (!misfit) return STATUS_NO_MEMORY;
@@ -217,10 +217,10 @@ static Status say_fit(Choices *choices, GroundContact contact, const Landscape *
             continue;
         const double above_m = farthest_m(&ground, track, e, t);
         if (!(contact_share(track->type, above_m) > 0.5)) continue;
-        misfit[count++] = (Misfit){t, above_m};
+        misfit[count++] = (InconsistentPosition){t, above_m};
         on_ground += e->stance[t] == STANCE_GROUND;
     }
-    say_invented(choices, landscape, e, on_ground);
+    report_synthetic(choices, landscape, e, on_ground);
     if (count > 1) qsort(misfit, (size_t)count, sizeof *misfit, worst_first);
     for (int k = 0; k < count && k < most_named; k++) {
         const Track *track = &survey->track[misfit[k].track];
@@ -243,7 +243,7 @@ static Status say_fit(Choices *choices, GroundContact contact, const Landscape *
 }
 
 /* An eye above the water sees nothing of an aim that is under it. */
-static void say_sunken_aim(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
+static void report_aim_below_ground(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
 {
     char         id[dis_id_text_size];
     const Track *aim = survey_track(survey, plan->aim);
@@ -259,18 +259,18 @@ Status choose_ground(Landscape *out, GroundContact *contact, Choices *choices, c
     GroundEvidence      e = {0};
     const char         *said = config->terrain.ground;
     const bool          real = *config->terrain.elevation, by_itself = strcmp(said, "auto") == 0;
-    const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_MISFITS;
+    const GroundContact fitted = strcmp(said, "trust") == 0 ? GROUND_CONTACT_NONE : GROUND_CONTACT_INCONSISTENT;
     const GroundContact set = strcmp(said, "clamp") == 0 || (by_itself && real) ? GROUND_CONTACT_ALL
                               : real                                           ? GROUND_CONTACT_NONE
                                                                                : fitted;
-    Status status = ground_evidence_gather(&e, survey, frame, catalog, plan->host, plan->aim);
+    Status status = ground_evidence_collect(&e, survey, frame, catalog, plan->host, plan->aim);
     if (status == STATUS_OK)
         status = real ? import(out, choices, config, frame, &e, strcmp(said, "fit") == 0)
                       : invent(out, config, frame, &e);
-    if (status == STATUS_OK && !real) status = say_fit(choices, set, out, survey, &e);
+    if (status == STATUS_OK && !real) status = report_fit(choices, set, out, survey, &e);
     if (status == STATUS_OK && (real || set == GROUND_CONTACT_ALL))
-        status = say_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);
-    if (status == STATUS_OK) say_sunken_aim(choices, survey, &e, plan);
+        status = report_contact(choices, set == GROUND_CONTACT_ALL, out, survey, &e);
+    if (status == STATUS_OK) report_aim_below_ground(choices, survey, &e, plan);
     if (status == STATUS_OK) *contact = set;
     ground_evidence_free(&e);
     return status;

@@ -160,7 +160,7 @@ static Status judge_landed(Gathering *g)
     }
     for (int n = 0; n < count; n++) memcpy(place[n], still[n].p_enu, sizeof place[n]);
     if (count)
-        status = ground_votes_at(above_m, above_m + most, (const double (*)[3])place, count, g->e->fix,
+        status = ground_consensus_height(above_m, above_m + most, (const double (*)[3])place, count, g->e->fix,
                                  g->e->said.fix_count);
     for (int n = 0; status == STATUS_OK && n < count; n++) {
         const Track *track = &g->survey->track[still[n].track];
@@ -437,7 +437,7 @@ static Status gather(Gathering *g)
     return status == STATUS_OK ? add_impacts(g) : status;
 }
 
-Status ground_evidence_gather(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
+Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
                               const Catalog *catalog, DisEntityId host, DisEntityId aim)
 {
     GroundEvidence e = {0};

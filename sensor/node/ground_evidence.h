@@ -38,7 +38,7 @@ typedef struct GroundEvidence {
 } GroundEvidence;
 
 /* p_aim: what the host's own munition was found to have hit, for a Detonation that names nothing; 0:0:0: nothing. */
-Status ground_evidence_gather(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
+Status ground_evidence_collect(GroundEvidence *out, const Survey *survey, const LocalFrame *frame,
                               const Catalog *catalog, DisEntityId host, DisEntityId aim);
 void   ground_evidence_free(GroundEvidence *evidence);
 /* A report's base. */

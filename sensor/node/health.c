@@ -43,15 +43,15 @@ static HealthReason show(const HealthSample *s, double patience)
         if (s->host == HEALTH_BY_ID) return s->frames ? HEALTH_HOST_GONE : HEALTH_NO_HOST;
     }
     if (s->frames == 0 || s->now_s - s->frame_s >= hostless_s) return HEALTH_FINE;
-    if (s->now_s - s->in_view_s >= unseen_s) return s->others ? HEALTH_NO_VIEW : HEALTH_ALONE;
+    if (s->now_s - s->in_view_s >= unseen_s) return s->others ? HEALTH_NO_VIEW : HEALTH_NO_TRAFFIC;
     return s->now_s - s->visible_s >= unseen_s ? HEALTH_HIDDEN : HEALTH_FINE;
 }
 
-HealthReason health_judge(HealthTopic topic, const HealthSample *s)
+HealthReason health_evaluate(HealthTopic topic, const HealthSample *s)
 {
     switch (topic) {
-    case HEALTH_HEAR: return hear(s, 1);
-    case HEALTH_SHOW: return show(s, 1);
+    case HEALTH_RECEIVE: return hear(s, 1);
+    case HEALTH_RENDER: return show(s, 1);
     case HEALTH_SEND:
         return s->publishes && s->unsent > 0 && s->now_s - s->failing_s >= failing_s ? HEALTH_NOT_SENT : HEALTH_FINE;
     case HEALTH_LOSS: return s->now_s - s->lost_s < trouble_s ? HEALTH_LOST : HEALTH_FINE;
@@ -83,7 +83,7 @@ const char *health_name(HealthReason reason)
     case HEALTH_HOST_GONE: return "host gone";
     case HEALTH_NO_MUNITION: return "no munition flies";
     case HEALTH_MUNITION_GONE: return "munition gone";
-    case HEALTH_ALONE: return "no entity there";
+    case HEALTH_NO_TRAFFIC: return "no entity there";
     case HEALTH_NO_VIEW: return "none in view";
     case HEALTH_HIDDEN: return "none visible";
     case HEALTH_NOT_SENT: return "not sent";
@@ -187,7 +187,7 @@ void health_text(char out[health_text_size], HealthReason reason, const HealthSa
         snprintf(out, size, "%s is gone and no other munition flies: no frame is made until one does (--host "
                  "observer looks at the %d entities meanwhile)", n->host, s->entities);
         break;
-    case HEALTH_ALONE:
+    case HEALTH_NO_TRAFFIC:
         snprintf(out, size, "frames show no entity: none but the host is there (`pitviper record` keeps what comes)");
         break;
     case HEALTH_NO_VIEW:
@@ -234,7 +234,7 @@ void health_own(Health *h, double now_s)
     h->sample.any_s = now_s;
 }
 
-void health_heard(Health *h, const DisDatagram *datagram, int exercise, bool checked, double now_s)
+void health_received(Health *h, const DisDatagram *datagram, int exercise, bool checked, double now_s)
 {
     HealthSample  *s = &h->sample;
     DisHeader      header;
@@ -309,7 +309,7 @@ static void say(Health *h, HealthTopic topic, const HealthNames *names)
     if (reason == HEALTH_AWAY) return;
     if (reason == HEALTH_FINE) {
         if (h->open[topic] && topic == HEALTH_SEND) log_info("run: publish.dis: sending to %s again", names->to);
-        if (h->open[topic] && topic == HEALTH_HEAR && s->making)
+        if (h->open[topic] && topic == HEALTH_RECEIVE && s->making)
             log_info("run: entities are heard on %s again", names->where);
         h->open[topic] = false;
         return;
@@ -327,7 +327,7 @@ void health_check(Health *h, const LiveCounters *counters, const HealthNames *na
     h->sample.now_s = now_s;
     read_counters(&h->sample, counters);
     for (int t = 0; t < HEALTH_TOPICS; t++) {
-        const HealthReason reason = health_judge((HealthTopic)t, &h->sample);
+        const HealthReason reason = health_evaluate((HealthTopic)t, &h->sample);
         if (reason == h->now[t]) continue;
         h->now[t] = reason;
         say(h, (HealthTopic)t, names);

@@ -8,7 +8,7 @@
 #include "dis/log.h"
 #include "sensor/publish/records.h"
 
-typedef enum HealthTopic { HEALTH_HEAR, HEALTH_SHOW, HEALTH_SEND, HEALTH_LOSS, HEALTH_PACE, HEALTH_TOPICS } HealthTopic;
+typedef enum HealthTopic { HEALTH_RECEIVE, HEALTH_RENDER, HEALTH_SEND, HEALTH_LOSS, HEALTH_PACE, HEALTH_TOPICS } HealthTopic;
 
 typedef enum HealthReason {
     HEALTH_FINE,
@@ -22,7 +22,7 @@ typedef enum HealthReason {
     HEALTH_HOST_GONE,
     HEALTH_NO_MUNITION,    /* none flies so far */
     HEALTH_MUNITION_GONE,
-    HEALTH_ALONE,          /* frames are made, and there is no entity to be seen */
+    HEALTH_NO_TRAFFIC,          /* frames are made, and there is no entity to be seen */
     HEALTH_NO_VIEW,        /* entities, none in the field of view */
     HEALTH_HIDDEN,         /* some in it, no part of any can be seen */
     HEALTH_NOT_SENT,       /* the system takes no datagram */
@@ -64,7 +64,7 @@ typedef struct HealthSample {
     double     lost_s, late_s;  /* when there were more last; -INFINITY: never */
 } HealthSample;
 
-HealthReason health_judge(HealthTopic topic, const HealthSample *sample);
+HealthReason health_evaluate(HealthTopic topic, const HealthSample *sample);
 /* Of a run without one frame: the first thing that is wrong, however short it lasted. */
 HealthReason health_final(const HealthSample *sample);
 
@@ -96,7 +96,7 @@ typedef struct Health {
 void health_begin(Health *health, double now_s);
 void health_own(Health *health, double now_s); /* a datagram of this node's own site and application */
 /* A datagram of others. exercise: the one to hear; -1: any. checked: only a report with a usable place counts. */
-void health_heard(Health *health, const DisDatagram *datagram, int exercise, bool checked, double now_s);
+void health_received(Health *health, const DisDatagram *datagram, int exercise, bool checked, double now_s);
 void health_making(Health *health, double now_s); /* the choices are made, the first frame is due */
 /* A frame that was made. */
 void health_frame(Health *health, const FrameRecord *frame, double now_s);

@@ -155,7 +155,7 @@ void run_folder(char out[run_folder_size], const Options *o, DisEntityId host)
 
 /* ---- one host -------------------------------------------------------------------------------- */
 
-static void say_visibility(Choices *choices, const Config *config, const Atmosphere *atmosphere)
+static void report_visibility(Choices *choices, const Config *config, const Atmosphere *atmosphere)
 {
     double low_m, high_m;
     atmosphere_visibilities(atmosphere, &low_m, &high_m);
@@ -168,7 +168,7 @@ static void say_visibility(Choices *choices, const Config *config, const Atmosph
 }
 
 /* The air's model stands on the ground, wherever that is: high ground has the temperature of low ground. */
-static void say_air_temp(Choices *choices, const Config *config, const Atmosphere *atmosphere, double ground_m)
+static void report_air_temp(Choices *choices, const Config *config, const Atmosphere *atmosphere, double ground_m)
 {
     const double here_k = atmosphere_temp_k(atmosphere, 0), high_k = atmosphere_temp_k(atmosphere, ground_m);
     if (isnan(config->weather.air_temp_k) && ground_m > 500)
@@ -192,11 +192,11 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     if (status == STATUS_OK) choose_shapes(choices, &run->survey, run->catalog);
     if (status == STATUS_OK) status = frame_world(world, &o->config, run->catalog, landscape, &frame, o->isa);
     if (status != STATUS_OK) return status;
-    say_visibility(choices, &o->config, world->atmosphere);
-    say_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
+    report_visibility(choices, &o->config, world->atmosphere);
+    report_air_temp(choices, &o->config, world->atmosphere, elevation_height(&landscape->elevation, 0, 0, NULL));
     choose_rate(plan, choices, &o->config);
-    choice_say_night(choices, run->bands, *unix_s, plan, &frame);
-    for (int i = 0; i < choices->count; i++) log_say("%s\n", choices->line[i]);
+    choice_report_night(choices, run->bands, *unix_s, plan, &frame);
+    for (int i = 0; i < choices->count; i++) log_print("%s\n", choices->line[i]);
     fflush(stdout);
     return STATUS_OK;
 }
@@ -209,8 +209,8 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     const char   *name   = options_command(&run->options);
     const Status  status = write_run(run, out, host, choices, result, heard, state);
     if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
-    if (config->publish.files) log_say("%d frames in %s/frames\n", result->frames, out);
-    else log_say("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
+    if (config->publish.files) log_print("%d frames in %s/frames\n", result->frames, out);
+    else log_print("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
     if (result->at_limit > 0)
         log_warn("%s: the aim was beyond the gimbal in %d of %d frames (sensor.gimbal_limit_deg)", name,
@@ -238,7 +238,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (host) {
         if (dis_entity_id_is_none(*host)) strcpy(host_text, host_observer);
         else dis_entity_id_text(host_text, *host);
-        log_say("host: %s (--host)\n", host_text);
+        log_print("host: %s (--host)\n", host_text);
     }
     Status status = choose(&plan, &unix_s, &landscape, &contact, &choices, run, host);
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);

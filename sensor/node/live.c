@@ -22,7 +22,7 @@
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
-static const int64_t look_ns = 100000000; /* a signal may come to another thread: looked for so often */
+static const int64_t check_ns = 100000000; /* a signal may come to another thread: looked for so often */
 
 typedef struct Live {
     Run          run;
@@ -37,7 +37,7 @@ typedef struct Live {
     char         to[dis_udp_address_size + 16]; /* where it sends, for people */
     /* what was heard before the choices, each datagram its own memory */
     DisDatagram *heard;
-    int          heard_count, heard_capacity;
+    int          received_count, received_capacity;
     DisHeader    first;             /* of the first usable Entity State */
     const Player *player;           /* once there is one */
     /* wall clock, s */
@@ -65,7 +65,7 @@ static void flush_recording(Live *l)
 }
 
 /* -1: any. Before the choices, what was asked for. */
-static int exercise_to_hear(const Live *l)
+static int exercise_to_join(const Live *l)
 {
     return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
 }
@@ -82,7 +82,7 @@ static bool take(DisDatagram *out, Live *l, int64_t until_ns)
             health_own(&l->health, wall_clock_s());
             continue;
         }
-        health_heard(&l->health, out, exercise_to_hear(l), !l->player, wall_clock_s());
+        health_received(&l->health, out, exercise_to_join(l), !l->player, wall_clock_s());
         return true;
     }
     return false;
@@ -105,18 +105,18 @@ static void read_counters(Live *l)
 static HealthNames names_of(const Live *l, const Session *session)
 {
     const Config *config = &l->run.options.config;
-    return (HealthNames){.where = l->where, .to = l->to, .exercise = exercise_to_hear(l), .site = config->node.site,
+    return (HealthNames){.where = l->where, .to = l->to, .exercise = exercise_to_join(l), .site = config->node.site,
                          .application = config->node.application,
                          .host = session ? session_host(session) : config->exercise.host};
 }
 
 /* Why it is silent, as it changes, and the line of a terminal; session: NULL before there is one. About ten times a
  * second. */
-static void look_at_health(Live *l, const Session *session)
+static void check_health(Live *l, const Session *session)
 {
     char         line[health_line_size];
     const double now_s = wall_clock_s();
-    if (now_s - l->health_s < 1e-9 * look_ns) return;
+    if (now_s - l->health_s < 1e-9 * check_ns) return;
     l->health_s = now_s;
     read_counters(l);
     if (session) {
@@ -136,27 +136,27 @@ static void look_at_health(Live *l, const Session *session)
 
 /* ---- listening --------------------------------------------------------------------------------- */
 
-static void forget_heard(Live *l, int count)
+static void drop_received(Live *l, int count)
 {
     for (int i = 0; i < count; i++) free((void *)(uintptr_t)l->heard[i].bytes);
-    l->heard_count -= count;
-    memmove(l->heard, l->heard + count, (size_t)l->heard_count * sizeof *l->heard);
+    l->received_count -= count;
+    memmove(l->heard, l->heard + count, (size_t)l->received_count * sizeof *l->heard);
 }
 
-static Status keep_heard(Live *l, const DisDatagram *datagram)
+static Status store_received(Live *l, const DisDatagram *datagram)
 {
-    if (l->heard_count == l->heard_capacity) {
-        const int    larger = l->heard_capacity ? 2 * l->heard_capacity : 4 * opening_before;
+    if (l->received_count == l->received_capacity) {
+        const int    larger = l->received_capacity ? 2 * l->received_capacity : 4 * opening_before;
         DisDatagram *grown  = realloc(l->heard, (size_t)larger * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
         l->heard          = grown;
-        l->heard_capacity = larger;
+        l->received_capacity = larger;
     }
     uint8_t *bytes = malloc(datagram->octets + 1);
     if (!bytes) return STATUS_NO_MEMORY;
     memcpy(bytes, datagram->bytes, datagram->octets);
-    l->heard[l->heard_count]         = *datagram;
-    l->heard[l->heard_count++].bytes = bytes;
+    l->heard[l->received_count]         = *datagram;
+    l->heard[l->received_count++].bytes = bytes;
     return STATUS_OK;
 }
 
@@ -171,17 +171,17 @@ static Status listen_first(bool *heard, Live *l)
         const bool last = until_ns < INT64_MAX && dis_udp_now_ns() > until_ns;
         if (last) dis_udp_close_tick(l->udp, until_ns);
         while (take(&datagram, l, until_ns)) {
-            const Status status = keep_heard(l, &datagram);
+            const Status status = store_received(l, &datagram);
             if (status != STATUS_OK) return status;
             if (until_ns < INT64_MAX) continue;
             if (opening_starts(&l->first, &datagram, config)) {
                 l->run.until_s = opening_until_s(&datagram, config);
                 until_ns       = dis_unix_ns_until(l->run.until_s);
-                if (l->heard_count > opening_before + 1) forget_heard(l, l->heard_count - opening_before - 1);
+                if (l->received_count > opening_before + 1) drop_received(l, l->received_count - opening_before - 1);
                 log_info("run: heard the first entity; listening for %g s (exercise.listen_s)",
                          config->exercise.listen_s);
-            } else if (l->heard_count >= 4 * opening_before) {
-                forget_heard(l, l->heard_count - opening_before);
+            } else if (l->received_count >= 4 * opening_before) {
+                drop_received(l, l->received_count - opening_before);
             }
         }
         if (last) {
@@ -189,11 +189,11 @@ static Status listen_first(bool *heard, Live *l)
             break;
         }
         flush_recording(l);
-        look_at_health(l, NULL);
-        const int64_t look = dis_udp_now_ns() + look_ns;
+        check_health(l, NULL);
+        const int64_t look = dis_udp_now_ns() + check_ns;
         dis_udp_wait(l->udp, until_ns < look ? until_ns + 1 : look);
     }
-    l->run.view = (DisLog){.count = l->heard_count, .datagram = l->heard};
+    l->run.view = (DisLog){.count = l->received_count, .datagram = l->heard};
     return STATUS_OK;
 }
 
@@ -240,8 +240,8 @@ static Status wait_until(bool *there, Live *l, const Session *session, Player *p
         const int64_t now_ns = dis_udp_now_ns();
         *there = now_ns > until_ns;
         if (*there || over(l)) return STATUS_OK;
-        look_at_health(l, session);
-        dis_udp_sleep_until(until_ns < now_ns + look_ns ? until_ns + 1 : now_ns + look_ns);
+        check_health(l, session);
+        dis_udp_sleep_until(until_ns < now_ns + check_ns ? until_ns + 1 : now_ns + check_ns);
         const Status status = feed(l, player, until_ns);
         if (status != STATUS_OK) return status;
     }
@@ -302,7 +302,7 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
         if (status == STATUS_OK) status = session_frame(&shown, session, (int)n, t_s);
         if (status == STATUS_OK && !shown) l->health.sample.missing++;
         flush_recording(l);
-        look_at_health(l, session);
+        check_health(l, session);
     }
     log_status(NULL);
     snprintf(l->host, sizeof l->host, "%s", session_host(session));
@@ -447,7 +447,7 @@ int run_command(int argc, char **argv)
     live_recording_close(l->recording);
     dis_udp_close(l->udp);
     run_close(&l->run);
-    forget_heard(l, l->heard_count);
+    drop_received(l, l->received_count);
     free(l->heard);
     return status == STATUS_OK && (!*name || l->record_whole) ? 0 : 1;
 }

@@ -45,7 +45,7 @@ struct Player {
     Aimed          aimed[shots_kept];            /* rings: the latest */
     uint64_t       shots;
     Munitions      guided, unguided;
-    int            doubts_said;
+    int            anomalies_reported;
 };
 
 Status player_create(Player **out, int exercise, bool causal)
@@ -103,14 +103,14 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
 }
 
 /* Counts stamps that are no clock; says it of a sender heard live, once. Of a log the survey says it. */
-static void note_doubts(Player *player, bool say)
+static void note_anomalies(Player *player, bool say)
 {
-    const ExerciseClockDoubts *doubts = exercise_clock_doubts(player->clock);
-    char                       text[exercise_clock_doubt_text_size];
+    const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->clock);
+    char                       text[exercise_clock_anomaly_text_size];
     player->counters.stamps_doubted = doubts->by_arrival;
-    for (; player->doubts_said < doubts->count; player->doubts_said++) {
+    for (; player->anomalies_reported < doubts->count; player->anomalies_reported++) {
         if (!say) continue;
-        exercise_clock_doubt_text(text, sizeof text, &doubts->sender[player->doubts_said]);
+        exercise_clock_anomaly_text(text, sizeof text, &doubts->sender[player->anomalies_reported]);
         log_warn("run: %s", text);
     }
 }
@@ -128,7 +128,7 @@ Status player_add(Player *player, const DisDatagram *datagram, bool keep)
         }
         event.t_s = exercise_clock_pdu_time(player->clock, &header, pdu, datagram->capture_s);
         if (isnan(event.t_s)) continue;
-        note_doubts(player, keep);
+        note_anomalies(player, keep);
         if (isnan(player->tie_s)) player->tie_s = event.t_s - datagram->capture_s;
         player->latest_s = fmax(player->latest_s, datagram->capture_s + player->tie_s);
         event.counts_s   = player->causal ? player->latest_s : event.t_s;

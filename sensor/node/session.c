@@ -193,7 +193,7 @@ static Status open_session(Session *s)
     if (shared->contact != GROUND_CONTACT_NONE)
         table.ground = (ContactGround){
             .frame = &shared->world->frame, .elevation = &shared->world->landscape->elevation,
-            .landscape = shared->contact == GROUND_CONTACT_MISFITS ? shared->world->landscape : NULL};
+            .landscape = shared->contact == GROUND_CONTACT_INCONSISTENT ? shared->world->landscape : NULL};
     s->seeker.config = (SeekerConfig){shared->config->sensor.gimbal_limit_deg * rad_per_deg,
                                       shared->config->sensor.gimbal_rate_dps * rad_per_deg,
                                       shared->config->sensor.gimbal_lag_s,
@@ -201,7 +201,7 @@ static Status open_session(Session *s)
     s->mount       = mount_of(shared->config);
     s->mount_model = -1;
     s->limit_tick  = -1;
-    s->given_up_said_s = s->left_out_said_s = -INFINITY;
+    s->given_up_reported_s = s->left_out_reported_s = -INFINITY;
     s->tick    = (int64_t)ceil(s->plan.start_s * seeker_ticks_per_s);
     memcpy(s->p_aim_ecef, s->plan.p_aim_ecef, sizeof s->p_aim_ecef);
     if (observes(&s->plan))
@@ -288,7 +288,7 @@ static void list_frame(void *user, const Frame *f)
 }
 
 /* What did not fit: at once, and then once a minute where there is more. */
-static void say_crowd(Session *s, int left_out)
+static void report_crowd(Session *s, int left_out)
 {
     static const double   remind_s = 60;
     const EntityCounters *c        = entity_table_counters(s->table);
@@ -296,20 +296,20 @@ static void say_crowd(Session *s, int left_out)
     const uint64_t        given_up = c->evicted + c->refused;
     const double          now_s    = wall_clock_s();
     DisEntityId           sender;
-    if (given_up > s->given_up_said && !(now_s - s->given_up_said_s < remind_s)) {
+    if (given_up > s->given_up_reported && !(now_s - s->given_up_reported_s < remind_s)) {
         const int most = entity_table_largest_sender(&sender, s->table);
         log_warn("host %s: the table of %d entities is full: %llu gave way to others, %llu were not taken in; %u:%u has "
                  "the most, %d; near the host, and what goes on reporting, stays (entities.capacity)",
                  s->host_text, config->entities.capacity, (unsigned long long)c->evicted, (unsigned long long)c->refused,
                  sender.site, sender.application, most);
-        s->given_up_said   = given_up;
-        s->given_up_said_s = now_s;
+        s->given_up_reported   = given_up;
+        s->given_up_reported_s = now_s;
     }
     if (left_out == 0) return;
-    if (!(now_s - s->left_out_said_s < remind_s)) {
+    if (!(now_s - s->left_out_reported_s < remind_s)) {
         log_warn("host %s: %d entities are not in the pictures, the farthest from it; the nearest %d are (entities.shown)",
                  s->host_text, left_out, config->entities.shown);
-        s->left_out_said_s = now_s;
+        s->left_out_reported_s = now_s;
     }
     s->result.frames_crowded++;
     if (left_out > s->result.most_left_out) s->result.most_left_out = left_out;
@@ -327,7 +327,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
         if (status == STATUS_OK && *shown) status = consumers_put(&s->consumers, frame);
         frame_release(frame);
     }
-    say_crowd(s, left_out);
+    report_crowd(s, left_out);
     if (status == STATUS_OK && *shown) s->result.frames++;
     if (status == STATUS_NO_MEMORY)
         log_error("session: out of memory at frame %d; choose a smaller --size or fewer --samples", number);

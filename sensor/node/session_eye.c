@@ -113,7 +113,7 @@ static void take_host(Session *s, DisEntityId host, bool guided)
     s->plan.host   = host;
     s->seeker      = (Seeker){.config = config};
     s->mount_model = -1;
-    s->limit_said  = false;
+    s->limit_reported  = false;
     s->limit_tick  = -1;
     if (!*s->shared->config->exercise.aim) {
         s->plan.aim  = (DisEntityId){0};
@@ -171,15 +171,15 @@ static void turn_gimbal(Seeker *seeker, const Session *s, const Mounted *at, con
 }
 
 /* When it changes, and once a second at most. */
-static void say_limit(Session *s, double t_s)
+static void report_limit(Session *s, double t_s)
 {
     char aim[dis_id_text_size] = "its aim";
-    if (s->seeker.at_limit == s->limit_said) return;
+    if (s->seeker.at_limit == s->limit_reported) return;
     if (s->limit_tick >= 0 && s->tick - s->limit_tick < seeker_ticks_per_s) return;
-    s->limit_said = s->seeker.at_limit;
+    s->limit_reported = s->seeker.at_limit;
     s->limit_tick = s->tick;
     if (!dis_entity_id_is_none(s->plan.aim)) dis_entity_id_text(aim, s->plan.aim);
-    if (s->limit_said)
+    if (s->limit_reported)
         log_warn("host %s: %s is beyond its gimbal at %.2f s: %.1f deg off the axis, the limit is %g "
                  "(sensor.gimbal_limit_deg, sensor.mount_yaw_deg); it looks as far as it can",
                  s->host_text, aim, t_s, s->seeker.off_rad / rad_per_deg, s->seeker.config.limit_rad / rad_per_deg);
@@ -193,7 +193,7 @@ static void step_gimbal(Session *s, double t_s)
     s->aim_known |= aim_pose(s->p_aim_ecef, s, t_s); /* gone: the last place is kept */
     if (!mounted(&at, s, t_s)) return;
     turn_gimbal(&s->seeker, s, &at, s->p_aim_ecef);
-    say_limit(s, t_s);
+    report_limit(s, t_s);
 }
 
 /* How the camera turns, and how the eye goes: to where it will be a tick later. */
@@ -271,7 +271,7 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
 }
 
 /* On a circle about the aim, clockwise from above, starting in the south; never in the ground. */
-static void observer_place(double p_ecef[3], double aim_enu[3], const Session *s, double t_s)
+static void observer_position(double p_ecef[3], double aim_enu[3], const Session *s, double t_s)
 {
     const Config     *config = s->shared->config;
     const LocalFrame *frame  = &s->shared->world->frame;
@@ -302,12 +302,12 @@ static bool observer_eye(Eye *eye, const Session *s, double t_s)
     static const double half_s = 0.005; /* velocity by difference: it rides with the aim, and over the hills */
     const LocalFrame   *frame  = &s->shared->world->frame;
     double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
-    observer_place(before_ecef, aim_enu, s, t_s - half_s);
+    observer_position(before_ecef, aim_enu, s, t_s - half_s);
     observer_camera(r_before, before_ecef, aim_enu, frame);
-    observer_place(after_ecef, aim_enu, s, t_s + half_s);
+    observer_position(after_ecef, aim_enu, s, t_s + half_s);
     observer_camera(r_after, after_ecef, aim_enu, frame);
     turn_rate(eye->w_cam_rps, r_before, r_after, 2 * half_s);
-    observer_place(eye->state.p_ecef, aim_enu, s, t_s);
+    observer_position(eye->state.p_ecef, aim_enu, s, t_s);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] = (after_ecef[k] - before_ecef[k]) / (2 * half_s);
     enu_from_ecef(p_enu, frame, eye->state.p_ecef);
     v3_sub(d_enu, aim_enu, p_enu);

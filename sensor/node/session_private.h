@@ -25,10 +25,10 @@ struct Session {
     int                  mount_model, mount_node; /* the model whose node that is; -1: none yet */
     NodePose            *node;          /* of the host, [most nodes of a model]; joint: the same */
     double              *joint;
-    bool                 limit_said;    /* what was last said of the gimbal's limit, and at which tick */
+    bool                 limit_reported;    /* what was last said of the gimbal's limit, and at which tick */
     int64_t              limit_tick;
-    uint64_t             given_up_said; /* what was last said of a full table, and when; wall clock */
-    double               given_up_said_s, left_out_said_s;
+    uint64_t             given_up_reported; /* what was last said of a full table, and when; wall clock */
+    double               given_up_reported_s, left_out_reported_s;
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: what noise targets have */
     Consumers            consumers;
     unsigned             wants;         /* of all consumers */

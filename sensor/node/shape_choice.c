@@ -46,7 +46,7 @@ void choose_shapes(Choices *choices, const Survey *survey, const Catalog *catalo
         const DisEntityType type = survey->track[i].type;
         int matched;
         const int model = catalog_find(catalog, type, NULL, &matched);
-        if (!catalog_shows(catalog, model))
+        if (!catalog_has_shape(catalog, model))
             note(&unseen, type);
         else if (model == 0)
             note(&unknown, type);

@@ -13,7 +13,7 @@ typedef struct Pictures {
     PictureFiles    of;
     Chains          spare;
     bool            patient;
-    Patience        patience;
+    RetryBackoff        patience;
     pthread_mutex_t lock; /* of what follows: frames are left out in another thread than they are put */
     DisplayLevels  *missed;
     int             first, count;
@@ -84,7 +84,7 @@ static Status put(Consumer *consumer, Frame *frame)
     const FrameFiles files = files_of(p, frame, &p->of.chains);
     TruthNoise       ignored;
     Status           status = STATUS_IO;
-    const bool       due    = !p->patient || patience_due(&p->patience);
+    const bool       due    = !p->patient || retry_due(&p->patience);
     if (p->patient) follow_missed(p);
     if (due) {
         frame_expose(&ignored, files.chain, files.picture, files.config);
@@ -92,7 +92,7 @@ static Status put(Consumer *consumer, Frame *frame)
     } else {
         note_levels(p, frame, &p->of.chains);
     }
-    if (p->patient) patience_over(&p->patience, due, status);
+    if (p->patient) retry_done(&p->patience, due, status);
     return status;
 }
 
@@ -118,7 +118,7 @@ Status consume_pictures(Consumer **out, const PictureFiles *made_of)
     }
     p->consumer = (Consumer){0, put, left_out, close_pictures};
     p->of       = *made_of;
-    p->patience = (Patience){.what = "picture files"};
+    p->patience = (RetryBackoff){.what = "picture files"};
     p->patient  = made_of->spare != NULL;
     if (p->patient) {
         p->spare  = *made_of->spare;

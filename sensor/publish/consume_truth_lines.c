@@ -8,7 +8,7 @@ typedef struct TruthLines {
     Consumer consumer;
     FILE    *file;
     bool     patient;
-    Patience patience;
+    RetryBackoff patience;
     int     *failed;
 } TruthLines;
 
@@ -21,9 +21,9 @@ static Status put(Consumer *consumer, Frame *frame)
     record.frame_sha256 = frame->seen.sha256;
     if (!t->patient) return record_write_frame(t->file, &record);
 
-    const bool due = patience_due(&t->patience);
+    const bool due = retry_due(&t->patience);
     if (due) status = record_write_frame(t->file, &record);
-    patience_over(&t->patience, due, due ? status : STATUS_IO);
+    retry_done(&t->patience, due, due ? status : STATUS_IO);
     clearerr(t->file);
     return status == STATUS_IO ? STATUS_OK : status;
 }

@@ -7,7 +7,7 @@
 #include "sensor/publish/coco.h"
 #include "sensor/publish/consumer.h"
 #include "sensor/publish/frame_files.h"
-#include "sensor/publish/patience.h"
+#include "sensor/publish/retry_backoff.h"
 
 /* Detectors of each band, taken over by the consumer that is made of them, also when that fails. */
 typedef struct Chains {

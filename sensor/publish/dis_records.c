@@ -113,7 +113,7 @@ static void add_targets(DisData *pdu, Octets *o, const FrameRecord *r, Band band
         chosen[count++]   = i;
         if (truth) put_truth(o, &r->target[i], r->snapshot, band);
         else put_seen(o, &r->target[i], band);
-        add_variable(pdu, truth ? datum_truth : datum_seen, o, from);
+        add_variable(pdu, truth ? datum_truth : datum_target_measured, o, from);
     }
     add_fixed(pdu, datum_targets, (uint32_t)count);
     add_fixed(pdu, datum_left_out, (uint32_t)(all - count));
@@ -156,7 +156,7 @@ size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *se
     add_variable(&pdu, datum_time, &o, from);
     from = o.used;
     for (int k = 0; k < 3; k++) put_f64(&o, r->p_eye_ecef[k]);
-    add_variable(&pdu, datum_eye, &o, from);
+    add_variable(&pdu, datum_sensor_position, &o, from);
     from = o.used;
     put_camera(&o, r->r_ecef_from_cam);
     add_variable(&pdu, datum_camera, &o, from);

@@ -40,8 +40,8 @@
 
 enum {
     datum_frame = 600001, datum_band, datum_kind, datum_raster, datum_hfov, datum_vfov, datum_targets, datum_left_out,
-    datum_time = 600101, datum_eye, datum_camera, datum_host,
-    datum_seen = 600201, datum_truth,
+    datum_time = 600101, datum_sensor_position, datum_camera, datum_host,
+    datum_target_measured = 600201, datum_truth,
     datum_kind_sensor = 1, datum_kind_truth = 2,
 };
 

@@ -122,7 +122,7 @@ static Status write_file(const char *path, const char *format, const ImageSpec &
     return refuse(STATUS_IO, "write", path, file.reason() ? strerror(file.reason()) : said.c_str());
 }
 
-static const char *planes_misfit(const Plane *plane, int plane_count)
+static const char *planes_size_error(const Plane *plane, int plane_count)
 {
     if (plane_count < 1 || plane_count > image_max_planes) return "no planes, or too many";
     for (int i = 0; i < plane_count; i++) {
@@ -173,7 +173,7 @@ static bool write_planes(ImageOutput *out, const Plane *plane, int plane_count)
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
                           const char *date_time, const ImageAttribute *attribute, int attribute_count)
 try {
-    const char *misfit = planes_misfit(plane, plane_count);
+    const char *misfit = planes_size_error(plane, plane_count);
     if (misfit) return refuse(STATUS_BAD_VALUE, "write", path, misfit);
     library_set_up();
 

@@ -147,7 +147,7 @@ void trial_frame(void *user)
     f->stage_s[STAGE_TRUTH]      = t4 - t3;
     f->stage_s[STAGE_REST]       = t3 - t2;
     for (int s = STAGE_PREPARE; s <= STAGE_RADAR; s++) f->stage_s[STAGE_REST] -= f->stage_s[s];
-    f->stage_s[STAGE_FOOTPRINTS] = 1e-3 * r->footprints_ms;
+    f->stage_s[STAGE_FOOTPRINTS] = 1e-3 * r->target_grids_ms;
     f->stage_s[STAGE_BASE]       = 1e-3 * r->base_ms;
     f->stage_s[STAGE_EDGES]      = 1e-3 * r->edges_ms;
 }

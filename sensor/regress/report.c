@@ -2,7 +2,7 @@
 #include "sensor/regress/report.h"
 
 #include "sensor/publish/html.h"
-#include "sensor/regress/picture.h"
+#include "sensor/regress/false_colour.h"
 
 #include <stdlib.h>
 

@@ -135,14 +135,14 @@ static bool make_paths_absolute(const char *config, const CaseResult *r)
     Config *read = malloc(sizeof *read);
     bool    ok = read != NULL;
     snprintf(in_case, sizeof in_case, "%.4000s/case.yaml", r->c.folder);
-    log_hush(true);
+    log_suppress(true);
     if (ok) *read = config_default();
     if (ok && config_read_as(read, config, in_case) == STATUS_OK) {
         FILE *file = fopen(config, "w");
         if (file) config_write_settings(file, read);
         ok = file && fclose(file) == 0;
     }
-    log_hush(false);
+    log_suppress(false);
     free(read);
     return ok;
 }

@@ -25,14 +25,14 @@ static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, si
 
 typedef struct Steps {
     /* squares with the target and without; squared shares of ground with */
-    double on, ground, ground_pairs, ground_seen;
+    double on, ground, ground_pairs, ground_visible;
 } Steps;
 
 static void add_step(Steps *s, double share_a, double share_b, double step)
 {
     if (share_a > 0 || share_b > 0) {
         s->on += square(step);
-        s->ground_seen += square(1 - share_a) + square(1 - share_b);
+        s->ground_visible += square(1 - share_a) + square(1 - share_b);
     } else {
         s->ground += square(step);
         s->ground_pairs++;
@@ -62,7 +62,7 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
         }
     const double mean = ring_px > 0 ? ring / ring_px : on_px > 0 ? sum / on_px : 0;
     o.apart = fmax(sum_2 - 2 * mean * sum + mean * mean * on_px, 0);
-    o.steps = fmax(s.on - (s.ground_pairs > 0 ? 0.5 * s.ground / s.ground_pairs * s.ground_seen : 0), 0) * stride;
+    o.steps = fmax(s.on - (s.ground_pairs > 0 ? 0.5 * s.ground / s.ground_pairs * s.ground_visible : 0), 0) * stride;
     o.apart *= stride;
     return o;
 }

@@ -124,7 +124,7 @@ static int thin(double (*out)[2], const LandscapeEvidence *e, bool sea)
     return kept;
 }
 
-static int keep_wronged(double (*out)[2], int count, const double (*other)[2], int others, const LandscapeEvidence *e,
+static int keep_contradicted(double (*out)[2], int count, const double (*other)[2], int others, const LandscapeEvidence *e,
                         bool sea)
 {
     for (int n = 0; n < e->place_count && count < 2 * most_places; n++) {
@@ -176,9 +176,9 @@ Status coast_create(Coast *out, const LandscapeEvidence *evidence, uint64_t seed
     if (status == STATUS_OK) {
         coast.sea_count = thin(coast.sea, evidence, true);
         coast.land_count = thin(coast.land, evidence, false);
-        const int land = keep_wronged(coast.land, coast.land_count, (const double (*)[2])coast.sea, coast.sea_count,
+        const int land = keep_contradicted(coast.land, coast.land_count, (const double (*)[2])coast.sea, coast.sea_count,
                                       evidence, false);
-        if (land) coast.sea_count = keep_wronged(coast.sea, coast.sea_count, (const double (*)[2])coast.land,
+        if (land) coast.sea_count = keep_contradicted(coast.sea, coast.sea_count, (const double (*)[2])coast.land,
                                                  coast.land_count, evidence, true);
         coast.land_count = land;
         if (coast.sea_count && land) status = make_grids(&coast);

@@ -100,7 +100,7 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
 }
 
 /* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there. */
-static F32x8 slopes_of_country(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
+static F32x8 slopes_of_terrain(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     const F32x8 x = f32x8_of_doubles(x_m), y = f32x8_of_doubles(y_m);
     const F32x8 lean = f32x8_sqrt(f32x8_fma(x, x, y * y)) * f32x8_set(1 / 6371e3);
@@ -257,7 +257,7 @@ static void real_surfaces(int32_t surface[8], const Landscape *landscape, PlotCe
     const uint64_t seed = cover->seed;
     lanes = mapped_surfaces(surface, cover, x_m, y_m, lanes);
     if (!lanes) return;
-    const F32x8 slopes = slopes_of_country(&landscape->elevation, x_m, y_m, lanes);
+    const F32x8 slopes = slopes_of_terrain(&landscape->elevation, x_m, y_m, lanes);
     F32x8       patches = noise_eight(seed + 14, 700, x_m, y_m);
     patches = f32x8_fma(f32x8_set(0.6), noise_eight(seed + 15, 190, x_m, y_m), patches);
     patches = f32x8_fma(f32x8_set(0.3), noise_eight(seed + 16, 41, x_m, y_m), patches);
@@ -320,7 +320,7 @@ void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count,
         if (lanes && cover->real)
             real_surfaces(found, landscape, &cells, x, y, lanes);
         else if (lanes)
-            invented_surfaces(found, cover, &cells, x, y, slopes_of_country(&landscape->elevation, x, y, lanes), lanes);
+            invented_surfaces(found, cover, &cells, x, y, slopes_of_terrain(&landscape->elevation, x, y, lanes), lanes);
         for (int k = 0; k < some; k++) surface[first + k] = (uint8_t)found[k];
     }
 }

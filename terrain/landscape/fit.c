@@ -1,4 +1,4 @@
-/* terrain/landscape/fit.c: which fixes to believe, and the last centimetres on the posts themselves.
+/* terrain/landscape/fit.c: which fixes to sanitize_vector, and the last centimetres on the posts themselves.
  *
  * Other simulators' ground, a burst on a roof, a vehicle slung under a helicopter: fixes contradict each other.
  * Whole entities that the others outvote are gone before (landscape_votes.c). Of what is left two fixes agree when a
@@ -95,7 +95,7 @@ typedef struct Vote {
     double against, h_m;
 } Vote;
 
-static int most_doubted_first(const void *pa, const void *pb)
+static int most_contradicted_first(const void *pa, const void *pb)
 {
     const Vote *a = pa, *b = pb;
     if (a->against != b->against) return a->against > b->against ? -1 : 1;
@@ -148,7 +148,7 @@ static Status drop_contradicted(FixRow *rows, int count, double reach_m)
         const double against = votes_against(&rows[n], n, &near, rows) / weight_of(&rows[n]);
         if (against > 0) vote[votes++] = (Vote){n, against, rows[n].h_m};
     }
-    qsort(vote, (size_t)votes, sizeof *vote, most_doubted_first);
+    qsort(vote, (size_t)votes, sizeof *vote, most_contradicted_first);
     for (int n = 0; n < votes; n++)
         if (votes_against(&rows[vote[n].row], vote[n].row, &near, rows) > 0) rows[vote[n].row].dropped = true;
 
@@ -208,7 +208,7 @@ Status fix_set_create(FixSet *out, const LocalFrame *frame, const GroundFix *fix
 
     for (int n = 0; n < fix_count; n++) set.row_of_fix[n] = -1;
     for (int n = 0; n <= voters; n++) counted[n] = -1;
-    status = ground_votes(outvoted, fix, fix_count);
+    status = ground_inconsistent(outvoted, fix, fix_count);
     if (status != STATUS_OK) goto done;
     const int count = gather_candidates(candidate, frame, fix, fix_count, outvoted, horizon_m);
     for (int n = 0, end; n < count; n = end) {

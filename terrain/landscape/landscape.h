@@ -67,7 +67,7 @@ LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
  * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
  * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one; before that
- * whole voters go that their neighbours contradict (ground_votes). With neither fixes nor
+ * whole voters go that their neighbours contradict (ground_inconsistent). With neither fixes nor
  * low lines the country lies at ellipsoid height 0. fix, line may be NULL when their count is 0. */
 Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
@@ -79,10 +79,10 @@ Status landscape_create_from(Landscape *out, const LandscapeConfig *config, cons
                              const LandscapeEvidence *evidence);
 /* Which fixes are of a voter that the others outvote: [fix_count] bytes, 1: outvoted. Voters are numbered from 1 and
  * are no more than the fixes. See landscape_votes.c. */
-Status ground_votes(uint8_t *outvoted, const GroundFix *fix, int fix_count);
+Status ground_inconsistent(uint8_t *outvoted, const GroundFix *fix, int fix_count);
 /* How far places are above the ground that the voters near them stand on (the plane that suits best), and how far the
  * nearest of them is, m; NaN: none within 300 m. */
-Status ground_votes_at(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
+Status ground_consensus_height(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
                        int fix_count);
 void   landscape_destroy(Landscape *landscape);
 

@@ -3,9 +3,9 @@
  * landscape.c        plan of the levels, and the order of the work
  * landscape_levels.c curvature, joining, quantisation: also for ground from files
  * landscape_field.c  smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
- * landscape_votes.c  which entities to believe
+ * landscape_votes.c  which entities to sanitize_vector
  * landscape_coast.c  where the sea is, and how the land comes down to it
- * landscape_fit.c    which fixes to believe, and the last centimetres on the posts themselves
+ * landscape_fit.c    which fixes to sanitize_vector, and the last centimetres on the posts themselves
  * landscape_clear.c  what clear lines allow
  * landscape_near.c   points by place
  * landscape_plots.c  invented fields

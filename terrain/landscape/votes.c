@@ -22,16 +22,16 @@ static const double trust_m = 1.5;      /* of two senders' ground, suspension, w
 static const double free_slope = 0.15;  /* ground between entities may leave a plane by this */
 static const double agree_slope = 0.15; /* a neighbour may leave the plane it supports by this */
 
-typedef struct VotePlace {
+typedef struct ConsensusPoint {
     double p[3];
     int    voter;
-} VotePlace;
+} ConsensusPoint;
 
 /* The places of all voters, sorted by voter. */
 typedef struct Assembly {
     int        voters, places;
     int       *first; /* [voters + 2] of place; voter 0 has none */
-    VotePlace *place;
+    ConsensusPoint *place;
     uint8_t   *out;   /* [voters + 1] outvoted */
     NearGrid   near;
 } Assembly;
@@ -39,7 +39,7 @@ typedef struct Assembly {
 /* ---- places ------------------------------------------------------------------------------- */
 
 /* Places of one voter's fixes, each farther than step_m from the one before: how many. */
-static int thin(VotePlace *out, const GroundFix *fix, const int *number, int count, double step_m)
+static int thin(ConsensusPoint *out, const GroundFix *fix, const int *number, int count, double step_m)
 {
     int kept = 0;
     for (int n = 0; n < count; n++) {
@@ -97,7 +97,7 @@ typedef struct Neighbour {
 
 /* The nearest place of each of the nearest voters that are still in, nearest first: how many. Crowded cells are
  * sampled. */
-static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const VotePlace *from)
+static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const ConsensusPoint *from)
 {
     int           count = 0;
     const int64_t ci = near_grid_cell(&a->near, from->p[0]), cj = near_grid_cell(&a->near, from->p[1]);
@@ -107,7 +107,7 @@ static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const Vo
             near_grid_bucket(&a->near, i, j, &first, &end);
             const int step = 1 + (end - first) / most_a_cell;
             for (int n = first; n < end; n += step) {
-                const VotePlace *p = &a->place[a->near.item[n]];
+                const ConsensusPoint *p = &a->place[a->near.item[n]];
                 if (p->voter == from->voter || a->out[p->voter]) continue;
                 Neighbour q = {.voter = p->voter};
                 v3_sub(q.d, p->p, from->p);
@@ -188,7 +188,7 @@ static int candidates(Plane plane[most_planes], const Neighbour *q, int count)
 }
 
 /* How far a place is from what its neighbours allow: above 1 it is contradicted. 0: too few to say. */
-static double contradiction(Assembly *a, const VotePlace *from, double *nearest_m)
+static double contradiction(Assembly *a, const ConsensusPoint *from, double *nearest_m)
 {
     static const double benefit = 0.25;
     Neighbour q[most_neighbours];
@@ -254,7 +254,7 @@ static int voters_of(const GroundFix *fix, int fix_count)
     return voters;
 }
 
-Status ground_votes(uint8_t *outvoted, const GroundFix *fix, int fix_count)
+Status ground_inconsistent(uint8_t *outvoted, const GroundFix *fix, int fix_count)
 {
     Assembly a = {.voters = voters_of(fix, fix_count)};
     if (a.voters < 0) return STATUS_BAD_VALUE;
@@ -277,7 +277,7 @@ Status ground_votes(uint8_t *outvoted, const GroundFix *fix, int fix_count)
     return status;
 }
 
-Status ground_votes_at(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
+Status ground_consensus_height(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
                        int fix_count)
 {
     Assembly a = {.voters = voters_of(fix, fix_count)};
@@ -286,7 +286,7 @@ Status ground_votes_at(double *above_m, double *nearest_m, const double (*p_enu)
     for (int n = 0; status == STATUS_OK && n < count; n++) {
         Neighbour q[most_neighbours];
         Plane     plane[most_planes];
-        VotePlace from = {.voter = 0};
+        ConsensusPoint from = {.voter = 0};
         memcpy(from.p, p_enu[n], sizeof from.p);
         const int neighbours = find_neighbours(q, &a, &from), planes = candidates(plane, q, neighbours);
         above_m[n] = nearest_m[n] = NAN;

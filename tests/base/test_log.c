@@ -16,13 +16,13 @@ static void a_hush_is_a_threads_own(void **state)
     pthread_t other;
     log_set_sink(check_listen, NULL);
     check_said[0] = 0;
-    log_hush(true);
+    log_suppress(true);
     log_error("hushed");
     assert_string_equal(check_said, "");
     assert_int_equal(pthread_create(&other, NULL, speak, NULL), 0);
     pthread_join(other, NULL);
     CHECK(strstr(check_said, "other: heard"));
-    log_hush(false);
+    log_suppress(false);
     check_said[0] = 0;
     log_warn("again");
     CHECK(strstr(check_said, "again"));

@@ -41,7 +41,7 @@ static void network_jitter_does_not_enter(void **state)
         const double got_s = exercise_clock_time(clock, 1, 2, stamp_of(t_s, false), 1.6e9 + t_s + jitter_s);
         CHECK_NEAR(got_s, t_s, tick_s);
     }
-    CHECK(exercise_clock_doubts(clock)->count == 0 && exercise_clock_doubts(clock)->by_arrival == 0);
+    CHECK(exercise_clock_anomalies(clock)->count == 0 && exercise_clock_anomalies(clock)->by_arrival == 0);
     exercise_clock_destroy(clock);
 }
 
@@ -138,7 +138,7 @@ static void a_restart_is_tied_again(void **state)
         if (i % 60 == 45) off_s = got_s - t_s;
         if (i % 60 > 45) CHECK_NEAR(got_s - t_s, off_s, 2 * tick_s); /* the stamps again */
     }
-    CHECK(exercise_clock_doubts(clock)->count == 1 && exercise_clock_doubts(clock)->sender[0].reason == EXERCISE_CLOCK_JUMP);
+    CHECK(exercise_clock_anomalies(clock)->count == 1 && exercise_clock_anomalies(clock)->sender[0].reason == EXERCISE_CLOCK_JUMP);
     exercise_clock_destroy(clock);
 }
 
@@ -167,10 +167,10 @@ static void pauses_end_in_proven_stamps(void **state)
             const double got_s = exercise_clock_time(clock, 1, 1, stamp_of(own_s, false), 900 + t_s);
             CHECK_NEAR(got_s, t_s, i == 51 ? 1 + tick_s : 1e-6 + tick_s); /* one frozen stamp might be a repetition */
         }
-        const uint64_t before = exercise_clock_doubts(clock)->by_arrival;
+        const uint64_t before = exercise_clock_anomalies(clock)->by_arrival;
         CHECK(before > 0 && before < 60);
         exercise_clock_time(clock, 1, 1, stamp_of(270, false), 900 + 300);
-        CHECK(exercise_clock_doubts(clock)->by_arrival == before);
+        CHECK(exercise_clock_anomalies(clock)->by_arrival == before);
         exercise_clock_destroy(clock);
     }
 }
@@ -199,16 +199,16 @@ static void stamps_that_are_no_clock_are_found_and_named(void **state)
                   {double_stamp, 0.15, "run at 2 times"}, {wild_stamp, 0, "jump about"}};
     for (size_t k = 0; k < sizeof sender / sizeof sender[0]; k++) {
         ExerciseClock *clock = new_clock();
-        char           text[exercise_clock_doubt_text_size];
+        char           text[exercise_clock_anomaly_text_size];
         double         first_s = 0;
         for (int i = 0; i < 3000; i++) { /* ten minutes */
             const double got_s = exercise_clock_time(clock, 7, 8, sender[k].stamp(i), 1e9 + 0.2 * i);
             if (i == 0) first_s = got_s;
             CHECK_NEAR(got_s - first_s, 0.2 * i, sender[k].allowed_s + 1e-6);
         }
-        const ExerciseClockDoubts *doubts = exercise_clock_doubts(clock);
+        const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(clock);
         CHECK(doubts->count == 1 && doubts->by_arrival >= 2990 && doubts->sender[0].by_arrival == doubts->by_arrival);
-        exercise_clock_doubt_text(text, sizeof text, &doubts->sender[0]);
+        exercise_clock_anomaly_text(text, sizeof text, &doubts->sender[0]);
         CHECK(strncmp(text, "time stamps of 7:8 ", 19) == 0 && strstr(text, sender[k].said));
         exercise_clock_destroy(clock);
     }
@@ -227,7 +227,7 @@ static void slight_rates_are_found_in_time(void **state)
             worst_s = fmax(worst_s, fabs(got_s - 50 - i));
         }
         CHECK_NEAR(worst_s, 0, 1.05);
-        CHECK((exercise_clock_doubts(clock)->count == 0) == (k == 5));
+        CHECK((exercise_clock_anomalies(clock)->count == 0) == (k == 5));
         exercise_clock_destroy(clock);
     }
 }

@@ -77,7 +77,7 @@ static void drift_is_wind_times_age(void **state)
         CHECK_NEAR(blown.p_enu[0] - still.p_enu[0], 5 * age_s * sqrt(0.5), 1e-8);
         CHECK_NEAR(blown.p_enu[1] - still.p_enu[1], 5 * age_s * sqrt(0.5), 1e-8);
         CHECK_NEAR(blown.p_enu[2], still.p_enu[2], 1e-8);
-        const EffectLaw *law = &effect_history_table(h)->law[EFFECT_SMOKE];
+        const EffectModel *law = &effect_history_table(h)->law[EFFECT_SMOKE];
         CHECK_NEAR(still.p_enu[2], law->rise_mps * law->rise_s * (1 - exp(-age_s / law->rise_s)), 1e-7);
     }
     effect_history_destroy(h);
@@ -94,7 +94,7 @@ static void extinction_holds_its_mass(void **state)
     puff.along_m = 9;
     EffectVolume v;
     CHECK(effect_volume(&v, effect_history_table(h), &puff, &weather, &frame));
-    const EffectLaw *law = &effect_history_table(h)->law[EFFECT_BURST_DUST];
+    const EffectModel *law = &effect_history_table(h)->law[EFFECT_BURST_DUST];
     /* integral of (1 - q^2)^2 over the ball by a thousand shells */
     double sum = 0;
     for (int i = 0; i < 1000; i++) {
@@ -115,7 +115,7 @@ static void flash_has_its_time_course(void **state)
     EffectHistory *h = open_history();
     const LocalFrame frame = frame_here();
     const Weather weather = weather_default();
-    const EffectLaw *law = &effect_history_table(h)->law[EFFECT_MUZZLE_FLASH];
+    const EffectModel *law = &effect_history_table(h)->law[EFFECT_MUZZLE_FLASH];
     for (double scale = 0.5; scale <= 2; scale *= 2) {
         EffectVolume v;
         double before_k = INFINITY;

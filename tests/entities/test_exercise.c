@@ -18,7 +18,7 @@ typedef struct Heard {
     double     latest_s;
 } Heard;
 
-static bool hear_datagram(void *user, double t_s, const uint8_t *bytes, size_t octets)
+static bool receive_datagram(void *user, double t_s, const uint8_t *bytes, size_t octets)
 {
     Heard          *h = user;
     DisHeader       header;
@@ -75,7 +75,7 @@ static ExerciseCounts run_all(Heard *heard, const char *text, const char *set)
     Scenario  scenario;
     Exercise *exercise;
     Cast     *cast = cast_of(&scenario, text, set);
-    CHECK(exercise_create(&exercise, cast, 1e9, hear_datagram, heard) == STATUS_OK);
+    CHECK(exercise_create(&exercise, cast, 1e9, receive_datagram, heard) == STATUS_OK);
     while (exercise_step(exercise)) {}
     const ExerciseCounts counts = *exercise_counts(exercise);
     exercise_destroy(exercise);
@@ -115,7 +115,7 @@ static void keeps_its_promise(const char *set)
     double    worst_m = 0, worst_rad = 0, worst_joint_rad = 0;
     long      looks = 0;
     uint32_t  draw = 0;
-    CHECK(exercise_create(&exercise, cast, 1e9, hear_datagram, &heard) == STATUS_OK);
+    CHECK(exercise_create(&exercise, cast, 1e9, receive_datagram, &heard) == STATUS_OK);
     const double tick_s = 1 / scenario.dis.rate_hz, threshold_rad = scenario.dis.threshold_deg * rad_per_deg;
     for (bool more = true; more;) {
         const double t_s = exercise_time(exercise);
@@ -141,7 +141,7 @@ static void keeps_its_promise(const char *set)
             const double skew[3] = {turn[7] - turn[5], turn[2] - turn[6], turn[3] - turn[1]};
             const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
             /* What an error grows by in a tick once it has come to the threshold T: an acceleration a that nobody
-             * knew of has by then made sqrt(2 a T). It is the truth's own (2 |a|: the sender may believe the
+             * knew of has by then made sqrt(2 a T). It is the truth's own (2 |a|: the sender may sanitize_vector the
              * opposite), and 2 m/s2 for what begins, and w x v where the path turns with the body; of the attitude
              * 0.5 rad/s2, and the whole rate where the algorithm holds it. */
             const double spin_rps = v3_length(truth.w_body_rps), limit_m = scenario.dis.threshold_m;

@@ -193,7 +193,7 @@ static void common_types_have_their_shape_and_size(void **state)
         const Published *p = published + i;
         const int k = catalog_find(c, p->type, NULL, NULL);
         const Model *m = catalog_model(c, k);
-        bool right = catalog_shows(c, k) == (p->shape != NULL);
+        bool right = catalog_has_shape(c, k) == (p->shape != NULL);
         if (right && p->shape)
             right = !strcmp(m->name, p->shape) && near(m->length_m, p->length_m, p->percent) &&
                     near(m->width_m, p->width_m, p->percent) && near(up_m(m), p->height_m, p->percent);
@@ -589,7 +589,7 @@ static void sizes_make_models_and_shapes_make_classes(void **state)
     int model[5];
     for (int i = 0; i < 5; i++) {
         model[i] = catalog_find(c, (DisEntityType){1, 1, (uint16_t)(i + 1), 0, 0, 0, 0}, NULL, NULL);
-        CHECK(catalog_shows(c, model[i]) == (i < 4));
+        CHECK(catalog_has_shape(c, model[i]) == (i < 4));
         CHECK(catalog_is_built(c, model[i]));
     }
     CHECK(model[0] != model[1] && model[1] == model[2]);

@@ -9,7 +9,7 @@ static Atmosphere *atmosphere;
 static Arena *arena;
 static Hits hits;
 static Rays rays;
-static Veils veils;
+static AirPaths veils;
 static float temp_k[hits_capacity];
 
 enum { all_bands = (1 << AIR_BAND_COUNT) - 1 };
@@ -118,7 +118,7 @@ static void frames_follow_the_tables(void **state)
                 const int i = add(atan2(d[0], d[1]), asin(d[2]), range_m);
                 rays.d_enu[0][i] = d[0], rays.d_enu[1][i] = d[1], rays.d_enu[2][i] = d[2];
             }
-            air_veils(&veils, &air, (AirBand)b, &hits, &rays, thermal ? temp_k : NULL);
+            air_path(&veils, &air, (AirBand)b, &hits, &rays, thermal ? temp_k : NULL);
             for (int i = 0; i < hits.count; i++) {
                 const double r = hits.range_m[i], up = rays.d_enu[2][i], level = sqrt(1 - up * up);
                 AirPath path = {.observer_m = eye_m,
@@ -163,17 +163,17 @@ static void pins(void **state)
     CHECK_NEAR(total / 344.865, 1, 0.01);
     clear();
     add(0, -0.0001, 5000);
-    air_veils(&veils, &air, AIR_PAN, &hits, &rays, NULL);
+    air_path(&veils, &air, AIR_PAN, &hits, &rays, NULL);
     CHECK_NEAR(veils.transmittance[0] / 0.406126, 1, 0.01);
-    air_veils(&veils, &air, AIR_LWIR, &hits, &rays, temp_k);
+    air_path(&veils, &air, AIR_LWIR, &hits, &rays, temp_k);
     CHECK_NEAR(veils.transmittance[0] / 0.625655, 1, 0.01);
     CHECK_NEAR(veils.added_w_m2_sr[0] / 11.7559, 1, 0.01);
     /* an engine shows further than the ground it stands on (the tables: 0.3469 at 300 K, 0.4586 at 1000 K) */
     temp_k[0] = 1000;
-    air_veils(&veils, &air, AIR_MWIR, &hits, &rays, temp_k);
+    air_path(&veils, &air, AIR_MWIR, &hits, &rays, temp_k);
     CHECK_NEAR(veils.transmittance[0], 0.4586, 0.01);
     temp_k[0] = 300;
-    air_veils(&veils, &air, AIR_MWIR, &hits, &rays, temp_k);
+    air_path(&veils, &air, AIR_MWIR, &hits, &rays, temp_k);
     CHECK_NEAR(veils.transmittance[0], 0.3469, 0.01);
     CHECK_NEAR(veils.sun_transmittance[0], 0.4969, 0.01);
 }
@@ -325,7 +325,7 @@ static void veils_are_sound_everywhere(void **state)
             hits.range_m[0] = 0;
             static const AirBand bands[] = {AIR_G, AIR_MWIR, AIR_LWIR};
             for (int b = 0; b < 3; b++) {
-                air_veils(&veils, &air, bands[b], &hits, &rays, b ? temp_k : NULL);
+                air_path(&veils, &air, bands[b], &hits, &rays, b ? temp_k : NULL);
                 CHECK(veils.transmittance[0] == 1 && veils.added_w_m2_sr[0] == 0);
                 for (int i = 0; i < hits.count; i++) {
                     const float tau[3] = {veils.transmittance[i], veils.sun_transmittance[i],
@@ -363,7 +363,7 @@ static void sky_is_cold_above_and_warm_at_the_horizon(void **state)
     /* an eye above half of the water sees less of it over itself */
     clear();
     add(0, 0.5 * pi_rad, INFINITY);
-    air_veils(&veils, &high, AIR_LWIR, &hits, &rays, NULL);
+    air_path(&veils, &high, AIR_LWIR, &hits, &rays, NULL);
     CHECK(veils.added_w_m2_sr[0] < 0.7 * daylight_sky(&air.light, AIR_LWIR, (double[3]){0, 0, 1}));
 }
 
@@ -377,12 +377,12 @@ static void warm_air_glows_by_planck(void **state)
     add(1, -0.01, 2000);
     const Air plain = air_of(&weather, -20, 20, 1 << AIR_LWIR, NULL);
     CHECK_NEAR(plain.light.weather.air_temp_k, 288.15, 0.1); /* US standard */
-    air_veils(&veils, &plain, AIR_LWIR, &hits, &rays, temp_k);
+    air_path(&veils, &plain, AIR_LWIR, &hits, &rays, temp_k);
     const double tau = veils.transmittance[0], added = veils.added_w_m2_sr[0];
     const double zenith = daylight_sky(&plain.light, AIR_LWIR, (double[3]){0, 0, 1}), own_k = plain.light.weather.air_temp_k;
     weather.air_temp_k = own_k + 15;
     const Air warm = air_of(&weather, -20, 20, 1 << AIR_LWIR, NULL);
-    air_veils(&veils, &warm, AIR_LWIR, &hits, &rays, temp_k);
+    air_path(&veils, &warm, AIR_LWIR, &hits, &rays, temp_k);
     const double ratio = planck_table_radiance(lwir, own_k + 15) / planck_table_radiance(lwir, own_k);
     CHECK_NEAR(veils.transmittance[0] / tau, 1, 1e-6);
     CHECK_NEAR(veils.added_w_m2_sr[0] / added, ratio, 0.01); /* the air's own weight of the spectrum shifts with it */
@@ -402,10 +402,10 @@ static void a_view_sees_what_all_round_sees(void **state)
         add(atan2(d[0], d[1]), asin(d[2]), d[2] < -0.01 ? 500 / -d[2] : 3000);
     }
     const Air some = air_of(&weather, 40, 500, 1 << AIR_G, &view);
-    air_veils(&veils, &some, AIR_G, &hits, &rays, NULL);
-    static Veils all;
+    air_path(&veils, &some, AIR_G, &hits, &rays, NULL);
+    static AirPaths all;
     const Air every = air_of(&weather, 40, 500, 1 << AIR_G, NULL);
-    air_veils(&all, &every, AIR_G, &hits, &rays, NULL);
+    air_path(&all, &every, AIR_G, &hits, &rays, NULL);
     for (int i = 0; i < hits.count; i++) {
         /* heights in coarser steps, up to the tables' top: what a frame may lose against the tables, twice */
         CHECK_NEAR(all.transmittance[i] / veils.transmittance[i], 1, 0.006);

@@ -54,7 +54,7 @@ static Air air_when(double elevation_deg)
 }
 
 /* What the air does on the way to a puff's centre, due north. */
-static void path_north(Veils *veils, const Air *air, int band, double range_m, float temp_k)
+static void path_north(AirPaths *veils, const Air *air, int band, double range_m, float temp_k)
 {
     static Hits hits;
     static Rays rays;
@@ -62,7 +62,7 @@ static void path_north(Veils *veils, const Air *air, int band, double range_m, f
     hits.range_m[0] = hits.p_enu[1][0] = range_m;
     rays.d_enu[1][0] = 1;
     float temps_k[8] = {temp_k}; /* eight paths at once: arrays are padded, as those of Hits are */
-    air_veils(veils, air, (AirBand)band, &hits, &rays, temps_k);
+    air_path(veils, air, (AirBand)band, &hits, &rays, temps_k);
 }
 
 static EffectPuff puff_at(EffectKind kind, double north_m, double age_s, double mass_kg)
@@ -97,7 +97,7 @@ static void boresight(double transmittance[effect_band_count], double added[effe
                       const Air *air)
 {
     static Rays     rays;
-    static VeilRays out;
+    static SmokeRays out;
     Snapshot        snapshot = {.puff_count = 1, .puff = puff, .effect_table = &effects};
     const View      view = view_north(64);
     EffectScene     scene;
@@ -115,7 +115,7 @@ static void boresight(double transmittance[effect_band_count], double added[effe
     double d[3];
     CHECK(v3_normalize(d, scene.volume[0].p_enu));
     for (int k = 0; k < 3; k++) rays.d_enu[k][0] = d[k];
-    veil_rays(&out, scene.volume, &first, 1, &rays, &far_m, all_bands);
+    smoke_trace_rays(&out, scene.volume, &first, 1, &rays, &far_m, all_bands);
     for (int b = 0; b < effect_band_count; b++) {
         transmittance[b] = out.any ? out.transmittance[b][0] : 1;
         added[b] = out.any ? out.added[b][0] : 0;
@@ -129,7 +129,7 @@ static void flash_follows_its_closed_form(void **state)
     (void)state;
     static const double low_m[] = {0.4e-6, 0.5e-6, 0.6e-6, 0.4e-6}, high_m[] = {0.5e-6, 0.6e-6, 0.7e-6, 0.7e-6};
     const Air        air = air_when(-30);
-    const EffectLaw *law = &effects.law[EFFECT_MUZZLE_FLASH];
+    const EffectModel *law = &effects.law[EFFECT_MUZZLE_FLASH];
     const double     kg = law->mass_kg * 8, scale = 2, range_m = 700;
     double           first_colour = 0;
     for (double age_s = 0; age_s < 0.119; age_s += 0.017) {
@@ -145,7 +145,7 @@ static void flash_follows_its_closed_form(void **state)
                              35.0 / 8 * 16.0 / 15 * radius_m;
         CHECK_NEAR(tau[effect_band_g], exp(-depth), 2e-6); /* a float, over a centre moved by the wind */
         for (int b = 0; b <= effect_band_pan; b++) {
-            static Veils path;
+            static AirPaths path;
             path_north(&path, &air, b, range_m, (float)temp_k);
             const double night = air.light.sky_w_m2[b] / pi_rad; /* starlight from above: of no account */
             const double want = (1 - exp(-depth)) * (path.added_w_m2_sr[0] + path.transmittance[0] * 0.95 *
@@ -171,7 +171,7 @@ static void thick_smoke_reads_its_temperature(void **state)
         air.light.ground_w_m2_sr[AIR_LWIR] = planck_table_radiance(air.light.planck_lwir, temp_k);
         air.light.sky_w_m2[AIR_LWIR] = pi_rad * air.light.ground_w_m2_sr[AIR_LWIR];
         boresight(tau, added, &puff, &air);
-        static Veils path;
+        static AirPaths path;
         path_north(&path, &air, AIR_LWIR, range_m, (float)temp_k);
         CHECK(tau[effect_band_lwir] < 1e-6 && albedo > 0);
         CHECK_NEAR(added[effect_band_lwir],
@@ -186,9 +186,9 @@ static void thick_smoke_reads_its_temperature(void **state)
 static void near_infrared_sees_it_longer(void **state)
 {
     (void)state;
-    static Veils     path;
+    static AirPaths     path;
     const Air        air = air_when(-30);
-    const EffectLaw *law = &effects.law[EFFECT_FLAME];
+    const EffectModel *law = &effects.law[EFFECT_FLAME];
     const double     age_s = 1, range_m = 100;
     double           tau[effect_band_count], added[effect_band_count];
     EffectPuff       puff = puff_at(EFFECT_FLAME, range_m, age_s, 20);

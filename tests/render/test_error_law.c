@@ -27,7 +27,7 @@ static void the_law_is_that_of_half_planes(void **state)
                 in[s] = nx * (x - 0.5) + ny * (y - 0.5) < d;
                 count += in[s] > 0;
             }
-            law += error_budget_law(in, n);
+            law += error_budget_sampling_variance(in, n);
             const double error = (double)count / (n * n) - covered(nx, ny, d);
             truth += error * error;
         }

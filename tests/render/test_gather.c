@@ -2,7 +2,7 @@
  * nothing can be brighter or darker than what surrounds it. */
 #include "tests/render/hand_models.h"
 
-#include "render/light/gather.h"
+#include "render/light/hemisphere.h"
 #include "render/light/optical.h"
 #include "render/parts/parts.h"
 #include "render/light/thermal.h"
@@ -121,7 +121,7 @@ static void sphere_over_a_plane(void **state)
     enum { points = sizeof point / sizeof *point };
     static Rays rays;
     static Hits hits;
-    static Gathered gathered;
+    static HemisphereLight gathered;
     double px[points][2];
     for (int i = 0; i < points; i++) memcpy(px[i], point[i].px, sizeof px[i]);
     VisibilityCounters counters = {0};
@@ -132,7 +132,7 @@ static void sphere_over_a_plane(void **state)
     set_rho(0.2, 0.8);
     look_at(&rays, &hits, &counters, px, points);
 
-    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
     uint8_t shadow[hits_capacity] = {0};
     float arrives[hits_capacity];
     float texture[hits_capacity], out[2][hits_capacity];
@@ -146,7 +146,7 @@ static void sphere_over_a_plane(void **state)
     }
     static const int samples[2] = {64, 4096};
     for (int run = 0; run < 2; run++) {
-        gather_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
+        hemisphere_light(&gathered, &scene, &hits, 1 << AIR_PAN, samples[run], keys(7), &counters);
         optical_shade(out[run], optical_channel_pan, &stage.air, &stage.materials, &hits, &rays, material, texture,
                       arrives, gathered.w_m2[AIR_PAN], NULL, NULL);
     }
@@ -166,7 +166,7 @@ static void even_worlds_stay_even(void **state)
     (void)state;
     static Rays rays;
     static Hits hits;
-    static Gathered gathered;
+    static HemisphereLight gathered;
     VisibilityCounters counters = {0};
     static const double px[][2] = {{60, 470}, {360, 150}, {290, 200}, {360, 290}, {360, 330}};
     double sky[AIR_BAND_COUNT] = {1, 1, 1, 1, 1};
@@ -174,8 +174,8 @@ static void even_worlds_stay_even(void **state)
     air_even(&stage.air, (const double[3]){0, 0.6, -0.8}, 0, sky, 0, stage.mwir, stage.lwir);
     set_rho(1, 1);
     look_at(&rays, &hits, &counters, px, 5);
-    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
-    gather_light(&gathered, &scene, &hits, 1 << AIR_G | 1 << AIR_NIR, 200, keys(1), &counters);
+    const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    hemisphere_light(&gathered, &scene, &hits, 1 << AIR_G | 1 << AIR_NIR, 200, keys(1), &counters);
     for (int i = 0; i < 5; i++) {
         /* all of it is a sum of ones, in single precision */
         CHECK_NEAR(gathered.w_m2[AIR_G][i] / pi_rad, 1, 1e-6);
@@ -189,7 +189,7 @@ static void same_question_same_bits(void **state)
     (void)state;
     static Rays rays;
     static Hits hits;
-    static Gathered a, b;
+    static HemisphereLight a, b;
     VisibilityCounters counters = {0};
     static const double px[][2] = {{290, 200}, {900, -500}, {360, 290}};
     look_at(&rays, &hits, &counters, px, 3);
@@ -197,18 +197,18 @@ static void same_question_same_bits(void **state)
     const double sky[AIR_BAND_COUNT] = {1, 2, 3, 4, 5, 6, 7};
     air_even(&stage.air, (const double[3]){0.6, 0, 0.8}, 10, sky, 0, stage.mwir, stage.lwir);
     set_rho(0.2, 0.8);
-    const GatherScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
-    gather_light(&a, &scene, &hits, 1 << AIR_R, 500, keys(3), &counters);
-    gather_light(&b, &scene, &hits, 1 << AIR_R | 1 << AIR_B, 500, keys(3), &counters);
+    const HemisphereScene scene = {stage.visibility, &stage.air, &stage.materials, NULL, &stage.snapshot};
+    hemisphere_light(&a, &scene, &hits, 1 << AIR_R, 500, keys(3), &counters);
+    hemisphere_light(&b, &scene, &hits, 1 << AIR_R | 1 << AIR_B, 500, keys(3), &counters);
     for (int i = 0; i < 3; i++) CHECK(a.w_m2[AIR_R][i] == b.w_m2[AIR_R][i]);
     CHECK(a.w_m2[AIR_R][1] == 0 && a.w_m2[AIR_R][0] > 0 && a.w_m2[AIR_R][0] != a.w_m2[AIR_R][2]);
-    gather_light(&b, &scene, &hits, 1 << AIR_R, 500, keys(4), &counters);
+    hemisphere_light(&b, &scene, &hits, 1 << AIR_R, 500, keys(4), &counters);
     CHECK(a.w_m2[AIR_R][0] != b.w_m2[AIR_R][0]);
 
     /* the last hit alone, by its own key: whoever else is asked for does not show, nor where blocks of paths end */
-    static Gathered together[4];
+    static HemisphereLight together[4];
     static const int samples[4] = {500, 600, 800, 1500};
-    for (int n = 0; n < 4; n++) gather_light(&together[n], &scene, &hits, 1 << AIR_R, samples[n], keys(3), &counters);
+    for (int n = 0; n < 4; n++) hemisphere_light(&together[n], &scene, &hits, 1 << AIR_R, samples[n], keys(3), &counters);
     for (int k = 0; k < 3; k++) {
         hits.p_enu[k][0] = hits.p_enu[k][2], hits.n_enu[k][0] = hits.n_enu[k][2], hits.n_geo[k][0] = hits.n_geo[k][2];
     }
@@ -216,7 +216,7 @@ static void same_question_same_bits(void **state)
     hits.model[0] = hits.model[2], hits.surface[0] = hits.surface[2];
     hits.count = 1;
     for (int n = 0; n < 4; n++) {
-        gather_light(&b, &scene, &hits, 1 << AIR_R, samples[n], keys(3) + 2, &counters);
+        hemisphere_light(&b, &scene, &hits, 1 << AIR_R, samples[n], keys(3) + 2, &counters);
         CHECK(together[n].w_m2[AIR_R][2] == b.w_m2[AIR_R][0]);
     }
 }

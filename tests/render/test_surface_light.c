@@ -9,7 +9,7 @@ enum { hits_count = 1016, suns = 4 };
 
 static Hits     hits;
 static Rays     rays;
-static Veils    veils[AIR_BAND_COUNT];
+static AirPaths    veils[AIR_BAND_COUNT];
 static uint16_t material[hits_capacity];
 static float    arrives[hits_capacity];
 static float    texture[hits_capacity], temp_k[hits_capacity], around[hits_capacity];
@@ -95,7 +95,7 @@ static void compare(bool ground, double least_rad, double limit)
         random_hits(sun_enu, ground);
         assert_int_equal(surface_light_prepare(&light, &hand.air, m, hand.air_arena), STATUS_OK);
         thermal_temperature(temp_k, &hand.air, m, hand.catalog, &hand.snapshot, &hits, material, texture);
-        air_veils_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+        air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
         float       *out[AIR_BAND_COUNT];
         SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
         for (int b = 0; b < AIR_BAND_COUNT; b++) {
@@ -141,7 +141,7 @@ static void company_changes_no_bit(void **state)
     static SurfaceLight light;
     static Hits        few;
     static Rays        few_rays;
-    static Veils       few_veils[AIR_BAND_COUNT];
+    static AirPaths       few_veils[AIR_BAND_COUNT];
     float              few_texture[hits_capacity], few_temp_k[hits_capacity];
     float              few_arrives[hits_capacity];
     uint16_t           few_material[hits_capacity];
@@ -153,7 +153,7 @@ static void company_changes_no_bit(void **state)
     random_hits(sun_enu, true);
     assert_int_equal(surface_light_prepare(&light, &hand.air, &hand.world.materials, hand.air_arena), STATUS_OK);
     thermal_temperature(temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &hits, material, texture);
-    air_veils_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+    air_paths_of(veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
     SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives, .veils = veils};
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = all[b], block.texture[b] = texture;
     surface_light_shade(out, &light, &block);
@@ -173,7 +173,7 @@ static void company_changes_no_bit(void **state)
         few_texture[k] = texture[i], few_arrives[k] = arrives[i], few_material[k] = material[i];
     }
     thermal_temperature(few_temp_k, &hand.air, &hand.world.materials, hand.catalog, &hand.snapshot, &few, few_material, few_texture);
-    air_veils_of(few_veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &few, &few_rays, few_temp_k);
+    air_paths_of(few_veils, &hand.air, (1 << AIR_BAND_COUNT) - 1, &few, &few_rays, few_temp_k);
     for (int b = 0; b < AIR_BAND_COUNT; b++) {
         float      *alone[AIR_BAND_COUNT] = {NULL};
         SurfaceBlock some = {.hits = &few, .rays = &few_rays, .material = few_material, .temp_k = few_temp_k, .sun = few_arrives, .veils = few_veils};

@@ -179,8 +179,8 @@ static void the_veil_is_the_airs(void **state)
     for (Band band = BAND_MWIR; band <= BAND_LWIR; band++) {
         const bool mid = band == BAND_MWIR;
         shade(&air, band);
-        Veils veils;
-        air_veils(&veils, &air, mid ? AIR_MWIR : AIR_LWIR, &scene.hits, &scene.rays, scene.temp_k);
+        AirPaths veils;
+        air_path(&veils, &air, mid ? AIR_MWIR : AIR_LWIR, &scene.hits, &scene.rays, scene.temp_k);
         const double bare = planck_table_radiance(mid ? mwir : lwir, 330);
         CHECK(veils.transmittance[0] > 0.1f && veils.transmittance[0] < 0.95f);
         CHECK_NEAR(scene.out[0] / (bare * veils.transmittance[0] + veils.added_w_m2_sr[0]), 1, 1e-6);

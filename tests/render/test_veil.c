@@ -1,12 +1,12 @@
 /* Smoke along a ray, against what is known on paper: balls of one density, balls that fall off, two of them in either
  * order, a wall inside, a cavity of one temperature. */
 #include "tests/check.h"
-#include "render/smoke/veil.h"
+#include "render/smoke/smoke_volume.h"
 
 static Rays     rays;
 static double   far_m[hits_capacity];
-static VeilRays out;
-static const unsigned all_bands = (1u << veil_bands) - 1;
+static SmokeRays out;
+static const unsigned all_bands = (1u << smoke_bands) - 1;
 
 static void one_ray(double x, double y, double far)
 {
@@ -17,20 +17,20 @@ static void one_ray(double x, double y, double far)
 }
 
 /* A ball above the origin; k is the same in all bands unless a test sets it. */
-static VeilVolume ball(double z_m, double radius_m, bool even, double k_per_m, double source)
+static SmokeVolume ball(double z_m, double radius_m, bool even, double k_per_m, double source)
 {
-    VeilVolume v = {.p_enu = {0, 0, z_m}, .axis_enu = {1, 0, 0}, .along_m = radius_m, .across_m = radius_m,
+    SmokeVolume v = {.p_enu = {0, 0, z_m}, .axis_enu = {1, 0, 0}, .along_m = radius_m, .across_m = radius_m,
                     .range_m = z_m, .even = even, .d_sun_enu = {0, 0.6, 0.8}};
-    for (int b = 0; b < veil_bands; b++) v.extinction_per_m[b] = k_per_m, v.source[b] = source;
+    for (int b = 0; b < smoke_bands; b++) v.extinction_per_m[b] = k_per_m, v.source[b] = source;
     return v;
 }
 
-static void look(const VeilVolume *volume, int count)
+static void look(const SmokeVolume *volume, int count)
 {
     int list[256];
     CHECK(count <= 256);
     for (int i = 0; i < count; i++) list[i] = i;
-    veil_rays(&out, volume, list, count, &rays, far_m, all_bands);
+    smoke_trace_rays(&out, volume, list, count, &rays, far_m, all_bands);
 }
 
 /* exp(-2 a k) through the centre, exp(-2 sqrt(a^2 - b^2) k) beside it, whatever the distance; thick ones read their
@@ -43,14 +43,14 @@ static void even_ball_is_exact(void **state)
         for (int k = 0; k < 3; k++)
             for (double off = 0; off < 1; off += 0.13)
                 for (double z = 100; z < 3e4; z *= 7) {
-                    const VeilVolume v = ball(z, radius_m[r], true, k_per_m[k], 30);
+                    const SmokeVolume v = ball(z, radius_m[r], true, k_per_m[k], 30);
                     one_ray(off * radius_m[r], 0, INFINITY);
                     look(&v, 1);
                     const double tau = exp(-2 * radius_m[r] * sqrt(1 - off * off) * k_per_m[k]);
                     CHECK_NEAR(out.transmittance[0][0], tau, 1e-6);
-                    CHECK_NEAR(out.added[veil_bands - 1][0], 30 * (1 - tau), 30 * 1e-6);
+                    CHECK_NEAR(out.added[smoke_bands - 1][0], 30 * (1 - tau), 30 * 1e-6);
                 }
-    const VeilVolume thick = ball(500, 5, true, 10, 38.5004239);
+    const SmokeVolume thick = ball(500, 5, true, 10, 38.5004239);
     one_ray(0, 0, INFINITY);
     look(&thick, 1);
     CHECK_NEAR(out.added[0][0], 38.5004239, 1e-5); /* 43 e-foldings: black */
@@ -64,14 +64,14 @@ static void no_volume_is_lost(void **state)
 {
     (void)state;
     enum { count = 250 };
-    static VeilVolume row[count];
+    static SmokeVolume row[count];
     for (int apart = 0; apart < 2; apart++) {
         for (int i = 0; i < count; i++) row[i] = ball(100 + apart * 5.0 * i, 2, true, 0.005, 30);
         one_ray(0, 0, INFINITY);
         look(row, count);
         const double tau = exp(-count * 4 * 0.005);
         CHECK_NEAR(out.transmittance[0][0], tau, 1e-6);
-        CHECK_NEAR(out.added[veil_bands - 1][0], 30 * (1 - tau), 30 * 1e-6);
+        CHECK_NEAR(out.added[smoke_bands - 1][0], 30 * (1 - tau), 30 * 1e-6);
     }
     one_ray(0, 0, 100 + 5.0 * 100 + 2.5); /* a wall behind the first 101 */
     look(row, count);
@@ -83,9 +83,9 @@ static void soft_column_is_exact(void **state)
 {
     (void)state;
     const double o[3] = {0, 0, 0}, z[3] = {0, 0, 1};
-    const VeilVolume v = ball(50, 3, false, 1, 0);
-    CHECK_NEAR(veil_column_m(&v, o, z, 0, INFINITY), 16.0 / 15 * 3, 1e-12);
-    VeilVolume s = ball(50, 2, false, 1, 0);
+    const SmokeVolume v = ball(50, 3, false, 1, 0);
+    CHECK_NEAR(smoke_column_m(&v, o, z, 0, INFINITY), 16.0 / 15 * 3, 1e-12);
+    SmokeVolume s = ball(50, 2, false, 1, 0);
     s.along_m = 9;
     s.axis_enu[0] = 0.48, s.axis_enu[1] = 0.6, s.axis_enu[2] = 0.64;
     double worst = 0;
@@ -104,7 +104,7 @@ static void soft_column_is_exact(void **state)
             const double f = q2 < 1 ? (1 - q2) * (1 - q2) : 0;
             sum += f * (n == 0 || n == steps ? 1 : n % 2 ? 4 : 2);
         }
-        worst = fmax(worst, fabs(sum * (to - from) / steps / 3 - veil_column_m(&s, o, d, from, to)));
+        worst = fmax(worst, fabs(sum * (to - from) / steps / 3 - smoke_column_m(&s, o, d, from, to)));
     }
     /* the kink at the rim costs Simpson's rule about step^3 */
     CHECK(worst < 1e-6);
@@ -115,9 +115,9 @@ static void order_is_by_depth(void **state)
 {
     (void)state;
     for (int swap = 0; swap < 2; swap++) {
-        VeilVolume v[2] = {ball(100, 2, true, 0.3, 10), ball(200, 5, true, 0.15, 70)};
+        SmokeVolume v[2] = {ball(100, 2, true, 0.3, 10), ball(200, 5, true, 0.15, 70)};
         if (swap) {
-            const VeilVolume first = v[0];
+            const SmokeVolume first = v[0];
             v[0] = v[1], v[1] = first;
         }
         one_ray(0, 0, INFINITY);
@@ -127,7 +127,7 @@ static void order_is_by_depth(void **state)
         CHECK_NEAR(out.added[3][0], 10 * (1 - near) + near * 70 * (1 - far), 1e-5);
     }
     /* a small one inside a large one: three stretches, the middle one mixed by depth */
-    VeilVolume v[2] = {ball(100, 5, true, 0.1, 10), ball(100, 2, true, 0.4, 70)};
+    SmokeVolume v[2] = {ball(100, 5, true, 0.1, 10), ball(100, 2, true, 0.4, 70)};
     one_ray(0, 0, INFINITY);
     look(v, 2);
     const double outer = exp(-0.3), inner = exp(-2.0);
@@ -140,18 +140,18 @@ static void order_is_by_depth(void **state)
 static void solids_cut_it_off(void **state)
 {
     (void)state;
-    const VeilVolume v = ball(100, 4, true, 0.2, 50);
+    const SmokeVolume v = ball(100, 4, true, 0.2, 50);
     one_ray(0, 0, 101);
     look(&v, 1);
     CHECK_NEAR(out.transmittance[0][0], exp(-0.2 * 5), 1e-6);
     one_ray(0, 0, 95);
     look(&v, 1);
     CHECK(!out.any);
-    const VeilVolume about = ball(1, 4, true, 0.2, 50);
+    const SmokeVolume about = ball(1, 4, true, 0.2, 50);
     one_ray(0, 0, INFINITY);
     look(&about, 1);
     CHECK_NEAR(out.transmittance[0][0], exp(-0.2 * 5), 1e-6);
-    const VeilVolume behind = ball(-10, 4, true, 0.2, 50);
+    const SmokeVolume behind = ball(-10, 4, true, 0.2, 50);
     look(&behind, 1);
     CHECK(!out.any);
 }
@@ -160,7 +160,7 @@ static void solids_cut_it_off(void **state)
 static void one_temperature_shows_nothing(void **state)
 {
     (void)state;
-    VeilVolume v[200];
+    SmokeVolume v[200];
     double     thinnest = 1;
     for (int i = 0; i < 200; i++) {
         v[i] = ball(80 + 40 * random_uniform(2, 1, 0, (uint64_t)i), 1 + 6 * random_uniform(2, 2, 0, (uint64_t)i), false,
@@ -173,7 +173,7 @@ static void one_temperature_shows_nothing(void **state)
         look(v, 200);
         CHECK(out.any);
         float wall = 38.5f;
-        veil_apply(&wall, &out, 6, 1);
+        smoke_apply(&wall, &out, 6, 1);
         CHECK_NEAR(wall, 38.5, 4e-5); /* some float steps of 38.5 */
         thinnest = fmin(thinnest, out.transmittance[6][0]);
     }
@@ -184,7 +184,7 @@ static void one_temperature_shows_nothing(void **state)
 static void joined_cuts_keep_the_column(void **state)
 {
     (void)state;
-    VeilVolume v[60];
+    SmokeVolume v[60];
     double depth = 0;
     for (int i = 0; i < 60; i++) {
         v[i] = ball(100 + 0.37 * i, 3, false, 0.005 + 0.0001 * i, i);
@@ -216,7 +216,7 @@ static void pattern_keeps_the_mass(void **state)
     (void)state;
     double sum = 0, plain = 0;
     for (int seed = 0; seed < 40; seed++) {
-        VeilVolume v = ball(100, 1, false, 1e-3, 0);
+        SmokeVolume v = ball(100, 1, false, 1e-3, 0);
         for (int textured = 0; textured < 2; textured++) {
             v.billow = 0.9 * textured;
             v.pattern[0] = 31.7 * seed, v.pattern[1] = 5.1 * seed;
@@ -235,9 +235,9 @@ static void pattern_keeps_the_mass(void **state)
 static void lit_from_the_sun(void **state)
 {
     (void)state;
-    VeilVolume v = ball(100, 5, false, 3, 0);
+    SmokeVolume v = ball(100, 5, false, 3, 0);
     v.d_sun_enu[0] = 1, v.d_sun_enu[1] = 0, v.d_sun_enu[2] = 0;
-    for (int b = 0; b < veil_bands; b++) v.sun[b][0] = 4, v.sun[b][1] = 2, v.sun[b][2] = 1;
+    for (int b = 0; b < smoke_bands; b++) v.sun[b][0] = 4, v.sun[b][1] = 2, v.sun[b][2] = 1;
     one_ray(3.5, 0, INFINITY);
     look(&v, 1);
     const double sunny = out.added[0][0];
@@ -261,7 +261,7 @@ static void lists_miss_nothing(void **state)
 {
     (void)state;
     enum { count = 300, side = 32 };
-    static VeilVolume v[count];
+    static SmokeVolume v[count];
     View view = {.width = 320, .height = 224, .focal_px = 300};
     const double r[9] = {1, 0, 0, 0, 0, 1, 0, -1, 0}; /* columns x right, y down, z north */
     memcpy(view.r_enu_from_cam, r, sizeof r);
@@ -274,7 +274,7 @@ static void lists_miss_nothing(void **state)
     int listed = 0, blocks = 0;
     for (int y = 0; y < view.height; y += side)
         for (int x = 0; x < view.width; x += side, blocks++) {
-            int list[count], n = veil_block(list, v, count, &view, x, y, x + side, y + side);
+            int list[count], n = smoke_cull_block(list, v, count, &view, x, y, x + side, y + side);
             static bool in[count];
             memset(in, 0, sizeof in);
             for (int i = 0; i < n; i++) in[list[i]] = true;
@@ -284,7 +284,7 @@ static void lists_miss_nothing(void **state)
                 const double o[3] = {0, 0, 0};
                 view_ray(d, &view, x + (p % 8 + 0.5) * side / 8, y + (p / 8 + 0.5) * side / 8);
                 for (int i = 0; i < count; i++)
-                    if (veil_column_m(&v[i], o, d, 0, INFINITY) > 0) CHECK(in[i]);
+                    if (smoke_column_m(&v[i], o, d, 0, INFINITY) > 0) CHECK(in[i]);
             }
         }
     CHECK(listed < blocks * count / 10);

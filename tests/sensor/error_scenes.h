@@ -245,7 +245,7 @@ static inline void judge_sum(Tally *tally, const ErrorScene *of)
  * What leaves the surface is what the picture shows less its veil. */
 static inline void judge_tables(Tally *tally, const ErrorScene *of)
 {
-    static Veils veils;
+    static AirPaths veils;
     static Hits  hits;
     static Rays  rays;
     static const AirBand air_of[radiance_bands + 2] = {AIR_R, AIR_G, AIR_B, AIR_MWIR, AIR_LWIR};
@@ -273,7 +273,7 @@ static inline void judge_tables(Tally *tally, const ErrorScene *of)
             for (int k = 0; k < 3; k++) rays.o_enu[k][0] = view->p_enu[k], rays.d_enu[k][0] = d[k];
             hits.range_m[0] = (double)p->range_m[i];
             float temp_k[8] = {p->temp_k[i]};
-            air_veils(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
+            air_path(&veils, air, b, &hits, &rays, thermal ? temp_k : NULL);
             const double *s = air->light.sun_d_enu, level = hypot(d[0], d[1]), range_m = (double)veils.range_m[0];
             const double  azimuth = acos(clamp((d[0] * s[0] + d[1] * s[1]) / (level * hypot(s[0], s[1])), -1, 1));
             const double sun_zenith = 0.5 * pi_rad - frame.sun.elevation_rad,

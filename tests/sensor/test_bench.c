@@ -36,23 +36,23 @@ static Status judged_run(Bench *bench)
 /* ---- the rule of knobs ------------------------------------------------------------------------ */
 
 /* Nine rounds about a time, each so much above or below it. */
-static BenchPoint point_of(const char *setting, double s, double spread, double error, double bytes)
+static BenchSetting point_of(const char *setting, double s, double spread, double error, double bytes)
 {
-    BenchPoint p = {.setting = setting, .time = {.rounds = 9}, .error = error, .bytes = bytes};
+    BenchSetting p = {.setting = setting, .time = {.rounds = 9}, .error = error, .bytes = bytes};
     for (int r = 0; r < 9; r++) p.time.item_s[r] = s * (1 + spread * (r * 5 % 9 - 4) / 4);
     bench_time_finish(&p.time);
     return p;
 }
 
-static const BenchKnob knob = {.name = "a knob", .turned_by = "sensor.<key>", .of = "a work", .error_unit = "%",
+static const BenchTunable knob = {.name = "a knob", .turned_by = "sensor.<key>", .of = "a work", .error_unit = "%",
                                .against = "the whole & more", .stated = 2};
 
 static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
 {
     (void)state;
-    const BenchPoint held = point_of("held", 1e-3, 0.02, 1, 1e6);
+    const BenchSetting held = point_of("held", 1e-3, 0.02, 1, 1e6);
     const struct {
-        BenchPoint point;
+        BenchSetting point;
         bool       dominates, is_dominated;
     } cases[] = {
         {point_of("faster", 0.8e-3, 0.02, 1, 1e6), true, false},
@@ -78,12 +78,12 @@ static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
             CHECK(false);
         }
     }
-    const BenchPoint unknown = cases[14].point;
+    const BenchSetting unknown = cases[14].point;
     CHECK(!bench_on_front(&knob, &unknown, 1, 0));
     /* far below what is stated, a difference is rounding; the faster wins nothing by it either */
-    const BenchPoint tiny = point_of("", 1e-3, 0.02, 1e-9, 0), less = point_of("", 1e-3, 0.02, 1e-10, 0);
+    const BenchSetting tiny = point_of("", 1e-3, 0.02, 1e-9, 0), less = point_of("", 1e-3, 0.02, 1e-10, 0);
     CHECK(!bench_dominates(&knob, &less, &tiny) && !bench_dominates(&knob, &tiny, &less));
-    const BenchPoint three[3] = {held, cases[0].point, cases[4].point};
+    const BenchSetting three[3] = {held, cases[0].point, cases[4].point};
     CHECK(!bench_on_front(&knob, three, 3, 0) && bench_on_front(&knob, three, 3, 1) &&
           bench_on_front(&knob, three, 3, 2));
 }
@@ -92,7 +92,7 @@ static void a_setting_that_is_better_and_nowhere_worse_dominates(void **state)
 static void two_errors_are_judged_together(void **state)
 {
     (void)state;
-    BenchPoint held = point_of("held", 1e-3, 0.02, 1, 1e6), other = point_of("other", 0.5e-3, 0.02, 0.5, 0.5e6);
+    BenchSetting held = point_of("held", 1e-3, 0.02, 1, 1e6), other = point_of("other", 0.5e-3, 0.02, 0.5, 0.5e6);
     CHECK(bench_dominates(&knob, &other, &held)); /* none has a second */
     held.also = other.also = 3;
     CHECK(bench_dominates(&knob, &other, &held));
@@ -104,7 +104,7 @@ static void two_errors_are_judged_together(void **state)
     CHECK(bench_dominates(&knob, &other, &held) && !bench_dominates(&knob, &held, &other));
 }
 
-static bool says(const BenchPoint *point, int count, bool quick, const char *text)
+static bool says(const BenchSetting *point, int count, bool quick, const char *text)
 {
     char words[512];
     bench_verdict(words, &knob, point, count, quick);
@@ -116,7 +116,7 @@ static bool says(const BenchPoint *point, int count, bool quick, const char *tex
 static void verdicts_are_said_in_words(void **state)
 {
     (void)state;
-    BenchPoint three[3] = {point_of("coarse", 0.5e-3, 0.02, 4, 1e6), point_of("middle", 1e-3, 0.02, 1, 1e6),
+    BenchSetting three[3] = {point_of("coarse", 0.5e-3, 0.02, 4, 1e6), point_of("middle", 1e-3, 0.02, 1, 1e6),
                            point_of("fine", 2e-3, 0.02, 0.2, 3e6)};
     CHECK(says(three, 3, false, "nothing is judged"));
     three[1].is_default = true;
@@ -142,7 +142,7 @@ static void noise_neither_hides_nor_makes_a_verdict(void **state)
     enum { draws = 1000 };
     int found = 0, made = 0;
     for (uint32_t n = 0; n < draws; n++) {
-        BenchPoint two[3] = {point_of("held", 1, 0, 1, 0), point_of("a quarter faster", 1, 0, 1, 0),
+        BenchSetting two[3] = {point_of("held", 1, 0, 1, 0), point_of("a quarter faster", 1, 0, 1, 0),
                              point_of("as good", 1, 0, 1, 0)};
         static const double take_s[3] = {1, 0.75, 1};
         for (int k = 0; k < 3; k++) two[k].time.rounds = 7;
@@ -159,7 +159,7 @@ static void noise_neither_hides_nor_makes_a_verdict(void **state)
     CHECK(made < 0.01 * draws);  /* and three times below 1 - 0.9 */
 }
 
-static BenchPoint settings[3];
+static BenchSetting settings[3];
 
 static Status knob_run(Bench *bench)
 {

@@ -54,7 +54,7 @@ static void optical_pictures_of_the_night_are_said_to_be_black(void **state)
             HostPlan plan    = {.start_s = 100, .end_s = k % 2 ? INFINITY : 130};
             Choices  choices = {0};
             CHECK(text_to_unix_s(&unix_s, at[k].utc));
-            choice_say_night(&choices, bands, unix_s - 100, &plan, &frame);
+            choice_report_night(&choices, bands, unix_s - 100, &plan, &frame);
             CHECK(choices.count == (at[k].black && bands >> BAND_OPTICAL & 1));
             if (choices.count) CHECK(says(&choices, "optical: black") && says(&choices, "exercise.utc"));
         }
@@ -71,7 +71,7 @@ static void stamps_that_are_no_clock_are_said(void **state)
     LocalFrame frame = {0};
     double     unix_s;
     for (int i = 0; i < 6; i++)
-        survey.doubts.sender[i] = (ExerciseClockDoubt){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
+        survey.doubts.sender[i] = (ExerciseClockAnomaly){.site = 3, .application = (uint16_t)(40 + i), .pdus = 90, .by_arrival = 89};
     CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "time stamps of 3:40 stand still: 89 of its 90 PDUs count from their arrival"));
     CHECK(says(&choices, "3:43") && !says(&choices, "3:44") && says(&choices, "2 more senders"));
@@ -83,7 +83,7 @@ static void stamps_that_are_no_clock_are_said(void **state)
     choices.count = 0;
     survey.absolute_stamps = 1;
     survey.absolute_left_out = 0;
-    survey.doubts = (ExerciseClockDoubts){.unstamped = 7, .stamped = 93};
+    survey.doubts = (ExerciseClockAnomalies){.unstamped = 7, .stamped = 93};
     CHECK(choose_time(&unix_s, &choices, &survey, &config, &frame) == STATUS_OK);
     CHECK(says(&choices, "21 June, the log's one absolute stamp is too little to go by"));
     CHECK(says(&choices, "clock: 7 of 100 PDUs have no time stamp (0)"));

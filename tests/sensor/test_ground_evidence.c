@@ -62,7 +62,7 @@ static Exercise *fresh(void)
 
 static void gather(GroundEvidence *out, const Exercise *e)
 {
-    assert_int_equal(ground_evidence_gather(out, &e->survey, &frame, catalog, (DisEntityId){0}, (DisEntityId){0}), STATUS_OK);
+    assert_int_equal(ground_evidence_collect(out, &e->survey, &frame, catalog, (DisEntityId){0}, (DisEntityId){0}), STATUS_OK);
 }
 
 /* The ground as replay chooses it, with what it says. */
@@ -127,7 +127,7 @@ static void standing_entities_say_where_the_ground_is(void **state)
     stand(e, sea_mine, 300, 300, 100, 0, 3);
     choose(&land, &contact, &choices, e, "auto");
     for (int t = 0; t < 11; t++) CHECK_NEAR(off_m(&land, e, t), 0, 0.05);
-    CHECK(contact == GROUND_CONTACT_MISFITS);
+    CHECK(contact == GROUND_CONTACT_INCONSISTENT);
     CHECK(says(&choices, "fitted to 11 land entities"));
     CHECK(!strstr(choices.line[choices.count - 1], "not fit"));
     landscape_destroy(&land);

@@ -18,48 +18,48 @@ static HealthSample silent_at(double now_s)
     return h.sample;
 }
 
-static HealthReason judge(HealthTopic topic, HealthSample s) { return health_judge(topic, &s); }
+static HealthReason judge(HealthTopic topic, HealthSample s) { return health_evaluate(topic, &s); }
 
 static void what_is_heard(void **state)
 {
     (void)state;
     HealthSample s = silent_at(109.9);
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.now_s = 110;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_NOTHING);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NOTHING);
     s.junk = 1;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_NOTHING); /* that was long ago */
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NOTHING); /* that was long ago */
     s.any_s = 101;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_JUNK);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_JUNK);
     s.now_s = 105;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_JUNK);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_JUNK);
     s.now_s = 104.9; /* a heartbeat may be to come */
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.now_s = 105;
     s.junk  = 0;
     s.own   = 3;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_OWN);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_OWN);
     s.junk = 1; /* others, too */
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_JUNK);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_JUNK);
     s.other[9] = 1;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_OTHER_EXERCISE);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_OTHER_EXERCISE);
     s.pdus = 1;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_NO_ENTITY);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NO_ENTITY);
     s.usable   = 1;
     s.usable_s = 101;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.away = true;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_AWAY);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_AWAY);
     /* an entity at rest may report once a minute: as long as the table holds it, it is heard */
     s.away     = false;
     s.now_s    = 150;
     s.making   = true;
     s.entities = 1;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_FINE);
     s.entities = 0;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_NOTHING);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NOTHING);
     s.any_s = 149;
-    CHECK(judge(HEALTH_HEAR, s) == HEALTH_NO_ENTITY);
+    CHECK(judge(HEALTH_RECEIVE, s) == HEALTH_NO_ENTITY);
 }
 
 static void what_is_shown(void **state)
@@ -68,30 +68,30 @@ static void what_is_shown(void **state)
     HealthSample s = silent_at(200);
     s.host    = HEALTH_MUNITION;
     s.missing = 10;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_FINE); /* nothing is chosen yet */
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE); /* nothing is chosen yet */
     s.making = true;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_NO_MUNITION);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_NO_MUNITION);
     s.frames = 1;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_MUNITION_GONE);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_MUNITION_GONE);
     s.host = HEALTH_BY_ID;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_HOST_GONE);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_HOST_GONE);
     s.frames = 0;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_NO_HOST);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_NO_HOST);
     s.host = HEALTH_OBSERVER; /* is always there */
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE);
     /* frames are made */
     s.frames    = 50;
     s.missing   = 0;
     s.frame_s   = 200;
     s.others    = 4;
     s.in_view_s = s.visible_s = 191;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_FINE);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_FINE);
     s.visible_s = 190;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_HIDDEN);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_HIDDEN);
     s.in_view_s = 190;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_NO_VIEW);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_NO_VIEW);
     s.others = 0;
-    CHECK(judge(HEALTH_SHOW, s) == HEALTH_ALONE);
+    CHECK(judge(HEALTH_RENDER, s) == HEALTH_NO_TRAFFIC);
 }
 
 static void what_is_sent_lost_and_late(void **state)
@@ -181,7 +181,7 @@ static void hear(Health *h, int exercise, double now_s)
                           .id = {10, 20, 30}, .p_ecef = {6378137, 0, 0}};
     DisDatagram    datagram = {.bytes = octets};
     datagram.octets = (uint32_t)dis_encode_entity_state(octets, sizeof octets, &pdu);
-    health_heard(h, &datagram, 7, true, now_s);
+    health_received(h, &datagram, 7, true, now_s);
 }
 
 static void show(Health *h, double now_s)
@@ -266,9 +266,9 @@ static void malformed_and_other_pdus_are_told_apart(void **state)
     static const uint8_t comment[32] = {7, 7, 22, 5, 0, 0, 0, 0, 0, 32, 0, 0, 0, 1, 0, 1};
     Health               h;
     health_begin(&h, 0);
-    health_heard(&h, &(DisDatagram){.bytes = word, .octets = sizeof word}, 7, true, 1);
-    health_heard(&h, &(DisDatagram){.bytes = word, .octets = 0}, 7, true, 1);
-    health_heard(&h, &(DisDatagram){.bytes = comment, .octets = sizeof comment}, 7, true, 1);
+    health_received(&h, &(DisDatagram){.bytes = word, .octets = sizeof word}, 7, true, 1);
+    health_received(&h, &(DisDatagram){.bytes = word, .octets = 0}, 7, true, 1);
+    health_received(&h, &(DisDatagram){.bytes = comment, .octets = sizeof comment}, 7, true, 1);
     CHECK(h.sample.junk == 2 && h.sample.pdus == 1 && h.sample.type == 22 && h.sample.usable == 0);
     hear(&h, 9, 2);
     CHECK(h.sample.other[9] == 1 && h.sample.usable == 0 && h.sample.usable_s == 0);

@@ -92,7 +92,7 @@ static void broken_tables_are_refused(void **state)
                                        "1,0,0,1,1,1,1,1,1e300\n"};
     char         path[text_file_size], text[16384];
     QualityTable table;
-    log_hush(true);
+    log_suppress(true);
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         snprintf(text, sizeof text, "%s%s", head, rows[k]);
         text_file(path, text);
@@ -108,7 +108,7 @@ static void broken_tables_are_refused(void **state)
     CHECK(quality_open(&table, path) == STATUS_BAD_VALUE);
     remove(path);
     CHECK(quality_open(&table, "/nonexistent/quality.csv") != STATUS_OK);
-    log_hush(false);
+    log_suppress(false);
     /* and what is written reads back */
     const QualityTable t = table_of(good);
     text_file(path, "");
@@ -146,7 +146,7 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
     config = plain;
     assert_int_equal(config_set(&config, "quality.table", path, "test"), STATUS_OK);
     assert_int_equal(config_set(&config, "quality.temperature_rms_k", "0.01", "test"), STATUS_OK);
-    log_hush(true);
+    log_suppress(true);
     assert_int_equal(quality_choose(&config, &choices, 7), STATUS_OK);
     print_message("%s\n", choices.line[0]);
     CHECK(strstr(choices.line[0], "NOT reached") && config.sensor.samples == 4);
@@ -164,7 +164,7 @@ static void given_keys_stay_and_the_choice_is_said(void **state)
     CHECK(config_set(&config, "quality.frame_ms", "0", "test") == STATUS_BAD_VALUE);
     CHECK(config_set(&config, "quality.machine_factor", "-1", "test") == STATUS_BAD_VALUE);
     CHECK(config_set(&config, "quality.radiance_rmse_percent", "nan", "test") == STATUS_BAD_VALUE);
-    log_hush(false);
+    log_suppress(false);
     remove(path);
 }
 

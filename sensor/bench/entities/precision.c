@@ -104,7 +104,7 @@ static void knob_reckoning(Bench *bench)
     static const double below_rad[settings] = {NAN, 0, 0.01, 0.1, 0.5, 1, 2};
     static ReckonSet set[settings];
     BenchWork        work[settings];
-    BenchPoint       point[settings] = {0};
+    BenchSetting       point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].below_rad2 = below_rad[k] * below_rad[k];
         make_bodies(&set[k]);
@@ -119,8 +119,8 @@ static void knob_reckoning(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == 4;
     }
-    bench_turn(bench,
-               &(BenchKnob){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
+    bench_tunable(bench,
+               &(BenchTunable){"dead reckoning", "entities/motion/dead_reckoning.c", "a turning body, 5 s later", "m",
                             "largest, about the body; long double", 1e-11},
                work, point, settings);
 }
@@ -186,7 +186,7 @@ static Status knob_heat(Bench *bench)
     static HeatSet       set[settings];
     const HeatEvidence   moving = {.type = {1, 1, 222, 1, 1, 1, 0}, .appearance = 1u << 22, .speed_mps = 10};
     BenchWork            work[settings];
-    BenchPoint           point[settings] = {0};
+    BenchSetting           point[settings] = {0};
     HeatTable            table;
     char                 path[512];
     if (!etc_path(path, sizeof path, "heat.csv")) return STATUS_BAD_VALUE;
@@ -212,8 +212,8 @@ static Status knob_heat(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench,
-               &(BenchKnob){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
+    bench_tunable(bench,
+               &(BenchTunable){"heat of parts between reports", "entities/effects/heat.c", "four parts at one time", "K",
                             "largest, the exponential in long double", 1e-4},
                work, point, settings);
     return STATUS_OK;

@@ -102,9 +102,9 @@ static void built_in(Bench *bench)
         }
         for (size_t s = 0; s < sizeof none / sizeof *none; s++) {
             Model m = {0};
-            log_hush(true);
+            log_suppress(true);
             taken += parametric_build(&m, names[k], none[s]) == STATUS_OK;
-            log_hush(false);
+            log_suppress(false);
             model_destroy(&m);
         }
     }
@@ -219,9 +219,9 @@ static Status obj_imports(Bench *bench)
         bool        written = file && fputs(obj_files[k].text, file) >= 0;
         if (file) written = fclose(file) == 0 && written;
         bench_progress(bench, obj_files[k].what);
-        log_hush(true);
+        log_suppress(true);
         const Status status = written ? model_import(&m, &report, path) : STATUS_IO;
-        log_hush(false);
+        log_suppress(false);
         judged += (status == STATUS_OK) == isnan(obj_files[k].area_m2);
         if (status == STATUS_OK) {
             look_at_model(&errors, &m, 2);

@@ -22,7 +22,7 @@ typedef struct AirSet {
     Hits     hits;
     Rays     rays;
     float    temp_k[hits_capacity];
-    Veils    veils[AIR_BAND_COUNT];
+    AirPaths    veils[AIR_BAND_COUNT];
     PathAir  path[AIR_BAND_COUNT][paths];
     Status   status;
 } AirSet;
@@ -72,7 +72,7 @@ static void make_paths(AirSet *s)
 static void ask_veils(void *user)
 {
     AirSet *s = user;
-    air_veils_of(s->veils, &s->air, all_bands, &s->hits, &s->rays, s->temp_k);
+    air_paths_of(s->veils, &s->air, all_bands, &s->hits, &s->rays, s->temp_k);
     bench_keep(s->veils);
 }
 
@@ -189,7 +189,7 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
     static double error[eyes * AIR_BAND_COUNT * paths];
     BenchWork     work[ways];
     BenchTime     fill;
-    BenchPoint    seen[ways] = {0}, warm[ways] = {0};
+    BenchSetting    seen[ways] = {0}, warm[ways] = {0};
     for (int w = 0; w < ways; w++) {
         frame[w].way = (AirWay)w;
         for (int e = 0; e < eyes; e++) {
@@ -203,7 +203,7 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
             if (w == AIR_THIN_SCATTERED) thin_scattered(s->air.table);
             if (w > 0) ask_veils(s);
         }
-        seen[w] = (BenchPoint){.setting = name[w], .is_default = w == AIR_TABLED,
+        seen[w] = (BenchSetting){.setting = name[w], .is_default = w == AIR_TABLED,
                                .bytes = table_bytes(frame[w].set[0].air.table, (AirWay)w)};
         warm[w] = seen[w];
         for (int thermal = 0; thermal < 2 && w > 0; thermal++) {
@@ -220,13 +220,13 @@ static Status knob_paths(Bench *bench, AirFrames *frame)
     seen[0].also_is = "of thermal bands, %", warm[0].also_is = "of visible bands, %";
     const BenchWork making = {make_air, &frame[0].set[1], 1};
     bench_time(&fill, bench, &making, 1);
-    bench_turn(bench,
-               &(BenchKnob){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
+    bench_tunable(bench,
+               &(BenchTunable){"air before a pixel, visible", "render/air/air_private.h", "a path, seven bands", "%",
                             "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 2},
                work, seen, ways);
     for (int w = 0; w < ways; w++) warm[w].time = seen[w].time;
     bench_knob(bench,
-               &(BenchKnob){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
+               &(BenchTunable){"air before a pixel, thermal", "render/air/air_private.h", "a path, seven bands", "%",
                             "largest, of radiance seen from 2, 300, 3000 m; the atmosphere asked for it", 0.5},
                warm, ways - 1);
     BenchRow row = bench_row_of("air before a pixel: to make a frame's tables, one thread", &fill, NULL, 1);
@@ -273,7 +273,7 @@ static void knob_sky(Bench *bench, const AirSet *from)
         {"asked one by one", "25 heights x 13 azimuths", "13 heights x 7 azimuths"};
     static SkySet set[settings];
     BenchWork     work[settings];
-    BenchPoint    point[settings] = {0};
+    BenchSetting    point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k] = (SkySet){.from = from, .air = from->air, .asked = k == 0};
         AirSky *sky = &set[k].air.light.sky[AIR_G];
@@ -290,10 +290,10 @@ static void knob_sky(Bench *bench, const AirSet *from)
         double square = 0;
         for (int i = 0; i < skies; i++) square += pow(set[k].out[i] / set[0].out[i] - 1, 2);
         work[k]  = (BenchWork){ask_skies, &set[k], skies};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / skies), .is_default = k == 1,
+        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / skies), .is_default = k == 1,
                                 .bytes = k == 0 ? 1 : k == 1 ? (double)sizeof *sky : 0.35 * (double)sizeof *sky};
     }
-    bench_turn(bench, &(BenchKnob){"radiance of the sky", "render/air/air.h", "a direction, 0.5-0.6 um", "%",
+    bench_tunable(bench, &(BenchTunable){"radiance of the sky", "render/air/air.h", "a direction, 0.5-0.6 um", "%",
                                    "rms, the atmosphere asked for it", 2}, work, point, settings);
 }
 
@@ -336,7 +336,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
     static const int steps[settings] = {8, 24, 0, 0};
     static PlaneSet  set[settings], fine;
     BenchWork        work[settings];
-    BenchPoint       point[settings] = {0};
+    BenchSetting       point[settings] = {0};
     for (int k = -1; k < settings; k++) {
         PlaneSet *s = k < 0 ? &fine : &set[k];
         s->air   = from->air;
@@ -360,7 +360,7 @@ static void knob_planes(Bench *bench, const AirSet *from)
         point[k].is_default = k == 2;
         point[k].bytes      = k < 2 ? 1 : (k == 2 ? 1 : 0.35) * sizeof s->air.light.plane_w_m2[0];
     }
-    bench_turn(bench, &(BenchKnob){"light of the sky on a plane", "render/air/air.h", "a plane, 0.5-0.6 um", "%",
+    bench_tunable(bench, &(BenchTunable){"light of the sky on a plane", "render/air/air.h", "a plane, 0.5-0.6 um", "%",
                                    "largest over that of a level one; 64 x 256 directions or more", 1},
                work, point, settings);
 }

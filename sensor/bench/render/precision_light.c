@@ -6,7 +6,7 @@
 #include "render/materials/planck.h"
 #include "render/light/surface_light.h"
 #include "render/light/thermal.h"
-#include "render/smoke/veil.h"
+#include "render/smoke/smoke_volume.h"
 #include "sensor/bench/turn.h"
 
 #include <stdlib.h>
@@ -84,7 +84,7 @@ static Status knob_planck(Bench *bench)
     static double    own[settings][most_cells][4];
     static float     temp_k[temps];
     BenchWork        work[settings];
-    BenchPoint       point[settings] = {0};
+    BenchSetting       point[settings] = {0};
     PlanckTable     *table;
     const Status     status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
@@ -102,13 +102,13 @@ static Status knob_planck(Bench *bench)
             bench_worst(&worst, fabs(set[k].out[i] - want) / per_k);
         }
         work[k]  = (BenchWork){ask_planck, &set[k], temps};
-        point[k] = (BenchPoint){.setting = setting[k].name, .error = worst, .is_default = set[k].way == PLANCK_EIGHT,
+        point[k] = (BenchSetting){.setting = setting[k].name, .error = worst, .is_default = set[k].way == PLANCK_EIGHT,
                                 .bytes = set[k].cells                   ? set[k].cells * sizeof own[0][0]
                                          : set[k].way == PLANCK_TABLE   ? planck_table_cells * 4.0 * sizeof(double)
                                          : set[k].way == PLANCK_EIGHT   ? planck_table_cells * 4.0 * sizeof(float) : 1};
     }
-    bench_turn(bench,
-               &(BenchKnob){"radiance of a black body", "render/materials/planck.c", "a temperature, 3.4-4.8 um", "K",
+    bench_tunable(bench,
+               &(BenchTunable){"radiance of a black body", "render/materials/planck.c", "a temperature, 3.4-4.8 um", "K",
                             "largest, closed form, 180 .. 1500 K", 5e-4},
                work, point, settings);
     planck_table_destroy(table);
@@ -140,7 +140,7 @@ static Status knob_inverse(Bench *bench)
     static InverseSet set[settings];
     static float      radiance[temps];
     BenchWork         work[settings];
-    BenchPoint        point[settings] = {0};
+    BenchSetting        point[settings] = {0};
     PlanckTable      *table;
     const Status      status = planck_table_create(&table, low_m, high_m);
     if (status != STATUS_OK) return status;
@@ -157,9 +157,9 @@ static Status knob_inverse(Bench *bench)
             bench_worst(&worst, fabs(back - (double)radiance[i]) / per_k);
         }
         work[k]  = (BenchWork){ask_inverse, &set[k], temps};
-        point[k] = (BenchPoint){.setting = name[k], .error = worst, .is_default = k == 2};
+        point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 2};
     }
-    bench_turn(bench, &(BenchKnob){"temperature of a radiance", "render/materials/planck.c", "a radiance, 3.4-4.8 um", "K",
+    bench_tunable(bench, &(BenchTunable){"temperature of a radiance", "render/materials/planck.c", "a radiance, 3.4-4.8 um", "K",
                                    "largest, closed form, 180 .. 1500 K", 1e-6}, work, point, settings);
     planck_table_destroy(table);
     return STATUS_OK;
@@ -174,7 +174,7 @@ typedef struct LightSet {
     SurfaceLight      light;
     Hits              hits;
     Rays              rays;
-    Veils             veils[AIR_BAND_COUNT];
+    AirPaths             veils[AIR_BAND_COUNT];
     uint16_t          material[hits_capacity];
     float             sun[hits_capacity];
     float             texture[hits_capacity], temp_k[hits_capacity], out[AIR_BAND_COUNT][hits_capacity];
@@ -241,12 +241,12 @@ static Status knob_shading(Bench *bench, const Air *air, const Materials *materi
 {
     static LightSet set[2];
     BenchWork       work[2];
-    BenchPoint      point[2] = {{.setting = "one at a time, in double"},
+    BenchSetting      point[2] = {{.setting = "one at a time, in double"},
                                 {.setting = "eight at a time, in float", .is_default = true}};
     for (int k = 0; k < 2; k++) {
         set[k].eight = k, set[k].air = air, set[k].materials = materials;
         make_hits(&set[k]);
-        air_veils_of(set[k].veils, air, (1 << AIR_BAND_COUNT) - 1, &set[k].hits, &set[k].rays, set[k].temp_k);
+        air_paths_of(set[k].veils, air, (1 << AIR_BAND_COUNT) - 1, &set[k].hits, &set[k].rays, set[k].temp_k);
         const Status status = surface_light_prepare(&set[k].light, air, materials, arena);
         if (status != STATUS_OK) return status;
         shade(&set[k]);
@@ -255,7 +255,7 @@ static Status knob_shading(Bench *bench, const Air *air, const Materials *materi
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         for (int i = 0; i < light_hits; i++)
             bench_worst(&point[1].error, 100 * fabs((double)set[1].out[b][i] / (double)set[0].out[b][i] - 1));
-    bench_turn(bench, &(BenchKnob){"light on the ground", "render/light/surface_light.c", "a hit, seven bands", "%",
+    bench_tunable(bench, &(BenchTunable){"light on the ground", "render/light/surface_light.c", "a hit, seven bands", "%",
                                    "largest, the plain form in double", 0.01}, work, point, 2);
     return STATUS_OK;
 }
@@ -265,23 +265,23 @@ static Status knob_shading(Bench *bench, const Air *air, const Materials *materi
 enum { smoke_rays = 128, smoke_volumes = 10 };
 
 typedef struct SmokeSet {
-    int        steps; /* even ones along the ray; 0: veil_rays */
-    VeilVolume volume[smoke_volumes];
+    int        steps; /* even ones along the ray; 0: smoke_trace_rays */
+    SmokeVolume volume[smoke_volumes];
     Rays       rays;
     double     far_m[smoke_rays];
-    VeilRays   out;
+    SmokeRays   out;
 } SmokeSet;
 
 /* Overlapping puffs 100 .. 160 m away, of different brightness; without a pattern. */
 static void make_smoke(SmokeSet *s)
 {
     for (int v = 0; v < smoke_volumes; v++) {
-        VeilVolume *to = &s->volume[v];
-        *to = (VeilVolume){.p_enu = {dice(20, v, 100, 160), dice(21, v, -8, 8), dice(22, v, -4, 4)},
+        SmokeVolume *to = &s->volume[v];
+        *to = (SmokeVolume){.p_enu = {dice(20, v, 100, 160), dice(21, v, -8, 8), dice(22, v, -4, 4)},
                            .axis_enu = {0, 0.6, 0.8},
                            .along_m = dice(23, v, 4, 12), .across_m = dice(24, v, 3, 9), .d_sun_enu = {0, 0, 1}};
         to->range_m = v3_length(to->p_enu);
-        for (int b = 0; b < veil_bands; b++) {
+        for (int b = 0; b < smoke_bands; b++) {
             to->extinction_per_m[b] = dice(25, v, 0.02, 0.3);
             to->source[b]           = dice(26, v, 5, 40);
         }
@@ -300,7 +300,7 @@ static void march(void *user)
     if (s->steps == 0) {
         int list[smoke_volumes];
         for (int v = 0; v < smoke_volumes; v++) list[v] = v;
-        veil_rays(&s->out, s->volume, list, smoke_volumes, &s->rays, s->far_m, 1);
+        smoke_trace_rays(&s->out, s->volume, list, smoke_volumes, &s->rays, s->far_m, 1);
     }
     for (int r = 0; s->steps > 0 && r < smoke_rays; r++) {
         const double o[3] = {0, 0, 0}, d[3] = {s->rays.d_enu[0][r], s->rays.d_enu[1][r], s->rays.d_enu[2][r]};
@@ -309,9 +309,9 @@ static void march(void *user)
         for (int k = 0; k < s->steps; k++) {
             double depth = 0, shown = 0;
             for (int v = 0; v < smoke_volumes; v++) {
-                const VeilVolume *at = &s->volume[v];
+                const SmokeVolume *at = &s->volume[v];
                 const double here = at->extinction_per_m[0]
-                    * veil_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
+                    * smoke_column_m(at, o, d, near_m + k * step_m, near_m + (k + 1) * step_m);
                 depth += here, shown += here * at->source[0];
             }
             if (!(depth > 0)) continue;
@@ -331,7 +331,7 @@ static void knob_smoke(Bench *bench)
                                                "cuts where puffs begin and end"};
     static SmokeSet set[settings], fine = {.steps = 10000};
     BenchWork       work[settings];
-    BenchPoint      point[settings] = {0};
+    BenchSetting      point[settings] = {0};
     make_smoke(&fine);
     if (bench_quick(bench)) fine.steps = 2000;
     march(&fine);
@@ -347,7 +347,7 @@ static void knob_smoke(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"smoke along a ray", "render/smoke/veil.h", "a ray through ten puffs, one band", "%",
+    bench_tunable(bench, &(BenchTunable){"smoke along a ray", "render/smoke/smoke_volume.h", "a ray through ten puffs, one band", "%",
                                    "largest, even steps of 1 cm", 4}, work, point, settings);
 }
 

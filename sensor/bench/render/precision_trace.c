@@ -149,7 +149,7 @@ static Status knob_ground(Bench *bench)
     static double     error[ground_rays], want[ground_rays];
     const Geodetic    origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
     BenchWork         work[settings];
-    BenchPoint        point[settings] = {0};
+    BenchSetting        point[settings] = {0};
     LocalFrame        frame;
     Landscape         landscape = {0};
     Pool             *pool = NULL;
@@ -179,9 +179,9 @@ static Status knob_ground(Bench *bench)
             error[i] = set[k].range_m[i] == want[i] ? 0 : fabs(set[k].range_m[i] - want[i]);
         qsort(error, ground_rays, sizeof *error, bench_by_value);
         work[k]  = (BenchWork){trace_ground, &set[k], ground_rays};
-        point[k] = (BenchPoint){.setting = name[k], .error = error[ground_rays - 1], .is_default = k == settings - 1};
+        point[k] = (BenchSetting){.setting = name[k], .error = error[ground_rays - 1], .is_default = k == settings - 1};
     }
-    bench_turn(bench, &(BenchKnob){"range to the ground", "render/ground/ground.h", "an eye ray over posts of 1 m", "m",
+    bench_tunable(bench, &(BenchTunable){"range to the ground", "render/ground/ground.h", "an eye ray over posts of 1 m", "m",
                                    "largest, line by line in long double", 1e-9}, work, point, settings);
     landscape_destroy(&landscape);
     return STATUS_OK;
@@ -295,7 +295,7 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
     static PartSet set[settings];
     static double  error[part_rays];
     BenchWork      work[settings];
-    BenchPoint     point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     RTCScene       scene = float_scene(device, model, posed, pose);
     for (int k = settings - 1; k >= 0; k--) { /* the last says which triangle */
         int met = 0;
@@ -319,10 +319,10 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
         }
         qsort(error, (size_t)met, sizeof *error, bench_by_value);
         work[k]  = (BenchWork){trace_parts, &set[k], part_rays};
-        point[k] = (BenchPoint){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN,
+        point[k] = (BenchSetting){.setting = name[k], .error = met > 0 ? error[met * 99 / 100] : NAN,
                                 .is_default = k == 2};
     }
-    bench_turn(bench, &(BenchKnob){"range to a part", "render/parts/parts_trace.c", "a ray at a tank 3 km away", "m",
+    bench_tunable(bench, &(BenchTunable){"range to a part", "render/parts/parts_trace.c", "a ray at a tank 3 km away", "m",
                                    "p99, the triangle's plane in long double", 1e-9}, work, point, settings);
     rtcReleaseScene(scene);
 }

@@ -4,7 +4,7 @@
 #include "sensor/bench/render/stability.h"
 #include "render/materials/planck.h"
 #include "render/light/surface_light.h"
-#include "render/smoke/veil.h"
+#include "render/smoke/smoke_volume.h"
 
 #include <stdlib.h>
 
@@ -152,7 +152,7 @@ static double veil_values(void *user, bool quick)
     static const double eye_m[] = {-50, 0, 2, 300, 19999, 20000, 1e6},
         sun_rad[] = {-1.5707963267948966, -0.01, 0, 0.01, 1.5707963267948966};
     static Air   air;
-    static Veils veils[AIR_BAND_COUNT];
+    static AirPaths veils[AIR_BAND_COUNT];
     static Hits  hits;
     static Rays  rays;
     static float temp_k[hits_capacity];
@@ -184,7 +184,7 @@ static double veil_values(void *user, bool quick)
                 hits.range_m[i]  = i % 5 == 0 ? INFINITY : i % 5 == 1 ? 0 : dice_log(&dice, 1e-3, 1e6);
                 temp_k[i]        = i % 9 == 0 ? NAN : (float)dice_log(&dice, 1, 1e4);
             }
-            air_veils_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+            air_paths_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
             for (int b = 0; b < AIR_BAND_COUNT; b++)
                 for (int i = 0; i < hits_capacity; i++) {
                     const float *const share[3] = {veils[b].transmittance, veils[b].sun_transmittance,
@@ -207,23 +207,23 @@ static double smoke(void *user, bool quick)
 {
     enum { volumes = 40 };
     static Rays     rays;
-    static VeilRays out;
+    static SmokeRays out;
     Dice            dice = {.stream = 33};
     double          worst = 0;
     (void)user;
     for (int round = quick ? 5 : 50; round > 0; round--) {
-        VeilVolume v[volumes];
+        SmokeVolume v[volumes];
         int        list[volumes];
         double     far_m[hits_capacity];
         for (int k = 0; k < volumes; k++) {
-            v[k] = (VeilVolume){.along_m = dice_log(&dice, 1e-2, 1e4), .even = k % 2, .d_sun_enu = {0, 0, 1},
+            v[k] = (SmokeVolume){.along_m = dice_log(&dice, 1e-2, 1e4), .even = k % 2, .d_sun_enu = {0, 0, 1},
                                 .billow = k % 3 ? 0 : dice_uniform(&dice, 0, 0.6)};
             v[k].across_m = k % 4 ? v[k].along_m : v[k].along_m * 1e-6;
             dice_direction(v[k].p_enu, &dice);
             v3_scale(v[k].p_enu, dice_log(&dice, 1, 1000), v[k].p_enu);
             dice_direction(v[k].axis_enu, &dice);
             v[k].range_m = v3_length(v[k].p_enu);
-            for (int b = 0; b < veil_bands; b++)
+            for (int b = 0; b < smoke_bands; b++)
                 v[k].extinction_per_m[b] = b == 0 ? 0 : dice_log(&dice, 1e-300, b == 1 ? 1e-290 : 1e12),
                     v[k].source[b] = 7;
             list[k] = k;
@@ -237,9 +237,9 @@ static double smoke(void *user, bool quick)
             for (int c = 0; c < 3; c++) rays.o_enu[c][i] = i % 5 ? 0 : v[k].p_enu[c], rays.d_enu[c][i] = d[c];
             far_m[i] = i % 7 ? INFINITY : i % 3 ? v[k].range_m : 0;
         }
-        veil_rays(&out, v, list, volumes, &rays, far_m, (1 << veil_bands) - 1);
+        smoke_trace_rays(&out, v, list, volumes, &rays, far_m, (1 << smoke_bands) - 1);
         for (int i = 0; i < hits_capacity && out.any; i++)
-            for (int b = 0; b < veil_bands; b++) {
+            for (int b = 0; b < smoke_bands; b++) {
                 const double t = (double)out.transmittance[b][i];
                 worse(&worst, t >= 0 && t <= 1 ? fabs(t + (double)out.added[b][i] / 7 - 1) : INFINITY);
             }
@@ -255,7 +255,7 @@ static double cavity(void *user, bool quick)
 {
     static const float rho[4] = {0, 1e-30f, 0.5f, 1}, gloss[3] = {0, 0.5f, 1}, roughness[4] = {0, 0.001f, 0.2f, 1};
     static Air          air;
-    static Veils        veils[AIR_BAND_COUNT];
+    static AirPaths        veils[AIR_BAND_COUNT];
     static Hits         hits;
     static Rays         rays;
     static SurfaceLight surface;
@@ -293,7 +293,7 @@ static double cavity(void *user, bool quick)
             temp_k[i] = (float)t_k;
             arrives[i] = 1;
         }
-        air_veils_of(veils, &air, 1 << AIR_MWIR | 1 << AIR_LWIR, &hits, &rays, temp_k);
+        air_paths_of(veils, &air, 1 << AIR_MWIR | 1 << AIR_LWIR, &hits, &rays, temp_k);
         float *const       out[AIR_BAND_COUNT] = {[AIR_MWIR] = out_mwir, [AIR_LWIR] = out_lwir};
         const SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k,
             .sun = arrives, .veils = veils};

@@ -18,7 +18,7 @@ typedef struct Lit {
 static void light_at(Lit *lit, double elevation_rad)
 {
     static Air          air;
-    static Veils        veils[AIR_BAND_COUNT];
+    static AirPaths        veils[AIR_BAND_COUNT];
     static Hits         hits;
     static Rays         rays;
     static SurfaceLight surface;
@@ -48,7 +48,7 @@ static void light_at(Lit *lit, double elevation_rad)
         hits.range_m[i] = 10, hits.surface[i] = SURFACE_GRASS, material[i] = 1, temp_k[i] = 290, texture[i] = 1;
         arrives[i] = v3_dot(normal[i], sun.d_enu) > 0; /* as visibility_shadow has it of what faces away */
     }
-    air_veils_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
+    air_paths_of(veils, &air, (1 << AIR_BAND_COUNT) - 1, &hits, &rays, temp_k);
     float       *to[AIR_BAND_COUNT];
     SurfaceBlock block = {.hits = &hits, .rays = &rays, .material = material, .temp_k = temp_k, .sun = arrives,
         .veils = veils};

@@ -25,7 +25,7 @@
 extern char **environ;
 
 enum { rate_hz = 30, path_size = temp_name_size };
-static const double patience_s = 30, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
+static const double retry_interval_s = 30, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
 
 typedef struct Live {
     Bench  *bench;
@@ -96,7 +96,7 @@ static Status run_both(Live *l)
     int        ears[2];
     snprintf(port, sizeof port, "%d", l->port);
     snprintf(to, sizeof to, "127.0.0.1:%d", l->port);
-    snprintf(length, sizeof length, "%.0f", 3 * patience_s); /* if all else fails */
+    snprintf(length, sizeof length, "%.0f", 3 * retry_interval_s); /* if all else fails */
     snprintf(threads, sizeof threads, "%d", bench_threads(l->bench));
     snprintf(rate, sizeof rate, "%d", rate_hz);
     const char *const node[] = {"pitviper",
@@ -134,12 +134,12 @@ static Status run_both(Live *l)
     struct rusage usage = {0}, unused;
     pid_t         listener = out < 0 ? -1 : start(node, ears[1], ears[1]), sender = -1;
     close(ears[1]);
-    bool ok = listener > 0 && hears(ears[0], "listening on", patience_s);
+    bool ok = listener > 0 && hears(ears[0], "listening on", retry_interval_s);
     l->ready_s = wall_clock_s() - begun_s;
     const double sending_s = wall_clock_s();
     if (ok) sender = start(exercise, out, out);
     if (sender > 0) {
-        ok = hears(ears[0], "ground:", patience_s); /* its choices are made: frames begin */
+        ok = hears(ears[0], "ground:", retry_interval_s); /* its choices are made: frames begin */
         if (ok) usleep((useconds_t)(1e6 * (quick ? 3 : 12)));
         kill(sender, SIGTERM);
         ok = finish(sender, 5, &unused) >= 0 && ok;
@@ -148,7 +148,7 @@ static Status run_both(Live *l)
     }
     if (listener > 0) {
         kill(listener, SIGINT);
-        ok = finish(listener, patience_s, &usage) == 0 && ok && sender > 0;
+        ok = finish(listener, retry_interval_s, &usage) == 0 && ok && sender > 0;
     }
     l->resident_mb = 1024e-6 * (double)usage.ru_maxrss;
     close(ears[0]);

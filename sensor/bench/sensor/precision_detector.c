@@ -130,7 +130,7 @@ static Status knob_blur(Bench *bench)
     static double  want[blur_px];
     static Blurring set[settings];
     BenchWork      work[settings];
-    BenchPoint     point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     memset(set, 0, sizeof set);
     make_plane(in, 30, 20);
     blur_by_sums(want, in, &chain);
@@ -146,10 +146,10 @@ static Status knob_blur(Bench *bench)
         run_blur(&set[k]);
         for (int i = 0; i < blur_px; i++) square += ((double)out[i] - want[i]) * ((double)out[i] - want[i]);
         work[k]  = (BenchWork){run_blur, &set[k], blur_px};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / blur_px) / 20,
+        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / blur_px) / 20,
                                 .is_default = k == settings - 1};
     }
-    bench_turn(bench, &(BenchKnob){"optics' blur", "sensor/detector/blur.c", "a pixel", "%",
+    bench_tunable(bench, &(BenchTunable){"optics' blur", "sensor/detector/blur.c", "a pixel", "%",
                                    "rms over contrast, the chain to Nyquist by sums", 0.2}, work, point, settings);
     blur_destroy(set[settings - 1].blur);
     return STATUS_OK;
@@ -203,7 +203,7 @@ static Status knob_photons(Bench *bench)
     static Photons set[settings];
     static double  ratio[settings - 2][1024];
     BenchWork      work[settings];
-    BenchPoint     point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     PhotonTable   *table;
     const double   low = log(planck_band(d.low_m, d.high_m, 180, NULL));
     const double   high_log = log(planck_band(d.low_m, d.high_m, 1500, NULL));
@@ -228,10 +228,10 @@ static Status knob_photons(Bench *bench)
         for (int i = 0; i < photon_count; i++)
             bench_worst(&worst, 100 * fabs(p->electrons[i] / photons_exactly(&d, (double)p->radiance[i]) - 1));
         work[k]  = (BenchWork){count_photons, p, photon_count};
-        point[k] = (BenchPoint){.setting = name[k], .error = worst, .is_default = k == 3,
+        point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 3,
                                 .bytes = k < 3 ? knots[k] * 8.0 : k == 3 ? 4096 * 8.0 : 0};
     }
-    bench_turn(bench, &(BenchKnob){"electrons of a radiance", "sensor/detector/photons.c", "a pixel, 3.4-4.8 um", "%",
+    bench_tunable(bench, &(BenchTunable){"electrons of a radiance", "sensor/detector/photons.c", "a pixel, 3.4-4.8 um", "%",
                                    "largest, the integral over the band, 180 .. 1500 K", 1e-4}, work, point, settings);
     photon_table_destroy(table);
     return STATUS_OK;
@@ -282,7 +282,7 @@ static void knob_counts(Bench *bench, bool display)
     static Converter set[settings];
     char             name[settings][16];
     BenchWork        work[settings];
-    BenchPoint       point[settings] = {0};
+    BenchSetting       point[settings] = {0};
     const int        count = display ? 2 : settings;
     make_plane(in, display ? 280 : 5, 30);
     /* A converter comes behind a detector: steps far finer than its noise bring nothing. 20 mK is a good cooled
@@ -296,16 +296,16 @@ static void knob_counts(Bench *bench, bool display)
         snprintf(name[k], sizeof name[k], "%d bits", bits);
         convert(&set[k]);
         work[k]  = (BenchWork){convert, &set[k], blur_px};
-        point[k] = (BenchPoint){.setting = name[k], .is_default = bits == (display ? 8 : 14),
+        point[k] = (BenchSetting){.setting = name[k], .is_default = bits == (display ? 8 : 14),
                                 .error = convert_rms(&set[k]),
                                 .bytes = (display ? bits : 8 * ((bits + 7) / 8)) / 8.0 * blur_px};
     }
     if (display)
-        bench_turn(bench, &(BenchKnob){"display", "detector.bits", "a pixel", "K",
+        bench_tunable(bench, &(BenchTunable){"display", "detector.bits", "a pixel", "K",
                                        "rms, a plane of 280 .. 320 K before it", 0.05},
                    work, point, count);
     else
-        bench_turn(bench, &(BenchKnob){"converter", "etc/sensors.csv", "a pixel", "K",
+        bench_tunable(bench, &(BenchTunable){"converter", "etc/sensors.csv", "a pixel", "K",
                                        "rms, what is seen; 20 mK of noise, a span of 40 K", 0.0205},
                    work, point, count);
 }
@@ -356,7 +356,7 @@ static void knob_curve(Bench *bench)
     static CurveSet set[settings];
     static float    in[curve_px];
     BenchWork       work[settings];
-    BenchPoint      point[settings] = {0};
+    BenchSetting      point[settings] = {0};
     for (int i = 0; i < curve_px; i++) in[i] = (float)pow(random_uniform(5, 0, 0, (uint64_t)i), 2);
     for (int k = 0; k < settings; k++) {
         double worst = 0;
@@ -366,10 +366,10 @@ static void knob_curve(Bench *bench)
         for (int i = 0; i < curve_px; i++)
             bench_worst(&worst, 255 * fabs(set[k].out[i] / 65535.0 - srgb((double)in[i])));
         work[k]  = (BenchWork){run_curve, &set[k], curve_px};
-        point[k] = (BenchPoint){.setting = name[k], .error = worst, .is_default = k == 2,
+        point[k] = (BenchSetting){.setting = name[k], .error = worst, .is_default = k == 2,
                                 .bytes = k == 2 ? 4098 * 4 : intervals[k] > 0 ? intervals[k] * 4.0 : 0};
     }
-    bench_turn(bench, &(BenchKnob){"display's curve", "sensor/detector/quantise.c", "a pixel", "8-bit steps",
+    bench_tunable(bench, &(BenchTunable){"display's curve", "sensor/detector/quantise.c", "a pixel", "8-bit steps",
                                    "largest, IEC 61966-2-1", 0.03}, work, point, settings);
 }
 

@@ -72,7 +72,7 @@ static Status ray_errors(Precision *p, double (*rms)[ray_settings], double (*rms
 }
 
 /* The worst shot of each setting; returns that of the default. */
-static int worst_shot(BenchPoint *point, double (*error)[ray_settings])
+static int worst_shot(BenchSetting *point, double (*error)[ray_settings])
 {
     int named = 0;
     for (int k = 0; k < ray_settings; k++) {
@@ -89,7 +89,7 @@ static Status knob_rays(Precision *p)
 {
     Rendering  r[ray_settings];
     BenchWork  work[ray_settings];
-    BenchPoint point[ray_settings] = {0};
+    BenchSetting point[ray_settings] = {0};
     double     rms[SHOT_COUNT][ray_settings], rms_k[SHOT_COUNT][ray_settings];
     char       of[96], against[96];
     bench_progress(p->bench, "antialiasing");
@@ -98,19 +98,19 @@ static Status knob_rays(Precision *p)
     for (int k = 0; k < ray_settings; k++) {
         r[k]     = (Rendering){p, p->shot_px[0], p->shot_px[1], &rays[k]};
         work[k]  = (BenchWork){render_all, &r[k], SHOT_COUNT};
-        point[k] = (BenchPoint){.setting = rays[k].name, .is_default = rays[k].is_default};
+        point[k] = (BenchSetting){.setting = rays[k].name, .is_default = rays[k].is_default};
     }
     snprintf(of, sizeof of, "a picture of %d x %d, three bands and truth", p->shot_px[0], p->shot_px[1]);
     worst_shot(point, rms_k);
     for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
     point[0].also_is = "of 8-12 um, K";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms)]);
-    bench_turn(p->bench, &(BenchKnob){"rays a pixel", "sensor.samples, sensor.edge_samples", of, "%", against, 6}, work,
+    bench_tunable(p->bench, &(BenchTunable){"rays a pixel", "sensor.samples, sensor.edge_samples", of, "%", against, 6}, work,
                point, ray_settings);
     for (int k = 0; k < ray_settings; k++) point[k].also = point[k].error;
     point[0].also_is = "of radiance, %";
     snprintf(against, sizeof against, "rms, 16 x 16 rays; worst: %s", precision_shot_name[worst_shot(point, rms_k)]);
-    bench_knob(p->bench, &(BenchKnob){"rays a pixel, 8-12 um", "sensor.samples, sensor.edge_samples", of, "K",
+    bench_knob(p->bench, &(BenchTunable){"rays a pixel, 8-12 um", "sensor.samples, sensor.edge_samples", of, "K",
                                       against, 1},
                point, ray_settings);
     return p->status;
@@ -199,7 +199,7 @@ static Status knob_targets(Precision *p)
 {
     TargetShot shot[target_settings];
     BenchWork  work[target_settings];
-    BenchPoint point[target_settings] = {0};
+    BenchSetting point[target_settings] = {0};
     double     error[target_settings];
     char       name[target_settings][24];
     bench_progress(p->bench, "small targets");
@@ -208,9 +208,9 @@ static Status knob_targets(Precision *p)
         shot[k] = (TargetShot){.p = p, .samples = target_samples[k]};
         snprintf(name[k], sizeof name[k], "%d x %d", target_samples[k], target_samples[k]);
         work[k]  = (BenchWork){render_targets, &shot[k], target_sizes};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * error[k], .is_default = target_samples[k] == 48};
+        point[k] = (BenchSetting){.setting = name[k], .error = 100 * error[k], .is_default = target_samples[k] == 48};
     }
-    bench_turn(p->bench, &(BenchKnob){"rays over a small target", "sensor.target_samples",
+    bench_tunable(p->bench, &(BenchTunable){"rays over a small target", "sensor.target_samples",
                                       "a picture of 32 x 32 and a truck of 25, 5, 0.5 px, three bands", "%",
                                       "W/sr of a truck, worst band, rms over sides and sizes; 400 rays across", 2},
                work, point, bench_quick(p->bench) ? target_settings - 3 : target_settings);
@@ -257,7 +257,7 @@ static Status knob_sky(Precision *p)
     const int    finest = quick ? 1024 : 4096, width = quick ? 12 : 24, height = quick ? 8 : 16;
     SkyRendering r[sky_settings];
     BenchWork    work[sky_settings];
-    BenchPoint   point[sky_settings] = {0};
+    BenchSetting   point[sky_settings] = {0};
     char         name[sky_settings][24], of[96], against[96];
     int          worst = 0;
     Status       status = STATUS_OK;
@@ -291,7 +291,7 @@ static Status knob_sky(Precision *p)
     snprintf(of, sizeof of, "a picture of %d x %d, three bands", width, height);
     snprintf(against, sizeof against, "rms, %d directions and two bounces; worst: %s", finest,
              precision_shot_name[sky_shot[worst]]);
-    bench_turn(p->bench, &(BenchKnob){"light from all around", "sensor.sky_samples", of, "%", against, 25}, work, point,
+    bench_tunable(p->bench, &(BenchTunable){"light from all around", "sensor.sky_samples", of, "%", against, 25}, work, point,
                sky_settings);
     return p->status;
 }

@@ -127,7 +127,7 @@ static Status knob_facets(Bench *bench)
     const double finest_m = bench_quick(bench) ? 0.0002 : 0.0001;
     Faceted      set[sag_settings] = {{.side_px = side_px}}, fine = {.side_px = side_px};
     BenchWork    work[sag_settings];
-    BenchPoint   by_range[sag_settings] = {0}, by_area[sag_settings] = {0};
+    BenchSetting   by_range[sag_settings] = {0}, by_area[sag_settings] = {0};
     double      *o[3], *d[3], *far_m = malloc(1024 * sizeof *far_m);
     char         name[sag_settings][48], against[64];
     Status       status = far_m ? STATUS_OK : STATUS_NO_MEMORY;
@@ -151,7 +151,7 @@ static Status knob_facets(Bench *bench)
     }
     for (int k = 0; k < sag_settings && status == STATUS_OK; k++) {
         snprintf(name[k], sizeof name[k], "%g mm, %d triangles", 1e3 * sag_m[k], set[k].model.triangle_count);
-        by_range[k] = (BenchPoint){.setting = name[k], .bytes = bytes_of(&set[k].model),
+        by_range[k] = (BenchSetting){.setting = name[k], .bytes = bytes_of(&set[k].model),
                                    .is_default = sag_m[k] == 0.002};
         by_area[k]  = by_range[k];
         facet_errors(&by_range[k].error, &by_area[k].error, &set[k], &fine);
@@ -161,11 +161,11 @@ static Status knob_facets(Bench *bench)
         snprintf(against, sizeof against, "p99 of range, a tank of %g mm", 1e3 * finest_m);
         for (int k = 0; k < sag_settings; k++) by_range[k].also = by_area[k].error, by_area[k].also = by_range[k].error;
         by_range[0].also_is = "of silhouettes, %", by_area[0].also_is = "of range, m";
-        bench_turn(bench, &(BenchKnob){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006},
+        bench_tunable(bench, &(BenchTunable){"facets", "models.sag_m", "a ray at a tank", "m", against, 0.006},
                    work, by_range, sag_settings);
         for (int k = 0; k < sag_settings; k++) by_area[k].time = by_range[k].time;
         snprintf(against, sizeof against, "share of its silhouettes, a tank of %g mm", 1e3 * finest_m);
-        bench_knob(bench, &(BenchKnob){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5},
+        bench_knob(bench, &(BenchTunable){"facets, silhouette", "models.sag_m", "a ray at a tank", "%", against, 0.5},
                    by_area,
                    sag_settings);
     }
@@ -232,16 +232,16 @@ static Status knob_bounces(Precision *p)
     const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
     Mirrors    set[settings], fine = {.p = p, .more = most_more, .samples = 2, .eyes = eyes};
     BenchWork  work[settings];
-    BenchPoint point[settings] = {0};
+    BenchSetting point[settings] = {0};
     bench_progress(p->bench, "radar");
     render_mirrors(&fine);
     for (int k = 0; k < settings; k++) {
         set[k]  = (Mirrors){.p = p, .more = more[k], .samples = 2, .eyes = eyes};
         work[k] = (BenchWork){render_mirrors, &set[k], eyes};
         render_mirrors(&set[k]);
-        point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
+        point[k] = (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = more[k] == 0};
     }
-    bench_turn(p->bench, &(BenchKnob){"mirrors of a radar path", "render/radar/radar_image.h",
+    bench_tunable(p->bench, &(BenchTunable){"mirrors of a radar path", "render/radar/radar_image.h",
                                       "a radar picture of 96 x 64, 2 x 2 rays",
                                       "%", "power of pictures, rms; 12 mirrors", 0.1}, work, point, settings);
     return p->status;
@@ -272,15 +272,15 @@ static Status knob_radar_rays(Precision *p)
     const int  eyes = bench_quick(p->bench) ? 2 : radar_eyes;
     Mirrors    set[settings], fine = {.p = p, .samples = bench_quick(p->bench) ? 12 : 16, .eyes = eyes};
     BenchWork  work[settings];
-    BenchPoint point[settings] = {0};
+    BenchSetting point[settings] = {0};
     render_mirrors(&fine);
     for (int k = 0; k < settings; k++) {
         set[k]  = (Mirrors){.p = p, .samples = samples[k], .plain = k == 0, .eyes = eyes};
         work[k] = (BenchWork){render_shots, &set[k], SHOT_COUNT};
         render_mirrors(&set[k]);
-        point[k] = (BenchPoint){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = k == 1};
+        point[k] = (BenchSetting){.setting = name[k], .error = mirrors_error(&set[k], &fine), .is_default = k == 1};
     }
-    bench_turn(p->bench, &(BenchKnob){"rays a pixel, radar", "sensor.samples, sensor.edge_samples",
+    bench_tunable(p->bench, &(BenchTunable){"rays a pixel, radar", "sensor.samples, sensor.edge_samples",
                                       "a picture of four bands and truth", "%",
                                       "power of radar pictures, rms; 12 x 12 rays or more", 20},
                work, point, bench_quick(p->bench) ? settings - 1 : settings);

@@ -107,7 +107,7 @@ Status precision_small_target(Bench *bench)
                               .pitch_m = 25e-6, .integration_s = 1e-4};
     const MtfChain chain = {.cutoff_cyc_px = 25e-6 / (10e-6 * 2), .footprint_px = 0.95, .places = 16, .jitter_px = 0.1};
     BenchWork    work[settings];
-    BenchPoint   point[settings] = {0};
+    BenchSetting   point[settings] = {0};
     PhotonTable *photons = NULL;
     Blur        *blur = NULL;
     SubPixel    *sub = NULL;
@@ -120,10 +120,10 @@ Status precision_small_target(Bench *bench)
                             .ground = (float)planck_band(d.low_m, d.high_m, 280, NULL),
                             .at = {size_px / 2 + 0.3, size_px / 2 + 0.8}};
         work[k]  = (BenchWork){look, &way[k], 1};
-        point[k] = (BenchPoint){.setting = name[k], .error = centroid_error(&way[k]), .is_default = k == 1};
+        point[k] = (BenchSetting){.setting = name[k], .error = centroid_error(&way[k]), .is_default = k == 1};
     }
     if (status == STATUS_OK)
-        bench_turn(bench, &(BenchKnob){"a small target's place", "sensor/detector/subpixel.c",
+        bench_tunable(bench, &(BenchTunable){"a small target's place", "sensor/detector/subpixel.c",
                                        "a picture of 32 x 32 with a target of 0.44 px", "px",
                                        "centroid of counts, rms over places, of an ideal sampled sensor's", 0.0015},
                    work, point, settings);

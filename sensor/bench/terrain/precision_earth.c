@@ -49,7 +49,7 @@ static Status knob_frame(Bench *bench)
     static FrameSet set[settings];
     const Geodetic  origin = {48 * rad_per_deg, 11 * rad_per_deg, 500};
     BenchWork       work[settings];
-    BenchPoint      point[settings] = {0};
+    BenchSetting      point[settings] = {0};
     LocalFrame      frame;
     const Status    status = local_frame_at(&frame, &origin);
     if (status != STATUS_OK) return status;
@@ -71,7 +71,7 @@ static Status knob_frame(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == FRAME_DOUBLE;
     }
-    bench_turn(bench, &(BenchKnob){"Earth to local frame", "terrain/earth/local_frame.h", "a place within 20 km", "m",
+    bench_tunable(bench, &(BenchTunable){"Earth to local frame", "terrain/earth/local_frame.h", "a place within 20 km", "m",
                                    "largest, long double", 1e-10}, work, point, settings);
     return STATUS_OK;
 }
@@ -124,7 +124,7 @@ static void knob_geodetic(Bench *bench)
     static const int   rounds[settings] = {1, 2, 0};
     static GeodeticSet set[settings];
     BenchWork          work[settings];
-    BenchPoint         point[settings] = {0};
+    BenchSetting         point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].rounds = rounds[k];
         for (int i = 0; i < places; i++) {
@@ -147,8 +147,8 @@ static void knob_geodetic(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench,
-               &(BenchKnob){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
+    bench_tunable(bench,
+               &(BenchTunable){"latitude, longitude, height", "terrain/earth/geodesy.cpp", "a place up to 500 km high",
                             "m", "largest, back again in long double", 1e-8},
                work, point, settings);
 }
@@ -217,11 +217,11 @@ static void knob_geoid(Bench *bench)
     static const int points[settings] = {2, 4, 2, 0, 6, 8}, stride[settings] = {2, 2, 1, 1, 1, 1};
     static GeoidSet  set[settings], fine;
     BenchWork        work[settings];
-    BenchPoint       point[settings] = {0};
+    BenchSetting       point[settings] = {0};
     Geoid            geoid;
-    log_hush(true);
+    log_suppress(true);
     const Status status = geoid_open(&geoid, NULL);
-    log_hush(false);
+    log_suppress(false);
     if (status != STATUS_OK) {
         const BenchRow row = bench_row("geoid between posts: no grid here (apt-get install proj-data)");
         bench_add(bench, &row);
@@ -239,10 +239,10 @@ static void knob_geoid(Bench *bench)
         double square = 0;
         for (int i = 0; i < geoid_places; i++) square += (s->n_m[i] - fine.n_m[i]) * (s->n_m[i] - fine.n_m[i]);
         work[k]  = (BenchWork){ask_geoid, s, geoid_places};
-        point[k] = (BenchPoint){.setting = name[k], .error = sqrt(square / geoid_places), .is_default = k == 3,
+        point[k] = (BenchSetting){.setting = name[k], .error = sqrt(square / geoid_places), .is_default = k == 3,
                                 .bytes = 4.0 * geoid.rows * geoid.columns / (stride[k] * stride[k])};
     }
-    bench_turn(bench, &(BenchKnob){"geoid between posts", "terrain/earth/geoid.c", "a place between 74 S and 74 N", "m",
+    bench_tunable(bench, &(BenchTunable){"geoid between posts", "terrain/earth/geoid.c", "a place between 74 S and 74 N", "m",
                                    "rms, 16 x 16 posts", 0.03}, work, point, settings);
     geoid_close(&geoid);
 }
@@ -291,7 +291,7 @@ static void knob_sun(Bench *bench)
     static SunSet set[settings] = {{.hold_s = -1, .frames = 1}, {60, 1800, {0}}, {10, 300, {0}}, {1, 30, {0}},
                                    {0, 1, {0}}};
     BenchWork     work[settings];
-    BenchPoint    point[settings] = {0};
+    BenchSetting    point[settings] = {0};
     const double  up_rad = (90 - spa_zenith_deg) * rad_per_deg, az_rad = spa_azimuth_deg * rad_per_deg;
     const double  want[3] = {cos(up_rad) * sin(az_rad), cos(up_rad) * cos(az_rad), sin(up_rad)};
     for (int k = 0; k < settings; k++) {
@@ -299,10 +299,10 @@ static void knob_sun(Bench *bench)
         ask_sun(&set[k]);
         v3_sub(off, set[k].d_enu, want);
         work[k]  = (BenchWork){ask_sun, &set[k], set[k].frames};
-        point[k] = (BenchPoint){.setting = name[k], .error = v3_length(off) / rad_per_deg,
+        point[k] = (BenchSetting){.setting = name[k], .error = v3_length(off) / rad_per_deg,
                                 .is_default = k == settings - 1};
     }
-    bench_turn(bench, &(BenchKnob){"the sun's place", "terrain/earth/sun.c", "a frame of 30 a second", "deg",
+    bench_tunable(bench, &(BenchTunable){"the sun's place", "terrain/earth/sun.c", "a frame of 30 a second", "deg",
                                    "NREL's published place, at the end of the time", 0.0005}, work, point, settings);
 }
 
@@ -331,7 +331,7 @@ static void knob_powers(Bench *bench)
         {"the library's in float", "the library's in double, narrowed", "eight at a time, degree 5"};
     static PowerSet set[settings];
     BenchWork       work[settings];
-    BenchPoint      point[settings] = {0};
+    BenchSetting      point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         set[k].way = k;
         for (int i = 0; i < powers; i++) set[k].in[i] = (float)(-100 + 200 * random_uniform(34, 0, 0, (uint64_t)i));
@@ -343,7 +343,7 @@ static void knob_powers(Bench *bench)
         point[k].setting    = name[k];
         point[k].is_default = k == settings - 1;
     }
-    bench_turn(bench, &(BenchKnob){"powers of two", "pitviper_simd.h", "a number of -100 .. 100", "%",
+    bench_tunable(bench, &(BenchTunable){"powers of two", "pitviper_simd.h", "a number of -100 .. 100", "%",
                                    "largest, long double", 2e-5},
                work, point, settings);
 }

@@ -69,7 +69,7 @@ static Status knob_spacing(Bench *bench, const LocalFrame *frame)
     const double             half_m = bench_quick(bench) ? 300 : 1000;
     MakeSet    set[settings];
     BenchWork  work[settings];
-    BenchPoint point[settings] = {0};
+    BenchSetting point[settings] = {0};
     Landscape  fine = {0};
     LandscapeConfig config = landscape_default_config();
     config.half_width_m = half_m, config.horizon_m = 4 * half_m, config.spacing_m = 1;
@@ -80,13 +80,13 @@ static Status knob_spacing(Bench *bench, const LocalFrame *frame)
         set[k]  = (MakeSet){.config = config, .frame = frame};
         work[k] = (BenchWork){make_land, &set[k], 1};
         status  = thinned(&thin, &fine.elevation.level[0], step[k]);
-        point[k] = (BenchPoint){.setting = name[k], .error = status == STATUS_OK
+        point[k] = (BenchSetting){.setting = name[k], .error = status == STATUS_OK
                                 ? rms_m(&thin, &fine.elevation, 0, 0.9 * half_m) : NAN,
                                 .is_default = step[k] == 4, .bytes = bytes_of(&thin)};
         elevation_destroy(&thin);
     }
     if (status == STATUS_OK)
-        bench_turn(bench, &(BenchKnob){"spacing of invented ground", "terrain.spacing_m", "to make the ground", "m",
+        bench_tunable(bench, &(BenchTunable){"spacing of invented ground", "terrain.spacing_m", "to make the ground", "m",
                                        "rms of height, posts of 1 m", 0.1}, work, point, settings);
     landscape_destroy(&fine);
     return status;
@@ -101,7 +101,7 @@ static Status knob_reach(Bench *bench, const LocalFrame *frame)
     const bool               quick = bench_quick(bench);
     MakeSet    set[settings];
     BenchWork  work[settings];
-    BenchPoint point[settings] = {0};
+    BenchSetting point[settings] = {0};
     LandscapeConfig config = landscape_default_config();
     Landscape  fine = {0}, land;
     if (quick) config.spacing_m = 16; /* a quarter as fine: the same levels from four times as far */
@@ -115,14 +115,14 @@ static Status knob_reach(Bench *bench, const LocalFrame *frame)
         if (status != STATUS_OK) break;
         /* just outside the level, where it shows most: 1 / 989 rad is a pixel of 720 across 40 degrees */
         const double near_m = 1.02 * half_m[k], far_m = fmin(1.5 * half_m[k], 7900);
-        point[k] = (BenchPoint){.setting = name[k],
+        point[k] = (BenchSetting){.setting = name[k],
                                 .error = rms_m(&land.elevation, &fine.elevation, near_m, far_m) / near_m * 989,
                                 .is_default = half_m[k] == 6000, .bytes = bytes_of(&land.elevation)};
         landscape_destroy(&land);
     }
     if (status == STATUS_OK)
-        bench_turn(bench,
-                   &(BenchKnob){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground",
+        bench_tunable(bench,
+                   &(BenchTunable){"reach of the finest level", "terrain/landscape/landscape.c", "to make the ground",
                                 "px",
                                 quick ? "rms just outside it, the finest level; posts of 16 m"
                                       : "rms just outside it, the finest level; 720 px across 40 degrees",
@@ -175,7 +175,7 @@ static void knob_posts(Bench *bench)
     static const double step_m[settings] = {1, 1 / 8.0, 1 / 64.0, 1 / 256.0, 0};
     static PostSet set[settings];
     BenchWork      work[settings];
-    BenchPoint     point[settings] = {0};
+    BenchSetting     point[settings] = {0};
     for (int k = 0; k < settings; k++) {
         PostSet *s = &set[k];
         s->z0_m = 384, s->step_m = step_m[k];
@@ -194,7 +194,7 @@ static void knob_posts(Bench *bench)
         point[k].is_default = k == 3;
         point[k].bytes      = (s->step_m > 0 ? 2.0 : 4.0) * side_posts * side_posts;
     }
-    bench_turn(bench, &(BenchKnob){"height of a post", "terrain/landscape/levels.c", "a height between posts", "m",
+    bench_tunable(bench, &(BenchTunable){"height of a post", "terrain/landscape/levels.c", "a height between posts", "m",
                                    "largest, double, hills of 80 m", 0.002}, work, point, settings);
 }
 
@@ -239,7 +239,7 @@ static void knob_texture(Bench *bench, const Landscape *land)
     static const int  side[settings] = {1, 2, 4, 8, 0};
     static TextureSet set[settings], fine;
     BenchWork         work[settings];
-    BenchPoint        point[settings] = {0};
+    BenchSetting        point[settings] = {0};
     for (int k = -1; k < settings; k++) {
         TextureSet *s = k < 0 ? &fine : &set[k];
         s->land = land, s->side = k < 0 ? (bench_quick(bench) ? 24 : most_side) : side[k];
@@ -254,10 +254,10 @@ static void knob_texture(Bench *bench, const Landscape *land)
         for (int i = 0; i < spots; i++) square += ((double)s->out[i] - (double)fine.out[i])
             * ((double)s->out[i] - (double)fine.out[i]);
         work[k]  = (BenchWork){ask_textures, s, spots};
-        point[k] = (BenchPoint){.setting = name[k], .error = 100 * sqrt(square / spots),
+        point[k] = (BenchSetting){.setting = name[k], .error = 100 * sqrt(square / spots),
                                 .is_default = k == settings - 1};
     }
-    bench_turn(bench, &(BenchKnob){"texture under a pixel", "terrain/landscape/texture.c",
+    bench_tunable(bench, &(BenchTunable){"texture under a pixel", "terrain/landscape/texture.c",
                                    "a pixel of 0.1 .. 4 m on grass", "%",
                                    bench_quick(bench) ? "rms of brightness, 24 x 24 places"
                                        : "rms of brightness, 48 x 48 places", 4},

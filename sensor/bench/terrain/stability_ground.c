@@ -310,9 +310,9 @@ static Status imports(Bench *bench)
                                      .vertical = ELEVATION_ELLIPSOID,
                                      .horizon_m = horizon_m,
                                      .spacing_m = f->step_deg * 1e5};
-        log_hush(true);
+        log_suppress(true);
         const bool taken = elevation_import(&ground, &report, &from, &frame, NULL, 0) == STATUS_OK;
-        log_hush(false);
+        log_suppress(false);
         judged += taken == isnan(f->low_m);
         if (taken) look_at_file(&absent, &over_m, &ground, &frame, f, bench_quick(bench) ? 3000 : 100000);
         elevation_destroy(&ground);

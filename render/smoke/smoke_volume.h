@@ -1,53 +1,53 @@
-/* render/smoke/veil.h: smoke, dust and flame along rays: out = in * transmittance + added.
+/* render/smoke/smoke_volume.h: smoke, dust and flame along rays: out = in * transmittance + added.
  *
  * A veil is a set of spheroids, each a grey medium of one temperature and albedo a band. Along a ray everything in
  * front of the solid hit is put together in order of depth: the ray is cut where volumes begin and end, and within a
  * cut the column of each is exact (a polynomial), so a transmittance is exact whatever overlaps. What a cut gives is
  * the mean of its volumes' sources weighted by their depths: exact where volumes are even inside or alone, and while
- * there are no more than veil_cuts boundaries; beyond that neighbouring cuts are joined. tests/render/test_veil.c. */
-#ifndef RENDER_SMOKE_VEIL_H
-#define RENDER_SMOKE_VEIL_H
+ * there are no more than smoke_segments_max boundaries; beyond that neighbouring cuts are joined. tests/render/test_veil.c. */
+#ifndef RENDER_SMOKE_SMOKE_VOLUME_H
+#define RENDER_SMOKE_SMOKE_VOLUME_H
 
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
 
 /* Bands in the order of entities/effects.h. */
-enum { veil_bands = 7, veil_orders = 3, veil_cuts = 24, veil_together = 96 };
+enum { smoke_bands = 7, smoke_scatter_orders = 3, smoke_segments_max = 24, veil_together = 96 };
 
-typedef struct VeilVolume {
+typedef struct SmokeVolume {
     double p_enu[3], axis_enu[3];
     double along_m, across_m;              /* half axes */
     double range_m;                        /* of the centre, from the eye */
     bool   even;                           /* one density inside; else (1 - q^2)^2 from centre to surface */
-    double extinction_per_m[veil_bands];   /* at the centre */
+    double extinction_per_m[smoke_bands];   /* at the centre */
     /* What a thick piece of it shows at the eye, W/(m2 sr), the air between taken into account: by itself with what it
      * scatters of the surroundings; half the difference from top to bottom; and by sunlight, to be taken times
      * exp(-depth / 2^n) of the way to the sun. */
-    double source[veil_bands], from_top[veil_bands], sun[veil_bands][veil_orders];
-    double sun_depth[veil_bands];          /* of other volumes before the sun */
+    double source[smoke_bands], from_top[smoke_bands], sun[smoke_bands][smoke_scatter_orders];
+    double sun_depth[smoke_bands];          /* of other volumes before the sun */
     double d_sun_enu[3];
     double billow, pattern[3];             /* depth of the pattern; where it begins */
-} VeilVolume;
+} SmokeVolume;
 
 /* What the veil does to each ray of a block. */
-typedef struct VeilRays {
+typedef struct SmokeRays {
     bool  any;
-    float transmittance[veil_bands][hits_capacity], added[veil_bands][hits_capacity];
-} VeilRays;
+    float transmittance[smoke_bands][hits_capacity], added[smoke_bands][hits_capacity];
+} SmokeRays;
 
 /* Volumes that columns column0_px .. column1_px, rows row0_px .. row1_px may see, nearest first: list has room for
  * count. volume: sorted by range_m. */
-int  veil_block(int *list, const VeilVolume *volume, int count, const View *view, double column0_px, double row0_px,
+int  smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
                 double column1_px, double row1_px);
 /* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than veil_together
  * volumes on a ray each further veil_together, in order of range, are put behind the ones before: transmittances stay
  * exact, and what is added is that of clouds one behind the other. */
-void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int count, const Rays *rays,
+void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands);
-void veil_apply(float *radiance, const VeilRays *veil, int band, int count);
+void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count);
 
 /* Column of a volume of unit peak density between two distances along o + s d, m; no pattern. */
-double veil_column_m(const VeilVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
+double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m,
                      double to_m);
 
 #endif

@@ -1,4 +1,4 @@
-/* render/air/air_veils.c: what the path does to thousands of samples a frame: eight at a time, every band from one look at
+/* render/air/air_path.c: what the path does to thousands of samples a frame: eight at a time, every band from one look at
  * where they end. A sample's answer hangs on its own path alone, whatever comes beside it. */
 #include "render/air/air_private.h"
 
@@ -209,7 +209,7 @@ static inline F32x8 transmit(F32x8 depth, const Places *p)
     return f32x8_exp2(sub(f32x8_set(0), mul(p->near, depth)));
 }
 
-static inline void store_veil(Veils *out, int i, F32x8 emitted, F32x8 sun, F32x8 own, F32x8 added)
+static inline void store_path(AirPaths *out, int i, F32x8 emitted, F32x8 sun, F32x8 own, F32x8 added)
 {
     _mm256_storeu_ps(out->transmittance + i, emitted);
     _mm256_storeu_ps(out->sun_transmittance + i, sun);
@@ -218,7 +218,7 @@ static inline void store_veil(Veils *out, int i, F32x8 emitted, F32x8 sun, F32x8
 }
 
 /* Eight paths, from sample i on, in the bands whose out is not NULL. */
-static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const float *range_m, const Rays *rays,
+static void path_lanes(AirPaths *const out[AIR_BAND_COUNT], const Look *look, const float *range_m, const Rays *rays,
                        const float *temp_k, int i)
 {
     const AirTable *table = look->table;
@@ -242,7 +242,7 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
             if (band == AIR_MWIR)
                 mwir_sun = sun, mwir_scattered = added;
             else
-                store_veil(out[band], i, sun, sun, sun, added);
+                store_path(out[band], i, sun, sun, sun, added);
         }
     }
     if (!out[AIR_MWIR] && !out[AIR_LWIR]) return;
@@ -263,7 +263,7 @@ static void veil_eight(Veils *const out[AIR_BAND_COUNT], const Look *look, const
         const F32x8 emitted = temp_k ? transmit(f32x8_lerp(v[air_warm_low], v[air_warm_high], p.temp), &p) : sun;
         F32x8 added = mul(sub(f32x8_set(1), own), v[air_warm_source]);
         if (band == AIR_MWIR) added = add(added, mwir_scattered);
-        store_veil(out[band], i, emitted, sun, own, added);
+        store_path(out[band], i, emitted, sun, own, added);
     }
 }
 
@@ -296,7 +296,7 @@ static bool any_ends(const float *range_m)
     return _mm256_movemask_ps(_mm256_cmp_ps(_mm256_loadu_ps(range_m), f32x8_set(INFINITY), _CMP_LT_OQ)) != 0;
 }
 
-static void veil_even(Veils *out, const Air *air, AirBand band, const Hits *hits)
+static void path_homogeneous(AirPaths *out, const Air *air, AirBand band, const Hits *hits)
 {
     const float radiance = air->sky_eye[band].thermal_w_m2_sr[0];
     for (int i = 0; i < hits->count; i++) {
@@ -308,12 +308,12 @@ static void veil_even(Veils *out, const Air *air, AirBand band, const Hits *hits
     }
 }
 
-static void veil_bands(Veils *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
+static void smoke_bands(AirPaths *const out[AIR_BAND_COUNT], const Air *air, const Hits *hits, const Rays *rays,
                        const float *temp_k)
 {
     if (!air->table) {
         for (int b = 0; b < AIR_BAND_COUNT; b++)
-            if (out[b]) veil_even(out[b], air, (AirBand)b, hits);
+            if (out[b]) path_homogeneous(out[b], air, (AirBand)b, hits);
         return;
     }
     const Look look = look_from(air);
@@ -321,7 +321,7 @@ static void veil_bands(Veils *const out[AIR_BAND_COUNT], const Air *air, const H
     find_ranges(range_m, air, hits, rays);
     for (int i = hits->count; i < hits_capacity && i % 8 != 0; i++) range_m[i] = 0;
     for (int i = 0; i < hits->count; i += 8)
-        if (any_ends(range_m + i)) veil_eight(out, &look, range_m, rays, temp_k, i);
+        if (any_ends(range_m + i)) path_lanes(out, &look, range_m, rays, temp_k, i);
 
     for (int b = 0; b < AIR_BAND_COUNT; b++)
         if (out[b]) memcpy(out[b]->range_m, range_m, (size_t)hits->count * sizeof *range_m);
@@ -338,17 +338,17 @@ static void veil_bands(Veils *const out[AIR_BAND_COUNT], const Air *air, const H
     }
 }
 
-void air_veils_of(Veils out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
+void air_paths_of(AirPaths out[AIR_BAND_COUNT], const Air *air, unsigned bands, const Hits *hits, const Rays *rays,
                   const float *temp_k)
 {
-    Veils *wanted[AIR_BAND_COUNT];
+    AirPaths *wanted[AIR_BAND_COUNT];
     for (int b = 0; b < AIR_BAND_COUNT; b++) wanted[b] = bands >> b & 1 ? &out[b] : NULL;
-    veil_bands(wanted, air, hits, rays, temp_k);
+    smoke_bands(wanted, air, hits, rays, temp_k);
 }
 
-void air_veils(Veils *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k)
+void air_path(AirPaths *out, const Air *air, AirBand band, const Hits *hits, const Rays *rays, const float *temp_k)
 {
-    Veils *wanted[AIR_BAND_COUNT] = {NULL};
+    AirPaths *wanted[AIR_BAND_COUNT] = {NULL};
     wanted[band] = out;
-    veil_bands(wanted, air, hits, rays, temp_k);
+    smoke_bands(wanted, air, hits, rays, temp_k);
 }

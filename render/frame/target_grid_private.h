@@ -1,24 +1,24 @@
-/* render/frame/footprint_private.h: a small target as footprint.c samples it and footprint_picture.c puts it on. */
-#ifndef RENDER_FRAME_FOOTPRINT_PRIVATE_H
-#define RENDER_FRAME_FOOTPRINT_PRIVATE_H
+/* render/frame/target_grid_private.h: a small target as footprint.c samples it and footprint_picture.c puts it on. */
+#ifndef RENDER_FRAME_TARGET_GRID_PRIVATE_H
+#define RENDER_FRAME_TARGET_GRID_PRIVATE_H
 
-#include "render/frame/footprint.h"
+#include "render/frame/target_grid.h"
 
 /* The target's sample nearest the centre of a pixel. */
-typedef struct FootprintTruth {
+typedef struct TargetGridTruth {
     double   square_px; /* of its distance */
     float    range_m, temp_k, normal[3];
     uint16_t part, material;
-} FootprintTruth;
+} TargetGridTruth;
 
-struct Footprint {
+struct TargetGrid {
     int     entity;                    /* snapshot index */
     double  box[4];                    /* of all its vertices, px */
     int     columns, rows;             /* cells; 0: seen edge-on, nothing to sample */
     int     x0, y0, x1, y1;            /* pixels that it may touch */
     double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
     double *area;                      /* px, a pixel */
-    FootprintTruth *truth;             /* a pixel; NULL: not wanted */
+    TargetGridTruth *truth;             /* a pixel; NULL: not wanted */
     /* over the target, px within the image */
     double  visible, amodal, hidden_ground, hidden_entity;
     double  veiled[BAND_COUNT];          /* area x what the veil takes */

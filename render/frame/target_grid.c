@@ -1,4 +1,4 @@
-/* render/frame/footprint.c: targets that are small on the image, sampled over their own boxes.
+/* render/frame/target_grid.c: targets that are small on the image, sampled over their own boxes.
  *
  * A target of a few pixels, or of a hundredth of one, falls between the samples of the pixels or does not, and
  * flickers. Here its box on the image is divided into cells, always so many across the target whatever its size, and
@@ -8,7 +8,7 @@
  * pixel is its own value times what the footprints leave of it, plus the footprints.
  *
  * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
-#include "render/frame/footprint_private.h"
+#include "render/frame/target_grid_private.h"
 
 #include <stdlib.h>
 
@@ -86,7 +86,7 @@ static Status limit_cells(int *count, Job *job, Arena *arena)
     return STATUS_OK;
 }
 
-static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
+static Status plan_one(TargetGrid *f, const Job *job, int index, Arena *arena)
 {
     const View *view = &job->request->view;
     f->entity = index;
@@ -114,7 +114,7 @@ static Status plan_one(Footprint *f, const Job *job, int index, Arena *arena)
     return ok ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-Status footprints_plan(Job *job, Arena *arena)
+Status target_grids_plan(Job *job, Arena *arena)
 {
     const size_t px = (size_t)job->picture->width * (size_t)job->picture->height;
     int          count = 0;
@@ -125,8 +125,8 @@ Status footprints_plan(Job *job, Arena *arena)
     job->footprint = arena_alloc(arena, (size_t)count, sizeof *job->footprint);
     job->picture->covered   = arena_alloc(arena, px, sizeof *job->picture->covered);
     job->coverer   = arena_alloc(arena, px, sizeof *job->coverer);
-    job->footprint_turn = arena_alloc(arena, (size_t)count, sizeof *job->footprint_turn);
-    if (!job->footprint || !job->footprint_turn || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
+    job->target_grid_order = arena_alloc(arena, (size_t)count, sizeof *job->target_grid_order);
+    if (!job->footprint || !job->target_grid_order || !job->picture->covered || !job->coverer) return STATUS_NO_MEMORY;
     Status status = STATUS_OK;
     for (int i = 0; i < job->scene.snapshot->count && status == STATUS_OK; i++)
         if (job->is_small[i]) status = plan_one(&job->footprint[job->footprints++], job, i, arena);
@@ -136,14 +136,14 @@ Status footprints_plan(Job *job, Arena *arena)
     }
     /* the largest first, so that no worker is left with one when the others are done */
     for (int n = 0; n < job->footprints; n++) {
-        const Footprint *f = &job->footprint[n];
+        const TargetGrid *f = &job->footprint[n];
         int              at = n;
         for (; at > 0; at--) {
-            const Footprint *before = &job->footprint[job->footprint_turn[at - 1]];
+            const TargetGrid *before = &job->footprint[job->target_grid_order[at - 1]];
             if (before->columns * before->rows >= f->columns * f->rows) break;
-            job->footprint_turn[at] = job->footprint_turn[at - 1];
+            job->target_grid_order[at] = job->target_grid_order[at - 1];
         }
-        job->footprint_turn[at] = n;
+        job->target_grid_order[at] = n;
     }
     return status;
 }
@@ -154,7 +154,7 @@ typedef struct Span {
     double low, high; /* px */
 } Span;
 
-static Span cell_span(const Footprint *f, int axis, int cell)
+static Span cell_span(const TargetGrid *f, int axis, int cell)
 {
     const int    cells = axis == 0 ? f->columns : f->rows;
     const double low = f->box[axis], length = f->box[axis + 2] - low;
@@ -168,13 +168,13 @@ static double overlap(Span a, double low, double high)
 }
 
 /* One number for each cell of each entity: what random choices for a sample depend on; none is a pixel's. */
-static uint64_t cell_key(const Footprint *f, int cell)
+static uint64_t cell_key(const TargetGrid *f, int cell)
 {
     return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
 }
 
 /* Area of a cell within the image, px. */
-static double cell_area(const Footprint *f, int cell)
+static double cell_area(const TargetGrid *f, int cell)
 {
     return overlap(cell_span(f, 0, cell % f->columns), f->x0, f->x1) *
            overlap(cell_span(f, 1, cell / f->columns), f->y0, f->y1);
@@ -182,7 +182,7 @@ static double cell_area(const Footprint *f, int cell)
 
 /* Where a cell is sampled: columns shifted among rows, and rows among columns, by the golden section, so that an edge
  * along either is met in many more steps than there are cells across, and one along a diagonal, too. */
-static void cell_sample(double at_px[2], const Footprint *f, int cell)
+static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
 {
     static const double golden = 0.6180339887498949;
     const int    column = cell % f->columns, row = cell / f->columns;
@@ -192,9 +192,9 @@ static void cell_sample(double at_px[2], const Footprint *f, int cell)
 }
 
 /* visit(user, pixel of the footprint, area) for each pixel that a cell lies over. */
-typedef void VisitPixel(void *user, const Footprint *f, int pixel, int x, int y, double area);
+typedef void VisitPixel(void *user, const TargetGrid *f, int pixel, int x, int y, double area);
 
-static void over_pixels(const Footprint *f, int cell, VisitPixel *visit, void *user)
+static void over_pixels(const TargetGrid *f, int cell, VisitPixel *visit, void *user)
 {
     const Span across = cell_span(f, 0, cell % f->columns), down = cell_span(f, 1, cell / f->columns);
     for (int y = (int)fmax(f->y0, floor(down.low)); y < f->y1 && y < down.high; y++)
@@ -208,7 +208,7 @@ typedef struct Splat {
     double *sum, value;
 } Splat;
 
-static void splat_pixel(void *user, const Footprint *f, int pixel, int x, int y, double area)
+static void splat_pixel(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
 {
     (void)f, (void)x, (void)y;
     const Splat *splat = user;
@@ -216,7 +216,7 @@ static void splat_pixel(void *user, const Footprint *f, int pixel, int x, int y,
 }
 
 /* Gives the samples' values of a plane to the pixels. */
-static void splat(Footprint *f, const int *cell, int count, const float *value, int plane)
+static void splat(TargetGrid *f, const int *cell, int count, const float *value, int plane)
 {
     for (int i = 0; i < count; i++) {
         Splat of = {f->sum[plane], value[i]};
@@ -234,21 +234,21 @@ typedef struct TruthSample {
     double         at_px[2];
 } TruthSample;
 
-static void offer_truth(void *user, const Footprint *f, int pixel, int x, int y, double area)
+static void offer_truth(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
 {
     (void)area;
     const TruthSample *t = user;
     const double       dx = t->at_px[0] - x - 0.5, dy = t->at_px[1] - y - 0.5, square_px = dx * dx + dy * dy;
-    FootprintTruth    *to = &f->truth[pixel];
+    TargetGridTruth    *to = &f->truth[pixel];
     const Samples     *s = t->s;
     if (!(square_px < to->square_px)) return;
-    *to = (FootprintTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
+    *to = (TargetGridTruth){.square_px = square_px, .range_m = (float)s->hits.range_m[t->sample],
                            .temp_k = s->temp_k[t->sample], .part = s->hits.part[t->sample],
                            .material = s->hits.material[t->sample]};
     for (int k = 0; k < 3; k++) to->normal[k] = s->hits.n_enu[k][t->sample];
 }
 
-static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y, double area)
+static void grow_amodal(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
 {
     (void)f, (void)pixel, (void)area;
     grow_pixel_box(user, x, y);
@@ -256,7 +256,7 @@ static void grow_amodal(void *user, const Footprint *f, int pixel, int x, int y,
 
 /* Cells whose ray would meet the target with nothing else in the world, close together: no other ray is traced.
  * Without SKIP_CELL all stay. Returns how many. */
-static int keep_amodal(int *cell, Footprint *f, Worker *w, const Job *job, int first_cell)
+static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int first_cell)
 {
     Rays      *rays = &w->samples.rays;
     const int  count = rays->count;
@@ -280,7 +280,7 @@ static int keep_amodal(int *cell, Footprint *f, Worker *w, const Job *job, int f
 }
 
 /* What hides the target where its own samples did not meet it first. */
-static void count_hidden(Footprint *f, Worker *w, const Job *job, const int *cell)
+static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
     const Hits    *hits = &w->samples.hits;
@@ -300,7 +300,7 @@ static void count_hidden(Footprint *f, Worker *w, const Job *job, const int *cel
 }
 
 /* Samples that met the target, close together: no other is shaded here. Returns how many. */
-static int keep_target(const Footprint *f, Samples *s, int *cell)
+static int keep_target(const TargetGrid *f, Samples *s, int *cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
     Hits          *hits = &s->hits;
@@ -316,14 +316,14 @@ static int keep_target(const Footprint *f, Samples *s, int *cell)
     return kept;
 }
 
-static void add_area(void *user, const Footprint *f, int pixel, int x, int y, double area)
+static void add_area(void *user, const TargetGrid *f, int pixel, int x, int y, double area)
 {
     (void)user, (void)x, (void)y;
     f->area[pixel] += area;
 }
 
 /* Light of the samples that met the target, into its cells, its pixels and its sums. */
-static void shade_cells(Footprint *f, Worker *w, const Job *job, const int *cell, int count)
+static void shade_cells(TargetGrid *f, Worker *w, const Job *job, const int *cell, int count)
 {
     Samples *s = &w->samples;
     for (int i = 0; i < count && job->scene.sky_samples > 0; i++) w->key[i] = cell_key(f, cell[i]);
@@ -351,7 +351,7 @@ static void shade_cells(Footprint *f, Worker *w, const Job *job, const int *cell
         target_sums_profile(&w->sums, &job->rules, job->request, s, w->area_px);
 }
 
-static void sample_cells(Footprint *f, Worker *w, const Job *job, int first_cell, int count, int listed)
+static void sample_cells(TargetGrid *f, Worker *w, const Job *job, int first_cell, int count, int listed)
 {
     const View  *view = &job->request->view;
     Samples     *s = &w->samples;
@@ -379,11 +379,11 @@ static void sample_cells(Footprint *f, Worker *w, const Job *job, int first_cell
     if (kept > 0) shade_cells(f, w, job, cell, kept);
 }
 
-void footprint_task(void *user, int worker, int index)
+void target_grid_task(void *user, int worker, int index)
 {
     const Job *job = user;
     Worker    *w = job->worker[worker];
-    Footprint *f = &job->footprint[job->footprint_turn[index]];
+    TargetGrid *f = &job->footprint[job->target_grid_order[index]];
     const int  cells = f->columns * f->rows;
     w->counters.small_targets++;
     if (cells == 0) return;

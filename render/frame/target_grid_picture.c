@@ -1,13 +1,13 @@
-/* render/frame/footprint_picture.c: sampled small targets over the finished pixels, how wrong they are, and what they
+/* render/frame/target_grid_picture.c: sampled small targets over the finished pixels, how wrong they are, and what they
  * add to the targets of the picture. */
-#include "render/frame/footprint_private.h"
+#include "render/frame/target_grid_private.h"
 
 #include "render/frame/sampling_variance.h"
 
-void footprints_cover(Job *job)
+void target_grids_cover(Job *job)
 {
     for (int n = 0; n < job->footprints; n++) {
-        const Footprint *f = &job->footprint[n];
+        const TargetGrid *f = &job->footprint[n];
         for (int y = f->y0, k = 0; y < f->y1; y++)
             for (int x = f->x0; x < f->x1; x++, k++) {
                 const size_t px = pixel_index(job, x, y);
@@ -23,7 +23,7 @@ void footprints_cover(Job *job)
 
 /* Squared differences of neighbouring cells: as the picture shows them, beside the pixels behind them, and of the
  * target's own radiance. */
-static void cell_pairs(double sums[2], const Footprint *f, const Job *job, int plane)
+static void cell_pairs(double sums[2], const TargetGrid *f, const Job *job, int plane)
 {
     const float *value = picture_plane(job->picture, plane);
     const int    beside[2] = {1, f->columns};
@@ -49,7 +49,7 @@ static void cell_pairs(double sums[2], const Footprint *f, const Job *job, int p
 
 /* Behind a target the pixel's mean stands for what is hidden: wrong by (1 - covered) covered of what the ground there
  * differs by, and that is taken to be what neighbours do. */
-static double hidden_ground(const Footprint *f, const Job *job, const float *value)
+static double hidden_ground(const TargetGrid *f, const Job *job, const float *value)
 {
     double sum = 0;
     for (int y = f->y0; y < f->y1; y++)
@@ -62,10 +62,10 @@ static double hidden_ground(const Footprint *f, const Job *job, const float *val
     return sum;
 }
 
-void footprints_error(Job *job)
+void target_grids_error(Job *job)
 {
     for (int n = 0; n < job->footprints; n++) {
-        const Footprint *f = &job->footprint[n];
+        const TargetGrid *f = &job->footprint[n];
         const int        cells = f->columns * f->rows;
         if (cells == 0) continue;
         const double cell_px = (f->box[2] - f->box[0]) * (f->box[3] - f->box[1]) / cells;
@@ -73,18 +73,18 @@ void footprints_error(Job *job)
             double sums[2];
             if (!f->cell[plane]) continue;
             cell_pairs(sums, f, job, plane);
-            job->footprint_law[plane] += mean_law * cell_px * cell_px * sums[0] +
+            job->target_variance[plane] += mean_variance_factor * cell_px * cell_px * sums[0] +
                                          hidden_ground(f, job, picture_plane(job->picture, plane));
             if (job->picture->target)
-                job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_law * sums[1]);
+                job->picture->target[f->entity].radiance_error[plane] = cell_px * sqrt(mean_variance_factor * sums[1]);
         }
     }
 }
 
-static void put_truth_on(const Job *job, const Footprint *f, int k, size_t px)
+static void put_truth_on(const Job *job, const TargetGrid *f, int k, size_t px)
 {
     Picture              *picture = job->picture;
-    const FootprintTruth *t = &f->truth[k];
+    const TargetGridTruth *t = &f->truth[k];
     if (!(f->area[k] > 0.5)) return;
     picture->entity[px]   = (uint32_t)f->entity + 1;
     picture->range_m[px]  = t->range_m;
@@ -95,7 +95,7 @@ static void put_truth_on(const Job *job, const Footprint *f, int k, size_t px)
 }
 
 /* The cells and the pixels behind them, as they are before anything is put on. */
-static void hand_over(const Job *job, Footprint *f)
+static void hand_over(const Job *job, TargetGrid *f)
 {
     SmallTargets *small = &job->picture->small;
     if (!(f->visible > 0)) return;
@@ -113,13 +113,13 @@ static void hand_over(const Job *job, Footprint *f)
     }
 }
 
-void footprints_put_on(Job *job)
+void target_grids_composite(Job *job)
 {
     for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
     /* first all that they hide, then all that they show: a pixel may hold parts of several */
     for (int show = 0; show < 2; show++)
         for (int n = 0; n < job->footprints; n++) {
-            const Footprint *f = &job->footprint[n];
+            const TargetGrid *f = &job->footprint[n];
             for (int y = f->y0, k = 0; y < f->y1; y++)
                 for (int x = f->x0; x < f->x1; x++, k++) {
                     const size_t px = pixel_index(job, x, y);
@@ -135,7 +135,7 @@ void footprints_put_on(Job *job)
         }
 }
 
-static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
+static void gather_one(TargetPixels *target, const Job *job, const TargetGrid *f)
 {
     target->small           = true;
     target->visible         = f->visible;
@@ -161,7 +161,7 @@ static void gather_one(TargetPixels *target, const Job *job, const Footprint *f)
     }
 }
 
-void footprints_gather(const Job *job)
+void target_grids_sample(const Job *job)
 {
     for (int n = 0; n < job->footprints; n++)
         gather_one(&job->picture->target[job->footprint[n].entity], job, &job->footprint[n]);

@@ -1,4 +1,4 @@
-/* entities/table/entity_room.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
+/* entities/table/entity_eviction.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
 #include "entities/table/entity_table_private.h"
 
 static bool same_id(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }
@@ -35,7 +35,7 @@ static void place_focus(EntityTable *table, const double p_ecef[3], double t_s)
     if (first || (v3_length(went) > far_m && fabs(t_s - focus->ranked_s) >= often_s)) rank_all_again(table, t_s);
 }
 
-void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s)
+void entity_eviction_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s)
 {
     static const double known_after_s = 1;
     const int           s = (int)(slot - table->slot);
@@ -47,7 +47,7 @@ void entity_room_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[
         entity_ranks_put(table->ranks, s, slot->id, slot->known, distance_class(table, p_ecef));
 }
 
-bool entity_room_make(EntityTable *table, EntitySlot *newcomer, double t_s)
+bool entity_table_evict(EntityTable *table, EntitySlot *newcomer, double t_s)
 {
     if (table->count <= table->config.capacity) return true;
     const int   worst = entity_ranks_worst(table->ranks);
@@ -70,11 +70,11 @@ void entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also)
     table->focus.also = also;
     for (int i = 0; i < 2; i++) {
         EntitySlot *slot = entity_slot_find(table, before[i]);
-        if (slot) entity_room_rank(table, slot, slot->reported.p_ecef, slot->report_s);
+        if (slot) entity_eviction_rank(table, slot, slot->reported.p_ecef, slot->report_s);
     }
     for (int i = 0; i < 2; i++) {
         EntitySlot *slot = entity_slot_find(table, now[i]);
-        if (slot) entity_room_rank(table, slot, slot->reported.p_ecef, slot->report_s);
+        if (slot) entity_eviction_rank(table, slot, slot->reported.p_ecef, slot->report_s);
     }
 }
 

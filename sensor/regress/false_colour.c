@@ -1,5 +1,5 @@
-/* sensor/regress/picture.c: planes as false-colour PNGs in an HTML page, with a colour scale. */
-#include "sensor/regress/picture.h"
+/* sensor/regress/false_colour.c: planes as false-colour PNGs in an HTML page, with a colour scale. */
+#include "sensor/regress/false_colour.h"
 
 #include "sensor/publish/html.h"
 #include "sensor/publish/image_file.h"

@@ -1,31 +1,31 @@
-/* sensor/publish/patience.h: a place that takes no files while a live node goes on: said once, tried again now and
+/* sensor/publish/retry_backoff.h: a place that takes no files while a live node goes on: said once, tried again now and
  * then. */
 #ifndef SENSOR_NODE_PATIENCE_H
 #define SENSOR_NODE_PATIENCE_H
 
 #include "pitviper.h"
 
-typedef struct Patience {
+typedef struct RetryBackoff {
     const char *what;   /* `picture files`, as messages name it */
     double      off_s;  /* wall clock: not before */
     bool        failed; /* the last try */
     int         lacking; /* how often it was not there */
-} Patience;
+} RetryBackoff;
 
-static const double patience_s = 10;
+static const double retry_interval_s = 10;
 
-/* Whether to try now. What is tried again in this thread says nothing of its own: patience_over says how it went. */
-static inline bool patience_due(const Patience *p)
+/* Whether to try now. What is tried again in this thread says nothing of its own: retry_done says how it went. */
+static inline bool retry_due(const RetryBackoff *p)
 {
     const bool due = wall_clock_s() >= p->off_s;
-    if (due && p->failed) log_hush(true);
+    if (due && p->failed) log_suppress(true);
     return due;
 }
 
 /* After a try, with its status; after none, with STATUS_IO. */
-static inline void patience_over(Patience *p, bool tried, Status status)
+static inline void retry_done(RetryBackoff *p, bool tried, Status status)
 {
-    if (tried) log_hush(false);
+    if (tried) log_suppress(false);
     if (status == STATUS_OK) {
         if (p->failed) log_info("session: %s again; %d frames lack them", p->what, p->lacking);
         p->failed = false;
@@ -33,9 +33,9 @@ static inline void patience_over(Patience *p, bool tried, Status status)
     }
     p->lacking++;
     if (!tried) return;
-    if (!p->failed) log_warn("session: going on without %s; trying again every %.0f s", p->what, patience_s);
+    if (!p->failed) log_warn("session: going on without %s; trying again every %.0f s", p->what, retry_interval_s);
     p->failed = true;
-    p->off_s  = wall_clock_s() + patience_s;
+    p->off_s  = wall_clock_s() + retry_interval_s;
 }
 
 #endif

@@ -1,6 +1,6 @@
-/* sensor/regress/picture.h: planes as PNG in a page, enlarged so that single pixels are visible. */
-#ifndef SENSOR_REGRESS_PICTURE_H
-#define SENSOR_REGRESS_PICTURE_H
+/* sensor/regress/false_colour.h: planes as PNG in a page, enlarged so that single pixels are visible. */
+#ifndef SENSOR_REGRESS_FALSE_COLOUR_H
+#define SENSOR_REGRESS_FALSE_COLOUR_H
 
 #include "pitviper.h"
 

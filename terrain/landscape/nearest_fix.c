@@ -1,4 +1,4 @@
-/* terrain/landscape/near.c: points by place, in a hash of square cells. Deterministic: buckets keep the order
+/* terrain/landscape/nearest_fix.c: points by place, in a hash of square cells. Deterministic: buckets keep the order
  * of the points. */
 #include "terrain/landscape/landscape_private.h"
 

@@ -1,6 +1,6 @@
-/* render/light/gather.c: see gather.h. Directions are drawn in proportion to their cosine, so that the irradiance is pi times
+/* render/light/hemisphere.c: see gather.h. Directions are drawn in proportion to their cosine, so that the irradiance is pi times
  * the mean radiance; the first bounce by a Fibonacci lattice turned at random for each hit, the second at random. */
-#include "render/light/gather.h"
+#include "render/light/hemisphere.h"
 
 #include "render/light/optical.h"
 #include "render/parts/parts.h"
@@ -19,7 +19,7 @@ typedef struct Paths {
     float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
     float texture[hits_capacity], temp_k[hits_capacity];
     float sun[hits_capacity]; /* share of the direct sun that arrives */
-    bool from_ground[hits_capacity]; /* gather_change: the ground's own light stays as it is there */
+    bool from_ground[hits_capacity]; /* hemisphere_change: the ground's own light stays as it is there */
 } Paths;
 
 /* Two directions at right angles to n and to each other. */
@@ -33,7 +33,7 @@ static void axes_across(double t[3], double b[3], const double n[3])
 }
 
 /* Whether a ray may meet the box of a listed entity within reach. */
-static bool may_meet(const GatherScene *scene, const double o_enu[3], const double d_enu[3], double reach_m,
+static bool may_meet(const HemisphereScene *scene, const double o_enu[3], const double d_enu[3], double reach_m,
                      const int *list, int listed)
 {
     for (int k = 0; k < listed; k++) {
@@ -58,7 +58,7 @@ static bool may_meet(const GatherScene *scene, const double o_enu[3], const doub
     return false;
 }
 
-static bool ray_may_meet(const GatherScene *scene, const Rays *rays, int i, double reach_m, const int *list, int listed)
+static bool ray_may_meet(const HemisphereScene *scene, const Rays *rays, int i, double reach_m, const int *list, int listed)
 {
     const double o_enu[3] = {rays->o_enu[0][i], rays->o_enu[1][i], rays->o_enu[2][i]};
     const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
@@ -114,7 +114,7 @@ static double reflectance(const Material *m, AirBand band)
 }
 
 /* What all paths of a block met: materials, temperatures, shadows. */
-static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const int *list, int listed, bool parts_alone,
+static void resolve(Paths *p, const HemisphereScene *scene, unsigned bands, const int *list, int listed, bool parts_alone,
                     VisibilityCounters *counters)
 {
     if (parts_alone) visibility_first_part(&p->hits, scene->visibility, &p->rays, list, listed, counters);
@@ -132,14 +132,14 @@ static void resolve(Paths *p, const GatherScene *scene, unsigned bands, const in
 }
 
 /* Radiance of level, open ground. */
-static double ground_radiance(const GatherScene *scene, AirBand band)
+static double ground_radiance(const HemisphereScene *scene, AirBand band)
 {
     return band >= AIR_MWIR ? scene->air->light.ground_w_m2_sr[band]
                             : optical_ground_w_m2((int)band, scene->air, scene->materials) / pi_rad;
 }
 
 /* Radiance that path i brings from what it met, in one band; *rho: the share of its own surroundings still to come. */
-static double met(double *rho, const Paths *p, int i, const GatherScene *scene, AirBand band, double ground, bool last)
+static double met(double *rho, const Paths *p, int i, const HemisphereScene *scene, AirBand band, double ground, bool last)
 {
     const Air *air = scene->air;
     *rho = 0;
@@ -162,7 +162,7 @@ static double met(double *rho, const Paths *p, int i, const GatherScene *scene, 
 
 /* Follows one block of paths to its end, adding what they bring: each path's first, then path by path, so that where a
  * block ends changes no bit. */
-static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const GatherScene *scene, unsigned bands,
+static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const HemisphereScene *scene, unsigned bands,
                    const uint64_t *key, VisibilityCounters *counters)
 {
     double    ground[AIR_BAND_COUNT] = {0}, brought[AIR_BAND_COUNT][hits_capacity] = {{0}};
@@ -203,7 +203,7 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const Ga
             for (int i = 0; i < started; i++) sum[b][of_hit[i]] += brought[b][i];
 }
 
-void gather_light(Gathered *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
                   const uint64_t *key, VisibilityCounters *counters)
 {
     Paths paths;
@@ -265,7 +265,7 @@ static void ring_direction(double d_enu[3], const Open *open, const double sun_d
     for (int k = 0; k < 3; k++) d_enu[k] = c * sun_d_enu[k] + x * open->across_enu[0][k] + y * open->across_enu[1][k];
 }
 
-static void open_light(Open *out, const GatherScene *scene, unsigned bands)
+static void open_light(Open *out, const HemisphereScene *scene, unsigned bands)
 {
     enum { offs = 16, turns = 3 };
     const Air    *air = scene->air;
@@ -294,7 +294,7 @@ typedef struct Change {
     int blocked, sunlit, parts, inside;
 } Change;
 
-static void count_first(Change *to, const Paths *p, int i, const GatherScene *scene)
+static void count_first(Change *to, const Paths *p, int i, const HemisphereScene *scene)
 {
     const Hits *hits = &p->hits;
     to->blocked++;
@@ -305,7 +305,7 @@ static void count_first(Change *to, const Paths *p, int i, const GatherScene *sc
     to->sunlit += p->sun[i] > 0 && along > 0;
 }
 
-static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsigned bands, double reach_m,
+static void follow_change(Change *sum, Paths *p, const HemisphereScene *scene, unsigned bands, double reach_m,
                           const Open *open, const uint64_t *key, const int *list, int listed,
                           VisibilityCounters *counters)
 {
@@ -379,7 +379,7 @@ static void follow_change(Change *sum, Paths *p, const GatherScene *scene, unsig
 enum { close_most = 64 };
 
 /* Of the listed entities those within whose reach a place lies. */
-static int list_close(int close[close_most], const GatherScene *scene, const Hits *hits, int i,
+static int list_close(int close[close_most], const HemisphereScene *scene, const Hits *hits, int i,
                       const double *list_reach_m, const int *list, int listed)
 {
     int count = 0;
@@ -398,7 +398,7 @@ static int list_close(int close[close_most], const GatherScene *scene, const Hit
 
 /* Adds the ray n of those towards the ring, whose shares are what it takes away when it meets something; -1: it points
  * into the surface or below the horizon. */
-static int leave_to_ring(Paths *p, const Hits *hits, int from, const GatherScene *scene, unsigned bands,
+static int leave_to_ring(Paths *p, const Hits *hits, int from, const HemisphereScene *scene, unsigned bands,
                          const Open *open, int n, int samples, double u, double v)
 {
     const double off_rad = ring_rad * (n + u) / ring_directions;
@@ -430,7 +430,7 @@ static void v2_turn(double turn[2], const double by[2])
     turn[0] = x;
 }
 
-void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits, unsigned bands, int samples,
+void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, const Hits *hits, unsigned bands, int samples,
                    double reach_m, const double *list_reach_m, const uint64_t *key, const int *list, int listed,
                    VisibilityCounters *counters)
 {
@@ -471,7 +471,7 @@ void gather_change(GatherChange *out, const GatherScene *scene, const Hits *hits
         follow_change(sum, &paths, scene, bands, reach_m, &open, key, list, listed, counters);
     for (int i = 0; i < hits->count; i++) {
         const Change *s = &sum[i];
-        out[i] = (GatherChange){.blocked = (float)s->blocked / (float)samples,
+        out[i] = (HemisphereChange){.blocked = (float)s->blocked / (float)samples,
                                 .sunlit = (float)s->sunlit / (float)samples,
                                 .inside = s->parts ? (float)s->inside / (float)s->parts : 0};
         for (int b = 0; b < AIR_BAND_COUNT; b++) out[i].w_m2[b] = (float)(s->w_m2[b] * pi_rad / samples);

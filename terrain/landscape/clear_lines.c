@@ -1,4 +1,4 @@
-/* terrain/landscape/clear.c: what clear lines allow.
+/* terrain/landscape/clear_lines.c: what clear lines allow.
  *
  * A line that was flown, or along which a shot was aimed and hit, lay above the ground. Every post within one
  * cell's diagonal of a point of the line is held `clearance` below that point, so every triangle the line

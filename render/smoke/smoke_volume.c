@@ -1,10 +1,10 @@
-/* render/smoke/veil.c: spheroids along a ray. A spheroid is brought to a unit ball by stretching space along its axis; along
+/* render/smoke/smoke_volume.c: spheroids along a ray. A spheroid is brought to a unit ball by stretching space along its axis; along
  * a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
-#include "render/smoke/veil.h"
+#include "render/smoke/smoke_volume.h"
 
 #include <stdlib.h>
 
-_Static_assert(veil_bands == 7, "Passed begins with one in each band");
+_Static_assert(smoke_bands == 7, "Passed begins with one in each band");
 
 /* ---- one volume along one ray ------------------------------------------------------------- */
 
@@ -14,7 +14,7 @@ typedef struct Chord {
     double q2;               /* squared distance of nearest approach, 0 .. 1 */
 } Chord;
 
-static void to_ball(double out[3], const VeilVolume *v, const double a_enu[3])
+static void to_ball(double out[3], const SmokeVolume *v, const double a_enu[3])
 {
     const double across = 1 / v->across_m, more = v3_dot(a_enu, v->axis_enu) * (1 / v->along_m - across);
     for (int i = 0; i < 3; i++) out[i] = a_enu[i] * across + more * v->axis_enu[i];
@@ -48,7 +48,7 @@ static double chord_column(const Chord *c, bool even, double from_m, double to_m
     return b > a ? column_to(c, even, b) - column_to(c, even, a) : 0;
 }
 
-double veil_column_m(const VeilVolume *volume, const double o_enu[3], const double d_enu[3], double from_m, double to_m)
+double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const double d_enu[3], double from_m, double to_m)
 {
     double off[3], o[3], d[3];
     Chord  chord;
@@ -107,7 +107,7 @@ static double billows(const double p[3])
 /* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is
  * stretched by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up
  * for what the stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
-static double pattern_stretch(double *factor, const VeilVolume *v, const double nearest[3], double q2)
+static double pattern_stretch(double *factor, const SmokeVolume *v, const double nearest[3], double q2)
 {
     double p[3];
     v3_add(p, nearest, v->pattern);
@@ -119,16 +119,16 @@ static double pattern_stretch(double *factor, const VeilVolume *v, const double 
 /* ---- a ray -------------------------------------------------------------------------------- */
 
 typedef struct Crossing {
-    const VeilVolume *volume;
+    const SmokeVolume *volume;
     Chord  chord;
     double from_m, to_m, factor;
-    double source[veil_bands];
+    double source[smoke_bands];
 } Crossing;
 
 /* What the volume shows on this ray: lit by what of the sun gets to the place where the eye's look comes to rest. */
 static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
 {
-    const VeilVolume *v = c->volume;
+    const SmokeVolume *v = c->volume;
     const double      at_m = fmax(c->from_m, c->chord.middle_m - 0.55 * c->chord.half_m);
     double            at[3], d_sun[3], up[3];
     Chord             sunward;
@@ -140,7 +140,7 @@ static void light_crossing(Crossing *c, const double o[3], const double d[3], un
     static const double zenith_enu[3] = {0, 0, 1};
     to_ball(up, v, zenith_enu);
     const double top = clamp(v3_dot(at, up) / v3_length(up), -1, 1);
-    for (int b = 0; b < veil_bands; b++) {
+    for (int b = 0; b < smoke_bands; b++) {
         if (!(bands >> b & 1)) continue;
         double lit = v->source[b] + top * v->from_top[b];
         if (v->sun[b][0] > 0) {
@@ -157,8 +157,8 @@ static int compare_m(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* Sorted boundaries, joined to at most veil_cuts by leaving some of the inner ones out. */
-static int cuts_of(double cut_m[veil_cuts], const Crossing *crossing, int count)
+/* Sorted boundaries, joined to at most smoke_segments_max by leaving some of the inner ones out. */
+static int cuts_of(double cut_m[smoke_segments_max], const Crossing *crossing, int count)
 {
     double edge_m[2 * veil_together];
     int    edges = 0;
@@ -168,7 +168,7 @@ static int cuts_of(double cut_m[veil_cuts], const Crossing *crossing, int count)
         return 2;
     }
     qsort(edge_m, (size_t)edges, sizeof *edge_m, compare_m);
-    const int cuts = edges < veil_cuts ? edges : veil_cuts;
+    const int cuts = edges < smoke_segments_max ? edges : smoke_segments_max;
     for (int i = 0; i < cuts; i++) cut_m[i] = edge_m[(int64_t)i * (edges - 1) / (cuts - 1)];
     return cuts;
 }
@@ -181,18 +181,18 @@ static inline double absorbed(double depth)
 
 /* What a ray has met so far, front to back. */
 typedef struct Passed {
-    double through[veil_bands], added[veil_bands];
+    double through[smoke_bands], added[smoke_bands];
     bool   goes_on; /* something still comes through */
 } Passed;
 
 /* Puts the crossings behind what was passed. */
 static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
 {
-    double    cut_m[veil_cuts], *const through = passed->through, *const added = passed->added;
+    double    cut_m[smoke_segments_max], *const through = passed->through, *const added = passed->added;
     const int cuts = cuts_of(cut_m, crossing, count);
 
     for (int k = 0; k + 1 < cuts; k++) {
-        double depth[veil_bands] = {0}, shown[veil_bands] = {0};
+        double depth[smoke_bands] = {0}, shown[smoke_bands] = {0};
         bool   any = false;
         for (int i = 0; i < count; i++) {
             const Crossing *c = &crossing[i];
@@ -200,7 +200,7 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
             const double column_m = c->factor * chord_column(&c->chord, c->volume->even, fmax(cut_m[k], c->from_m),
                                                              fmin(cut_m[k + 1], c->to_m));
             any = true;
-            for (int b = 0; b < veil_bands; b++) {
+            for (int b = 0; b < smoke_bands; b++) {
                 if (!(bands >> b & 1)) continue;
                 const double depth_here = c->volume->extinction_per_m[b] * column_m;
                 depth[b] += depth_here;
@@ -209,7 +209,7 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
         }
         if (!any) continue;
         bool goes_on = false;
-        for (int b = 0; b < veil_bands; b++) {
+        for (int b = 0; b < smoke_bands; b++) {
             if (!(bands >> b & 1) || !(depth[b] > 0)) {
                 goes_on = goes_on || bands >> b & 1;
                 continue;
@@ -226,7 +226,7 @@ static void compose(Passed *passed, const Crossing *crossing, int count, unsigne
     }
 }
 
-void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int count, const Rays *rays,
+void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands)
 {
     Crossing crossing[veil_together];
@@ -238,7 +238,7 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
         Passed passed = {.through = {1, 1, 1, 1, 1, 1, 1}, .goes_on = true};
         int    crossed = 0, composed = 0;
         for (int n = 0; n < count && passed.goes_on; n++) {
-            const VeilVolume *v = &volume[list[n]];
+            const SmokeVolume *v = &volume[list[n]];
             Crossing         *c = &crossing[crossed];
             double            off[3], o[3], d[3];
             v3_sub(off, o_enu, v->p_enu);
@@ -272,10 +272,10 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
         if (crossed > 0) compose(&passed, crossing, crossed, bands);
         if (composed + crossed > 0) {
             if (!out->any)
-                for (int b = 0; b < veil_bands; b++)
+                for (int b = 0; b < smoke_bands; b++)
                     for (int i = 0; i < rays->count; i++) out->transmittance[b][i] = 1, out->added[b][i] = 0;
             out->any = true;
-            for (int b = 0; b < veil_bands; b++) {
+            for (int b = 0; b < smoke_bands; b++) {
                 out->transmittance[b][r] = (float)passed.through[b];
                 out->added[b][r] = (float)passed.added[b];
             }
@@ -283,7 +283,7 @@ void veil_rays(VeilRays *out, const VeilVolume *volume, const int *list, int cou
     }
 }
 
-void veil_apply(float *radiance, const VeilRays *veil, int band, int count)
+void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count)
 {
     if (!veil->any) return;
     const float *t = veil->transmittance[band], *a = veil->added[band];
@@ -292,7 +292,7 @@ void veil_apply(float *radiance, const VeilRays *veil, int band, int count)
 
 /* ---- a block of pixels -------------------------------------------------------------------- */
 
-int veil_block(int *list, const VeilVolume *volume, int count, const View *view, double column0_px, double row0_px,
+int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
                double column1_px, double row1_px)
 {
     /* a cone about the block: its middle, and the widest of its corners */
@@ -316,7 +316,7 @@ int veil_block(int *list, const VeilVolume *volume, int count, const View *view,
     const double sine = sqrt(fmax(1 - cosine * cosine, 0));
     int listed = 0;
     for (int n = 0; n < count; n++) {
-        const VeilVolume *v = &volume[n];
+        const SmokeVolume *v = &volume[n];
         const double      reach = fmax(v->along_m, v->across_m) * 1.001;
         double            off[3];
         v3_sub(off, v->p_enu, view->p_enu);
