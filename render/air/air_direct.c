@@ -1,7 +1,7 @@
-/* render/air/air_direct.c: what air_path.c says, without its tables: each path asked of the atmosphere by itself.
+/* render/air/air_direct.c: what air_paths.c says, without its tables: each path asked of the atmosphere by itself.
  *
  * The measure of the tables for a few rays of a frame (render/frame/error_budget.c). Places and heights of paths are as
- * air_path.c has them. */
+ * air_paths.c has them. */
 #include "render/air/air_private.h"
 
 static double straight(double low, double high, double share) { return low + share * (high - low); }

@@ -1,4 +1,4 @@
-/* render/air/air_path.c: what the path does to thousands of samples a frame: eight at a time, every band from one look at
+/* render/air/air_paths.c: what the path does to thousands of samples a frame: eight at a time, every band from one look at
  * where they end. A sample's answer hangs on its own path alone, whatever comes beside it. */
 #include "render/air/air_private.h"
 

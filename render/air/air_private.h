@@ -1,4 +1,4 @@
-/* render/air/air_private.h: between air.c, air_table.c and air_path.c. */
+/* render/air/air_private.h: between air.c, air_table.c and air_paths.c. */
 #ifndef RENDER_AIR_AIR_PRIVATE_H
 #define RENDER_AIR_AIR_PRIVATE_H
 

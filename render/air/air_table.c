@@ -1,4 +1,4 @@
-/* render/air/air_table.c: the paths of a frame, collapsed from the tables of an atmosphere. air_path.c asks them.
+/* render/air/air_table.c: the paths of a frame, collapsed from the tables of an atmosphere. air_paths.c asks them.
  *
  * The eye's height, the sun and the visibility are a frame's own, so of a path only its far end's height, its length
  * and its azimuth from the sun are left. Each answer of the atmosphere is a search in its tables, and of scattered

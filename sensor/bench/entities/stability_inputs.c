@@ -205,6 +205,21 @@ static bool puff_is_sound(const World *w, const EffectTable *table, const Effect
            finite_all(v.extinction_per_m, effect_band_count) && v.across_m > 0 && v.temp_k > 0;
 }
 
+static bool nodes_are_sound(World *w, const Snapshot *s, int index)
+{
+    if (s->entity[index].model < 0) return true;
+    const Model *model = catalog_model(w->catalog, s->entity[index].model);
+    NodePose    *pose  = arena_alloc(w->arena, (size_t)model->node_count, sizeof *pose);
+    double      *value = arena_alloc(w->arena, (size_t)model->node_count, sizeof *value);
+    bool         sound = pose && value;
+    if (!sound) return false;
+    snapshot_pose(pose, value, s, index, model);
+    for (int n = 0; n < model->node_count; n++)
+        sound = sound && v3_is_finite(pose[n].p_body) && v3_length(pose[n].p_body) < 1e3 &&
+                is_rotation(pose[n].r_body_from_node);
+    return sound;
+}
+
 static bool world_is_sound(World *w)
 {
     static const double later_s[] = {0, 0.013, 3, 11.9, 131, 1e4};
@@ -214,9 +229,7 @@ static bool world_is_sound(World *w)
         arena_reset(w->arena);
         if (entity_table_snapshot(&s, w->table, w->t_s + later_s[k], w->arena) != STATUS_OK) return false;
         for (int e = 0; e < s.count; e++) sound = sound && entity_is_sound(&s.entity[e]);
-        for (int n = 0; n < s.node_count; n++)
-            sound = sound && v3_is_finite(s.node[n].p_body) && v3_length(s.node[n].p_body) < 1e3 &&
-                    is_rotation(s.node[n].r_body_from_node);
+        for (int e = 0; e < s.count && sound; e++) sound = nodes_are_sound(w, &s, e);
         for (int p = 0; p < s.puff_count; p++) sound = sound && puff_is_sound(w, s.effect_table, &s.puff[p]);
     }
     return sound;
