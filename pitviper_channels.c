@@ -112,6 +112,7 @@ static void load(void)
     char path[4096];
     for (int p = 0; p < SPECTRAL_PLACES; p++) table.in[p] = &none;
     table.status = etc_path(path, sizeof path, "channels.csv") ? read_list(&table.list, path) : STATUS_BAD_VALUE;
+    if (table.status == STATUS_NO_MEMORY) log_error("channels: %s: out of memory", path);
     for (int i = 0; i < table.list.count && table.status == STATUS_OK; i++)
         if (table.list.channel[i].standard) table.in[table.list.channel[i].place] = &table.list.channel[i];
 }

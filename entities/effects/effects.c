@@ -40,7 +40,7 @@ typedef struct ChannelColumns {
 
 static bool find_channel_columns(ChannelColumns *out, const Table *table)
 {
-    bool all = true;
+    bool all = channels_load() == STATUS_OK;
     for (int which = 0; which < 2; which++)
         for (int b = 0; b < effect_band_count; b++) {
             char name[32];

@@ -46,7 +46,8 @@ static Status read_rows(Materials *m, const char *path)
 {
     Table table = {0};
     const int before = m->count;
-    Status status = table_open(&table, path);
+    Status status = channels_load();
+    if (status == STATUS_OK) status = table_open(&table, path);
     if (status != STATUS_OK) return status;
 
     status = STATUS_BAD_VALUE;

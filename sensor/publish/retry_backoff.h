@@ -1,7 +1,7 @@
 /* sensor/publish/retry_backoff.h: a place that takes no files while a live node goes on: said once, tried again now and
  * then. */
-#ifndef SENSOR_NODE_PATIENCE_H
-#define SENSOR_NODE_PATIENCE_H
+#ifndef SENSOR_PUBLISH_RETRY_BACKOFF_H
+#define SENSOR_PUBLISH_RETRY_BACKOFF_H
 
 #include "pitviper.h"
 

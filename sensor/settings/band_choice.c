@@ -25,6 +25,7 @@ static bool no_bands(const char *text)
 bool bands_choose(unsigned *bands, const char *text)
 {
     *bands = 0;
+    if (channels_load() != STATUS_OK) return false;
     channels_standard();
     for (const char *at = text; *at;) {
         const size_t           length = strcspn(at, ",");
