@@ -1,4 +1,4 @@
-/* render/frame/shade_list.h: light along a list of rays of any length: for queries, and for whatever is no picture.
+/* render/frame/shade_list.h: radiance along a list of rays of any length: for queries that are not pictures.
  *
  * A ray's result has the same bits in any list (tests/render/test_shade_list.c). */
 #ifndef RENDER_FRAME_SHADE_LIST_H
