@@ -1,8 +1,9 @@
-/* render/light/optical.c: what the eye gets of sun and sky: reflected by what was hit, then through the air.
+/* render/light/optical.c: sunlight and skylight at the aperture: reflected by the surface hit, then attenuated by the
+ * air.
  *
  * A surface reflects diffusely and, as far as it is glossy, in a lobe: the sun by its own width, the sky by the
- * mirror direction. Without gathered light, sky and ground light every surface by what its tilt sees of them and what
- * stands around does not hide them; a mirror shows sky or ground, not its neighbours. */
+ * mirror direction. Without hemisphere sampling, sky and ground light every surface according to its tilt alone, and
+ * nearby objects do not hide them; a mirror shows sky or ground, not its neighbours. */
 #include "render/light/optical.h"
 
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials)

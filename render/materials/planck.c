@@ -1,8 +1,8 @@
 /* render/materials/planck.c: blackbody radiance, spectral, in band, and from a table.
  *
- * With x = h c / (wavelength k T) the in-band radiance is 2 k^4 T^4 / (h^3 c^2) times the integral of
- * x^3 / (e^x - 1) between the band's edges. Everything below is that integral, taken the way that loses
- * nothing: positive terms summed where the edges are close, tails subtracted where they are not. */
+ * With x = h c / (wavelength k T) the in-band radiance is 2 k^4 T^4 / (h^3 c^2) times the integral of x^3 / (e^x -
+ * 1) between the band's edges. All functions below compute that integral without cancellation: positive terms summed
+ * where the edges are close, tails subtracted where they are not. */
 #include "render/materials/planck.h"
 
 #include "pitviper_simd.h"
@@ -198,7 +198,7 @@ static void index_knots(PlanckTable *table)
 static inline int cell_of_radiance(const PlanckTable *table, double radiance_w_m2_sr)
 {
     int cell = table->first_cell[(bits_of(radiance_w_m2_sr) >> table->bin_shift) - table->first_bin];
-    cell += table->knot[cell + 1] >= radiance_w_m2_sr; /* as a rule one of the next, and nobody can tell which */
+    cell += table->knot[cell + 1] >= radiance_w_m2_sr; /* usually one of the next; the branch is unpredictable */
     cell += table->knot[cell + 1] >= radiance_w_m2_sr;
     while (table->knot[cell + 1] >= radiance_w_m2_sr) cell++;
     return cell < table_cells ? cell : table_cells - 1;

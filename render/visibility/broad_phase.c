@@ -131,7 +131,7 @@ Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphe
 
 int broad_phase_count(const BroadPhase *tree) { return tree->count; }
 
-/* ---- volumes ------------------------------------------------------------------------------------ */
+/* ---- volume queries ----------------------------------------------------------------------------- */
 
 static int compare_items(const void *a, const void *b)
 {
@@ -289,7 +289,7 @@ int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double 
     return count;
 }
 
-/* ---- rays --------------------------------------------------------------------------------------- */
+/* ---- ray queries -------------------------------------------------------------------------------- */
 
 typedef __m256d Four;
 
