@@ -125,8 +125,8 @@ typedef struct Crossing {
     double source[smoke_bands];
 } Crossing;
 
-/* Source radiance of the volume on this ray: lit by the sunlight that reaches the point at unit depth along the
- * view. */
+/* Source radiance of the volume on this ray, with the sunlight that reaches one point of its chord, in front of the
+ * middle. */
 static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
 {
     const SmokeVolume *v = c->volume;
