@@ -29,8 +29,9 @@ typedef struct AirEye {
     const View *view;     /* view, so that only its azimuths are computed; NULL: all round */
 } AirEye;
 
-/* weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. pool: may be NULL. The tables live in
- * the arena. STATUS_NO_MEMORY when that is out. 1 to 2 ms of one core for five bands, 0.4 for LWIR alone; over the pool. */
+/* weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. pool: may be NULL. The tables are
+ * in the arena. STATUS_NO_MEMORY when that is out. 1 to 2 ms of one core for five bands, 0.4 for LWIR alone; over
+ * the pool. */
 Status air_at(Air *out, const AirSource *source, const Weather *weather, const Sun *sun, const AirEye *eye, Pool *pool,
               Arena *arena);
 

@@ -10,8 +10,8 @@
  * bits of the float: log2(1 / tau), which is linear in range in a grey and homogeneous atmosphere; and the path's
  * radiance over 1 - tau, its mean source. Scattered light, over 1 - tau of the sun, also depends on the direction of
  * a path: by its slope, rise over range, s |s| with s in equal steps over what is looked at; by the root of its
- * share of the complete path, to the ground or to the top of the tables, so that ground is at its end; and by sqrt(1
- * - cos azimuth from the sun), which needs no arc cosine and is dense about the sun. The values of a node are
+ * share of the complete path, to the ground or to the top of the tables, so that ground is at its end; and by
+ * sqrt(1 - cos azimuth from the sun), which needs no arc cosine and is dense about the sun. The values of a node are
  * contiguous. */
 enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
 enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };

@@ -39,7 +39,7 @@ void   atmosphere_close(Atmosphere *atmosphere);
  * 1 / visibility, between these heights one in its logarithm (render/air/atmosphere_slices.c). */
 void   atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
-/* One straight path over a round Earth. Heights above the ground that the model stands on (its 0 km), of both ends; the
+/* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
  * path may go up, down or along. Any range: below the tables' shortest depth is in proportion to range, beyond the
  * longest too. */
 typedef struct AirPath {

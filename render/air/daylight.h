@@ -4,7 +4,7 @@
  * Everything comes from the tables of render/air/atmosphere.h. Sums (the sun's light, the whole sky's on level ground,
  * the air's temperature, what ground loses to the sky) are computed directly; the sky by direction, and its irradiance
  * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
- * Heights are above the ground at the terrain's origin, which stands at the model's 0 km.
+ * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
  * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
@@ -60,7 +60,7 @@ typedef struct Daylight {
      * sky, also in a mirror, is the radiance; what lights a surface is that times this factor, so that its integral
      * is the irradiance. */
     double  sky_scale[AIR_BAND_COUNT];
-    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
+    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
     const struct AirDay *day;              /* what the tables were made from; in the arena. NULL: none */
 } Daylight;
 
@@ -73,8 +73,8 @@ typedef struct AirSource {
 /* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
  * weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. */
 void   daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
-/* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in which
- * the AirDay lives. */
+/* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in
+ * which the AirDay lives. */
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
                              unsigned bands, Pool *pool, Arena *arena);
 

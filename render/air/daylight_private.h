@@ -6,8 +6,8 @@
 #include "render/air/atmosphere_day.h"
 #include "render/air/daylight.h"
 
-/* Temperatures of emitters for which transmittance is kept; between them its depth is linear in the temperature's
- * logarithm, as in the tables, outside the nearest counts. The AirDay has these and, behind them, the air's own. */
+/* Temperatures of emitters for which transmittance is stored; between them its depth is linear in the temperature's
+ * logarithm, as in the tables, outside the nearest is used. The AirDay has these and, behind them, the air's own. */
 enum { air_temps = 5 };
 static const double emitter_temp_k[air_temps] = {260, 300, 400, 600, 1000};
 

@@ -44,7 +44,7 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3])
  * pan is requested. */
 static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
 {
-    /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
+    /* 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
      * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
     static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
     light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;

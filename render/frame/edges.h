@@ -16,7 +16,8 @@ typedef enum RefineFlag {
 /* Marks what is always refined: bounding boxes of medium-sized targets, and the ground where a target's shadow
  * falls. */
 void mark_boxes(Job *job);
-/* The flags of a tile's pixels, row by row, those marked included. Reads the truth planes and the plane of sunlight. */
+/* The flags of a tile's pixels, row by row, including those marked. Reads the truth planes and the plane of
+ * sunlight. */
 void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, int x1, int y1);
 /* The block's pixels, with rays, hits and sun restored from the planes; all hits are ground; n is 1. */
 void recall_ground(Worker *w, const Job *job);

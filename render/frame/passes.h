@@ -30,17 +30,17 @@ typedef struct Worker {
     uint64_t       key[hits_capacity];
     double         area_px[hits_capacity];
     uint8_t        meets[hits_capacity];
-    Hits           hits;    /* before some of them are taken, or split */
+    Hits           hits;    /* before some of them are removed or split */
     Rays           rays;
 } Worker;
 
 typedef struct TargetGrid TargetGrid; /* a small target: target_grid.h */
 
-/* What the passes of one frame read and write. */
+/* Inputs and outputs of the passes of one frame. */
 typedef struct Job {
     const RenderRequest *request;
     ShadeScene           scene;
-    Picture             *picture; /* truth planes where asked for or where edges are looked for */
+    Picture             *picture; /* truth planes where requested or where edges are looked for */
     PictureChannel       channel[picture_radar]; /* [channels] of the request */
     int                  channels;
     Worker             **worker;
@@ -87,7 +87,7 @@ void block_add(Worker *w, const Job *job, int sign);
 void block_add_areas(Worker *w, const Job *job, int sign, int listed);
 /* The block's means into the planes of its channels. */
 void block_write(Worker *w, const Job *job);
-/* Room for a plane's values at the block's samples; NULL: not asked for. */
+/* Array of a plane's values at the block's samples; NULL: not requested. */
 float *block_values(const Worker *w, const Job *job, int plane);
 
 #endif

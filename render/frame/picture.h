@@ -78,7 +78,7 @@ typedef struct RenderTimes {
     double target_grids_ms, base_ms, edges_ms; /* wall times of the passes */
 } RenderTimes;
 
-/* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena.
+/* Planes are width * height, rows top down; NULL where not requested. All in the frame's arena.
  *
  * Truth of a pixel is that of the sample nearest its centre; of a small target where it covers more than half of the
  * pixel, and then that of the target's sample nearest the centre. */
@@ -96,8 +96,8 @@ typedef struct Picture {
     float    *normal[3];            /* ENU of the terrain origin */
     float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels *target;           /* [snapshot count]; NULL without truth */
-    SmallTargets  small;            /* none: not asked for */
-    ErrorBudget  *budget;           /* NULL: not asked for */
+    SmallTargets  small;            /* none: not requested */
+    ErrorBudget  *budget;           /* NULL: not requested */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;
@@ -112,7 +112,7 @@ typedef struct PictureChannel {
     AirBand channel; /* the same number is the smoke's band (entities/effects/effects.h) */
 } PictureChannel;
 
-/* Those of a request of these bands, but the radar's: in the planes' order; returns how many. */
+/* The channels of a request of these bands, without the radar's, in the planes' order; returns their number. */
 int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalChannels optical);
 /* The channel whose smoke transmittance applies to a band; -1: none (the radar). */
 int picture_smoke_channel(Band band, unsigned bands, OpticalChannels optical);

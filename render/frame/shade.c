@@ -62,7 +62,7 @@ void samples_smoke(const ShadeScene *scene, Samples *s)
     smoke_trace_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
 }
 
-/* ---- what was met ----------------------------------------------------------------------------- */
+/* ---- hits ------------------------------------------------------------------------------------- */
 
 /* What an orthophoto gives for a channel: its own colour, or the brightness of all three. */
 static int albedo_of_channel(int channel)

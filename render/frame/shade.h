@@ -13,7 +13,7 @@
 #include "render/light/surface_light.h"
 #include "render/smoke/effects.h"
 
-/* What is shaded: a frame's, shared by its threads. */
+/* The scene of a frame, shared by its threads. */
 typedef struct ShadeScene {
     const World      *world;
     const Snapshot   *snapshot;
@@ -54,7 +54,7 @@ typedef struct Samples {
     RadarReturns returns;
 } Samples;
 
-/* Room for `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
+/* Allocates arrays of `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
 Status samples_create(Samples *out, int capacity, Arena *arena);
 
 /* A thread's own working memory. */

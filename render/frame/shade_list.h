@@ -16,7 +16,7 @@ typedef struct RayList {
     bool            radar, temperature;
 } RayList;
 
-/* What each ray met and what light comes along it: arrays of `capacity`, as in Hits and Samples. */
+/* Hits of the rays and radiance along them: arrays of `capacity`, as in Hits and Samples. */
 typedef struct ShadedRays {
     int       capacity;
     double   *range_m;

@@ -183,7 +183,7 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
             const int l = __builtin_ctz(at_cell);
             if (meets_cell(&stream, &w, l)) decided |= 1u << l;
         }
-        /* below a cell there is nothing to go down to */
+        /* a cell is the lowest level */
         over = move(&w, 0, &low, f64x4_or(low.clear, f64x4_at_most(f64x4_load(w.k), f64x4_set(0))));
         over |= move(&w, 4, &high, f64x4_or(high.clear, f64x4_at_most(f64x4_load(w.k + 4), f64x4_set(0)))) << 4;
         for (over = (over | decided) & busy; over; over &= over - 1) {

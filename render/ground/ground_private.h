@@ -164,7 +164,7 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
                      const double *const o_enu[3], const double *const d_enu[3], const double *far_m, double *from_m,
                      int start_level);
 
-/* ground_first_hits for the count rays whose numbers are in list (NULL: 0 .. count - 1), of which nothing meets
+/* ground_first_hits for the count rays whose indices are in list (NULL: 0 .. count - 1), of which nothing meets
  * anything before from_m (NULL: 0). */
 void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *ground, int count,
                             const double *const o_enu[3], const double *const d_enu[3], const double *far_m,

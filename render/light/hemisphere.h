@@ -33,7 +33,7 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
 
 /* Change of the light of open sky and level, sunlit ground at a point by nearby parts and shadows. */
 typedef struct HemisphereChange {
-    float w_m2[AIR_BAND_COUNT]; /* irradiance, exact less open; of the bands asked for, else 0 */
+    float w_m2[AIR_BAND_COUNT]; /* irradiance, exact less open; of the bands requested, else 0 */
     float blocked, sunlit;      /* shares of its directions that meet something, and that meet sunlit surfaces */
     float inside;               /* of those that met parts, the share met from within: a point inside a body has 1 */
 } HemisphereChange;

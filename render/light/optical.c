@@ -68,7 +68,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
 
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
-            /* a rough lobe near the horizon sees some of both */
+            /* a rough lobe near the horizon includes some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
             double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
             if (sees_sky > 0) seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]);

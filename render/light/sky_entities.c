@@ -4,7 +4,7 @@
 
 #include "pitviper_simd.h"
 
-enum { grid_directions = 28 /* a sample point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
+enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
 enum { task_places = 32 };
 static const double grid_px = 2.75;
 

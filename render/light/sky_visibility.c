@@ -11,7 +11,7 @@ enum {
     cached_probes   = 16,
     finer_most    = 3,         /* number of halvings of a ground cell */
 };
-static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
+static const double hidden_share = 0.02;  /* of a level plane's light: smaller effects are left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
 static const double differ = 0.15;        /* shares of directions: where points differ more the grid is refined */
 static const double cell_reach = 0.45; /* coarsest cells, of the reach */
@@ -327,7 +327,7 @@ int sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double
 {
     int       count = 0;
     const int asked = visibility_near(w->near, v->scene.gather.visibility, box[0], box[1],
-                                      more_m + (with_reach ? look_m : 0)); /* no reach is longer */
+                                      more_m + (with_reach ? look_m : 0)); /* upper limit of the reach */
     for (int n = 0; n < asked; n++) {
         const int          k = w->near[n];
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, k);

@@ -8,13 +8,13 @@
  *
  *   ground    points of a square lattice that is fixed to the ground, finer where their values differ and never finer
  *             than the picture's resolution; computed when a hit needs them, cached for the frame
- *   entities  the visible surface of each on a grid over its box on the image, 2.75 px apart, at least 3 x 3 and at most
- *             48 x 48, computed before the tiles; a hit takes those about it that face its way. The grid moves with the
- *             entity
+ *   entities  the visible surface of each on a grid over its box on the image, 2.75 px apart, at least 3 x 3 and at
+ *             most 48 x 48, computed before the tiles; a hit takes those about it that face its way. The grid moves
+ *             with the entity
  *
  * The value of a point depends on the scene and the view only, so it is the same whichever thread computes it. The
- * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Sky hidden by
- * terrain is not included, and mirror reflections are unaffected.
+ * ground is treated only within reach of an entity: beyond, it hides less than 2 % of a level plane's sky. Sky hidden
+ * by terrain is not included, and mirror reflections are unaffected.
  *
  * Error against hemisphere_light, means of 5 x 5 px (tests/sensor/test_sky_visibility.c): 2 to 4 % rms on shadowed
  * ground, 5 to 13 % where less than 40 % of the open light comes, 4 to 13 % on sides away from the sun. */

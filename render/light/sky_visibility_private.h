@@ -101,7 +101,7 @@ struct SkyWorker {
 /* Ratio of the light at a point of this normal to that in the open. */
 void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const HemisphereChange *change);
 void sky_box_grow(double box[2][3], const Hits *hits, int i);
-/* Entities whose spheres, grown by more_m (and their reach), touch the box, into w->near and its companions. */
+/* Entities whose spheres, grown by more_m (and their reach), touch the box, into w->near and the related arrays. */
 int  sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach);
 
 /* sky_entities.c. The grid over the visible part of the box; tasks of all grids; a hit's factors. */

@@ -38,7 +38,7 @@ typedef struct SurfaceBlock {
     const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
-/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
+/* out: of the requested bands, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
  * optical_beyond and thermal_beyond give those. */
 void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block);
 

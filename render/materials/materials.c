@@ -325,7 +325,7 @@ void material_split(double *diffuse, double *lobe, double rho, double gloss, dou
 {
     const double gloss_rho = rho * gloss;
     *lobe    = material_fresnel(gloss_rho, roughness_rad, cosine);
-    /* what the lobe takes at grazing angles the diffuse share gives up */
+    /* the increase of the lobe at grazing angles is taken from the diffuse share */
     *diffuse = gloss_rho < 1 ? (rho - gloss_rho) * (1 - *lobe) / (1 - gloss_rho) : 0;
 }
 

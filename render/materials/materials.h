@@ -23,7 +23,7 @@ typedef struct Material {
     float roughness;                  /* width of that lobe, rad rms slope */
     float metal;                      /* 1: mirrors radar; 0: does not */
     float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
-    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of what lies under the surface */
+    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of the layer below the surface */
 } Material;
 
 typedef struct Materials {

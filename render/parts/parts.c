@@ -59,7 +59,7 @@ static void bound_mesh(NodeMesh *mesh)
             v3_sub(d, model->vertex[model->triangle[mesh->triangle[t]][c]], mesh->centre);
             square = fmax(square, v3_dot(d, d));
         }
-    /* a float of that size steps by 1e-7 of it: a hundred steps of room */
+    /* a float of that size has steps of 1e-7 of it: a margin of a hundred steps */
     const double room_m = (sqrt(square) + v3_length(mesh->centre)) * 1e-5 + 1e-4;
     mesh->radius_m = sqrt(square) + room_m;
     for (int a = 0; a < 3; a++) mesh->half[a] = 0.5 * (high[a] - low[a]) + room_m;

@@ -55,8 +55,8 @@ const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 int parts_node_count(const Tracer *tracer, int model);
 /* Radius of the largest of their spheres, m. */
 double parts_largest_node_m(const Tracer *tracer, int model);
-/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are
- * not there. */
+/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides
+ * are omitted. */
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
                 const double r_enu_from_body[9], int damage);
 

@@ -8,7 +8,8 @@
  *
  * Inverse: Newton's method, a fixed number of steps, so that arrays and single points give the same bits; lens_make
  * rejects a lens for which those steps do not converge to 1e-12. Beyond the picture a polynomial may fold back into it;
- * from `reach` on the image of a direction r u is therefore r / reach times that of reach u, which runs straight out. */
+ * from `reach` on the image of a direction r u is therefore r / reach times that of reach u, a straight line
+ * outwards. */
 #ifndef RENDER_SCENE_LENS_H
 #define RENDER_SCENE_LENS_H
 
@@ -17,7 +18,7 @@
 typedef struct Lens {
     double k[3], p[2];
     double reach;      /* tangent off the axis up to which the polynomial holds; 0: no distortion at all */
-    double tangent[2]; /* what the picture shows at most to either side, and up or down; with room */
+    double tangent[2]; /* extent of the picture to either side, and up or down; with margin */
     double bend;       /* bound of the second derivatives of the inverse within the picture */
 } Lens;
 

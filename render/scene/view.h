@@ -9,7 +9,7 @@ const char *band_name(Band band); /* optical, mwir, lwir, radar */
 
 /* Pinhole: x right, y down, z along the boresight. A direction (x, y, z) falls on
  * column = width / 2 + focal_px x / z, row = height / 2 + focal_px y / z; the first pixel's centre is
- * (0.5, 0.5). A lens (render/scene/lens.h) moves (x / z, y / z) before that; it must have been made for this picture. */
+ * (0.5, 0.5). A lens (render/scene/lens.h) moves (x / z, y / z) before that; it must be made for this picture. */
 typedef struct View {
     double p_enu[3];
     double r_enu_from_cam[9];

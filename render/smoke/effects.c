@@ -35,7 +35,7 @@ typedef struct Placed {
     const EffectModel *law;
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
     uint32_t         group;
-    int              index; /* in the snapshot: decides between equals */
+    int              index; /* index in the snapshot: order of equals */
 } Placed;
 
 /* Source terms of one volume in one band. i: its air path. */

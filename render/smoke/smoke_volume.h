@@ -41,8 +41,8 @@ typedef struct SmokeRays {
 int  smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
                 double column1_px, double row1_px);
 /* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than veil_together
- * volumes on a ray each further veil_together, in order of range, are put behind the ones before: transmittances stay
- * exact, and what is added is that of clouds one behind the other. */
+ * volumes on a ray each further veil_together, in order of range, are composited behind the previous ones:
+ * transmittances stay exact, and the added radiance is that of clouds one behind the other. */
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands);
 void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count);

@@ -139,7 +139,7 @@ static void grow_box(double box[2][3], const double p[3])
     }
 }
 
-/* Whether every ray meets an entity, and all of the ground lies below all of them until there. */
+/* Whether every ray meets an entity, and all of the ground is below all of them up to there. */
 static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int count, const double *const o[3],
                               const double *const d[3], const double *until_m)
 {

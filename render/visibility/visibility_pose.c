@@ -74,8 +74,8 @@ static double wider_m(const Model *model, double largest_node_m)
     return (1 + 2 * sqrt(3.0)) * ball_m - model->radius_m;
 }
 
-/* A model's sphere holds it in every pose (entities/models/model.h); nodes that come with the snapshot are taken as they
- * are. */
+/* A model's sphere contains it in every pose (entities/models/model.h); nodes that come with the snapshot are taken
+ * as they are. */
 static Status bound_entities(Visibility *v, Arena *arena)
 {
     const size_t count = (size_t)v->count + 1;

@@ -21,7 +21,7 @@ typedef struct GroundRays {
 
 typedef struct GroundSet {
     const GroundRays *rays;
-    double step_posts;   /* of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
+    double step_posts;   /* steps of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
     double range_m[ground_rays];
 } GroundSet;
 

@@ -160,7 +160,7 @@ static double two_in_one_place(void *user, bool quick)
 /* ---- where the eye is ------------------------------------------------------------------------------ */
 
 /* Inside a block, on its side and edge-on to it, under the ground, on it, at 1000 km; level, straight up and straight
- * down, by day, night and with the sun on the horizon, overhead and underfoot; wide and narrow. */
+ * down, by day, night and with the sun on the horizon, overhead and at the nadir; wide and narrow. */
 static double eyes(void *user, bool quick)
 {
     static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40}, {0, 0, 0},

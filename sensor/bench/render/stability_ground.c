@@ -59,7 +59,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
     const double sign = dice_uniform(dice, 0, 1) < 0.5 ? -1 : 1;
     const int    axis = dice_uniform(dice, 0, 1) < 0.5;
     switch (kind) {
-    case 0: /* down on anything */
+    case 0: /* down, anywhere */
         d[2] = -fabs(d[2]);
         v3_add_scaled(o, to, -dice_log(dice, 1, 5000), d);
         o[0] += dice_uniform(dice, -4, 4);
@@ -95,7 +95,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
         o[2] -= dice_log(dice, 1e-6, 100);
         if (i % 2) o[axis] += sign * 1000, v3_scale(d, -1, d);
         break;
-    default: /* grazing over everything */
+    default: /* grazing, anywhere */
         d[2] = dice_uniform(dice, -1e-3, 1e-3);
         v3_normalize(d, d);
         o[2] += dice_uniform(dice, -0.5, 0.5);
@@ -201,7 +201,7 @@ static double field(bool quick, int want)
 static double field_missed(void *user, bool quick) { (void)user; return field(quick, count_missed); }
 static double field_invented(void *user, bool quick) { (void)user; return field(quick, count_invented); }
 
-/* The same rays eight at a time and as a tile: bits, cells and halves that differ. */
+/* The same rays eight at a time and as a tile: number of different bits, cells and halves. */
 static double field_company(void *user, bool quick)
 {
     enum { block = 1000 };

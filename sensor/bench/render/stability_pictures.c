@@ -159,9 +159,9 @@ typedef struct Fields {
     double length, back_px;
 } Fields;
 
-/* Rays of 0.01 to 179 degrees: of unit length, and where projecting them says: 0.01 degree over 8192 px is a focal
- * length of 4.7e7 px, of which a rounding is 1e-8. Towards the rim of a wide view a pixel is as much larger as its
- * tangent. */
+/* Rays of 0.01 to 179 degrees: of unit length, and in agreement with their projection: 0.01 degree over 8192 px is a
+ * focal length of 4.7e7 px, of which a rounding is 1e-8. Towards the rim of a wide view a pixel is as much larger as
+ * its tangent. */
 static Fields fields(bool quick)
 {
     Fields worst = {0};

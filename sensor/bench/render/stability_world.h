@@ -18,7 +18,7 @@ typedef struct StressWorld {
     SnapshotEntity *entity;    /* [stress_entities] */
     NodePose       *pose;
     Snapshot        snapshot;
-    Picture         picture;   /* the last one, good until the next */
+    Picture         picture;   /* the last one, valid until the next */
 } StressWorld;
 
 static const float  stress_rho = 0.5f, stress_rho_ir = 0.2f;
