@@ -39,7 +39,7 @@ typedef struct ProbeTask {
 typedef struct Budget {
     const Job  *job;
     int         field_px, columns, rows, candidates, probes, blocks, n;
-    bool        law;       /* the excess over the rays that the pixels have is removed by the sampling variance */
+    bool        law;       /* too many rays to re-sample more finely: the sampling variance is used */
     Candidate  *candidate;
     ProbeOf    *probe, tables_probe[tables_probes];
     ProbeTask  *task;      /* [blocks + tables_blocks] */

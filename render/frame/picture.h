@@ -14,7 +14,7 @@ enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, pictur
  * the plane's unit, by source. The planes are the same with and without it. How each figure is made and what it
  * leaves out: render/frame/error_budget.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
 typedef struct ErrorBudget {
-    double mean[picture_plane_count];            /* mean of the plane over the re-sampled pixels */
+    double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
     double level_of_detail[picture_plane_count]; /* posts of the ground. Facets of models: sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */

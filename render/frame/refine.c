@@ -74,7 +74,7 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
     }
 }
 
-/* Samples the block's pixels again with n samples a side, replacing the first ones. variance: receives their squared
+/* Samples the block's pixels again with n samples a side, replacing the first ones. law: receives their squared
  * errors; NULL: not needed. */
 static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, double *law)
 {

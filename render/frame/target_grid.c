@@ -15,8 +15,8 @@
 
 /* ---- planning ------------------------------------------------------------------------------- */
 
-/* Below this both ways (or this one way and four times as much the other) the grid is more accurate: edge samples, 1
- * / 16 px apart along an axis, have errors of up to 1 / 16 px of width, 0.4 % of 16 px. */
+/* Below this both ways (or this one way and four times as much the other) the grid is more accurate: edge samples,
+ * 1 / 16 px apart along an axis, have errors of up to 1 / 16 px of width, 0.4 % of 16 px. */
 static bool is_small(const TargetPixels *t)
 {
     const double w = t->projected_box[2] - t->projected_box[0], h = t->projected_box[3] - t->projected_box[1];

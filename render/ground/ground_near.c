@@ -254,7 +254,7 @@ static int level_of(const Ground *ground, double x_m, double y_m)
     return n;
 }
 
-/* A level's highest post, over all of its area. */
+/* Height, in posts of this level, that no level exceeds. */
 static double above_all(const Ground *ground, const GroundLevel *g)
 {
     double above = 0;

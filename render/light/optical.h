@@ -8,7 +8,7 @@
 /* channel: optical_channel_b .. optical_channel_nir. material: row of each hit (0 for sky). texture: reflectance of
  * the ground in this channel over its material's, 1 elsewhere. d_enu: the eye rays' directions. sun: share of the
  * direct sun that arrives, 0 .. 1; NULL: all of it. around_w_m2: irradiance of each hit from sky and surroundings
- * (render/light/hemisphere.h); NULL: sky and ground by the share of each that the surface faces. paths: of this
+ * (render/light/hemisphere.h); NULL: sky and ground by the share of each that the surface faces. veils: of this
  * band; facing: of these hits; either NULL: computed here. out: W/(m2 sr) [hits->count]. Frames use the faster form
  * of render/light/surface_light.h, which is tested against this one. */
 void optical_shade(float *out, int channel, const Air *air, const Materials *materials, const Hits *hits,

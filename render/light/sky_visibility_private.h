@@ -54,7 +54,7 @@ struct SkyVisibility {
 
 typedef struct SkySlot {
     uint64_t key;
-    uint32_t block;  /* number of the frame in which it was written: others are free */
+    uint32_t block;  /* number of the block in which it was written: others are free */
     bool     known;
     SkyAnswer place;
 } SkySlot;

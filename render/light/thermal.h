@@ -15,7 +15,7 @@ void thermal_temperature(float *temp_k, const Air *air, const Materials *materia
 
 /* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2:
  * irradiance of each hit from sky and surroundings (render/light/hemisphere.h); NULL: sky and ground by the tilt
- * alone. paths: of this band and these temperatures; facing: of these hits; either NULL: computed here. out: W/(m2
+ * alone. veils: of this band and these temperatures; facing: of these hits; either NULL: computed here. out: W/(m2
  * sr). Frames use the faster form of render/light/surface_light.h, which is tested against this one. */
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,

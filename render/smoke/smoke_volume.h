@@ -12,7 +12,7 @@
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
 
-/* Bands in the order of entities/effects.h. */
+/* Bands in the order of entities/effects/effects.h. */
 enum { smoke_bands = 7, smoke_scatter_orders = 3, smoke_segments_max = 24, veil_together = 96 };
 
 typedef struct SmokeVolume {
