@@ -1,4 +1,4 @@
-/* render/probe.c: the probes of this folder: Planck, ray intersection and atmosphere for rows of CSV. */
+/* render/probe.c: `pitviper probe` for this folder: Planck, ray intersection and atmosphere for rows of CSV. */
 #include "render/probe.h"
 
 #include "entities/import/model_import.h"
@@ -36,7 +36,7 @@ static void rays_close(void *state)
     free(p);
 }
 
-/* rays MODEL [file|body]: in a file's own axes, origin and units unless a sidecar says what they mean. */
+/* rays MODEL [file|body]: in a file's own axes, origin and units unless a sidecar defines them. */
 static Status rays_open(void **state, int argc, char **argv)
 {
     static const double origin[3] = {0, 0, 0};
@@ -107,7 +107,7 @@ static const char *rays_row(void *state, const ProbeValue *in, ProbeValue *out)
 
 enum { probe_models_max = 8 };
 
-/* Models are opened when a row first names them and kept; one that failed is kept as NULL. */
+/* Models are opened when a row first names them and cached; one that failed is cached as NULL. */
 typedef struct AtmosphereProbe {
     int         count;
     char        name[probe_models_max][64];

@@ -1,4 +1,4 @@
-/* render/probe.h: what `pitviper probe` can ask of this room. */
+/* render/probe.h: the subcommands of `pitviper probe` for render. */
 #ifndef RENDER_PROBE_H
 #define RENDER_PROBE_H
 

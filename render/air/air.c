@@ -1,8 +1,8 @@
-/* render/air/air.c: the air before one eye: daylight, the sky from where it is, and where it looks. The paths are
- * air_table.c's. */
+/* render/air/air.c: the air of one eye: daylight, the sky from its height, and air paths along its view. The path
+ * tables are in air_table.c. */
 #include "render/air/air_private.h"
 
-/* Azimuths from the sun's, slopes and heights that a view can show. */
+/* Azimuths from the sun, slopes and heights that a view can contain. */
 static void look_where(TableInput *input, const View *view, const double sun_d_enu[3], double eye_m)
 {
     input->azimuth_low_rad = 0, input->azimuth_high_rad = pi_rad;
@@ -19,11 +19,11 @@ static void look_where(TableInput *input, const View *view, const double sun_d_e
             low = fmin(low, azimuth_rad), high = fmax(high, azimuth_rad);
             down = fmin(down, d_enu[2]), up = fmax(up, d_enu[2]);
         }
-    /* what the raster misses; and the round Earth falls away from under a long path: by 0.02 over its 250 km */
+    /* what the sample grid misses; and the drop of the round Earth below a long path: 0.02 over its 250 km */
     const double slope_margin = 0.1 * (up - down) + 1e-3;
     input->slope_low = fmax(down - slope_margin, -1), input->slope_high = fmin(up + slope_margin + 0.02, 1);
     input->height_high_m = eye_m + fmax(air_far_m * input->slope_high, 0);
-    if (down < -0.8 || up > 0.8) return; /* a pole may be in it, where all azimuths meet */
+    if (down < -0.8 || up > 0.8) return; /* a pole may be inside, where all azimuths meet */
     const double margin_rad = fmax(0.25 * (high - low), 0.02);
     input->azimuth_low_rad = fmax(low - margin_rad, 0), input->azimuth_high_rad = fmin(high + margin_rad, pi_rad);
 }
@@ -76,7 +76,7 @@ Status air_at(Air *out, const AirSource *source, const Weather *weather, const S
               Arena *arena)
 {
     *out = (Air){.eye_height_m = clamp(eye->height_m, 0, air_top_m)};
-    /* ten metres of air under the eye are nothing to the sky above it */
+    /* ten metres of air below the eye do not change the sky above it */
     const bool on_ground = out->eye_height_m < 10;
     AirJob     job;
     Status     status = daylight_begin(&job.light, &out->light, source, weather, sun, eye->bands,

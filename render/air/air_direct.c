@@ -1,12 +1,14 @@
-/* render/air/air_direct.c: what air_paths.c says, without its tables: each path asked of the atmosphere by itself.
+/* render/air/air_direct.c: the results of air_paths.c without its tables: each path is computed from the atmosphere
+ * separately.
  *
- * The measure of the tables for a few rays of a frame (render/frame/error_budget.c). Places and heights of paths are as
- * air_paths.c has them. */
+ * The reference for the tables, used for a few rays of a frame (render/frame/error_budget.c). Ends and heights of
+ * paths are as in air_paths.c. */
 #include "render/air/air_private.h"
 
 static double straight(double low, double high, double share) { return low + share * (high - low); }
 
-/* Depth of what a body of this temperature emits, between the day's emitters as the atmosphere's own tables have it. */
+/* Optical depth for the emission of a body of this temperature, interpolated between the day's emitters as the
+ * atmosphere's own tables do. */
 static double depth_of(const double depth[day_temps_max], double temp_k)
 {
     int k = 0;

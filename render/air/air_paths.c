@@ -1,5 +1,5 @@
-/* render/air/air_paths.c: what the path does to thousands of samples a frame: eight at a time, every band from one look at
- * where they end. A sample's answer hangs on its own path alone, whatever comes beside it. */
+/* render/air/air_paths.c: transmittance and path radiance for thousands of samples a frame: eight at a time, all
+ * bands from one computation of the table position. A sample's result depends on its own path alone. */
 #include "render/air/air_private.h"
 
 #include "pitviper_simd.h"
@@ -10,16 +10,17 @@ static inline F32x8 sub(F32x8 a, F32x8 b) { return a - b; }
 /* NaN, as the unused end of a block may hold, becomes low. */
 static inline F32x8 within(F32x8 x, F32x8 low, F32x8 high) { return f32x8_min(f32x8_max(x, low), high); }
 
-/* ---- where eight paths end, in the table's own steps ------------------------------------------- */
+/* ---- ends of eight paths, in steps of the table ------------------------------------------------ */
 
 typedef struct Places {
-    _Alignas(32) int node[8], turn_node[8], heat_node[8]; /* lower height, nearer range; lower slope, nearer share of
-                                                           * the way, lower azimuth; node of the lower temperature */
-    _Alignas(32) float height[8], range[8], slope[8], share[8], turn[8]; /* shares of the upper ones */
+    _Alignas(32) int node[8], turn_node[8], heat_node[8]; /* lower height, nearer range; lower slope, nearer share
+                                                           * of the path, lower azimuth; node of the lower
+                                                           * temperature */
+    _Alignas(32) float height[8], range[8], slope[8], share[8], turn[8]; /* shares of the upper nodes */
     F32x8 temp, near; /* near: range over the table's nearest, .. 1 */
 } Places;
 
-/* What is the same for every eight of a block. */
+/* Constants for all eights of a block. */
 typedef struct Look {
     const AirTable *table;
     __m128i row_shift;
@@ -74,12 +75,12 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
                 per_earth = f32x8_set(1 / earth_radius_m);
     const F32x8 far_m = _mm256_set1_ps(nextafterf((float)air_far_m, 0)); /* (1 << air_octaves) nearest ones */
     const F32x8 at = within(_mm256_loadu_ps(range_m + i), f32x8_set(0), far_m), level2 = f32x8_fma(dx, dx, mul(dy, dy));
-    /* the tangent plane leaves the Earth: by the eye's own distance from the origin, and along the path */
+    /* the tangent plane leaves the Earth: by the eye's distance from the origin, and along the path */
     const F32x8 climb = f32x8_fma(f32x8_fma(ox, dx, mul(oy, dy)), per_earth, dz);
     const F32x8 bend = mul(level2, f32x8_set(0.5 / earth_radius_m));
     const F32x8 rise_m = _mm256_max_ps(mul(at, f32x8_fma(at, bend, climb)), look->down_m);
 
-    /* height and range by their own bits */
+    /* height and range from the bits of the floats */
     const F32x8 h = _mm256_min_ps(add(add(look->eye_m, rise_m), f32x8_set(air_low_m)), look->height_most_m);
     const F32x8 r = mul(at, f32x8_set(1 / air_near_m));
     const __m256i hb = bits_above(_mm256_max_ps(h, f32x8_set(air_low_m)), air_low_m);
@@ -96,7 +97,7 @@ static inline void find_places(Places *p, const Look *look, const float *range_m
     const F32x8 s = within(mul(sub(root, look->slope_low), look->slope_steps), f32x8_set(0),
                      f32x8_set(air_slopes - 1e-3));
     const __m256i si = _mm256_cvttps_epi32(s);
-    /* range over the whole way, which ends at the ground or the top, and within its limits */
+    /* range over the complete path, which ends at the ground or the top, and within its limits */
     const F32x8 per_m = _mm256_blendv_ps(look->per_climb_m, look->per_fall_m, rise);
     const F32x8 gone = within(mul(f32x8_abs(rise_m), per_m), mul(at, f32x8_set(1 / air_longest_way_m)),
                               mul(at, f32x8_set(1 / air_shortest_way_m)));
@@ -132,7 +133,7 @@ static inline void find_temps(Places *p, const Look *look, const float *temp_k)
                        _mm256_add_epi32(row_times(k, air_nodes), _mm256_load_si256((const __m256i *)p->node)));
 }
 
-/* ---- what the table holds there ------------------------------------------------------------------ */
+/* ---- values of the table ------------------------------------------------------------------------- */
 
 /* Eight rows of four to four values of eight. */
 static inline void turn_four(F32x8 out[4], const __m128 row[8])
@@ -145,7 +146,7 @@ static inline void turn_four(F32x8 out[4], const __m128 row[8])
     out[2] = _mm256_shuffle_ps(b, d, 0x44), out[3] = _mm256_shuffle_ps(b, d, 0xee);
 }
 
-/* Two neighbouring nodes, blended by a sample's own share: the first four values and the second four. */
+/* Two neighbouring nodes, interpolated by the share of a sample: the first four values and the second four. */
 static inline __m128 along(F32x8 pair, float share)
 {
     const __m128 near = _mm256_castps256_ps128(pair), far = _mm256_extractf128_ps(pair, 1);
@@ -179,7 +180,7 @@ static inline void scattered_sources(F32x8 out[air_lights], const AirLight *ligh
     for (int k = 0; k < air_lights; k++) out[k] = f32x8_exp2(out[k]);
 }
 
-/* Both thermal bands' values, after each other. */
+/* Values of both thermal bands, one after the other. */
 static inline void heats(F32x8 out[2 * air_warm_values], const AirHeat *heat, const Places *p)
 {
     enum { values = 2 * air_warm_values };

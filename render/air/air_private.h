@@ -1,18 +1,18 @@
-/* render/air/air_private.h: between air.c, air_table.c and air_paths.c. */
+/* render/air/air_private.h: shared by air.c, air_table.c and air_paths.c. */
 #ifndef RENDER_AIR_AIR_PRIVATE_H
 #define RENDER_AIR_AIR_PRIVATE_H
 
 #include "render/air/air.h"
 #include "render/air/daylight_private.h"
 
-/* Paths from one eye. What they take away, and the air's own light, by the far end's height and the range, both in
- * octaves (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that a number's own bits say
- * where it lies: log2(1 / tau), which is
- * straight in range in a grey and even air; and the path's radiance over 1 - tau, its mean source.
- * Scattered light, over 1 - tau of the sun, also depends on where a path points: by its slope, rise over range, s |s|
- * with s in equal steps over what is looked at; by the root of its share of the whole way, to the ground or out of the
- * tables' air, so that ground is at its end; and by sqrt(1 - cos azimuth from the sun), which needs no arc cosine and
- * is dense about the sun. What a sample wants of a node lies side by side. */
+/* Paths from one eye. Extinction, and the air's own emission, by the far end's height and the range, both in octaves
+ * (of 100 m, the tables' nearest, and of the height plus 64 m) cut evenly, so that the table index is taken from the
+ * bits of the float: log2(1 / tau), which is linear in range in a grey and homogeneous atmosphere; and the path's
+ * radiance over 1 - tau, its mean source. Scattered light, over 1 - tau of the sun, also depends on the direction of
+ * a path: by its slope, rise over range, s |s| with s in equal steps over what is looked at; by the root of its
+ * share of the complete path, to the ground or to the top of the tables, so that ground is at its end; and by
+ * sqrt(1 - cos azimuth from the sun), which needs no arc cosine and is dense about the sun. The values of a node are
+ * contiguous. */
 enum { air_octaves = 12, air_range_cuts = 8, air_range_shift = 20 /* bits of a number in one of eight cuts */ };
 enum { air_ranges = air_octaves * air_range_cuts, air_rows_most = 48 };
 enum { air_slopes = 24, air_shares = 40, air_turns = 12, air_lights = 4 };
@@ -21,8 +21,8 @@ enum { air_share_row = air_shares + 1, air_slope_nodes = (air_slopes + 1) * air_
 
 static const double air_top_m = 30e3, air_near_m = 100, air_far_m = 409600, air_low_m = 64;
 static const double earth_radius_m = 6371e3;
-/* The whole way ends at the ground or the tables' top, and after 100 km, where little more light is to come. From less
- * than 200 m up it goes on along the ground, as if from there: the air below is much the same. */
+/* The complete path ends at the ground or the tables' top, and after 100 km, beyond which little light is added.
+ * From less than 200 m up it continues along the ground, as if from there: the air below is much the same. */
 static const double air_shortest_way_m = 10, air_longest_way_m = 100e3, air_least_fall_m = 200;
 
 /* Four bands that sunlight is scattered in. */
@@ -34,7 +34,7 @@ typedef struct AirLight {
 } AirLight;
 
 /* The two thermal bands, mwir before lwir: depth of emission at the air's temperature, at emitter_temp_k[t] and the
- * next, and the air's own radiance over 1 - tau of the first, W/(m2 sr). */
+ * next, and the path's own radiance over 1 - tau of the first, W/(m2 sr). */
 typedef enum AirWarm { air_warm_own, air_warm_low, air_warm_high, air_warm_source, air_warm_values } AirWarm;
 typedef struct AirHeat {
     float value[air_temps - 1][air_nodes][2 * air_warm_values];
@@ -51,7 +51,7 @@ struct AirTable {
     AirHeat  *heat;               /* NULL: no thermal band */
 };
 
-/* The float whose bits are so many steps of 2^shift above low's. */
+/* The float whose bits are this number of steps of 2^shift above those of low. */
 static inline float air_step_up(double low, int steps, int shift)
 {
     const float from = (float)low;
@@ -63,13 +63,13 @@ static inline float air_step_up(double low, int steps, int shift)
     return to;
 }
 
-/* What air->table is of: these bands, between two azimuths from the sun and two slopes, up to a height. */
+/* Extent of air->table: these bands, between two azimuths from the sun and two slopes, up to a height. */
 typedef struct TableInput {
     double azimuth_low_rad, azimuth_high_rad, slope_low, slope_high, height_high_m; /* slopes as rise over range */
     unsigned bands;
 } TableInput;
 
-/* First every ask, in any order and by any thread, then every draw. */
+/* First every evaluation of the atmosphere, in any order and by any thread, then every interpolation. */
 typedef struct TableJob TableJob;
 Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena *arena);
 int    air_table_asks(const TableJob *job);

@@ -1,11 +1,12 @@
-/* render/air/air_table.c: the paths of a frame, collapsed from the tables of an atmosphere. air_paths.c asks them.
+/* render/air/air_table.c: the path tables of a frame, reduced from the tables of an atmosphere; looked up by
+ * air_paths.c.
  *
- * The eye's height, the sun and the visibility are a frame's own, so of a path only its far end's height, its length
- * and its azimuth from the sun are left. Each answer of the atmosphere is a search in its tables, and of scattered
- * light an integral along the path: ranges are asked for at each octave, scattered light at every second node, and
- * drawn between them by cubics. How scattered light turns with azimuth is much the same along a path and from one
- * slope to the next, so that away from the middle azimuth only a sixteenth of those nodes is asked, for their ratio.
- * tests/render/test_air.c holds the sum of it against atmosphere_path(). */
+ * The eye's height, the sun and the visibility are constant in a frame, so the variables of a path are its far end's
+ * height, its length and its azimuth from the sun. Each evaluation of the atmosphere is a search in its tables, and
+ * for scattered light an integral along the path: extinction is evaluated at each octave of range, scattered light
+ * at every second node, with cubic interpolation between them. The variation of scattered light with azimuth is
+ * nearly the same along a path and from one slope to the next, so that away from the middle azimuth only a sixteenth
+ * of those nodes is evaluated, for their ratio. tests/render/test_air.c compares the result with atmosphere_path(). */
 #include "render/air/air_private.h"
 
 enum {
@@ -28,20 +29,20 @@ typedef double Octaves[air_octaves + 1];
 struct TableJob {
     Air *air;
     TableInput in;
-    int turns, middle; /* steps of azimuth asked for, and the one asked for in full */
+    int turns, middle; /* evaluated steps of azimuth, and the one that is evaluated in full */
     double azimuth_rad[coarse_turns + 1];
     Coarse log2_source[AIR_BAND_COUNT];            /* of scattered light at the middle azimuth */
     Side   side[AIR_BAND_COUNT][coarse_turns + 1]; /* the same elsewhere */
 };
 
-/* log2(1 / tau) a metre, of a depth. */
+/* log2(1 / tau) per metre, from an optical depth. */
 static double extinction(double depth, double range_m)
 {
     static const double deepest = 69.07755278982137, log2_e = 1.4426950408889634; /* ln 1e30 */
     return clamp(depth, 0, deepest) * log2_e / range_m;
 }
 
-/* Radiance over what the path takes away; a clear path has no source. */
+/* Radiance over 1 - transmittance; a path without extinction has no source. */
 static double mean_source(double radiance_w_m2_sr, double depth)
 {
     return depth > 1e-12 ? radiance_w_m2_sr / -expm1(-depth) : 0;
@@ -52,7 +53,7 @@ static double log2_source(const TableJob *job, double scattered_w_m2_sr, double 
     return log2(fmax(mean_source(scattered_w_m2_sr * job->air->light.scattered_scale, depth), 1e-30));
 }
 
-/* A band whose scattered light is asked for: sunlight is below a thousandth of what 8-12 um emits. */
+/* A band whose scattered light is evaluated: sunlight is below a thousandth of what 8-12 um emits. */
 static bool scatters(const TableJob *job, int band)
 {
     return job->in.bands >> band & 1 && band != AIR_LWIR && job->air->table->scattered;
@@ -61,9 +62,9 @@ static bool scatters(const TableJob *job, int band)
 static double azimuth_rad(double turn) { return acos(clamp(1 - turn * turn, -1, 1)); }
 static double turn_of(double azimuth) { return sqrt(fmax(1 - cos(azimuth), 0)); }
 
-/* ---- what paths take away -------------------------------------------------------------------------- */
+/* ---- extinction of paths --------------------------------------------------------------------------- */
 
-/* A curve of every range, between the octaves by their cubic, cut evenly. */
+/* A curve over all ranges, evenly divided, with cubic interpolation between the octaves. */
 typedef float Curve[air_ranges + 1];
 
 static void cut_octaves(Curve out, const Octaves in, bool times_range)
@@ -95,7 +96,7 @@ static void put_curve(float *out, int stride, const Curve curve)
     for (int r = 0; r <= air_ranges; r++) out[r * stride] = curve[r];
 }
 
-/* One height: every range. */
+/* One height: all ranges. */
 static void ask_height(TableJob *job, int row)
 {
     const Air      *air = job->air;
@@ -107,7 +108,7 @@ static void ask_height(TableJob *job, int row)
                     .target_m = fmin((double)air_step_up(air_low_m, row, table->row_shift) - air_low_m, air_top_m)};
     const double straight_m = fabs(path.target_m - path.observer_m) * 1.0001;
     for (int r = 0; r <= air_octaves; r++) {
-        /* shorter than straight up or down there is no path: the nodes hold that one */
+        /* no path is shorter than the vertical one: such nodes hold that one */
         path.range_m = fmax(ldexp(air_near_m, r), straight_m);
         if (r == 0 || ldexp(air_near_m, r) > straight_m) air_day_path(&here, job->air->light.day, &path);
         for (int b = 0; b < AIR_BAND_COUNT; b++) sun[b][r] = extinction(here.sun[b], path.range_m);
@@ -156,7 +157,7 @@ static AirPath path_at(const TableJob *job, int slope_step, int share_step)
     return (AirPath){.observer_m = eye_m, .range_m = range_m, .target_m = clamp(eye_m + slope * range_m, 0, air_top_m)};
 }
 
-/* One slope: at the middle azimuth, and on every so-manieth path at all of them. */
+/* One slope: at the middle azimuth, and on a subset of the paths at all azimuths. */
 static void ask_slope(TableJob *job, int i)
 {
     double seen[coarse_turns + 1][AIR_BAND_COUNT], sun[AIR_BAND_COUNT];
@@ -175,7 +176,8 @@ static void ask_slope(TableJob *job, int i)
     }
 }
 
-/* Twice the steps: between four by their cubic, at the ends between three. in: steps + 1, out: 2 steps + 1 values. */
+/* Doubles the steps: cubic interpolation between four, at the ends between three. in: steps + 1, out: 2 steps + 1
+ * values. */
 static void halve_steps(double *out, int out_stride, const double *in, int in_stride, int steps)
 {
     for (int i = 0; i < steps; i++) {
@@ -189,7 +191,7 @@ static void halve_steps(double *out, int out_stride, const double *in, int in_st
     out[2 * steps * out_stride] = in[steps * in_stride];
 }
 
-/* Both ways. fine: [2 slopes + 1][2 shares + 1]. */
+/* Along both axes. fine: [2 slopes + 1][2 shares + 1]. */
 static void halve_both(double *fine, const double *coarse, int slopes, int shares)
 {
     const int row = 2 * shares + 1;
@@ -205,7 +207,7 @@ void air_table_draw(TableJob *job, int task)
     if (group >= table->lights || lane >= table->light[group]->bands) return;
     AirLight *light = table->light[group];
     const AirBand band = light->band[lane];
-    /* every azimuth asked for, on the coarse nodes; then as many between them */
+    /* every evaluated azimuth, on the coarse nodes; then as many between them */
     Coarse asked[coarse_turns + 1], turned[air_turns + 1];
     for (int a = 0; a <= job->turns; a++) {
         memcpy(asked[a], job->log2_source[band], sizeof asked[a]);
@@ -229,9 +231,9 @@ void air_table_draw(TableJob *job, int task)
     }
 }
 
-/* ---- all of it ------------------------------------------------------------------------------------- */
+/* ---- the complete table ---------------------------------------------------------------------------- */
 
-/* As fine as there is room for. */
+/* As fine as memory allows. */
 static void choose_rows(AirTable *table, double high_m)
 {
     const double most_m = fmin(high_m, air_top_m);
@@ -255,7 +257,7 @@ Status air_table_begin(TableJob **out, Air *air, const TableInput *input, Arena 
     const double slope_high = fmax(copysign(sqrt(fabs(input->slope_high)), input->slope_high), slope_low + 1e-3);
     const double turn_low = turn_of(input->azimuth_low_rad);
     const double turn_span = fmax(turn_of(input->azimuth_high_rad) - turn_low, 1e-3);
-    /* asked for in a sixth of all round at most, of a quarter of the view at least */
+    /* evaluated over a sixth of the full circle at most, over a quarter of the view at least */
     job->turns = (int)clamp(ceil(turn_span * coarse_turns / sqrt(2) - 1e-9), 4, coarse_turns);
     job->middle = job->turns / 2;
     *table = (AirTable){.scattered = air->light.scattered_scale > 0,

@@ -1,4 +1,4 @@
-/* render/air/atmosphere.c: looks up what a path, the sky and the sun are, between the tables' points and visibilities. */
+/* render/air/atmosphere.c: evaluates paths, the sky and the sun between the tables' points and visibilities. */
 #include "render/air/atmosphere_private.h"
 
 const AirBand air_tabled[air_tabled_count] = {AIR_B, AIR_G, AIR_R, AIR_NIR, AIR_MWIR, AIR_LWIR};
@@ -132,13 +132,13 @@ double path_weight_value(const PathTable *table, const Stencil *at, double temp_
     return share > 0 ? low + share * (stencil_value(at, table, i + 1) - low) : low;
 }
 
-/* All that a band's path needs, found once. */
+/* All inputs of a band's path, computed once. */
 typedef struct Look {
     const Atmosphere *atmosphere;
     const Blend      *blend;
     AirBand           band;
     Stencil           clear, low, high;
-    double            clear_plain, haze_plain; /* depths by the columns alone */
+    double            clear_plain, haze_plain; /* depths from the columns alone */
 } Look;
 
 static void look_at(Look *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path)
@@ -169,7 +169,7 @@ static double look_depth(const Look *look, double temp_k)
     return depth + look->haze_plain * fmax(haze, 0);
 }
 
-/* ln of the ratio of what the path would radiate, were it opaque, to mean_black. */
+/* ln of the ratio of the radiance of the path, if it were opaque, to mean_black. */
 static double look_ln_opaque(const Look *look)
 {
     const Blend *blend = look->blend;
@@ -192,7 +192,7 @@ double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band
     return look_depth(&look, temp_k);
 }
 
-/* Heights within the tables, a range that can be. */
+/* Heights clamped to the tables, a range that is possible. */
 static AirPath sane_path(const Atmosphere *atmosphere, const AirPath *path)
 {
     const PathTable *table = &atmosphere->clear_path[AIR_B];

@@ -1,16 +1,18 @@
-/* render/air/atmosphere.h: the tables of etc/atmosphere: what a path, the sky and the sun are in a standard air.
+/* render/air/atmosphere.h: the tables of etc/atmosphere: transmittance and radiance of paths, the sky and the sun in a
+ * standard atmosphere.
  *
  * Exact here means: at a table's points it returns the table; between them its errors are those that
- * tests/render/test_atmosphere.c measures against points the tables do not hold. One path at a time and to the table's
- * own accuracy; what a frame needs (one eye, one sun, a third of a million paths) render/air/air.c collapses from this
- * once a frame. etc/atmosphere/README.md is the format, which knows nothing of the program that filled it. All of it is
- * a pure function of its arguments and may be called from any thread. */
+ * tests/render/test_atmosphere.c measures against points the tables do not hold. One path at a time and to the
+ * table's own accuracy; what a frame needs (one eye, one sun, a third of a million paths) is reduced from this once
+ * a frame by render/air/air.c. etc/atmosphere/README.md defines the format, which is independent of the radiative
+ * transfer program that made the tables. Every function is a pure function of its arguments and may be called from
+ * any thread. */
 #ifndef RENDER_AIR_ATMOSPHERE_H
 #define RENDER_AIR_ATMOSPHERE_H
 
 #include "pitviper_channels.h"
 
-/* The places of channels (pitviper_channels.h) by their standard names; the channel in each is that of the run. */
+/* The indices of channels (pitviper_channels.h) by their standard names; the channel at each is that of the run. */
 typedef ChannelPlace AirBand;
 #define AIR_B          SPECTRAL_B
 #define AIR_G          SPECTRAL_G
@@ -21,7 +23,7 @@ typedef ChannelPlace AirBand;
 #define AIR_LWIR       SPECTRAL_LWIR
 #define AIR_BAND_COUNT SPECTRAL_PLACES
 const char *air_band_name(AirBand band);
-/* Where a band begins and ends, in vacuum. */
+/* Band limits, in vacuum. */
 void air_band_edges(double *low_m, double *high_m, AirBand band);
 
 typedef struct Atmosphere Atmosphere;
@@ -29,20 +31,20 @@ typedef struct Atmosphere Atmosphere;
 /* model: us1976, midlat_summer, or any other that etc/atmosphere holds; all of its visibilities are read. Failures
  * (no such model, a malformed row, a point missing) are logged with file and line. */
 Status atmosphere_open(Atmosphere **out, const char *model);
-/* The same for one visibility alone, m: it reads only the tables beside it, and is asked about no other. */
+/* The same for one visibility alone, m: it reads only the neighbouring tables and is valid at no other visibility. */
 Status atmosphere_open_at(Atmosphere **out, const char *model, double visibility_m);
 void   atmosphere_close(Atmosphere *atmosphere);
-/* Visibilities that count, m; outside them the nearest does: 0.4 of the least to 2.2 of the greatest that has a table.
+/* Valid visibilities, m; outside them the nearest is used: 0.4 of the least to 2.2 of the greatest that has a table.
  * Between tables and beyond them haze's extinction at the model's own heights (temperature.csv) is a straight line in
  * 1 / visibility, between these heights one in its logarithm (render/air/atmosphere_slices.c). */
 void   atmosphere_visibilities(const Atmosphere *atmosphere, double *low_m, double *high_m);
 
-/* One straight path over a round Earth. Heights above the ground that the model stands on (its 0 km), of both ends; the
+/* One straight path over a round Earth. Heights above the model's ground (its 0 km), of both ends; the
  * path may go up, down or along. Any range: below the tables' shortest depth is in proportion to range, beyond the
  * longest too. */
 typedef struct AirPath {
     double observer_m, target_m;   /* 0 .. the top of the tables, 20 km; clamped */
-    double range_m;                /* raised to |target_m - observer_m|; 0: nothing between */
+    double range_m;                /* raised to |target_m - observer_m|; 0: empty path */
     double sun_zenith_rad;         /* for scattered sunlight; > pi / 2: none */
     double rel_azimuth_rad;        /* between the view and the sun, 0: towards the sun */
 } AirPath;
@@ -50,16 +52,15 @@ typedef struct AirPath {
 typedef struct PathAir {
     double transmittance;          /* weighted by Planck(temp_k) in the thermal bands, by the sun elsewhere */
     double sun_transmittance;      /* weighted by sunlight: of what is reflected */
-    double thermal_w_m2_sr;        /* the path's own emission */
-    double scattered_w_m2_sr;      /* sunlight scattered into the path, once and more often */
+    double thermal_w_m2_sr;        /* path radiance by emission */
+    double scattered_w_m2_sr;      /* path radiance by scattered sunlight, single and multiple */
 } PathAir;
 
-/* temp_k: of what emits, 200 .. 3000; outside the nearest counts. About 0.5 us in the dark and 3 us in the light, pan
- * three times that. */
+/* temp_k: of the emitter, 200 .. 3000, clamped. About 0.5 us at night and 3 us by day, pan three times that. */
 void atmosphere_path(PathAir *out, const Atmosphere *atmosphere, double visibility_m, AirBand band, const AirPath *path,
                      double temp_k);
 
-/* To space. zenith_rad 0 .. pi / 2 (clamped a little above the horizon: what the tables' last row says). */
+/* To space. zenith_rad 0 .. pi / 2 (clamped slightly above the horizon: the tables' last row). */
 typedef struct SkyAir {
     double thermal_w_m2_sr, scattered_w_m2_sr;
 } SkyAir;

@@ -1,5 +1,5 @@
-/* render/air/atmosphere_day.c: loops over bands and steps where render/air/atmosphere.c asks one thing at a time. Its formulas;
- * only what does not change is taken out of them. */
+/* render/air/atmosphere_day.c: loops over bands and steps where render/air/atmosphere.c evaluates one at a time. The
+ * formulas are the same; only loop invariants are hoisted. */
 #include "render/air/atmosphere_day.h"
 
 #include "render/air/atmosphere_private.h"
@@ -8,10 +8,10 @@
 
 enum { path_steps = 8, sky_steps = 12, steps_room = 16, buckets = 512, shapes_max = 8, azimuths_room = path_max_suns };
 
-/* ---- exponentials in a row ---------------------------------------------------------------------- */
+/* ---- vectorised exponentials -------------------------------------------------------------------- */
 
-/* Within 3e-16 of exp for -700 .. 700, clamped beyond: 2^k e^r, |r| <= ln(2) / 2, by Taylor's thirteen terms; no branch
- * and no call, so that a loop over it goes eight wide. */
+/* Within 3e-16 of exp for -700 .. 700, clamped beyond: 2^k e^r, |r| <= ln(2) / 2, by Taylor's thirteen terms; no
+ * branch and no call, so that a loop over it vectorises eight wide. */
 static inline double exp_here(double x)
 {
     static const double round_to_whole = 0x1.8p52, ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
@@ -34,15 +34,15 @@ static inline double exp_here(double x)
     uint64_t bits;
     double   scale;
     memcpy(&bits, &shifted, sizeof bits);
-    bits = (bits + 1023) << 52; /* the whole number is in the lowest bits */
+    bits = (bits + 1023) << 52; /* the integer is in the lowest bits */
     memcpy(&scale, &bits, sizeof scale);
     return p * scale;
 }
 
-/* ---- what a day is ------------------------------------------------------------------------------ */
+/* ---- state of a day ----------------------------------------------------------------------------- */
 
-/* Extinction and scattering by height on the nodes of all columns: clear air, and haze of the two tabled visibilities:
- * what lies between them has a least that is asked at a place, not at nodes. */
+/* Extinction and scattering by height on the nodes of all columns: clear air, and haze of the two tabled
+ * visibilities: between them the minimum is evaluated at a point, not at nodes. */
 typedef struct DayColumn {
     int      nodes;
     double   top_m, per_bucket_m;
@@ -69,7 +69,7 @@ struct AirDay {
     Blend             blend;
     bool              hazes;            /* two different slices */
     bool              suns_alike;       /* both have the same heights */
-    unsigned          bands, parts;     /* asked for; tabled ones that these are made of */
+    unsigned          bands, parts;     /* requested; the tabled bands that these are made of */
     double            sun_zenith_rad, sun_cos, sun_sin, top_m;
     DayColumn         column;
     DaySun            sun[2];           /* low, high */
@@ -155,7 +155,7 @@ static void fill_sun(AirDay *day, int which)
     }
 }
 
-/* Takes the sun out of blocks of [suns][inner] values. */
+/* Interpolates the sun's axis out of blocks of [suns][inner] values. */
 static double *without_sun(const double *value, size_t blocks, int suns, int inner, int sun, double share, Arena *arena)
 {
     double *out = arena_alloc(arena, blocks * (size_t)inner, sizeof *out);
@@ -225,11 +225,11 @@ Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visib
     return status;
 }
 
-/* ---- the air by height -------------------------------------------------------------------------- */
+/* ---- air by height ------------------------------------------------------------------------------ */
 
 typedef struct Place {
     int    i;
-    double t, part_m; /* share of the upper node, and what that is of a metre count */
+    double t, part_m; /* share of the upper node, and its amount for a metre count */
 } Place;
 
 static inline Place place_at(const DayColumn *c, double height_m)
@@ -247,7 +247,7 @@ static inline double sum_at(const double *value, const double *sum, const Place 
     return sum[p->i] + p->part_m * (value[p->i] + 0.5 * p->t * (value[p->i + 1] - value[p->i]));
 }
 
-/* Two heights and what lies between them. */
+/* Two heights and the air between them. */
 typedef struct Span {
     Place  a, b, middle;
     double rise_m;
@@ -288,9 +288,9 @@ static double haze_scatter(const AirDay *day, AirBand band, const Place *p)
     return haze_of(day, value_at(day->column.haze_scatter[0][band], p), value_at(day->column.haze_scatter[1][band], p));
 }
 
-/* ---- what a path takes away ---------------------------------------------------------------------- */
+/* ---- extinction of a path ------------------------------------------------------------------------ */
 
-/* A path in the tables; those of one shape share its stencil. */
+/* A path in the tables; paths of equal shape share its stencil. */
 typedef struct Stencils {
     int     count, shape[shapes_max];
     Stencil at[shapes_max];
@@ -309,7 +309,7 @@ static const Stencil *stencil_in(Stencils *known, const PathTable *table, double
     return &known->at[k];
 }
 
-/* Every value of a table's row, of which there may be this many. */
+/* All values of a table's row, of which there may be this many. */
 enum { row_values = path_max_weights + 1 };
 static void values_in(double out[row_values], const PathTable *table, const Stencil *s)
 {
@@ -331,7 +331,7 @@ static AirPath sane(const AirDay *day, const AirPath *path)
 
 typedef struct Depths {
     Stencils stencils;
-    Span     span; /* lowered by the sag */
+    Span     span; /* lowered by the chord error of the round Earth */
     AirPath  path;
 } Depths;
 
@@ -343,7 +343,7 @@ static void begin_depths(Depths *out, const AirDay *day, const AirPath *path)
     out->span = span_of(&day->column, path->observer_m - sag_m, path->target_m - sag_m);
 }
 
-/* Values of the three tables of a band, and depths by the columns alone: clear, haze. */
+/* Values of the three tables of a band, and depths from the columns alone: clear, haze. */
 static void depths_of(double value[3][row_values], double plain[2], Depths *d, const AirDay *day, AirBand band)
 {
     const AirPath *p = &d->path;
@@ -406,7 +406,7 @@ void air_day_path(DayPath *out, const AirDay *day, const AirPath *path)
     if (wants(day->bands, AIR_PAN)) pan_of(out->sun, day);
 }
 
-/* ---- what it scatters --------------------------------------------------------------------------- */
+/* ---- scattered light of a path ------------------------------------------------------------------ */
 
 /* Steps of a path, for every band. */
 typedef struct Steps {
@@ -438,7 +438,7 @@ static void add_step(Steps *s, const AirDay *day, double a_m, double b_m, double
 
 static double between(const double *value, int i, double t) { return t > 0 ? value[i] + t * (value[i + 1] - value[i]) : value[i]; }
 
-/* Exponentials go in eights; the arrays behind the steps are there for that. */
+/* Exponentials are computed in eights; the arrays behind the steps are padded for that. */
 static int lanes_of(const Steps *s) { return (s->count + 7) & ~7; }
 
 /* Direct and diffuse sunlight over their top, at the middle of every step. */
@@ -482,7 +482,7 @@ static void means_of(double out[steps_room], const double *value, const double *
     }
 }
 
-/* scatter_parts of atmosphere_scatter.c, for steps that are prepared. ratio: what a depth is to that of the columns. */
+/* scatter_parts of atmosphere_scatter.c, for precomputed steps. ratio: depth over that of the columns. */
 static void parts_of(ScatterParts *out, const AirDay *day, AirBand band, const Steps *s, double ratio)
 {
     const DayColumn *c = &day->column;

@@ -1,8 +1,9 @@
-/* render/air/atmosphere_day.h: an atmosphere at one visibility and under one sun: what a frame asks of it by the hundred.
+/* render/air/atmosphere_day.h: an atmosphere at one visibility and one sun position, for the hundreds of evaluations of
+ * a frame.
  *
- * The answers of atmosphere_path and atmosphere_sky (within 1e-12 of them: tests/render/test_atmosphere_day.c), at a
- * tenth of the cost: the sun is found in every table once, a place on a path serves every band, a path every azimuth
- * and every temperature. */
+ * The results of atmosphere_path and atmosphere_sky (within 1e-12 of them: tests/render/test_atmosphere_day.c), at a
+ * tenth of the cost: the sun's position is looked up in every table once, a point of a path serves all bands, a path
+ * all azimuths and all temperatures. */
 #ifndef RENDER_AIR_ATMOSPHERE_DAY_H
 #define RENDER_AIR_ATMOSPHERE_DAY_H
 
@@ -12,7 +13,7 @@ enum { day_temps_max = 8, day_azimuths_max = 16 };
 
 typedef struct AirDay AirDay;
 
-/* bands: 1 << AirBand, those that are answered; sun_zenith_rad: > pi / 2: nothing is scattered. temp_k: of emitters,
+/* bands: 1 << AirBand, those to be computed; sun_zenith_rad: > pi / 2: nothing is scattered. temp_k: of emitters,
  * [temps]. Lives in the arena; a pure function of its arguments. STATUS_NO_MEMORY. 20 to 50 us. */
 Status air_day_at(const AirDay **out, const Atmosphere *atmosphere, double visibility_m, double sun_zenith_rad,
                   unsigned bands, const double *temp_k, int temps, Arena *arena);

@@ -1,4 +1,4 @@
-/* render/air/atmosphere_grid.c: tables that hold every combination of their axes' values. */
+/* render/air/atmosphere_grid.c: tables that hold every combination of their axes' values (full grids). */
 #include "render/air/atmosphere_private.h"
 
 #include <stdlib.h>
@@ -22,7 +22,7 @@ int axis_from(double *axis, int capacity, const double *values, int count)
     int nodes = 0;
     for (int i = 0; i < count; i++) {
         if (i > 0 && values[i] == values[i - 1]) continue;
-        int low = 0, high = nodes; /* where the first is that is not below */
+        int low = 0, high = nodes; /* index of the first that is not below */
         while (low < high) {
             const int middle = (low + high) / 2;
             if (axis[middle] < values[i]) low = middle + 1;
@@ -64,7 +64,7 @@ static size_t grid_nodes(const Grid *grid)
     return nodes;
 }
 
-/* Where each axis has its values, from the rows. */
+/* Finds the values of each axis from the rows. */
 static Status find_axes(Grid *grid, const Table *table, const GridColumn *axis, const int *column, double *scratch)
 {
     for (int i = 0; i < grid->axes; i++) {
@@ -82,7 +82,7 @@ static Status find_axes(Grid *grid, const Table *table, const GridColumn *axis, 
     return STATUS_OK;
 }
 
-/* The first combination that no row has, named; the rows that there are do not repeat. */
+/* Reports the first combination that no row has; the rows present have no duplicates. */
 static void report_missing(const Grid *grid, const Table *table, const GridColumn *axis, const bool *seen)
 {
     size_t node = 0;
@@ -137,7 +137,7 @@ Status grid_open(Grid *out, const char *path, const GridColumn *axis, int axes, 
             if (table_number(&x, &table, row, axis_column[i], axis[i].low, axis[i].high) != STATUS_OK) goto done;
             node = node * (size_t)grid.nodes[i] + (size_t)axis_find(grid.axis[i], grid.nodes[i], x);
         }
-        if (node >= (size_t)table.rows) continue; /* more combinations than rows: one is missing, said below */
+        if (node >= (size_t)table.rows) continue; /* more combinations than rows: one is missing, reported below */
         if (seen[node]) {
             log_error("atmosphere: %s:%d: this point is there twice", path, table.line[row + 1]);
             goto done;

@@ -1,5 +1,5 @@
-/* render/air/atmosphere_open.c: a model of the atmosphere, by its name or folder: which of its visibilities are read,
- * and what is made between them. */
+/* render/air/atmosphere_open.c: opens a model of the atmosphere by its name or folder: selects the visibilities to
+ * read and makes those between them. */
 #include "render/air/atmosphere_private.h"
 
 #include <dirent.h>
@@ -12,8 +12,8 @@ static bool folder_has(const char *folder, const char *name)
     return atmosphere_file(path, folder, name) == STATUS_OK && access(path, F_OK) == 0;
 }
 
-/* Which of the tables a visibility needs: the two about it of those that have something; beyond the last of these the
- * last two. Where it is that of a table, this alone. */
+/* The tables that a visibility needs: the two about it of those that have data; beyond the last of these the last
+ * two. At the visibility of a table, this alone. */
 static void choose_tables(bool need[slices_max], const bool has[slices_max], const double *table_m, int count,
                           double visibility_m)
 {
@@ -25,7 +25,7 @@ static void choose_tables(bool need[slices_max], const bool has[slices_max], con
         if (n == 1 || visibility_m != table_m[of[k == i ? i + 1 : i]]) need[of[k]] = true;
 }
 
-/* The slices that are asked: of one visibility, or so many that any lies close between two. */
+/* The slices to make: of one visibility, or enough that any visibility is close to two of them. */
 static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m)
 {
     double step_m[slices_made_max] = {visibility_m};
@@ -41,10 +41,11 @@ static Status make_slices(Atmosphere *atmosphere, const Slice *tabled, int count
     return status;
 }
 
-/* Beyond the tables' visibilities haze goes on by the same straight line in 1 / visibility, this far. */
+/* Beyond the tables' visibilities haze is extrapolated along the same straight line in 1 / visibility, up to this
+ * factor. */
 static const double visibility_below = 0.4, visibility_above = 2.2;
 
-/* list: visibilities and what is in visibilities.csv. A folder without paths_b.csv has no paths, one without
+/* list: visibilities and the other columns of visibilities.csv. A folder without paths_b.csv has no paths, one without
  * sky_scattered.csv no scattered light; the neighbours' count there. */
 static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid *list, double visibility_m)
 {
@@ -60,7 +61,7 @@ static Status open_slices(Atmosphere *atmosphere, const char *folder, const Grid
         any_light |= light[i] = folder_has(slice_folder[i], "sky_scattered.csv");
         all[i] = true;
     }
-    if (!any_paths) paths[0] = true; /* which file is missing will be said */
+    if (!any_paths) paths[0] = true; /* the missing file is reported later */
     if (!any_light) light[0] = true;
     atmosphere->low_m = table_m[0] * visibility_below;
     atmosphere->high_m = table_m[count - 1] * visibility_above;
@@ -111,7 +112,7 @@ static Status open_model(Atmosphere *atmosphere, const char *folder, double visi
 
 /* ---- tables of one shape ------------------------------------------------------------------------ */
 
-/* The first gives its number to those that are like it. */
+/* The first of equal shape shares its number with the others. */
 static void number_shapes(Atmosphere *atmosphere)
 {
     PathTable *table[(slices_made_max + 1) * AIR_BAND_COUNT + slices_made_max];
@@ -130,7 +131,7 @@ static void number_shapes(Atmosphere *atmosphere)
 
 Status atmosphere_open(Atmosphere **out, const char *model) { return atmosphere_open_at(out, model, NAN); }
 
-/* Says which models there are, by their folders. */
+/* Logs the available models, by their folders. */
 static Status no_model(const char *model)
 {
     char folder[1024], path[1400], list[512] = "";

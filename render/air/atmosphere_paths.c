@@ -1,5 +1,5 @@
-/* render/air/atmosphere_paths.c: tables of paths, which are ragged: a path is no shorter than its ends are apart in height,
- * and some end on the ground. */
+/* render/air/atmosphere_paths.c: tables of paths, which are ragged: a path is no shorter than the height difference
+ * of its ends, and some end on the ground. */
 #include "render/air/atmosphere_private.h"
 
 #include <stdlib.h>
@@ -28,7 +28,7 @@ static const GridColumn path_key[5] = {{"observer_m", 0, height_max_m}, {"target
 static const GridColumn direction_key = {"zenith_deg", 0, 180};
 static const GridColumn *key_column(int keys, int k) { return keys == 5 && k == 1 ? &direction_key : &path_key[k]; }
 
-/* Rows in order; their keys read and the lengths possible. */
+/* Rows in order; their keys are read, and the lengths are valid. */
 static Status read_keys(PathKey *key, const Table *table, int keys)
 {
     int column[5];
@@ -82,7 +82,8 @@ static Status find_path_axes(PathTable *out, const Table *table, const PathKey *
     return STATUS_BAD_VALUE;
 }
 
-/* The rows from one on that share its first three keys: every sun and azimuth once, in order. How many; 0: not so. */
+/* The rows from one on that share its first three keys: every sun and azimuth once, in order. Returns their number;
+ * 0: not so. */
 static int block_length(const PathTable *paths, const Table *table, const PathKey *key, int row, int keys)
 {
     const int inner = paths->suns * paths->azimuths;
@@ -99,7 +100,7 @@ static int block_length(const PathTable *paths, const Table *table, const PathKe
     return inner;
 }
 
-/* Axes of the sorted keys, and that every pair of nodes has ranges, every range every sun and azimuth. */
+/* Axes of the sorted keys; checks that every pair of nodes has ranges, and every range every sun and azimuth. */
 static Status arrange(PathTable *out, const Table *table, const PathKey *key, int keys)
 {
     const int rows = table->rows;
@@ -197,7 +198,7 @@ done:
     return status;
 }
 
-/* ---- alike ------------------------------------------------------------------------------------ */
+/* ---- equal shapes ----------------------------------------------------------------------------- */
 
 bool paths_same_shape(const PathTable *a, const PathTable *b)
 {
@@ -219,8 +220,8 @@ bool paths_alike(const PathTable *a, const PathTable *b)
 
 /* ---- looking up ------------------------------------------------------------------------------- */
 
-/* Lagrange's cubic through the four rows around x (fewer at the ends), straight on below the first row. Below the
- * shortest range of all and beyond a pair's longest one: the end's value. */
+/* Lagrange's cubic through the four rows around x (fewer at the ends), linear below the first row. Below the
+ * shortest range of all and beyond a pair's longest one: the value of the end. */
 static int range_stencil(int *row, double *share, const PathTable *table, int pair, double x)
 {
     const int first = table->first[pair], count = table->first[pair + 1] - first;

@@ -1,4 +1,4 @@
-/* render/air/atmosphere_private.h: the tables as they lie in memory. */
+/* render/air/atmosphere_private.h: the tables in memory. */
 #ifndef RENDER_AIR_ATMOSPHERE_PRIVATE_H
 #define RENDER_AIR_ATMOSPHERE_PRIVATE_H
 
@@ -17,7 +17,7 @@ enum { grid_max_axes = 4, grid_max_values = 24, grid_max_nodes = 256, height_max
 
 typedef struct GridColumn {
     const char *name;
-    double      low, high; /* what a cell may hold */
+    double      low, high; /* valid range of a cell */
 } GridColumn;
 
 typedef struct Grid {
@@ -51,8 +51,9 @@ typedef struct PathTable {
     int    *first;                   /* [pairs + 1]: rows of pair observer * nodes[1] + target */
     double *ln_range, *value;        /* [rows], [rows * values] */
     double  ln_range_low;            /* shortest of all */
-    int     shape;                   /* of an atmosphere's tables, those with equal nodes and ranges have the same */
-    /* what the values are. Of clear air ln of the ratio of each weight's depth (0: the sun; then rising temperatures)
+    int     shape;                   /* of an atmosphere's tables, those with equal nodes and ranges have the same
+                                      * number */
+    /* meaning of the values. Of clear air ln of the ratio of each weight's depth (0: the sun; then rising temperatures)
      * to the column's; of a visibility the ratio of the depth that haze adds to its column's, and, of thermal bands,
      * ln of the ratio of what the path would radiate if it were opaque to mean_black; of scattered.csv, which goes by
      * direction, the ratio to scatter_estimate by sun zenith, relative azimuth, band */
@@ -62,7 +63,7 @@ typedef struct PathTable {
     double  sun_x[path_max_suns], azimuth_deg[path_max_suns]; /* sun: slant_x of its zenith angle */
 } PathTable;
 
-/* Chooses the value columns of a header; on failure logs why. */
+/* Selects the value columns of a header; logs the reason on failure. */
 typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *column, int *count);
 /* Rows keyed by the first keys (3 or 5) of observer_m, target_m (5: zenith_deg), range_m, sun_zenith_deg,
  * rel_azimuth_deg; as value columns those given or, with choose, those it finds. Values as they are in the file, by
@@ -70,11 +71,11 @@ typedef Status PathColumns(PathTable *out, const Table *table, GridColumn *colum
 Status paths_open(PathTable *out, const char *path, int keys, const GridColumn *value, int values,
                   PathColumns *choose);
 void   paths_close(PathTable *table);
-/* The same heights and ranges; and the same columns as well. */
+/* The same heights and ranges; and equal columns as well. */
 bool   paths_same_shape(const PathTable *a, const PathTable *b);
 bool   paths_alike(const PathTable *a, const PathTable *b);
 
-/* Weight by which the path's own emission is counted: of the temperature nearest the air's. */
+/* The weight for the path's own emission: that of the temperature nearest the air's. */
 int path_emission_weight(const PathTable *table);
 
 /* Rows and their shares: linear along both axes, cubic in ln range. */
@@ -92,8 +93,8 @@ double stencil_value(const Stencil *stencil, const PathTable *table, int value);
 enum { column_max = 256, slices_max = 12, phase_heights_max = 8 };
 enum { steps_between = 6, slices_made_max = steps_between * (slices_max + 1) + 1 };
 
-/* What a metre of air does, by height, of clear air or of haze; sums from the ground up so that a mean is a
- * difference. */
+/* Optical properties per metre of air, by height, of clear air or of haze; sums from the ground up so that a mean is
+ * a difference. */
 typedef struct AirColumn {
     int    nodes;
     double height_m[column_max];
@@ -115,8 +116,8 @@ typedef struct Slice {
 
 struct Atmosphere {
     int          slices;
-    Slice       *slice;                  /* rising visibility: every table's and some between and beyond, or just one */
-    double       low_m, high_m;          /* visibilities that count */
+    Slice       *slice;                  /* rising visibility: every table's and some between and beyond, or only one */
+    double       low_m, high_m;          /* valid visibilities */
     double       sun_top_w_m2[AIR_BAND_COUNT];
     AirColumn    clear;
     PathTable    clear_path[AIR_BAND_COUNT];
@@ -134,25 +135,26 @@ static inline double air_mass(double zenith_rad)
 /* Its logarithm: the coordinate in which the sky and the sun are nearly straight. */
 static inline double slant_x(double zenith_rad) { return log(air_mass(zenith_rad)); }
 
-/* Everything of one visibility that a path needs: two slices and their shares. */
+/* Inputs of a path at one visibility: two slices and their shares. */
 typedef struct Blend {
     const Slice *low, *high;  /* of visibility; may be the same */
-    double       share;       /* of high, 0 .. 1, straight in 1 / visibility */
+    double       share;       /* of high, 0 .. 1, linear in 1 / visibility */
     double       haze_low, haze_high; /* shares for haze; of a single table at another visibility its scale, 0 */
 } Blend;
 
-/* The air of any visibility, from the tables' own slices, of which one at least has paths, one scattered light. */
+/* The air of any visibility, from the tables' slices, of which at least one has paths and at least one scattered
+ * light. */
 Status slice_between(Slice *out, const Atmosphere *atmosphere, const Slice *tabled, int count, double visibility_m);
 void   slice_close(Slice *slice);
 /* From the files of a visibility's folder, atmosphere_read.c: the haze, the sun and the sky's own light; paths and
  * scattered light where the slice says that it has them. */
 Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder);
-/* What all visibilities share: of a model's folder; of etc/atmosphere/bands.csv. */
+/* Data shared by all visibilities: of a model's folder; of etc/atmosphere/bands.csv. */
 Status clear_open(Atmosphere *atmosphere, const char *folder);
 Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT]);
 /* FOLDER/NAME; a logged error where that is too long. */
 Status atmosphere_file(char path[1024], const char *folder, const char *name);
-/* Visibilities so close together that straight lines will do, in rising order: the tables', the ends, some between. */
+/* Visibilities close enough for linear interpolation, in rising order: the tables', the ends, some between. */
 int    visibility_steps(double out[slices_made_max], const Slice *tabled, int count, double low_m, double high_m);
 
 void   blend_at(Blend *out, const Atmosphere *atmosphere, double visibility_m);
@@ -162,7 +164,7 @@ void   column_sum_up(const AirColumn *column, const double *value, double *sum);
 /* Of two visibilities' haze. */
 double blend_haze_mean(const Blend *blend, AirBand band, double a_m, double b_m);
 double blend_haze_scatter(const Blend *blend, AirBand band, double height_m);
-/* Black radiance of the air between two heights, each metre counted by how much it emits. */
+/* Black-body radiance of the air between two heights, each metre weighted by its emission. */
 double mean_black(const Atmosphere *atmosphere, AirBand band, double a_m, double b_m);
 double black_air(const Atmosphere *atmosphere, AirBand band, double height_m);
 
@@ -171,14 +173,14 @@ static inline double path_up(const AirPath *path)
 {
     return clamp((path->target_m - path->observer_m) / path->range_m, -1, 1);
 }
-/* How far, on the average, a straight path is below the one that rises evenly through flat layers: the Earth is
- * round, and light bends after it by a seventh. */
+/* Mean depth by which a straight path is below the one that rises evenly through flat layers: the Earth is round,
+ * and refraction bends light by a seventh of that curvature. */
 static inline double mean_chord_error_m(double range_m) { return range_m * range_m / (12 * 7433000.0); }
 
-/* A table's value: of its weights at a temperature (NAN: sunlight), straight in 1 / temperature; of scattered light. */
+/* A table's value: of its weights at a temperature (NAN: sunlight), linear in 1 / temperature; of scattered light. */
 double path_weight_value(const PathTable *table, const Stencil *at, double temp_k);
 double scattered_value(const PathTable *table, const Stencil *at, double sun_x, double azimuth_deg, int tabled);
-/* Depths of a path, of sunlight (temp_k NAN) or of what has a temperature. */
+/* Optical depths of a path, for sunlight (temp_k NAN) or for an emitter of this temperature. */
 void   clear_depths(double *out, const Atmosphere *atmosphere, AirBand band, const AirPath *path, const double *temp_k,
                     int temps);
 double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band, const AirPath *path, double temp_k);
@@ -186,9 +188,10 @@ double path_depth(const Atmosphere *atmosphere, const Blend *blend, AirBand band
 void   blend_sun(SunAir *out, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double observer_m,
                  double sun_zenith_rad);
 
-/* Scattered sunlight by a single scattering off the profile plus an even glow: no more than the shape between the
- * tables' points, which hold its ratio to the truth. What is left when the sun's azimuth is taken out: radiance of
- * clear air and of haze per unit of their phase functions, and of the glow, W/(m2 sr). */
+/* Estimate of scattered sunlight: single scattering along the profile plus a uniform diffuse term. It only gives the
+ * shape between the tables' points, which hold the ratio of the true value to it. The part that is independent of
+ * the sun's azimuth: radiance of clear air and of haze per unit of their phase functions, and of the diffuse term,
+ * W/(m2 sr). */
 typedef struct ScatterParts {
     double clear, glow;
     double haze[phase_heights_max]; /* by height of the phase function */

@@ -1,5 +1,5 @@
-/* render/air/atmosphere_read.c: the files of etc/atmosphere (README.md there) into memory, every cell checked, and turned
- * into what is smooth between the points: ratios to an estimate, logarithms. */
+/* render/air/atmosphere_read.c: reads the files of etc/atmosphere (README.md there) into memory, checks every cell,
+ * and converts the values to quantities that are smooth between the points: ratios to an estimate, logarithms. */
 #include "render/air/atmosphere_private.h"
 
 #include <stdlib.h>
@@ -35,7 +35,7 @@ static Status choose_weights(PathTable *out, const Table *table, GridColumn *col
     return STATUS_OK;
 }
 
-/* With haze: what the path radiates, too. */
+/* With haze: the radiance of the path, too. */
 static Status choose_weights_and_radiance(PathTable *out, const Table *table, GridColumn *column, int *count)
 {
     const Status status = choose_weights(out, table, column, count);
@@ -92,7 +92,7 @@ static void normalize_hazy(PathTable *paths, const Atmosphere *atmosphere, const
 
 /* ---- tables of all channels -------------------------------------------------------------------- */
 
-/* A column <prefix><channel> of a file in which the standard channels stand side by side. */
+/* A column <prefix><channel> of a file that holds the standard channels as columns. */
 typedef struct ChannelColumn {
     const char *prefix;
     AirBand     band;
@@ -101,7 +101,7 @@ typedef struct ChannelColumn {
 
 static bool is_standard(AirBand band) { return channel_in(band)->standard; }
 
-/* FILE_<channel>.csv beside FILE.csv: of a channel that stands in another's place. */
+/* FILE_<channel>.csv beside FILE.csv: of a channel that replaces a standard one. */
 static Status path_beside(char out[1024], const char *path, AirBand band)
 {
     const int length = snprintf(out, 1024, "%.*s_%s.csv", (int)strlen(path) - 4, path, air_band_name(band));
@@ -110,7 +110,7 @@ static Status path_beside(char out[1024], const char *path, AirBand band)
     return STATUS_BAD_VALUE;
 }
 
-/* Of a file in which standard channels stand; one that is not seen is not looked at. */
+/* Of a file with standard channels; a channel that is not in use is not read. */
 static void name_column(GridColumn *out, char name[48], const ChannelColumn *c, bool beside)
 {
     static const char *const standard[AIR_BAND_COUNT] = {"b", "g", "r", "pan", "nir", "mwir", "lwir"};
@@ -129,8 +129,8 @@ static bool same_axes(const Grid *a, const Grid *b)
 
 enum { channel_columns_most = 2 * air_tabled_count };
 
-/* Columns of channels in their places: of the file, and of that beside it where another than the standard one is
- * there. */
+/* Columns of channels by index: of the file, and of the file beside it where another channel replaces the standard
+ * one. */
 static Status channels_open(Grid *out, const char *path, const GridColumn *axis, int axes, const ChannelColumn *column,
                             int columns)
 {
@@ -166,7 +166,7 @@ void column_sum_up(const AirColumn *column, const double *value, double *sum)
         sum[n] = sum[n - 1] + (column->height_m[n] - column->height_m[n - 1]) / 2 * (value[n] + value[n - 1]);
 }
 
-/* Columns extinction_<band> and scatter_<band>, 1/km; low: what extinction must at least be. */
+/* Columns extinction_<band> and scatter_<band>, 1/km; low: lower limit of extinction. */
 static Status read_column(AirColumn *out, const char *path, double low)
 {
     static const GridColumn axis = {"height_m", 0, height_max_m};
@@ -241,7 +241,7 @@ static Status read_sun(Grid *out, const char *path, const double sun_top_w_m2[AI
         for (int i = 0; i < air_tabled_count; i++) {
             const double top = sun_top_w_m2[air_tabled[i]];
             double *direct = &out->value[n * 2 * air_tabled_count + i], *diffuse = direct + air_tabled_count;
-            /* depth 0 and 700 keep the logarithms finite; neither shows in a product */
+            /* depth 0 and 700 keep the logarithms finite; neither affects a product */
             *direct = log(clamp(-log(fmax(*direct, 1e-300) / top), 1e-12, 690));
             *diffuse = log(fmax(*diffuse / top, 1e-30));
         }
@@ -252,7 +252,7 @@ static const ChannelColumn scattered_column[air_tabled_count] = {{"", AIR_B, 0, 
                                                                  {"", AIR_R, 0, 1e4},    {"", AIR_NIR, 0, 1e4},
                                                                  {"", AIR_MWIR, 0, 1e4}, {"", AIR_LWIR, 0, 1e4}};
 
-/* scattered.csv, each channel in its place, as channels_open. */
+/* scattered.csv, each channel at its index, as channels_open. */
 static Status open_scattered(PathTable *out, const char *path)
 {
     char       name[air_tabled_count][48], beside[1024];
@@ -278,7 +278,7 @@ static Status open_scattered(PathTable *out, const char *path)
     return status;
 }
 
-/* Ratio of the truth to the estimate. Where the estimate is nothing so is the truth. */
+/* Ratio of the true value to the estimate. Where the estimate is 0 so is the true value. */
 static double ratio_to(double truth, double estimate) { return estimate > 1e-30 ? clamp(truth / estimate, 0, 100) : 1; }
 
 static Status read_scattered(Slice *slice, const Atmosphere *atmosphere, const Blend *blend, const char *path)
@@ -340,7 +340,7 @@ static Status read_sky_scattered(Slice *slice, const Atmosphere *atmosphere, con
     return STATUS_OK;
 }
 
-/* ---- what a visibility has ---------------------------------------------------------------------- */
+/* ---- data of a visibility ----------------------------------------------------------------------- */
 
 void slice_close(Slice *slice)
 {
@@ -397,7 +397,7 @@ Status slice_open(Slice *slice, const Atmosphere *atmosphere, const char *folder
     return status;
 }
 
-/* ---- what all visibilities share ------------------------------------------------------------------------------- */
+/* ---- data shared by all visibilities --------------------------------------------------------------------------- */
 
 Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT])
 {
@@ -416,7 +416,7 @@ Status sun_top_open(double sun_top_w_m2[AIR_BAND_COUNT])
         const char    *text = table_text(&table, row, name);
         const SpectralChannel *channel = channel_named(text, strlen(text));
         const AirBand  band = channel ? channel->place : AIR_BAND_COUNT;
-        if (channel && channel_in(band) != channel) continue; /* another is in its place */
+        if (channel && channel_in(band) != channel) continue; /* another channel replaces it */
         if (band == AIR_BAND_COUNT || air_tabled_index(band) < 0 || sun_top_w_m2[band] > 0) {
             log_error("atmosphere: %s:%d: band %s is unknown or there twice", path, table.line[row + 1],
                       table_text(&table, row, name));

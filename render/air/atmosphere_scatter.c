@@ -1,5 +1,5 @@
-/* render/air/atmosphere_scatter.c: how scattered sunlight goes about between the tables' points. Its errors are the
- * tables' business, which hold the ratio of the truth to this; only its shape counts. */
+/* render/air/atmosphere_scatter.c: the shape of scattered sunlight between the tables' points. Its absolute errors
+ * do not matter, since the tables hold the ratio of the true value to it; only its shape does. */
 #include "render/air/atmosphere_private.h"
 
 static double extinction(const Atmosphere *atmosphere, const Blend *blend, AirBand band, double a_m, double b_m)
@@ -7,8 +7,8 @@ static double extinction(const Atmosphere *atmosphere, const Blend *blend, AirBa
     return column_mean(&atmosphere->clear, band, a_m, b_m) + blend_haze_mean(blend, band, a_m, b_m);
 }
 
-/* Adds a step of the path at a height, that begins at a depth and ends at another: the sun's own light scattered once,
- * and an even glow of twice the diffuse light on a plane with a fifth of what reaches it. */
+/* Adds a step of the path at a height, between two optical depths: single-scattered sunlight, and a uniform diffuse
+ * term of twice the diffuse light on a plane with a fifth of what reaches it. */
 static void add_step(ScatterParts *sum, const Atmosphere *atmosphere, const Blend *blend, AirBand band, double height_m,
                      double sun_zenith_rad, double step_m, double depth, double next)
 {

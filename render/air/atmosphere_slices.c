@@ -1,20 +1,21 @@
-/* render/air/atmosphere_slices.c: the air of visibilities between the tables', made once when a model is opened.
+/* render/air/atmosphere_slices.c: air at visibilities between the tables', made once when a model is opened.
  *
- * A program of layers gives its haze at its own levels and lets it fall evenly in the logarithm between them; at the
- * levels it is a straight line in 1 / visibility. So the column of a visibility is made by these two rules, not by
- * mixing columns, and what goes by the column (depths of paths and of the sun) is interpolated in the column's own
- * depth. The rest is a straight line in 1 / visibility. Where what is wanted lies on a table, the table comes back. */
+ * A layered radiative transfer program defines haze at its levels and interpolates its logarithm linearly between
+ * them; at the levels it is linear in 1 / visibility. So the column of a visibility is made by these two rules, not
+ * by mixing columns, and quantities that follow the column (optical depths of paths and of the sun) are interpolated
+ * in the column's own depth. All others are linear in 1 / visibility. At the visibility of a table the table is
+ * reproduced. */
 #include "render/air/atmosphere_private.h"
 
 #include <stdlib.h>
 
-/* Share of the second of two visibilities, straight in 1 / visibility; beyond them below 0 or above 1. */
+/* Share of the second of two visibilities, linear in 1 / visibility; beyond them below 0 or above 1. */
 static double share_between(double low_m, double high_m, double visibility_m)
 {
     return low_m < high_m ? (1 / visibility_m - 1 / low_m) / (1 / high_m - 1 / low_m) : 0;
 }
 
-/* The same by a depth, which is what counts; where both are alike the other share does. */
+/* The same by optical depth; where both depths are equal the other share is used. */
 static double share_of_depth(double low, double high, double wanted, double otherwise)
 {
     return fabs(high - low) > 1e-3 * (high + low) ? (wanted - low) / (high - low) : otherwise;
@@ -35,7 +36,7 @@ typedef struct Pair {
     double           share;
 } Pair;
 
-/* Of the straight line at a level; beyond the tables never less than a tenth of what the clearer has. */
+/* Linear value at a level; beyond the tables never less than a tenth of the clearer one's. */
 static double at_level(const Pair *p, double low, double high)
 {
     return fmax(low + p->share * (high - low), 0.1 * fmin(low, high));
@@ -49,7 +50,7 @@ static double between_levels(const Pair *p, double height_m, double below_m, dou
     const double a[2] = {column_value(p->low, p->low_value, below_m), column_value(p->high, p->high_value, below_m)};
     const double b[2] = {column_value(p->low, p->low_value, above_m), column_value(p->high, p->high_value, above_m)};
     if (!(low > 0 && high > 0 && a[0] > 0 && a[1] > 0 && b[0] > 0 && b[1] > 0)) return at_level(p, low, high);
-    /* what the levels do to each of the two tables, which bend between the levels as they do */
+    /* scale of the levels for each of the two tables, which curve alike between the levels */
     const double ln_a = log(at_level(p, a[0], a[1])), ln_b = log(at_level(p, b[0], b[1]));
     const double of_low = log(low) + (1 - t) * (ln_a - log(a[0])) + t * (ln_b - log(b[0]));
     const double of_high = log(high) + (1 - t) * (ln_a - log(a[1])) + t * (ln_b - log(b[1]));
@@ -96,7 +97,7 @@ static void column_between(AirColumn *out, const Atmosphere *atmosphere, const S
 
 /* ---- tables --------------------------------------------------------------------------------------- */
 
-/* A table of the same axes, of whose values only room is made. */
+/* A table of the same axes, with its values allocated only. */
 static Status paths_like(PathTable *out, const PathTable *table)
 {
     const size_t pairs = (size_t)table->nodes[0] * (size_t)table->nodes[1], rows = (size_t)table->rows;
@@ -137,7 +138,7 @@ static double ratio_between(double first, double second, double share)
     return change < 0 ? first / (1 - change / first) : first + fmin(change, 0.05 * first);
 }
 
-/* Depths by the haze's own at each of the two tables' visibilities and at the one wanted. */
+/* Depths by the haze's own at each of the two tables' visibilities and at the requested one. */
 static Status path_between(PathTable *out, const Slice *slice, const Slice *low, const Slice *high, AirBand band,
                            double share)
 {
@@ -222,7 +223,7 @@ static Status grid_between(Grid *out, const Grid *from, const Grid *other, doubl
     return STATUS_OK;
 }
 
-/* Cosine of the zenith angle whose slant_x it is. */
+/* Cosine of the zenith angle from its slant_x. */
 static double cosine_of_slant(double x)
 {
     const double least = exp(-x);
@@ -282,8 +283,7 @@ static bool has_haze(const Slice *slice) { return slice->visibility_m > 0; }
 static bool has_paths(const Slice *slice) { return slice->has_paths; }
 static bool has_scattered(const Slice *slice) { return slice->has_scattered; }
 
-/* The two slices of those that have something between which a visibility lies, beyond them the last two; and the share
- * of the second. */
+/* The two slices with data between which a visibility lies, beyond them the last two; and the share of the second. */
 typedef struct Sides {
     const Slice *low, *high;
     double       share;

@@ -1,5 +1,5 @@
-/* render/air/daylight.c: what the sky gives to a place by direction, from the tables of render/air/atmosphere.c: no eye.
- * In sum: daylight_sums.c. */
+/* render/air/daylight.c: skylight by direction, from the tables of render/air/atmosphere.c, independent of any eye.
+ * Totals: daylight_sums.c. */
 #include "render/air/daylight_private.h"
 
 /* ---- the sky as a table -------------------------------------------------------------------- */
@@ -17,7 +17,7 @@ double acos_quick(double c)
     return c < 0 ? pi_rad - a : a;
 }
 
-/* Where x of 0 .. steps falls: *at its lower node, returns the share of the upper one. */
+/* Position of x in 0 .. steps: *at its lower node, returns the share of the upper one. */
 static inline double split(int *at, double x, int steps)
 {
     const int i = x > 0 ? (int)x : 0;
@@ -25,7 +25,7 @@ static inline double split(int *at, double x, int steps)
     return clamp(x - *at, 0, 1);
 }
 
-/* blur_rad: nothing about the sun shows finer than this. */
+/* blur_rad: the sky about the sun is blurred to this angle. */
 static void place_in_sky(SkyPlace *out, const double sun_d_enu[3], const double d_enu[3], double blur_rad)
 {
     out->up_share = (float)split(&out->up, air_sky_ups * sqrt(clamp(d_enu[2], 0, 1)), air_sky_ups);
@@ -78,7 +78,7 @@ void daylight_facing(Facing *out, const Daylight *light, const Materials *materi
         const double d_enu[3] = {rays->d_enu[0][i], rays->d_enu[1][i], rays->d_enu[2][i]};
         double mirror_enu[3];
         v3_add_scaled(mirror_enu, d_enu, 2 * fmax(-v3_dot(n_enu, d_enu), 0), n_enu);
-        /* facets that lean by the roughness turn the ray by twice that: grass does not mirror the ring about the sun */
+        /* facets tilted by the roughness deflect the ray by twice that: grass does not mirror the ring about the sun */
         place_in_sky(&out->mirror[i], light->sun_d_enu, mirror_enu, 2 * materials->material[material[i]].roughness);
     }
 }
@@ -90,9 +90,9 @@ double daylight_on_plane(const Daylight *light, AirBand band, const double n_enu
     return daylight_plane_there(light, band, &place);
 }
 
-/* The sky as a set of lamps, to add it up by: a grid over the hemisphere, 24 heights of equal steps in the root of d_up
- * and 48 azimuths; and rings about the sun, dense at its middle, which take over from the grid there by a weight that
- * goes smoothly from one to nothing. */
+/* The sky as a set of directional lights, for sums over it: a grid over the hemisphere, 24 heights of equal steps in
+ * the root of d_up and 48 azimuths; and rings about the sun, dense at its centre, which replace the grid there by a
+ * weight that falls smoothly from one to zero. */
 enum {
     lamp_ups = 24,
     lamp_azimuths = 48,
@@ -153,14 +153,14 @@ static void place_ring(Lamps *out, int r, const double sun_d_enu[3])
     }
 }
 
-/* Irradiance of each lamp facing it. */
+/* Irradiance of each light on a plane facing it. */
 static void light_lamps(float w_m2[lamps], const Lamps *lamp, const AirSky *sky)
 {
     for (int k = 0; k < lamps; k++)
         w_m2[k] = lamp->solid_angle[k] > 0 ? lamp->solid_angle[k] * (float)daylight_sky_there(sky, &lamp->place[k]) : 0;
 }
 
-/* What they give to a plane: a fixed order of sums, eight at a time. */
+/* Their irradiance on a plane: a fixed order of sums, eight at a time. */
 static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double n_enu[3])
 {
     const float n0 = (float)n_enu[0], n1 = (float)n_enu[1], n2 = (float)n_enu[2];
@@ -175,17 +175,17 @@ static double on_plane(const float w_m2[lamps], const Lamps *lamp, const double 
     return sum;
 }
 
-/* ---- all of it ---------------------------------------------------------------------------- */
+/* ---- the complete sky --------------------------------------------------------------------- */
 
-/* The sky is asked for at every second height and azimuth, over its brightness around the sun, and drawn between them
- * by cubics. */
+/* The sky is evaluated at every second height and azimuth, over its brightness around the sun, with cubic
+ * interpolation between them. */
 enum { sky_stride = 2, asked_ups = air_sky_ups / sky_stride, asked_azimuths = air_sky_azimuths / sky_stride };
 
 typedef struct AskedSky {
     double scattered_w_m2_sr[asked_ups + 1][asked_azimuths + 1], thermal_w_m2_sr[asked_ups + 1];
 } AskedSky;
 
-/* Asked of the day for all bands at once: how bright the sky is by angle from the sun, and by height and azimuth. */
+/* Evaluations of the day for all bands at once: sky radiance by angle from the sun, and by height and azimuth. */
 typedef struct SkyAnswers {
     double around[air_sky_angles + 1][AIR_BAND_COUNT];
     double scattered[asked_ups + 1][asked_azimuths + 1][AIR_BAND_COUNT], thermal[asked_ups + 1][2];
@@ -206,8 +206,8 @@ struct DaylightJob {
 
 static double height_of(const DaylightJob *job, int other) { return other ? job->other_m : 0; }
 
-/* How bright the sky is by angle from the sun: from it up over the zenith and down to the horizon behind, and beyond
- * that as there. */
+/* Sky radiance by angle from the sun: from it up over the zenith and down to the horizon behind, and constant
+ * beyond. */
 static void ask_around_sun(DaylightJob *job, int other, int k)
 {
     const double angle_rad = pi_rad * k * k / (air_sky_angles * air_sky_angles);
@@ -237,7 +237,7 @@ static void fill_around_sun(AirSky *sky, const SkyAnswers *answer, int b)
     sky->around_sun[air_sky_angles + 1] = sky->around_sun[air_sky_angles];
 }
 
-/* The sky over its ring: what is even enough to be drawn between few places. */
+/* The sky over its ring: smooth enough for interpolation between few points. */
 static void without_ring(AskedSky *asked, const DaylightJob *job, const AirSky *sky, const SkyAnswers *answer, int b)
 {
     const double sun[3] = {sin(job->light->day_zenith_rad), 0, cos(job->light->day_zenith_rad)};
@@ -282,7 +282,7 @@ static void draw_sky(AirSky *sky, const AskedSky *asked)
     }
 }
 
-/* One band: drawn, and scaled to add up as light. */
+/* One band: interpolated, and scaled to the total irradiance. */
 static void fill_sky(DaylightJob *job, int band)
 {
     Daylight *light = job->light;
@@ -309,14 +309,14 @@ static void fill_sky(DaylightJob *job, int band)
     light->sky_scale[band] = scale;
 }
 
-/* What the lamps give to planes of one height, in every band. */
+/* Irradiance of planes of one tilt by the lights, in every band. */
 static void light_planes(DaylightJob *job, int i)
 {
     Daylight *light = job->light;
     const double level = hypot(light->sun_d_enu[0], light->sun_d_enu[1]);
     const double sun_east = level > 1e-10 ? light->sun_d_enu[0] / level : 1;
     const double sun_north = level > 1e-10 ? light->sun_d_enu[1] / level : 0;
-    /* a plane that faces down sees nothing: what one sees that leans by a little less, over its share */
+    /* a plane that faces down receives nothing: the value of one of slightly less tilt, over its share */
     const double x = fmax((i < air_plane_ups / 2 ? i : air_plane_ups - i) * 2.0 / air_plane_ups, i == 0 ? 0.02 : 0);
     const double up = i < air_plane_ups / 2 ? x * x - 1 : 1 - x * x, open = 0.5 * (1 + up), flat = sqrt(1 - up * up);
     for (int p = 0; p <= air_plane_azimuths; p++) {
@@ -366,7 +366,7 @@ void daylight_end(DaylightJob *job)
         if (job->bands >> b & 1) job->light->sky_w_m2[b] = job->light->plane_w_m2[b][air_plane_ups][0];
 }
 
-/* ---- all of it ---------------------------------------------------------------------------------- */
+/* ---- the complete tables ------------------------------------------------------------------------ */
 
 Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
                       const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena)

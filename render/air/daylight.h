@@ -1,14 +1,15 @@
-/* render/air/daylight.h: what sun, sky and air give to a place at a time in a weather, whatever the eye.
+/* render/air/daylight.h: light of sun and sky, and air temperature, for a position, time and weather, independent of
+ * the eye.
  *
  * Everything comes from the tables of render/air/atmosphere.h. Sums (the sun's light, the whole sky's on level ground,
- * the air's temperature, what ground loses to the sky) are there at once; the sky by direction, and what it gives to a
- * tilted plane, are tables drawn for the bands that are asked for. tests/render/test_air.c measures what they cost in
- * accuracy. Heights are above the ground at the terrain's origin, which stands at the model's 0 km.
+ * the air's temperature, what ground loses to the sky) are computed directly; the sky by direction, and its irradiance
+ * on a tilted plane, are tables interpolated for the requested bands. tests/render/test_air.c measures their errors.
+ * Heights are above the ground at the terrain's origin, which is at the model's 0 km.
  *
  * Weather. Extinction is the model's at the visibility given. Air warmer or colder than the model's own ground
  * (weather.air_temp_k) scales the thermal radiance of path and sky by the ratio of the two Planck radiances in the
  * band, and the longwave flux by that of the fourth powers; its transmittance, and so its water vapour, stay the
- * model's. Wind cools surfaces and nothing else here. With height the air's temperature changes as the model's does. */
+ * model's. Wind affects surface temperatures only. With height the air's temperature changes as the model's does. */
 #ifndef RENDER_AIR_DAYLIGHT_H
 #define RENDER_AIR_DAYLIGHT_H
 
@@ -19,12 +20,12 @@
 #include "terrain/earth/sun.h"
 #include "terrain/weather.h"
 
-/* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] * scattered[height][azimuth].
- * d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the sun's, 0 .. pi; angle from the sun
- * pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a plane: over (1 + n_up) / 2, the share
- * of the sky that it sees, so that an even sky is exact; by azimuth, and by tilt, dense where a plane is level: equal
- * steps of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which are straight in small tilts where n_up is
- * not. */
+/* Sky radiance, without the sun's disc: thermal[height] + around_sun[angle from the sun] *
+ * scattered[height][azimuth]. d_up = (i / air_sky_ups)^2, dense at the horizon; equal steps of azimuth from the
+ * sun's, 0 .. pi; angle from the sun pi (i / air_sky_angles)^2: the bright ring about it needs its own. Light on a
+ * plane: over (1 + n_up) / 2, the share of the sky that it sees, so that a uniform sky is exact; by azimuth, and by
+ * tilt, dense where a plane is level: equal steps of sin(tilt / 2), and beyond a wall's tilt of cos(tilt / 2), which
+ * are linear in small tilts where n_up is not. */
 enum { air_sky_ups = 24, air_sky_azimuths = 12, air_sky_angles = 24, air_plane_ups = 16, air_plane_azimuths = 12 };
 
 typedef struct AirSky {
@@ -35,51 +36,52 @@ typedef struct AirSky {
 /* Air temperature by height: 0 .. 16 km in steps of 500 m; as at 16 km above. */
 enum { air_warmer_nodes = 33 };
 
-/* daylight_at fills in what stands before the tables. */
+/* daylight_at fills in the members before the tables. */
 typedef struct Daylight {
     Weather weather;
     double  sun_d_enu[3];                  /* towards the sun; below the horizon: no direct light */
     double  sun_w_m2[AIR_BAND_COUNT];      /* direct, on a plane facing the sun, at the ground */
-    double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane; with tables: its radiance, added up */
-    double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground that things see from below, and of ground beyond
-                                            * the terrain's edge. Others: 0, since it depends on the materials */
+    double  sky_w_m2[AIR_BAND_COUNT];      /* of the sky on a level plane; with tables: the integral of its radiance */
+    double  ground_w_m2_sr[AIR_BAND_COUNT];/* thermal bands: of ground seen from below, and of ground beyond the
+                                            * terrain's edge. Others: 0, since it depends on the materials */
     /* all wavelengths, for temperatures: direct facing the sun, diffuse, net thermal loss of a horizontal plane */
     double  solar_direct_w_m2, solar_diffuse_w_m2, longwave_loss_w_m2;
     double  zero_z_m;                      /* ENU z of the model's 0 km; heights bend with the Earth: daylight_height */
     float   warmer_k[air_warmer_nodes];    /* of the air every 500 m up from there, against weather.air_temp_k */
     const PlanckTable *planck_mwir, *planck_lwir;
-    double  day_zenith_rad;                /* of the sun that the tables are asked for */
+    double  day_zenith_rad;                /* of the sun, at which the tables are evaluated */
     double  sun_above;                     /* share of its disc above the horizon, over the square of its distance */
     double  thermal_scale[2], scattered_scale; /* air of another temperature than the model's; twilight, distance */
 
-    /* by direction; only of the bands asked for */
-    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: what is mirrored in the scene */
+    /* by direction; only of the requested bands */
+    AirSky  sky[AIR_BAND_COUNT];           /* from the ground: for mirror reflections in the scene */
     AirSky  sky_light[AIR_BAND_COUNT];     /* the same scaled: what lights the scene */
-    /* The tables' radiance and irradiance of a sky are two computations and do not quite agree: what is seen, also in a
-     * mirror, is the radiance, and what lights a surface is that times this, so that it adds up to the irradiance. */
+    /* Radiance and irradiance of a sky in the tables come from two computations and differ slightly: the visible
+     * sky, also in a mirror, is the radiance; what lights a surface is that times this factor, so that its integral
+     * is the irradiance. */
     double  sky_scale[AIR_BAND_COUNT];
-    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* on a tilted plane, over its share */
-    const struct AirDay *day;              /* what the tables were drawn from; in the arena. NULL: none */
+    float   plane_w_m2[AIR_BAND_COUNT][air_plane_ups + 1][air_plane_azimuths + 1]; /* tilted plane, over its share */
+    const struct AirDay *day;              /* what the tables were made from; in the arena. NULL: none */
 } Daylight;
 
-/* What does not change between frames. */
+/* Data that does not change between frames. */
 typedef struct AirSource {
     const Atmosphere  *atmosphere;
     const PlanckTable *planck_mwir, *planck_lwir;
 } AirSource;
 
-/* Sums alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
+/* Totals alone, of pan and all wavelengths, and the air's temperature: microseconds, no arena (bench speed: daylight).
  * weather->air_temp_k: NaN for the model's own; the Daylight's is then filled in. */
 void   daylight_at(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun);
-/* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in which
- * the AirDay lives. */
+/* And the tables by direction of these bands (1 << AirBand). pool: may be NULL. STATUS_NO_MEMORY: of the arena, in
+ * which the AirDay lives. */
 Status daylight_by_direction(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun,
                              unsigned bands, Pool *pool, Arena *arena);
 
-/* low: steps below zero that the first one is drawn on to */
+/* low: steps below zero onto which the first one is extended */
 static const double air_warmer_step_m = 500, air_warmer_low = -4;
 
-/* Height of a place above the model's 0 km: the tangent plane leaves the Earth. */
+/* Height of a position above the model's 0 km: the tangent plane leaves the Earth. */
 static inline double daylight_height(const Daylight *light, const double p_enu[3])
 {
     return p_enu[2] + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3) - light->zero_z_m;
@@ -93,20 +95,20 @@ static inline double daylight_temp_at(const Daylight *light, const double p_enu[
     return light->weather.air_temp_k + low_k + (at - i) * (high_k - low_k);
 }
 
-/* Where a direction lies in the tables of the sky, and a plane's normal in those of the light on it: the same for every
- * band, so that who asks for several finds it once. */
+/* Position of a direction in the tables of the sky, and of a plane's normal in those of its irradiance: the same for
+ * every band, so that it is computed once for several. */
 typedef struct SkyPlace {
     int   up, azimuth, angle; /* lower nodes; shares of the upper ones */
     float up_share, azimuth_share, angle_share;
 } SkyPlace;
 typedef struct PlanePlace {
     int   up, azimuth;
-    float up_share, azimuth_share, open; /* open: share of the sky before it */
+    float up_share, azimuth_share, open; /* open: factor on its unobstructed sky */
 } PlanePlace;
 void daylight_sky_place(SkyPlace *out, const Daylight *light, const double d_enu[3]);
 void daylight_plane_place(PlanePlace *out, const Daylight *light, const double n_enu[3]);
 
-/* Both for each hit of a block: of its normal, and of the direction its mirror shows, where it has any gloss. */
+/* Both for each hit of a block: of its normal, and of its mirror direction, where it has any gloss. */
 typedef struct Facing {
     PlanePlace plane[hits_capacity];
     SkyPlace   mirror[hits_capacity];
@@ -134,11 +136,11 @@ static inline double daylight_plane_there(const Daylight *light, AirBand band, c
 
 /* Sky radiance towards a unit direction, W/(m2 sr), as the ground sees it; below the horizon: the horizon's. */
 double daylight_sky(const Daylight *light, AirBand band, const double d_enu[3]);
-/* The same as it lights a surface: it adds up to daylight_on_plane. */
+/* The same for lighting a surface: its integral is daylight_on_plane. */
 double daylight_sky_light(const Daylight *light, AirBand band, const double d_enu[3]);
 /* Irradiance of the sky on a plane of this unit normal, W/m2; half of it, and more, may be below the horizon. */
 double daylight_on_plane(const Daylight *light, AirBand band, const double n_enu[3]);
-/* Share of the direct sun's irradiance that arrives from a direction, 1/sr: its disc has one brightness. */
+/* Share of the direct sun's irradiance from a direction, 1/sr: its disc has uniform radiance. */
 double daylight_sun_disc(const Daylight *light, const double d_enu[3]);
 
 #endif

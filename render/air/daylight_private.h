@@ -1,22 +1,22 @@
-/* render/air/daylight_private.h: daylight in passes of tasks, so that a pool does them beside those of an eye: first every
- * ask, then every draw, then every plane, each in any order and by any thread; then the end. */
+/* render/air/daylight_private.h: daylight in passes of tasks, so that a pool runs them beside those of an eye: first
+ * all evaluations, then all interpolations, then all planes, each in any order and by any thread; then the end. */
 #ifndef RENDER_AIR_DAYLIGHT_PRIVATE_H
 #define RENDER_AIR_DAYLIGHT_PRIVATE_H
 
 #include "render/air/atmosphere_day.h"
 #include "render/air/daylight.h"
 
-/* Temperatures of emitters for which transmittance is kept; between them its depth is linear in the temperature's
- * logarithm, as in the tables, outside the nearest counts. The AirDay has these and, behind them, the air's own. */
+/* Temperatures of emitters for which transmittance is stored; between them its depth is linear in the temperature's
+ * logarithm, as in the tables, outside the nearest is used. The AirDay has these and, behind them, the air's own. */
 enum { air_temps = 5 };
 static const double emitter_temp_k[air_temps] = {260, 300, 400, 600, 1000};
 
 typedef struct DaylightJob DaylightJob;
 
-/* The sums of these bands and of pan. diffuse_w_m2: the tables' own. */
+/* The totals of these bands and of pan. diffuse_w_m2: the tables' own. */
 void daylight_sums(Daylight *out, const AirSource *source, const Weather *weather, const Sun *sun, unsigned bands,
                    double diffuse_w_m2[AIR_BAND_COUNT]);
-/* other: [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not asked for. */
+/* other: [AIR_BAND_COUNT], filled in with the sky from another height; NULL: not requested. */
 Status daylight_begin(DaylightJob **out, Daylight *light, const AirSource *source, const Weather *weather,
                       const Sun *sun, unsigned bands, AirSky *other, double other_m, Arena *arena);
 int  daylight_asks(const DaylightJob *job);
@@ -30,7 +30,7 @@ void daylight_end(DaylightJob *job);
 /* The pool's tasks, or in order where there is none. */
 void air_run(Pool *pool, int count, PoolTask *task, void *user);
 
-/* Straight-on cubic through four points a step apart, at t of the middle step. */
+/* Cubic through four equidistant points, at t of the middle step. */
 static inline double cubic_between(double a, double b, double c, double d, double t)
 {
     return b + t * (c - b) + t * (t - 1) / 6 * ((2 - t) * (a - 2 * b + c) + (1 + t) * (b - 2 * c + d));

@@ -1,7 +1,8 @@
-/* render/air/daylight_sums.c: what sun and sky give to a place in sum, and so what warms it.
+/* render/air/daylight_sums.c: total irradiance of sun and sky at a position, also over all wavelengths for its
+ * temperature.
  *
- * The tables know the sun above the horizon only. Below 5 degrees the sky keeps the shape it has there and loses
- * brightness as twilight does. */
+ * The tables cover the sun above the horizon only. Below 5 degrees the sky keeps its shape at 5 degrees and is
+ * dimmed as in twilight. */
 #include "render/air/daylight_private.h"
 
 #include "render/materials/surface_balance.h"
@@ -39,11 +40,11 @@ double daylight_sun_disc(const Daylight *light, const double d_enu[3])
     return v3_dot(chord, chord) < disc2 ? 1 / (pi_rad * disc2) : 0; /* pi chord^2: exact on the sphere */
 }
 
-/* For temperatures: all wavelengths. sky_w_m2 is still the tables' own: the sum over our sky is there only where pan
- * is asked for. */
+/* For temperatures: all wavelengths. sky_w_m2 is still the tables' own: the integral over our sky exists only where
+ * pan is requested. */
 static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double model_temp_k)
 {
-    /* 0.44 of the daylight that reaches the ground lies in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
+    /* 0.44 of the daylight that reaches the ground is in 0.4-0.7 um (the photosynthetic share: 0.43 .. 0.46 under
      * clear skies); against Haurwitz's clear-sky formula that is right to 10 %. */
     static const double visible_share = 0.44, sigma_w_m2_k4 = 5.670374419184429e-8;
     light->solar_direct_w_m2 = light->sun_w_m2[AIR_PAN] / visible_share;
@@ -54,7 +55,8 @@ static void heat_balance(Daylight *light, const Atmosphere *atmosphere, double m
     const double down_w_m2 = atmosphere_longwave_down(atmosphere, light->weather.visibility_m) * pow(ratio, 4);
     light->longwave_loss_w_m2 = fmax(sigma_w_m2_k4 * pow(t_k, 4) - down_w_m2, 0);
 
-    /* Ground seen from below by what leans over it: grass, 18 K above the air at 1000 W/m2 (etc/ground_heat.csv) */
+    /* Ground seen from below by surfaces that lean over it: grass, 18 K above the air at 1000 W/m2
+     * (etc/ground_heat.csv) */
     const double share = ground_heat_share(light->weather.wind_mps, emission_w_m2_k(1, t_k));
     const double ground_temp_k =
         t_k + share * 0.018 * (light->solar_direct_w_m2 * fmax(light->sun_d_enu[2], 0) + light->solar_diffuse_w_m2);

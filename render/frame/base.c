@@ -1,4 +1,5 @@
-/* render/frame/base.c: the base pass: a tile's pixels shaded, into the planes, the truth and the sums. */
+/* render/frame/base.c: the base pass: shades every pixel of a tile once and adds it to the planes, the truth and the
+ * sums. */
 #include "render/frame/base.h"
 
 static void write_truth(const Worker *w, const Job *job)

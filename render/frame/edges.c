@@ -1,11 +1,11 @@
-/* render/frame/edges.c: where one sample does not speak for its pixel.
+/* render/frame/edges.c: selects the pixels that need more samples than one.
  *
  * A pixel is sampled again where it and a neighbour (left, right, above, below) show different entities, parts or
- * materials, surfaces that stand at an angle, one in shadow and one not, or a step in depth that neither's own plane
- * explains. Between two kinds of ground no ray is needed: the hit that is there says where the ground lies. What falls
- * between the samples altogether - a barrel, a mast - lies in the box of its target: pixels in the boxes of targets
- * that are too large for a footprint and small enough to have such parts are sampled again whatever they show, and so
- * is the ground where a small target's shadow falls. */
+ * materials, surfaces at an angle to each other, one shadowed and one lit, or a step in depth that neither's own
+ * plane explains. Between two ground classes no further ray is needed: the existing hit gives the plane of the
+ * ground. Parts that fall between the samples (a barrel, a mast) lie within the bounding box of their target: pixels
+ * in the boxes of targets that are too large for a target grid and small enough to have such parts are always
+ * sampled again, and so is the ground where a small target's shadow falls. */
 #include "render/frame/edges.h"
 
 #include "render/frame/ground_mix.h"
@@ -14,9 +14,9 @@
  * barrel is a sixtieth of its tank's length. */
 static const double middling_px = 64;
 static const double thin_px = 6; /* a shadow of more rows than this is met by samples, and its edges are found */
-static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, at 45 degrees from the sun */
+static const double sharp_cosine = 0.866; /* 30 degrees: a seventh of the light, with the sun at 45 degrees */
 static const double step_part = 0.05, step_ground = 0.5; /* of the range */
-static const double kinds_bent = 1; /* of what the range changes from pixel to pixel: ground is no plane */
+static const double kinds_bent = 1; /* of the change of range from pixel to pixel: real ground is not planar */
 
 static void mark_box(Job *job, const double box[4], RefineFlag flag)
 {
@@ -27,7 +27,7 @@ static void mark_box(Job *job, const double box[4], RefineFlag flag)
         for (int x = x0; x < x1; x++) job->refine[pixel_index(job, x, y)] |= (uint8_t)flag;
 }
 
-/* Box of a sphere's image, generous; false: not before the eye. */
+/* Conservative bounding box of a sphere's image; false: not in front of the eye. */
 static bool sphere_box(double box[4], const View *view, const double centre_enu[3], double radius_m)
 {
     double offset_enu[3], p_cam[3];
@@ -36,7 +36,7 @@ static bool sphere_box(double box[4], const View *view, const double centre_enu[
     if (!(p_cam[2] > 2 * radius_m)) return false;
     double at_px[2], half_px = view->focal_px * radius_m / (p_cam[2] - radius_m);
     view_project(at_px, view, p_cam);
-    if (view_has_lens(view)) half_px *= 1.5; /* what a lens that is taken adds at most, and more */
+    if (view_has_lens(view)) half_px *= 1.5; /* more than an accepted lens adds */
     for (int k = 0; k < 2; k++) box[k] = at_px[k] - half_px, box[k + 2] = at_px[k] + half_px;
     return true;
 }
@@ -49,9 +49,9 @@ static bool shadow_box(double box[4], const Job *job, int index)
     double                foot_enu[3], tip_enu[3], foot[4], tip[4];
     if (entity->model < 0) return false;
     const Model          *model  = catalog_model(job->scene.world->catalog, entity->model);
-    if (!job->scene.world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a streak, and pale */
+    if (!job->scene.world->landscape || !(sun[2] > 0.05)) return false; /* below 3 degrees: a faint streak */
     enu_from_ecef(foot_enu, &job->scene.world->frame, entity->p_ecef);
-    /* a flying one's shadow is elsewhere, and as faint as it is far */
+    /* the shadow of an aircraft is elsewhere, and fainter with distance */
     const double above_m =
         foot_enu[2] - elevation_height(&job->scene.world->landscape->elevation, foot_enu[0], foot_enu[1], NULL);
     if (!(fabs(above_m) < model->height_m)) return false;
@@ -91,7 +91,7 @@ static double plane_range(const Picture *p, size_t at, const double d_at[3], con
     return range_m > 0 && range_m < INFINITY ? range_m : NAN;
 }
 
-/* Whether hit b lies off the plane of hit a: by more than step_m and `bent` times what the range changes along it. */
+/* Whether hit b is off the plane of hit a: by more than step_m plus `bent` times the change of range along it. */
 static bool lies_off(const Picture *p, size_t a, size_t b, const double d_a[3], const double d_b[3], double step_m,
                      double bent)
 {
@@ -99,8 +99,8 @@ static bool lies_off(const Picture *p, size_t a, size_t b, const double d_a[3], 
     return !(fabs(there_m - p->range_m[b]) <= step_m + bent * fabs(there_m - p->range_m[a]));
 }
 
-/* Whether each of two hits lies off the other's plane; `either`: one of them is enough (a roof and the wall below it,
- * one seen along its own plane). */
+/* Whether each of two hits is off the other's plane; `either`: one is enough (a roof and the wall below it, one of
+ * them seen edge-on). */
 static bool steps_in_depth(const Job *job, size_t a, size_t b, int xa, int ya, int xb, int yb, double step_m,
                            double bent, bool either)
 {
@@ -126,7 +126,7 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     const double cosine = p->normal[0][a] * p->normal[0][b] + p->normal[1][a] * p->normal[1][b] +
                           p->normal[2][a] * p->normal[2][b];
     const double near_m = fmin(p->range_m[a], p->range_m[b]);
-    const bool   kinds = other && !part; /* a crest between two kinds of ground is worth finding when it is low */
+    const bool   kinds = other && !part; /* a crest between two ground classes is worth refining when it is low */
     const double step_m = part ? step_part * near_m : kinds ? near_m / job->request->view.focal_px
                                                              : step_ground * near_m;
     if (!(cosine > sharp_cosine) || steps_in_depth(job, a, b, xa, ya, xb, yb, step_m, kinds ? kinds_bent : 0, kinds))
@@ -135,8 +135,8 @@ static unsigned edge_between(const Job *job, int xa, int ya, int xb, int yb)
     return (other ? refine_ground : 0) | (job->sun[a] != job->sun[b] ? refine_sun : 0);
 }
 
-/* 1 where `count` pixels from a on and those from b on are plainly of one kind, as most are: in arrays, and never where
- * edge_between would find anything. */
+/* 1 where `count` pixels from a on and those from b on are clearly alike, as most are: in arrays, and never where
+ * edge_between would find an edge. */
 static void find_plain(uint32_t *restrict plain, const Job *job, size_t a, size_t b, int count)
 {
     const Picture  *p = job->picture;
@@ -184,7 +184,7 @@ void refine_flags(uint8_t flags[hits_capacity], const Job *job, int x0, int y0, 
                 job->picture->range_m[px] < INFINITY &&
                 corners_differ(corner + (y - y0) * (width + 1) + k, width + 1, job->picture->material[px]))
                 flag |= refine_ground;
-            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* no more to give */
+            if (job->request->samples > 1) flag &= ~(unsigned)(refine_step | refine_ground); /* all flags set */
             flags[(y - y0) * width + k] = (uint8_t)flag;
         }
         if (y + 1 < y1) memcpy(above, below, sizeof above);

@@ -1,6 +1,6 @@
-/* render/frame/error_budget.c: the error estimate of a frame: some pixels are sampled again. Candidates, one in each of
- * many equal fields, say how much they differ from their neighbours; from them the pixels to sample are drawn, the
- * likelier the more they differ; blocks of those are then shaded, each into sums of its own. */
+/* render/frame/error_budget.c: the error estimate of a frame by re-sampling some of its pixels. One candidate in
+ * each of many equal fields is weighted by its difference from its neighbours; the pixels to re-sample are drawn
+ * with these weights; blocks of them are shaded, each into its own sums. */
 #include "render/frame/error_budget.h"
 
 #include "render/frame/error_estimate.h"
@@ -13,9 +13,9 @@ static const uint32_t stream = 0x6275;     /* "bu" */
 
 typedef struct Candidate {
     uint16_t x, y;
-    double   area;                          /* px that it stands for */
+    double   area;                          /* number of pixels that it represents */
     double   weight;                        /* to be drawn */
-    unsigned planes;                        /* 1 << plane: those that its own samples do not speak for */
+    unsigned planes;                        /* 1 << plane: those whose error its own samples do not estimate */
     float    value[picture_plane_count], contrast[picture_plane_count];
 } Candidate;
 
@@ -24,14 +24,14 @@ typedef struct ProbeOf {
     double stands_for; /* px */
 } ProbeOf;
 
-/* A block of probes. */
+/* A block of re-sampled pixels. */
 typedef struct ProbeTask {
-    bool           of_tables; /* asked directly, and nothing else */
+    bool           of_tables; /* computed directly, without tables, and nothing else */
     int            count;
     const ProbeOf *probe; /* [count] */
     const Candidate *candidate;
     float          base[picture_plane_count][probes_a_block];
-    double         image_px[probes_a_block];   /* how far the ground moves on the image */
+    double         image_px[probes_a_block];   /* displacement of the ground on the image */
     double         sampling[picture_plane_count], detail[picture_plane_count], tables[picture_plane_count];
     double         tables_px;
 } ProbeTask;
@@ -39,7 +39,7 @@ typedef struct ProbeTask {
 typedef struct Budget {
     const Job  *job;
     int         field_px, columns, rows, candidates, probes, blocks, n;
-    bool        law;       /* more rays than the pixels have are too many: by the law */
+    bool        law;       /* too many rays to re-sample more finely: the sampling variance is used */
     Candidate  *candidate;
     ProbeOf    *probe, tables_probe[tables_probes];
     ProbeTask  *task;      /* [blocks + tables_blocks] */
@@ -56,7 +56,7 @@ double error_budget_kelvin(const PlanckTable *planck, double mean_w_m2_sr, doubl
 
 /* ---- which pixels ---------------------------------------------------------------------------- */
 
-/* Planes whose error at a pixel is not told by its own samples; see refine.c. */
+/* Planes whose error at a pixel cannot be estimated from its own samples; see refine.c. */
 static unsigned planes_to_ask(const Job *job, size_t px)
 {
     const unsigned flags = job->refine ? job->refine[px] : 0;
@@ -114,7 +114,7 @@ static int draw(ProbeOf *out, int most, const Budget *b)
     return count;
 }
 
-/* By the root of what it differs by, over each plane's mean, and by no less than an even share. */
+/* Weight: root of the difference from its neighbours over each plane's mean, and no less than a uniform share. */
 static int draw_probes(Budget *b, const double mean[picture_plane_count])
 {
     double sum = 0, area = 0;
@@ -136,8 +136,8 @@ static int draw_probes(Budget *b, const double mean[picture_plane_count])
     return draw(b->probe, b->probes, b);
 }
 
-/* By how bright it is, over each plane's mean, and no less than evenly: what tables do is in proportion to that, and a
- * few hot pixels can hold half of a thermal band. */
+/* Weight: brightness over each plane's mean, and no less than a uniform share: the error of the tables is
+ * proportional to it, and a few hot pixels can hold half of a thermal band. */
 static int draw_tables(Budget *b, const double mean[picture_plane_count])
 {
     for (int i = 0; i < b->candidates; i++) {
@@ -184,12 +184,12 @@ bool error_budget_coarser(double turn_enu[3], double *rise_m, const Elevation *e
     return false;
 }
 
-/* ---- a block of probes -------------------------------------------------------------------------- */
+/* ---- a block of re-sampled pixels --------------------------------------------------------------- */
 
 static const Candidate *candidate_of(const ProbeTask *t, int p) { return &t->candidate[t->probe[p].candidate]; }
 
-/* What the pixels' values of a plane would change with more rays: sampling error, by their own variance where they have
- * as many as the picture. */
+/* Change of the pixels' values of a plane with more rays: sampling error, from their own variance where they have as
+ * many rays as the picture. */
 static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, int plane)
 {
     const int  samples = n * n;
@@ -209,7 +209,7 @@ static void take_rays(ProbeTask *t, const Job *job, int n, const float *value, i
     }
 }
 
-/* What the ground at every second post changes. */
+/* Change when the ground is known at every second post only. */
 static void take_coarse(ProbeTask *t, const float *value, int plane)
 {
     for (int p = 0; p < t->count; p++) {
@@ -229,7 +229,7 @@ static void take_tables(ProbeTask *t, const float *value, int plane)
     }
 }
 
-/* Turns the block's hits of ground as their posts, twice as far apart, would. */
+/* Tilts the block's ground hits as posts twice as far apart would. */
 static void coarsen(Samples *s, const Job *job, ProbeTask *t)
 {
     const World *world = job->scene.world;
@@ -260,7 +260,7 @@ static void shade_pixels(Worker *w, const Job *job, const ProbeTask *t, int n, i
     block_light(w, job);
 }
 
-/* One sample a pixel: what the others are compared with. */
+/* One sample a pixel: the reference of the comparison. */
 static void shade_base(Worker *w, const Job *job, ProbeTask *t, int listed)
 {
     shade_pixels(w, job, t, 1, listed);
@@ -332,7 +332,7 @@ static Status plan(Budget *b, Pool *pool, Arena *arena)
     return b->candidate && b->probe && b->task && b->direct ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* Blocks of probes, then those of tables; returns how many there are of both. */
+/* Blocks of re-sampled pixels, then those that check the tables; returns the number of both. */
 static int deal(Budget *b, int probes, int of_tables)
 {
     const int a_block = (of_tables + tables_blocks - 1) / tables_blocks;

@@ -1,21 +1,21 @@
-/* render/frame/error_budget.h: how wrong a frame is, from the frame itself. What each figure holds, and what it does
- * not:
+/* render/frame/error_budget.h: the error estimate of a frame, from the frame itself. What each figure includes and what
+ * it leaves out:
  *
  *   sampling         Pixels of edge_samples x edge_samples rays: from the differences among their own samples, by
- *                    mean_variance_factor. Small targets: the same of their cells, and what the pixel behind them differs by. All
- *                    others: some are traced again with four times the rays a side; which, is drawn by how much they
- *                    differ from their neighbours. Nothing that is thinner than those rays lie apart is found.
- *   level_of_detail  Ground: what the picked pixels would show if the ground were known at every second post, by its
- *                    normals and by how far it moves on the image. What is missing below the posts' distance is taken
+ *                    mean_variance_factor. Small targets: likewise from their cells, and the variation of the pixels
+ *                    behind them. All others: some are re-sampled with four times the rays a side, drawn by how much
+ *                    they differ from their neighbours. Details thinner than the spacing of those rays are missed.
+ *   level_of_detail  Ground: change of the picked pixels if the ground were known at every second post only, by its
+ *                    normals and by its displacement on the image. What is missing below the post spacing is taken
  *                    to be as much again: where hills are as high as they are long (terrain/landscape/landscape.c)
- *                    each halving of that distance brings half of what is left. Shadows and what stands behind a crest
+ *                    each halving of that spacing brings half of what is left. Shadows and what is hidden by a crest
  *                    are left out.
- *   tables           A few pixels, the bright ones first, their air asked path by path and their light in double
- *                    (air_paths_directly, optical_shade, thermal_shade), against what the frame's tables and eight-wide
- *                    shading give. The light of the sky on a plane is the table's in both; errors of the atmosphere
- *                    itself are no part.
+ *   tables           A few pixels, the bright ones first, their air computed path by path and their light in double
+ *                    (air_paths_directly, optical_shade, thermal_shade), against the result of the frame's tables and
+ *                    eight-wide shading. Sky irradiance comes from the table in both; errors of the atmosphere tables
+ *                    themselves are not included.
  *
- * Draws are counter-based and belong to places on the picture: the same for any number of threads. */
+ * Random draws are counter-based and keyed by pixel position: the same for any number of threads. */
 #ifndef RENDER_FRAME_ERROR_BUDGET_H
 #define RENDER_FRAME_ERROR_BUDGET_H
 

@@ -1,10 +1,10 @@
-/* render/frame/error_estimate.h: the error estimate as a pass of a frame; what it says: error_budget.h. */
+/* render/frame/error_estimate.h: the error estimate as a pass of a frame; its meaning: error_budget.h. */
 #ifndef RENDER_FRAME_ERROR_ESTIMATE_H
 #define RENDER_FRAME_ERROR_ESTIMATE_H
 
 #include "render/frame/passes.h"
 
-/* After everything else: fills picture->budget. STATUS_NO_MEMORY. */
+/* The last pass: fills picture->budget. STATUS_NO_MEMORY. */
 Status error_estimate(const Job *job, Pool *pool, Arena *arena);
 
 #endif

@@ -1,15 +1,16 @@
-/* render/frame/ground_mix.c: pixels that show several kinds of ground.
+/* render/frame/ground_mix.c: pixels that cover several ground classes.
  *
- * Grass beside asphalt is 10 K colder at noon: one sample of a pixel on their border is wrong by all of that, four
- * samples by 0.6 K (rms), and as the eye moves the border flickers. The hit that is there already says where the ground
- * lies, so no ray is needed: places over the sample's square are laid on the plane of its hit, their surface classes
- * are looked up, and the hit is split into one for each class, at the mean of its places, weighted by their number. */
+ * Grass beside asphalt is 10 K colder at noon: the error of one sample on their border is all of that, of four
+ * samples 0.6 K (rms), and as the eye moves the border flickers. The existing hit gives the plane of the ground, so
+ * no further ray is needed: points over the sample's square are projected on the plane of its hit, their surface
+ * classes are looked up, and the hit is split into one for each class, at the mean of its points, weighted by their
+ * number. */
 #include "render/frame/ground_mix.h"
 
 #include <assert.h>
 
-/* Range at which the ray d meets the plane through a hit at range_m along d_hit. Seen from along it a plane runs off;
- * the ground does not: then the hit's own range. */
+/* Range at which the ray d meets the plane through a hit at range_m along d_hit. At grazing view the plane runs away
+ * from the ground: then the hit's own range. */
 static double plane_through(const double n[3], const double d_hit[3], double range_m, const double d[3])
 {
     const double at_m = range_m * v3_dot(n, d_hit) / v3_dot(n, d);
@@ -28,7 +29,8 @@ void corner_materials(uint16_t out[corner_capacity], const Job *job, int x0, int
     uint8_t          surface[tile_side_samples + 1];
     for (int y = y0; y <= y1; y++) {
         for (int x = x0; x <= x1; x++) {
-            /* the pixel below and to the right of the corner says where the ground is; at the picture's end the last */
+            /* the pixel below and to the right of the corner gives the plane of the ground; at the picture's end the
+             * last */
             const int    px = x < view->width ? x : view->width - 1, py = y < view->height ? y : view->height - 1;
             const size_t at = pixel_index(job, px, py);
             const double n[3] = {p->normal[0][at], p->normal[1][at], p->normal[2][at]};
@@ -65,8 +67,8 @@ typedef struct Patch {
     double  place[2]; /* sum of its places, px */
 } Patch;
 
-/* Classes of the places over a square of 1 / n px about a sample's own place, those of most places first; the rest is
- * counted to the first. Returns how many, 1 .. most; 0: no ground there. */
+/* Classes of the points over a square of 1 / n px about a sample's position, the most frequent first; the rest is
+ * counted to the first. Returns their number, 1 .. most; 0: no ground there. */
 static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job *job, int i, const double centre_px[2],
                         int side, int most)
 {
@@ -113,7 +115,7 @@ static int find_patches(Patch patch[ground_mix_most], const Worker *w, const Job
     return count;
 }
 
-/* Moves a ground sample to another place of the picture on the plane of its hit. */
+/* Moves a ground sample to another position of the picture on the plane of its hit. */
 static void move_sample(Hits *hits, Rays *rays, int i, const View *view, const double at_px[2])
 {
     const double n[3] = {hits->n_geo[0][i], hits->n_geo[1][i], hits->n_geo[2][i]};

@@ -1,4 +1,4 @@
-/* render/frame/passes.c: a block of pixels, shaded and added up: the steps that passes have in common. */
+/* render/frame/passes.c: a block of pixels, shaded and summed: the steps that the passes share. */
 #include "render/frame/passes.h"
 
 Tile tile_of(const Job *job, int task)
@@ -83,7 +83,7 @@ void block_add(Worker *w, const Job *job, int sign)
         }
     }
     if (!s->radar || job->request->profile_bins == 0) return;
-    /* samples before which a small target stands count by what it leaves of their pixel */
+    /* samples behind which a small target lies count with the share of their pixel that it leaves uncovered */
     for (int i = 0; i < s->hits.count; i++) {
         const int    p  = hit_pixel(&w->block, &s->hits, i);
         const size_t px = pixel_index(job, w->block.x[p], w->block.y[p]);

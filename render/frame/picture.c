@@ -1,4 +1,4 @@
-/* render/frame/picture.c: the planes of a frame, and which channel of light each shows. */
+/* render/frame/picture.c: the planes of a frame, and the channel of light that each shows. */
 #include "render/frame/picture.h"
 
 int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalChannels optical)

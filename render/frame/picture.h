@@ -1,4 +1,4 @@
-/* render/frame/picture.h: what a frame gives: radiance planes, truth planes, targets, counters. */
+/* render/frame/picture.h: the output of a frame: radiance planes, truth planes, targets, counters. */
 #ifndef RENDER_FRAME_PICTURE_H
 #define RENDER_FRAME_PICTURE_H
 
@@ -10,42 +10,43 @@
 /* Planes that carry radiance. */
 enum { picture_optical, picture_mwir = picture_optical + 3, picture_lwir, picture_radar, picture_plane_count };
 
-/* How wrong a frame's planes are by its own account: root of the mean squared error over the picture, in the plane's
- * unit, by source. The planes are the same with and without. Where each comes from, and what it leaves out:
- * render/frame/error_budget.h; how right it is: tests/sensor/test_error_budget.c. */
+/* Error estimate of a frame's planes, made by the frame itself: root of the mean squared error over the picture, in
+ * the plane's unit, by source. The planes are the same with and without it. How each figure is made and what it
+ * leaves out: render/frame/error_budget.h; how accurate the estimate is: tests/sensor/test_error_budget.c. */
 typedef struct ErrorBudget {
-    double mean[picture_plane_count];            /* of the plane, from the pixels that were looked at */
+    double mean[picture_plane_count];            /* of the plane, estimated from the candidate pixels */
     double sampling[picture_plane_count];        /* rays a pixel, edges, small targets */
     double level_of_detail[picture_plane_count]; /* posts of the ground. Facets of models: sensor/truth/frame_error.h */
     double tables[picture_plane_count];          /* air and shading; radar: 0, it has none */
-    int    probes;                               /* pixels looked at again */
+    int    probes;                               /* re-sampled pixels */
     double ms;                                   /* wall time */
 } ErrorBudget;
 
-/* What a target gave in this view, in units of pixels: areas, which may be fractions. */
+/* Result of a target in this view, in units of pixels: areas, which may be fractions. */
 typedef struct TargetPixels {
     double visible, amodal;
     /* its own radiance at the aperture, by the area it fills, less by the cube of the cosine off the axis:
      * over focal_px^2 and times range^2 this is its intensity. px W/(m2 sr); radar: relative */
     double radiance[picture_plane_count];
-    bool   small;                 /* sampled over its own box: what follows is of its samples, too */
+    bool   small;                 /* sampled on its own grid: what follows is of its samples, too */
     double mean[picture_plane_count], variance[picture_plane_count]; /* of radiance over its visible area */
     double radiance_error[picture_plane_count]; /* rms, of `radiance`; with a budget, else 0 */
     double peak_area;             /* of the pixel that it fills most */
     int    box[4], amodal_box[4]; /* first column, first row, last column + 1, last row + 1; empty: all 0 */
     bool   projected;             /* in front of the eye and its bounding sphere meets the image */
     double projected_box[4];      /* of all of it, px, not clipped to the image; where `projected` */
-    double occluded_ground;       /* pixels that the ground hides, and other entities */
+    double occluded_ground;       /* pixels hidden by the ground, and by other entities */
     double occluded_entity;
     double veiled[BAND_COUNT];    /* share of its light that smoke and dust take, mean over what is visible, 0 .. 1 */
     int    occluder;              /* snapshot index of the entity that hides most; -1 */
 } TargetPixels;
 
-/* Smaller than this one way, and than the other the other way, a target is sampled over its own box. */
+/* Smaller than this one way, and than the other the other way, a target is sampled on its own grid. */
 enum { small_target_px = 16, small_target_long_px = 4 * small_target_px };
 
-/* A small target as it was sampled, for what must know where within a pixel its light lies: a detector behind optics
- * (sensor/detector/subpixel.h). The cells fill the box evenly, row by row; their radiance is that at the aperture. */
+/* The samples of a small target, for models that need the position of its light within a pixel: a detector behind
+ * optics (sensor/detector/subpixel.h). The cells fill the box evenly, row by row; their radiance is that at the
+ * aperture. */
 typedef struct SmallTarget {
     double        box_px[4];                   /* columns and rows from, to; may reach beyond the picture */
     int           columns, rows;               /* cells */
@@ -66,18 +67,18 @@ typedef struct RenderCounters {
     uint64_t rays_primary;                 /* all from the eye; of these: */
     uint64_t rays_edges, rays_small_targets;
     uint64_t pixels, pixels_refined, small_targets;
-    uint64_t small_targets_by_pixels;      /* beyond the limit of cells a frame (footprint.c) */
+    uint64_t small_targets_by_pixels;      /* beyond the limit of cells a frame (target_grid.c) */
     uint64_t tiles, tiles_without_entities;
 } RenderCounters;
 
 void render_counters_add(RenderCounters *sum, const RenderCounters *more);
 
 typedef struct RenderTimes {
-    double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads but prepare */
+    double prepare_ms, visibility_ms, shadow_ms, shade_ms, radar_ms; /* summed over threads, except prepare */
     double target_grids_ms, base_ms, edges_ms; /* wall times of the passes */
 } RenderTimes;
 
-/* Planes are width * height, rows top down; NULL where not asked for. All in the frame's arena.
+/* Planes are width * height, rows top down; NULL where not requested. All in the frame's arena.
  *
  * Truth of a pixel is that of the sample nearest its centre; of a small target where it covers more than half of the
  * pixel, and then that of the target's sample nearest the centre. */
@@ -95,8 +96,8 @@ typedef struct Picture {
     float    *normal[3];            /* ENU of the terrain origin */
     float    *covered;              /* share of the pixel that small targets cover; NULL: there are none */
     TargetPixels *target;           /* [snapshot count]; NULL without truth */
-    SmallTargets  small;            /* none: not asked for */
-    ErrorBudget  *budget;           /* NULL: not asked for */
+    SmallTargets  small;            /* none: not requested */
+    ErrorBudget  *budget;           /* NULL: not requested */
     RenderCounters counters;
     RenderTimes    times;
 } Picture;
@@ -111,9 +112,9 @@ typedef struct PictureChannel {
     AirBand channel; /* the same number is the smoke's band (entities/effects/effects.h) */
 } PictureChannel;
 
-/* Those of a request of these bands, but the radar's: in the planes' order; returns how many. */
+/* The channels of a request of these bands, without the radar's, in the planes' order; returns their number. */
 int picture_channels(PictureChannel out[picture_radar], unsigned bands, OpticalChannels optical);
-/* The channel by which smoke before a band is told; -1: none (the radar). */
+/* The channel whose smoke transmittance applies to a band; -1: none (the radar). */
 int picture_smoke_channel(Band band, unsigned bands, OpticalChannels optical);
 /* 1 << AirBand of all that a request of these bands needs of the air. */
 unsigned render_air_bands(unsigned bands, OpticalChannels optical);
@@ -128,10 +129,10 @@ static inline size_t picture_index(const Picture *picture, int x, int y)
     return (size_t)y * (size_t)picture->width + (size_t)x;
 }
 
-/* Planes for a request, all 0; truth planes where truth is asked for and where edges are looked for.
+/* Planes for a request, all 0; truth planes where truth is requested and where edges are looked for.
  * STATUS_NO_MEMORY: of the arena. */
 Status picture_create(Picture *out, const RenderRequest *request, int entities, Arena *arena);
-/* Planes that only the search for edges wanted are left out of the picture. */
+/* Removes from the picture the planes that only the search for edges needed. */
 void   picture_forget_truth(Picture *picture);
 
 /* Mean squared difference of a pixel to its neighbours, left, right, above and below. */

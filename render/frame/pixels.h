@@ -1,4 +1,4 @@
-/* render/frame/pixels.h: a block of pixels as samples, and samples as pixels again. */
+/* render/frame/pixels.h: pixels as a block of samples, and samples averaged to pixels. */
 #ifndef RENDER_FRAME_PIXELS_H
 #define RENDER_FRAME_PIXELS_H
 
@@ -17,7 +17,7 @@ static inline void pixels_add(PixelBlock *block, int x, int y)
     block->y[block->pixels++] = (uint16_t)y;
 }
 
-/* The pixel that a hit belongs to, index into x and y; and its share of it. */
+/* The pixel of a hit, index into x and y; and the hit's share of it. */
 static inline int hit_pixel(const PixelBlock *block, const Hits *hits, int i)
 {
     return hit_ray(hits, i) / (block->n * block->n);
@@ -40,7 +40,7 @@ static inline void sample_place(double place[2], int n, int s)
 void pixels_rays(Rays *rays, const PixelBlock *block, const View *view);
 /* Columns and rows from, to, of all pixels. */
 void pixels_box(double box_px[4], const PixelBlock *block);
-/* A number for each hit that random choices depend on: by its place on the picture, whatever block it comes in. */
+/* A key for each hit that seeds its random choices: from its position on the picture, independent of the block. */
 void pixels_keys(uint64_t *key, const PixelBlock *block, const Hits *hits, int width);
 /* How many pixels of the block from p on lie side by side. */
 int  pixels_run(const PixelBlock *block, int p);

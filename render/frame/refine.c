@@ -1,5 +1,5 @@
-/* render/frame/refine.c: the edges pass: pixels that edges.c marks, once more with more samples, in place of what they
- * had: in their planes and in all sums over pixels. */
+/* render/frame/refine.c: the edges pass: pixels marked by edges.c are sampled again with more samples, which replace
+ * their first ones in the planes and in all sums over pixels. */
 #include "render/frame/refine.h"
 
 #include "render/frame/edges.h"
@@ -13,14 +13,15 @@ typedef struct Refinement {
     int      n;
 } Refinement;
 
-/* Whether the planes still hold all that a pixel's own sample gave to the sums; else it is traced again. */
+/* Whether the planes still hold all that a pixel's own sample contributed to the sums; else it is traced again. */
 static bool planes_remember(const Job *job)
 {
     return job->request->samples == 1 && !job->picture->profile && job->scene.effects.count == 0 &&
            skips(job->request->skips_off, SKIP_RETRACE);
 }
 
-/* Takes from the sums what the block's pixels gave with one sample each, as the planes say; before they change. */
+/* Subtracts from the sums what the block's pixels contributed with one sample each, restored from the planes before
+ * they change. */
 static void take_back(Worker *w, const Job *job, unsigned bands, int listed, bool areas)
 {
     const Picture *picture = job->picture;
@@ -48,8 +49,8 @@ static void take_back(Worker *w, const Job *job, unsigned bands, int listed, boo
     w->shader.counters.skipped[SKIP_RETRACE] += (uint64_t)block->pixels;
 }
 
-/* Places a side at which a sample of n x n is asked for kinds of ground: twice as fine as edges of parts are sampled,
- * since it is cheap. */
+/* Points a side at which the ground class of a sample of n x n is looked up: twice as fine as edges of parts are
+ * sampled, since it is cheap. */
 static int ground_side(const Job *job, int n)
 {
     const int side = 2 * job->request->edge_samples / n;
@@ -73,8 +74,8 @@ static void add_variance(const Worker *w, const Job *job, double sum[picture_pla
     }
 }
 
-/* The block's pixels once more with n samples a side, in place of what they had. law: where their squared errors go;
- * NULL: not wanted. */
+/* Samples the block's pixels again with n samples a side, replacing the first ones. law: receives their squared
+ * errors; NULL: not needed. */
 static void refine_block(Worker *w, const Job *job, const Refinement *how, int listed, double *law)
 {
     PixelBlock *block = &w->block;

@@ -4,7 +4,7 @@
 
 #include "render/frame/passes.h"
 
-/* A pool task: decides what a tile's pixels need (edges.h), and does it. */
+/* A pool task: selects the pixels of a tile to refine (edges.h), and samples them. */
 void refine_tile(void *job, int worker, int task);
 
 #endif

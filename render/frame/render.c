@@ -1,5 +1,5 @@
-/* render/frame/render.c: a frame: what its passes share is prepared, they run one after the other, and their sums are
- * gathered. */
+/* render/frame/render.c: a frame: prepares what its passes share, runs them one after the other and sums their
+ * results. */
 #include "render/frame/render.h"
 
 #include "render/frame/base.h"
@@ -100,7 +100,7 @@ static void choose_rules(Job *job)
     sum_rules_choose(&job->rules, request, &job->scene.world->radar);
 }
 
-/* What the passes need of the scene, and room for what they find. */
+/* What the passes need of the scene, and memory for their results. */
 static Status prepare(Job *job, Pool *pool, Arena *arena)
 {
     const RenderRequest *request = job->request;
@@ -128,7 +128,7 @@ static Status prepare(Job *job, Pool *pool, Arena *arena)
     return status;
 }
 
-/* Sums over workers and footprints, into the picture. */
+/* Sums over workers and target grids, into the picture. */
 static Status gather_sums(Job *job, int workers, Arena *arena)
 {
     Picture           *picture = job->picture;
@@ -204,7 +204,8 @@ Status render(Picture *out, const World *world, const Snapshot *snapshot, const 
     if (!request_is_good(request)) return STATUS_BAD_VALUE;
     Status status = render_once(&picture, world, snapshot, request, air, pool, arena);
     for (int k = 0; k < 2 && has_lateral(request) && status == STATUS_OK; k++) {
-        /* a colour that is magnified otherwise is a picture of its own: other rays, other edges; truth is green's */
+        /* a colour of different magnification is rendered as a picture of its own: other rays, other edges; truth is
+         * that of green */
         RenderRequest one = *request;
         Picture       colour;
         if (request->lateral[k] == 0) continue;

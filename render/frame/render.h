@@ -6,11 +6,12 @@
 #include "render/frame/world.h"
 #include "render/light/thermal.h"
 
-/* How many different places along a row (or column) of a pixel an edge there is averaged over: n^2 for the turned grid
- * of n x n rays that edges get. A detector's footprint must not take them away again (sensor/detector/mtf.h). */
+/* Number of different positions along a row (or column) of a pixel over which an edge is averaged: n^2 for the
+ * rotated grid of n x n rays that edges get. The footprint of a detector must not reduce it again
+ * (sensor/detector/mtf.h). */
 int render_places(int samples, int edge_samples);
 
-/* An entity whose model is -1 keeps its place in the snapshot and is not drawn: no pixel, no shadow, no echo. */
+/* An entity whose model is -1 keeps its index in the snapshot and is not drawn: no pixel, no shadow, no echo. */
 Status render(Picture *out, const World *world, const Snapshot *snapshot, const RenderRequest *request,
               const Air *air, Pool *pool, Arena *arena);
 

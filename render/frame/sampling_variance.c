@@ -1,4 +1,4 @@
-/* render/frame/sampling_variance.c: squared error of a pixel's mean, by its own samples. */
+/* render/frame/sampling_variance.c: squared error of a pixel's mean, estimated from its own samples. */
 #include "render/frame/sampling_variance.h"
 
 double error_budget_sampling_variance(const float *out, int n)

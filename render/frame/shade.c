@@ -1,5 +1,5 @@
-/* render/frame/shade.c: rays to hits to radiance: one set of eye rays, one set of sun rays, and every channel that is
- * asked for from the same hits. */
+/* render/frame/shade.c: rays to hits to radiance: one set of eye rays and one set of sun rays serve all requested
+ * channels. */
 #include "render/frame/shade.h"
 
 #include "render/light/optical.h"
@@ -62,17 +62,17 @@ void samples_smoke(const ShadeScene *scene, Samples *s)
     smoke_trace_rays(&s->smoke, scene->effects.volume, s->volume, s->volumes, &s->rays, s->hits.range_m, s->channels);
 }
 
-/* ---- what was met ----------------------------------------------------------------------------- */
+/* ---- hits ------------------------------------------------------------------------------------- */
 
-/* What a photograph says of a channel: its own colour, or the brightness of all three. */
+/* What an orthophoto gives for a channel: its own colour, or the brightness of all three. */
 static int albedo_of_channel(int channel)
 {
     return channel == optical_channel_r ? albedo_red : channel == optical_channel_g ? albedo_green
          : channel == optical_channel_b ? albedo_blue : albedo_all;
 }
 
-/* How bright the ground's own pattern is at each hit, in the optical channels that are asked for and in that by which
- * ground warms (pan). */
+/* Relative brightness of the ground's pattern at each hit, in the requested optical channels and in the one that
+ * governs solar heating (pan). */
 static void resolve_textures(Shader *shader, const ShadeScene *scene, const Samples *s)
 {
     const Landscape *landscape = scene->world->landscape;
@@ -80,7 +80,7 @@ static void resolve_textures(Shader *shader, const ShadeScene *scene, const Samp
     const Rays      *rays = &s->rays;
     const unsigned   channels = s->channels | 1u << optical_channel_pan;
     float           *pattern = shader->texture[optical_channel_pan], *footprint_m = shader->footprint_m;
-    /* a sample's footprint along the ground, which is what would alias: longer as the view grazes */
+    /* texture filter footprint of a sample along the ground, which limits aliasing: longer at grazing view */
     for (int i = 0; i < hits->count; i++) {
         float graze = 0;
         for (int k = 0; k < 3; k++) graze -= hits->n_geo[k][i] * (float)rays->d_enu[k][i];
@@ -185,7 +185,7 @@ void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const in
 
 /* ---- without tables --------------------------------------------------------------------------- */
 
-/* What a channel's light from all around is at each hit, W/m2; NULL: by the tilt alone. */
+/* Irradiance of a channel from all around at each hit, W/m2; NULL: from the tilt alone. */
 static const float *light_around(float room[hits_capacity], const Shader *shader, const ShadeScene *scene,
                                  const Samples *s, AirBand b)
 {

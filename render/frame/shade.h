@@ -1,7 +1,7 @@
-/* render/frame/shade.h: rays -> hits -> radiance, a channel of light each.
+/* render/frame/shade.h: rays -> hits -> radiance, one channel of light each.
  *
- * A list of rays goes in, arrays of what they met and of what light comes along them go out. Nothing here knows what the
- * samples are for: pixels of a picture, cells over a small target, or places that an estimate of error looks at again.
+ * The input is a list of rays, the output arrays of hits and of radiance along the rays. The code does not depend on
+ * the use of the samples: pixels of a picture, cells of a target grid, or pixels re-sampled for the error estimate.
  * A sample's result depends on its own ray (and key) alone, not on the others of the list. */
 #ifndef RENDER_FRAME_SHADE_H
 #define RENDER_FRAME_SHADE_H
@@ -13,7 +13,7 @@
 #include "render/light/surface_light.h"
 #include "render/smoke/effects.h"
 
-/* What is shaded: a frame's, shared by its threads. */
+/* The scene of a frame, shared by its threads. */
 typedef struct ShadeScene {
     const World      *world;
     const Snapshot   *snapshot;
@@ -21,40 +21,40 @@ typedef struct ShadeScene {
     const Visibility *visibility;
     EffectScene       effects;       /* smoke, dust, flames and bursts */
     SurfaceLight      surface_light;
-    SkyVisibility    *sky;           /* NULL: what a surface sees of the sky follows from its tilt alone */
-    int               sky_samples;   /* directions a hit that are gathered; 0: the quick form */
+    SkyVisibility    *sky;           /* NULL: sky and ground irradiance follow from the surface tilt alone */
+    int               sky_samples;   /* directions of hemisphere sampling a hit; 0: the quick form */
     const int        *all_volumes;   /* 0, 1, 2 ...: all of the effects */
-    int               hidden_entity; /* snapshot index whose parts these rays do not meet; -1: none */
+    int               hidden_entity; /* snapshot index of the entity whose parts these rays do not meet; -1: none */
 } ShadeScene;
 
 /* Poses the snapshot and prepares its light and smoke, seen from the eye of this view; sky: left NULL. channels:
- * 1 << AirBand, those that will be asked for. All else must outlive it; the arena owns what it needs. */
+ * 1 << AirBand, those that will be requested. All other arguments must outlive it; the arena owns its memory. */
 Status shade_scene_create(ShadeScene *out, const World *world, const Snapshot *snapshot, const Air *air,
                           const RenderRequest *request, unsigned channels, Arena *arena);
 
-/* A list of samples: what is asked of each, and what was found. Arrays of `capacity`, of the arena they came from. */
+/* A list of samples: inputs and results. Arrays of `capacity`, of the arena they came from. */
 typedef struct Samples {
     int      capacity;
-    /* asked */
+    /* inputs */
     Rays     rays;
     unsigned channels;         /* 1 << AirBand: those to fill in radiance */
     bool     radar;            /* radar returns, too */
-    bool     temperature;      /* temp_k even where no thermal channel asks for it */
+    bool     temperature;      /* temp_k even where no thermal channel needs it */
     double   per_rad;          /* samples a radian: at range r one covers r / per_rad across */
-    const uint64_t *key;       /* a number a sample that random choices depend on; with sky_samples only */
+    const uint64_t *key;       /* a key a sample that seeds its random choices; with sky_samples only */
     const int *volume;         /* indices into effects.volume that these rays may meet, nearest first */
     int      volumes;
-    /* found */
+    /* results */
     Hits      hits;
     float    *sun;                      /* share of the direct sun that arrives, 0 .. 1; the same in all channels */
     float    *temp_k;                   /* NaN: sky */
-    float    *radiance[AIR_BAND_COUNT]; /* at the eye, W/(m2 sr); of the channels asked for */
+    float    *radiance[AIR_BAND_COUNT]; /* at the eye, W/(m2 sr); of the requested channels */
     float    *radar_power;              /* sum over the bounces, relative */
-    SmokeRays     smoke;                 /* what smoke and dust before the hits take and add */
+    SmokeRays     smoke;                 /* transmittance and radiance of smoke and dust before the hits */
     RadarReturns returns;
 } Samples;
 
-/* Room for `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
+/* Allocates arrays of `capacity` samples, at most hits_capacity. STATUS_NO_MEMORY: of the arena. */
 Status samples_create(Samples *out, int capacity, Arena *arena);
 
 /* A thread's own working memory. */
@@ -74,18 +74,18 @@ typedef struct Shader {
 void samples_trace(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
 /* Rays to the sun from the hits, where a channel shows shadows. */
 void samples_sun(Shader *shader, const ShadeScene *scene, Samples *s);
-/* Smoke and dust before the hits; samples_light does it, too. */
+/* Smoke and dust before the hits; samples_light calls it, too. */
 void samples_smoke(const ShadeScene *scene, Samples *s);
-/* Temperatures, and the light of every channel, of hits that are there with their sun. */
+/* Temperatures, and the light of every channel, for hits whose sun share is already known. */
 void samples_light(Shader *shader, const ShadeScene *scene, Samples *s);
-/* All of them: from the rays to their light. */
+/* All steps: from the rays to their light. */
 void samples_shade(Shader *shader, const ShadeScene *scene, Samples *s, const int *list, int listed);
 
-/* After samples_light: the same light again, without tables: the air asked path by path (air_paths_directly), in double
- * (optical_shade, thermal_shade). Replaces radiance; direct: room for it. */
+/* After samples_light: the same light without tables: the air computed path by path (air_paths_directly), in double
+ * (optical_shade, thermal_shade). Replaces radiance; direct: memory for it. */
 void samples_light_directly(Shader *shader, const ShadeScene *scene, Samples *s, AirPaths direct[AIR_BAND_COUNT]);
 
-/* Share of a sample's light that smoke takes in a channel, 0 .. 1; 0 of channels that were not asked for. */
+/* Share of a sample's light that smoke absorbs in a channel, 0 .. 1; 0 for channels that were not requested. */
 static inline double samples_smoke_taken(const Samples *s, int channel, int i)
 {
     if (!s->smoke.any || channel < 0 || !(s->channels >> channel & 1)) return 0;

@@ -1,4 +1,4 @@
-/* render/frame/shade_list.h: light along a list of rays of any length: for queries, and for whatever is no picture.
+/* render/frame/shade_list.h: radiance along a list of rays of any length: for queries that are not pictures.
  *
  * A ray's result has the same bits in any list (tests/render/test_shade_list.c). */
 #ifndef RENDER_FRAME_SHADE_LIST_H
@@ -16,7 +16,7 @@ typedef struct RayList {
     bool            radar, temperature;
 } RayList;
 
-/* What each ray met and what light comes along it: arrays of `capacity`, as in Hits and Samples. */
+/* Hits of the rays and radiance along them: arrays of `capacity`, as in Hits and Samples. */
 typedef struct ShadedRays {
     int       capacity;
     double   *range_m;

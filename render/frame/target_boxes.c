@@ -1,7 +1,7 @@
 /* render/frame/target_boxes.c: where targets lie on the image. */
 #include "render/frame/target_boxes.h"
 
-/* Only those whose bounding sphere can show: a vertex is not looked at otherwise. */
+/* Only for targets whose bounding sphere may be visible: the vertices of others are not tested. */
 void project_target(void *user, int worker, int index)
 {
     (void)worker;

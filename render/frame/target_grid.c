@@ -1,28 +1,29 @@
-/* render/frame/target_grid.c: targets that are small on the image, sampled over their own boxes.
+/* render/frame/target_grid.c: targets that are small on the image, each sampled on a grid over its own box.
  *
- * A target of a few pixels, or of a hundredth of one, falls between the samples of the pixels or does not, and
- * flickers. Here its box on the image is divided into cells, always so many across the target whatever its size, and
- * each is sampled once. The pattern moves with the target, not with the pixels: what it adds up to does not change as
- * the target crosses them. A cell's result goes to the pixels it lies over by their shares of its area, exactly, so
- * that the sum over pixels is that over the target. The pixels' own samples do not see small targets; in the end a
- * pixel is its own value times what the footprints leave of it, plus the footprints.
+ * A target of a few pixels or less is sometimes hit by the samples of the pixels and sometimes missed, and flickers.
+ * Here its box on the image is divided into cells, a fixed number across the target whatever its size, and each cell is
+ * sampled once. The grid moves with the target, not with the pixels: its sum does not change as the target crosses
+ * them. A cell's result is distributed to the pixels below it by exact shares of its area, so that the sum over pixels
+ * is that over the target. The pixels' own samples exclude small targets; the composite pixel is its own value times
+ * its uncovered share, plus the grids' contribution.
  *
- * Behind a target the pixel's mean stands for what the target hides: right where the ground is even over a pixel. */
+ * Behind a target the pixel's mean is used for what the target hides: exact where the ground is uniform over a
+ * pixel. */
 #include "render/frame/target_grid_private.h"
 
 #include <stdlib.h>
 
 /* ---- planning ------------------------------------------------------------------------------- */
 
-/* Below this both ways (or this one way and four times as much the other) the footprint is the better of the two: edge
- * samples, 1 / 16 px apart along an axis, are wrong by up to 1 / 16 px of width, 0.4 % of 16 px. */
+/* Below this both ways (or this one way and four times as much the other) the grid is more accurate: edge samples,
+ * 1 / 16 px apart along an axis, have errors of up to 1 / 16 px of width, 0.4 % of 16 px. */
 static bool is_small(const TargetPixels *t)
 {
     const double w = t->projected_box[2] - t->projected_box[0], h = t->projected_box[3] - t->projected_box[1];
     return t->projected && fmin(w, h) < small_target_px && fmax(w, h) < small_target_long_px;
 }
 
-/* Cells of a target's footprint. */
+/* Cells of a target's grid. */
 static void cells_of(int *columns, int *rows, const Job *job, int index)
 {
     const double *box = job->boxes[index].projected_box, w = box[2] - box[0], h = box[3] - box[1];
@@ -34,10 +35,10 @@ static void cells_of(int *columns, int *rows, const Job *job, int index)
     *rows    = (int)fmax(job->request->target_samples, ceil(h) * per_px);
 }
 
-/* ---- a limit for crowds ------------------------------------------------------------------------ */
+/* ---- a limit for many targets ------------------------------------------------------------------ */
 
-/* A frame's footprints have at most so many cells for each of its pixels, or 2^17 (56 targets of 48 x 48) where that is
- * more. Beyond, targets are sampled by pixels and their edges, as larger ones are. */
+/* The grids of a frame have at most so many cells for each of its pixels, or 2^17 (56 targets of 48 x 48) where that
+ * is more. Beyond that limit targets are sampled by pixels and their edges, as larger ones are. */
 enum { cells_per_pixel = 4, cells_always = 1 << 17 };
 
 typedef struct SmallPlace {
@@ -52,7 +53,7 @@ static int nearer_the_axis(const void *left, const void *right)
     return (a->index > b->index) - (a->index < b->index);
 }
 
-/* Those nearest the boresight keep their footprints. Returns how many do. */
+/* The targets nearest the boresight keep their grids. Returns their number. */
 static Status limit_cells(int *count, Job *job, Arena *arena)
 {
     const View   *view = &job->request->view;
@@ -134,7 +135,7 @@ Status target_grids_plan(Job *job, Arena *arena)
         job->picture->small.target = arena_alloc(arena, (size_t)count, sizeof *job->picture->small.target);
         if (!job->picture->small.target) return STATUS_NO_MEMORY;
     }
-    /* the largest first, so that no worker is left with one when the others are done */
+    /* the largest first, so that no worker is still busy with one when the others have finished */
     for (int n = 0; n < job->footprints; n++) {
         const TargetGrid *f = &job->footprint[n];
         int              at = n;
@@ -167,7 +168,7 @@ static double overlap(Span a, double low, double high)
     return length > 0 ? length : 0;
 }
 
-/* One number for each cell of each entity: what random choices for a sample depend on; none is a pixel's. */
+/* A key for each cell of each entity that seeds the random choices of its sample; different from all pixel keys. */
 static uint64_t cell_key(const TargetGrid *f, int cell)
 {
     return (uint64_t)1 << 62 | (uint64_t)f->entity << 32 | (uint64_t)cell;
@@ -180,8 +181,8 @@ static double cell_area(const TargetGrid *f, int cell)
            overlap(cell_span(f, 1, cell / f->columns), f->y0, f->y1);
 }
 
-/* Where a cell is sampled: columns shifted among rows, and rows among columns, by the golden section, so that an edge
- * along either is met in many more steps than there are cells across, and one along a diagonal, too. */
+/* Position of a cell's sample: columns shifted among rows, and rows among columns, by the golden section, so that an
+ * edge along either is resolved in many more steps than there are cells across, and one along a diagonal, too. */
 static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
 {
     static const double golden = 0.6180339887498949;
@@ -191,7 +192,7 @@ static void cell_sample(double at_px[2], const TargetGrid *f, int cell)
     at_px[1] = f->box[1] + (f->box[3] - f->box[1]) * (row + v - floor(v)) / f->rows;
 }
 
-/* visit(user, pixel of the footprint, area) for each pixel that a cell lies over. */
+/* visit(user, pixel of the grid's box, area) for each pixel that a cell overlaps. */
 typedef void VisitPixel(void *user, const TargetGrid *f, int pixel, int x, int y, double area);
 
 static void over_pixels(const TargetGrid *f, int cell, VisitPixel *visit, void *user)
@@ -215,7 +216,7 @@ static void splat_pixel(void *user, const TargetGrid *f, int pixel, int x, int y
     splat->sum[pixel] += area * splat->value;
 }
 
-/* Gives the samples' values of a plane to the pixels. */
+/* Distributes the samples' values of a plane to the pixels. */
 static void splat(TargetGrid *f, const int *cell, int count, const float *value, int plane)
 {
     for (int i = 0; i < count; i++) {
@@ -254,8 +255,8 @@ static void grow_amodal(void *user, const TargetGrid *f, int pixel, int x, int y
     grow_pixel_box(user, x, y);
 }
 
-/* Cells whose ray would meet the target with nothing else in the world, close together: no other ray is traced.
- * Without SKIP_CELL all stay. Returns how many. */
+/* Compacts the cells whose ray would meet the target if it were alone in the world: no other ray is traced. Without
+ * SKIP_CELL all stay. Returns their number. */
 static int keep_amodal(int *cell, TargetGrid *f, Worker *w, const Job *job, int first_cell)
 {
     Rays      *rays = &w->samples.rays;
@@ -299,7 +300,7 @@ static void count_hidden(TargetGrid *f, Worker *w, const Job *job, const int *ce
     }
 }
 
-/* Samples that met the target, close together: no other is shaded here. Returns how many. */
+/* Compacts the samples that met the target: no other is shaded here. Returns their number. */
 static int keep_target(const TargetGrid *f, Samples *s, int *cell)
 {
     const uint32_t id = (uint32_t)f->entity + 1;
@@ -389,7 +390,7 @@ void target_grid_task(void *user, int worker, int index)
     if (cells == 0) return;
     const int listed = list_entities(w, job, f->box, true);
     ask_bands(w, job, job->request->bands);
-    /* whole rows, and fours of them where they fit: their rays go in squares */
+    /* complete rows, in multiples of four where they fit: their rays are traced in squares */
     const int rows = hits_capacity / f->columns, block = (rows < 4 ? rows : rows / 4 * 4) * f->columns;
     for (int cell = 0; cell < cells; cell += block)
         sample_cells(f, w, job, cell, cells - cell < block ? cells - cell : block, listed);

@@ -1,5 +1,5 @@
-/* render/frame/target_grid_picture.c: sampled small targets over the finished pixels, how wrong they are, and what they
- * add to the targets of the picture. */
+/* render/frame/target_grid_picture.c: composites the sampled small targets over the finished pixels, estimates their
+ * errors and adds them to the targets of the picture. */
 #include "render/frame/target_grid_private.h"
 
 #include "render/frame/sampling_variance.h"
@@ -12,14 +12,15 @@ void target_grids_cover(Job *job)
             for (int x = f->x0; x < f->x1; x++, k++) {
                 const size_t px = pixel_index(job, x, y);
                 if (!(f->area[k] > 0)) continue;
-                /* float sums, one order; two that overlap share the pixel, and their own samples saw to it */
+                /* float sums, in a fixed order; two targets that overlap share the pixel, and their own samples
+                 * resolve which is in front */
                 job->picture->covered[px] = fminf(job->picture->covered[px] + (float)f->area[k], 1);
                 if (f->area[k] > 0.5 * job->picture->covered[px]) job->coverer[px] = f->entity;
             }
     }
 }
 
-/* ---- how wrong -------------------------------------------------------------------------------- */
+/* ---- errors ----------------------------------------------------------------------------------- */
 
 /* Squared differences of neighbouring cells: as the picture shows them, beside the pixels behind them, and of the
  * target's own radiance. */
@@ -47,8 +48,8 @@ static void cell_pairs(double sums[2], const TargetGrid *f, const Job *job, int 
         }
 }
 
-/* Behind a target the pixel's mean stands for what is hidden: wrong by (1 - covered) covered of what the ground there
- * differs by, and that is taken to be what neighbours do. */
+/* Behind a target the pixel's mean is used for what is hidden: its error is (1 - covered) covered times the
+ * variation of the ground there, for which the difference of the neighbours is taken. */
 static double hidden_ground(const TargetGrid *f, const Job *job, const float *value)
 {
     double sum = 0;
@@ -94,7 +95,7 @@ static void put_truth_on(const Job *job, const TargetGrid *f, int k, size_t px)
     for (int a = 0; a < 3; a++) picture->normal[a][px] = t->normal[a];
 }
 
-/* The cells and the pixels behind them, as they are before anything is put on. */
+/* The cells and the pixels behind them, before compositing. */
 static void hand_over(const Job *job, TargetGrid *f)
 {
     SmallTargets *small = &job->picture->small;
@@ -116,7 +117,7 @@ static void hand_over(const Job *job, TargetGrid *f)
 void target_grids_composite(Job *job)
 {
     for (int n = 0; n < job->footprints && job->request->hand_over_cells; n++) hand_over(job, &job->footprint[n]);
-    /* first all that they hide, then all that they show: a pixel may hold parts of several */
+    /* first the share that they hide, then the light that they add: a pixel may hold parts of several */
     for (int show = 0; show < 2; show++)
         for (int n = 0; n < job->footprints; n++) {
             const TargetGrid *f = &job->footprint[n];

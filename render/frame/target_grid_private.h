@@ -1,4 +1,5 @@
-/* render/frame/target_grid_private.h: a small target as footprint.c samples it and footprint_picture.c puts it on. */
+/* render/frame/target_grid_private.h: a small target, shared by target_grid.c (sampling) and target_grid_picture.c
+ * (compositing). */
 #ifndef RENDER_FRAME_TARGET_GRID_PRIVATE_H
 #define RENDER_FRAME_TARGET_GRID_PRIVATE_H
 
@@ -18,13 +19,14 @@ struct TargetGrid {
     int     x0, y0, x1, y1;            /* pixels that it may touch */
     double *sum[picture_plane_count];  /* of area x radiance, a pixel [(y1 - y0) (x1 - x0)] */
     double *area;                      /* px, a pixel */
-    TargetGridTruth *truth;             /* a pixel; NULL: not wanted */
+    TargetGridTruth *truth;             /* [pixels]; NULL: not needed */
     /* over the target, px within the image */
     double  visible, amodal, hidden_ground, hidden_entity;
-    double  veiled[BAND_COUNT];          /* area x what the veil takes */
+    double  veiled[BAND_COUNT];          /* area x the share that smoke absorbs */
     double  square[picture_plane_count]; /* area x radiance^2 */
-    float  *cell[picture_plane_count]; /* radiance of each; NULL: no budget, and not handed on */
-    float  *behind[picture_plane_count]; /* a pixel, before anything small is put on it; NULL: not handed on */
+    float  *cell[picture_plane_count]; /* radiance of each; NULL: neither needed for the budget nor for a detector */
+    float  *behind[picture_plane_count]; /* [pixels], before small targets are composited; NULL: not needed for a
+                                          * detector */
     bool   *met;                       /* cells that show the target */
     int     amodal_box[4];
 };

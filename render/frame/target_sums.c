@@ -11,9 +11,9 @@ Status target_sums_create(TargetSums *out, int entities, int profile_bins, Arena
     return out->target && out->profile ? STATUS_OK : STATUS_NO_MEMORY;
 }
 
-/* Quanta: areas divide evenly by both grids; nothing answers the radar with more than the peak of its lobe; and no
- * target's own radiance passes 2^20 W/(m2 sr) but a perfect mirror of the sun, which is cut there in truth's sums (not
- * in pictures). Powers of two, so that scaling is exact. */
+/* Quanta: areas divide evenly by both grids; no radar return exceeds the peak of its lobe; and no target's own
+ * radiance exceeds 2^20 W/(m2 sr) except that of a perfect mirror of the sun, which is clipped there in the sums of
+ * the truth (not in pictures). Powers of two, so that scaling is exact. */
 void sum_rules_choose(SumRules *rules, const RenderRequest *request, const RadarConfig *radar)
 {
     const double         pixels  = (double)request->view.width * request->view.height;
@@ -29,9 +29,9 @@ void sum_rules_choose(SumRules *rules, const RenderRequest *request, const Radar
 
 double pixel_cosine3(const View *view, int x, int y) { return view_pixel_share(view, x, y); }
 
-/* ---- what hides what -------------------------------------------------------------------------- */
+/* ---- occluders -------------------------------------------------------------------------------- */
 
-/* The pair's place, or the free one where it belongs. There is always a free one. */
+/* The slot of the pair, or the free slot for it. There is always a free one. */
 static Occlusion *find_pair(const Occlusions *table, int target, int occluder)
 {
     uint64_t key = (uint64_t)(uint32_t)target << 32 | (uint32_t)occluder;
@@ -75,7 +75,7 @@ static int compare_pairs(const void *a, const void *b)
     return p->occluder < q->occluder ? -1 : p->occluder > q->occluder;
 }
 
-/* Which entity hides most of each target; of equals, the lowest index. */
+/* The entity that hides most of each target; of equals, the lowest index. */
 static Status name_occluders(TargetPixels *target, const TargetSums *const *sums, int workers, Arena *arena)
 {
     size_t most = 0, count = 0;
@@ -129,7 +129,8 @@ static void merge_box(int box[4], const int other[4])
     grow_box(box, other[2] - 1, other[3] - 1);
 }
 
-/* A sample's area in steps, and how much of it no small target covers. Rounding is the same when it is taken back. */
+/* A sample's area in steps, and the part of it that no small target covers. Rounding is the same when it is
+ * subtracted again. */
 static int64_t sample_steps(int64_t *seen, const SumRules *rules, const PixelBlock *block, int sign, size_t px)
 {
     const int64_t whole = rules->steps_per_px / (block->n * block->n) * sign;
@@ -280,7 +281,7 @@ static void gather_target(TargetPixels *target, const SumRules *rules, const Tar
         target->radiance[k] = (double)sum.radiance[k] * rules->radiance_quantum;
     for (int b = 0; b < BAND_COUNT; b++)
         target->veiled[b] = sum.visible > 0 ? (double)sum.veiled[b] / (double)sum.visible : 0;
-    /* a first sample may have met what those that took its place did not */
+    /* a first sample may have met an entity that its replacements did not */
     if (sum.visible > 0) memcpy(target->box, sum.box, sizeof sum.box);
     if (sum.amodal > 0) memcpy(target->amodal_box, sum.amodal_box, sizeof sum.amodal_box);
 }

@@ -1,8 +1,8 @@
-/* render/frame/target_sums.h: what each target gave, summed over the samples of all tiles: areas seen and hidden, what
- * hides it, its own radiance; and the radar's range profile.
+/* render/frame/target_sums.h: results of each target, summed over the samples of all tiles: visible and hidden areas,
+ * its occluders, its own radiance; and the radar's range profile.
  *
- * Sums are integers, in fixed steps, a worker's each and added up at the end: the order in which threads finish cannot
- * show. A block's samples may be taken back again (sign -1) when others take their place. */
+ * Sums are integers in fixed steps, one set per worker, added at the end: independent of the order in which threads
+ * finish. A block's samples may be subtracted again (sign -1) when others replace them. */
 #ifndef RENDER_FRAME_TARGET_SUMS_H
 #define RENDER_FRAME_TARGET_SUMS_H
 
@@ -13,11 +13,11 @@
 typedef struct TargetCount {
     int64_t visible, amodal, hidden_ground, hidden_entity;
     int64_t radiance[picture_plane_count];
-    int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke takes */
+    int64_t veiled[BAND_COUNT]; /* area times the share of its light that smoke absorbs */
     int     box[4], amodal_box[4];
 } TargetCount;
 
-/* How much of a target an entity hides. */
+/* The area of a target that an entity hides. */
 typedef struct Occlusion {
     bool    used;
     int     target, occluder; /* snapshot indices */
@@ -25,22 +25,22 @@ typedef struct Occlusion {
     double  area_px;          /* of small targets, whose areas are not in steps */
 } Occlusion;
 
-/* Every pair that a worker met: a hash table that grows. */
+/* Every pair that a worker met: a growing hash table. */
 typedef struct Occlusions {
     Occlusion *pair; /* [capacity] */
     size_t     capacity, used;
-    bool       lost; /* memory is out: the sums are incomplete */
+    bool       lost; /* out of memory: the sums are incomplete */
 } Occlusions;
 
 /* Adds to a pair. */
 void occlusion_add(Occlusions *table, Arena *arena, int target, int occluder, int64_t steps, double area_px);
 
-/* What holds for all sums of a frame. */
+/* Constants for all sums of a frame. */
 typedef struct SumRules {
     const Picture    *picture;
     const Visibility *visibility;
-    const int32_t    *coverer; /* a pixel: snapshot index of the small target that covers most; where any does */
-    int               smoke_channel[BAND_COUNT]; /* by which smoke before a band is told; -1: none */
+    const int32_t    *coverer; /* [pixels]: snapshot index of the small target that covers most; valid where any does */
+    int               smoke_channel[BAND_COUNT]; /* the channel whose smoke transmittance applies to a band; -1: none */
     Arena            *arena; /* where tables of pairs grow while threads run */
     int64_t           steps_per_px;
     /* fixed point: fine enough to be exact in float's terms, coarse enough that all samples of a picture at the
@@ -48,12 +48,12 @@ typedef struct SumRules {
     double            profile_limit, profile_quantum, radiance_limit, radiance_quantum;
 } SumRules;
 
-/* A worker's own. */
+/* Sums of a worker. */
 typedef struct TargetSums {
     TargetCount *target;  /* [snapshot count] */
     int64_t     *profile; /* [profile_bins][radar_bounces] */
     Occlusions   hidden;
-    Rays         some; /* rays that may meet a target behind what they met */
+    Rays         some; /* rays that may meet a target behind their first hit */
     int          some_index[hits_capacity];
     uint8_t      meets[hits_capacity];
     double       cosine3[hits_capacity]; /* of the block's pixels */

@@ -1,4 +1,4 @@
-/* render/frame/world.c: tables and tracer, opened once. */
+/* render/frame/world.c: opens the tables and the tracer once. */
 #include "render/frame/world.h"
 
 Status world_open(World *out, const Catalog *catalog, const Landscape *landscape, const LocalFrame *frame,

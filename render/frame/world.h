@@ -1,4 +1,4 @@
-/* render/frame/world.h: what does not change between frames: models, ground, materials, the tracer. */
+/* render/frame/world.h: the data that does not change between frames: models, ground, materials, the tracer. */
 #ifndef RENDER_FRAME_WORLD_H
 #define RENDER_FRAME_WORLD_H
 
@@ -9,7 +9,7 @@
 typedef struct World {
     const Catalog   *catalog;
     const Landscape *landscape;      /* NULL: no ground */
-    LocalFrame       frame;          /* whose ENU the views are in */
+    LocalFrame       frame;          /* the ENU frame of the views */
     Tracer          *tracer;
     Materials        materials;
     PlanckTable     *planck_mwir, *planck_lwir;

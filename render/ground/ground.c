@@ -1,4 +1,4 @@
-/* render/ground/ground.c: the elevation as the ray tracers see it, and the scalar tracer. */
+/* render/ground/ground.c: the elevation in the form that the ray tracers use, and the scalar tracer. */
 #include "render/ground/ground_private.h"
 
 void ground_prepare(Ground *out, const Elevation *elevation)
@@ -19,7 +19,7 @@ void ground_prepare(Ground *out, const Elevation *elevation)
     }
 }
 
-/* Where the ray is over the rectangle of a level, as an interval of t; false: nowhere from 0 on. */
+/* Interval of t over which the ray is above the rectangle of a level; false: none from 0 on. */
 static bool level_interval(LevelRay *r, const GroundLevel *g)
 {
     const double u_low = (0 - r->u0) * r->per_du, u_high = (g->cells_x - r->u0) * r->per_du;
@@ -63,8 +63,8 @@ void ground_ray(GroundRay *out, const Ground *ground, const double o[3], const d
         add_piece(out, k, fmax(r[k - 1].last_m, r[k].first_m), r[k].last_m);
 }
 
-/* One level. Walks down the max pyramid where the ray comes lower than a node's highest post, along it
- * otherwise, and up again wherever it leaves a parent. */
+/* Traces one level. Descends the max pyramid where the ray comes lower than a node's highest post, steps along it
+ * otherwise, and ascends wherever it leaves a parent. */
 static double level_first_hit(GroundHit *hit, const GroundLevel *g, const LevelRay *r, double far_m)
 {
     double t, stop;

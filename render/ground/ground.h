@@ -1,19 +1,19 @@
-/* render/ground/ground.h: rays against the nested height field, in double; one ray at a time (ground.c), eight at a time
- * (ground8.c), and tiles of rays that keep together (ground_together.c), all to the same bits.
+/* render/ground/ground.h: rays against the nested height field, in double; one ray at a time (ground.c), eight at a
+ * time (ground8.c), and tiles of coherent rays (ground_together.c), all with the same bits.
  *
- * Along a ray, its height over the surface is linear between the places where its track crosses a line of
- * posts or a cell's diagonal. The hit is the first change of sign between two such places, so no ray slips
- * between two triangles. The answer is a function of the ray and its cell alone: how the max pyramid was
- * walked, what was skipped and who else is traced never shows in it.
+ * Along a ray, its height over the surface is linear between the points where its track crosses a line of posts or a
+ * cell's diagonal. The hit is the first change of sign between two such points, so no ray passes between two triangles.
+ * The result depends on the ray and its cell alone, not on the traversal of the max pyramid, on skips or on the other
+ * rays.
  *
- * The ground is solid: a ray that starts under it, comes in through the side of the outermost level, or meets
- * a step where two levels join, is stopped there. */
+ * The ground is solid: a ray that starts below it, enters through the side of the outermost level, or meets a step
+ * between two levels, is stopped there. */
 #ifndef RENDER_GROUND_GROUND_H
 #define RENDER_GROUND_GROUND_H
 
 #include "terrain/elevation/elevation.h"
 
-/* One level as the tracer wants it: lengths in cells, heights in posts. */
+/* One level in tracer units: lengths in cells, heights in posts. */
 typedef struct GroundLevel {
     const uint16_t *post;
     const uint16_t *pyramid[elevation_pyramid_levels];
@@ -31,7 +31,7 @@ typedef struct Ground {
     GroundLevel      level[elevation_max_levels];
 } Ground;
 
-/* Where a ray ended: the cell, and which half of it. */
+/* End of a ray: the cell, and which half of it. */
 typedef struct GroundHit {
     int  level, i, j;
     bool north_west; /* triangle SW-NE-NW, else SW-SE-NE */
@@ -45,21 +45,21 @@ void ground_prepare(Ground *out, const Elevation *elevation);
 double ground_first_hit(GroundHit *hit, const Ground *ground, const double o_enu[3], const double d_enu[3],
                         double far_m);
 
-/* The same for count rays in arrays, eight at a time. range_m[i] and hit[i] (hit may be NULL) as above, to
- * the bit, in whatever company a ray comes. */
+/* The same for count rays in arrays, eight at a time. range_m[i] and hit[i] (hit may be NULL) as above, to the bit,
+ * independent of the other rays. */
 void ground_first_hits(double *range_m, GroundHit *hit, const Ground *ground, int count, const double *const o_enu[3],
                        const double *const d_enu[3], const double *far_m);
 
-/* The same, to the bit (tests/render/test_ground_together.c), for rays that keep together: those of a tile from one eye,
- * or from its hits to the sun; others are given to ground_first_hits. Over 12000 x 16000 posts of 1 m in tiles of
- * 1024: eye rays 1.5 to 3.8 times faster, sun rays 1.7 to 2.3 (15 degrees) and 3.4 to 4.0 (35, 60 degrees) times; blocks
- * of 16 eye rays 1.2 times. Rays that see only sky are a tenth slower. */
+/* The same, to the bit (tests/render/test_ground_together.c), for coherent rays: those of a tile from one eye, or
+ * from its hits to the sun; others are passed to ground_first_hits. Over 12000 x 16000 posts of 1 m in tiles of
+ * 1024: eye rays 1.5 to 3.8 times faster, sun rays 1.7 to 2.3 (15 degrees) and 3.4 to 4.0 (35, 60 degrees) times;
+ * blocks of 16 eye rays 1.2 times. Rays that see only sky are a tenth slower. */
 void ground_first_hits_together(double *range_m, GroundHit *hit, const Ground *ground, int count,
                                 const double *const o_enu[3], const double *const d_enu[3], const double *far_m);
 
-/* Whether rays are known to meet no ground: all that begin in one box and end in another, or go on for good in a unit
- * direction; boxes by low and high corner. False says nothing. Of rays from 0.5 m over gentle ground and up it knows most
- * (tests/render/test_ground_clear.c). */
+/* Whether rays are proven to meet no ground: all that begin in one box and end in another, or continue without limit
+ * in a unit direction; boxes by low and high corner. False: not proven. Of rays from 0.5 m over gentle ground
+ * upwards it finds most (tests/render/test_ground_clear.c). */
 bool ground_is_clear(const Ground *ground, const double from[2][3], const double to[2][3]);
 bool ground_is_clear_towards(const Ground *ground, const double from[2][3], const double d_enu[3]);
 

@@ -1,14 +1,14 @@
-/* render/ground/ground8.c: eight rays walk the pyramid side by side, each at its own node; a lane that is done takes
- * the next ray of the list. A step is the same for every lane, in two vectors of four; looking up posts, the
+/* render/ground/ground8.c: eight rays traverse the pyramid in SIMD lanes, each at its own node; a lane that is done
+ * takes the next ray of the list. A step is the same for every lane, in two vectors of four; looking up posts, the
  * triangles of a cell and changes of ray are done a lane at a time.
  *
- * Cell numbers are doubles here: whole numbers below 2^16 are exact, and halving or doubling them too. */
+ * Cell numbers are doubles here: integers below 2^16 are exact, and halving or doubling them too. */
 #include "render/ground/ground_lanes.h"
 
 enum { lanes = 8 };
 
 
-/* Where the lanes are: all that a step reads and writes. */
+/* State of the lanes: all that a step reads and writes. */
 typedef struct Walk {
     double u0[lanes], v0[lanes], w0[lanes], du[lanes], dv[lanes], dw[lanes], per_du[lanes], per_dv[lanes];
     double east[lanes], north[lanes];       /* 1 where the ray goes that way, else 0 */
@@ -18,7 +18,7 @@ typedef struct Walk {
     double k[lanes], size[lanes], per_size[lanes]; /* of the node: level, cells a side */
 } Walk __attribute__((aligned(64)));
 
-/* What half a step has found out about four lanes. */
+/* Results of half a step for four lanes. */
 typedef struct Seen {
     F64x4 node_i, node_j, at_u, at_v, next_m;
     F64x4 clear; /* mask: above everything in the node */
@@ -52,8 +52,8 @@ static inline Seen look(const Walk *w, int l, const GroundLevel *const level[4])
     return s;
 }
 
-/* Lanes whose mask says so go on to the next node, up a level where they leave a parent; the others go down.
- * Returns the bits of those that came to their end. */
+/* Lanes selected by the mask step to the next node, and ascend where they leave a parent; the others descend.
+ * Returns the bits of those that reached their end. */
 static inline unsigned move(Walk *w, int l, const Seen *s, F64x4 on)
 {
     const F64x4 t = s->next_m, one = f64x4_set(1), half = f64x4_set(0.5);
@@ -78,11 +78,11 @@ static inline unsigned move(Walk *w, int l, const Seen *s, F64x4 on)
     return f64x4_bits(f64x4_and_not(on, f64x4_less(t, f64x4_load(w->stop_m + l))));
 }
 
-/* The rays still to come, and what each lane is busy with. */
+/* The rays still to be traced, and the ray of each lane. */
 typedef struct Stream {
     const Ground        *ground;
     int                  count, next;
-    const int           *list; /* which; NULL: all */
+    const int           *list; /* indices; NULL: all */
     const double *const *o, *const *d;
     const double        *far_m, *from_m; /* from_m NULL: from the origins */
     double              *range_m;
@@ -107,7 +107,7 @@ static void put_piece(Walk *w, int l, const GroundLevel *g, const LevelRay *r, d
     w->k[l] = k, w->size[l] = 1 << k, w->per_size[l] = 1 / w->size[l];
 }
 
-/* Gives the lane its ray's next piece over a level, or the next ray; false when there are no more. */
+/* Loads the lane with its ray's next piece over a level, or with the next ray; false when there are no more. */
 static bool refill(Stream *stream, Walk *w, int l)
 {
     for (;;) {
@@ -139,7 +139,7 @@ static bool refill(Stream *stream, Walk *w, int l)
     }
 }
 
-/* The triangles of the cell a lane is in. True: the ray is decided. */
+/* Tests the triangles of a lane's cell. True: the ray is decided. */
 static bool meets_cell(Stream *stream, const Walk *w, int l)
 {
     GroundRay *ray   = &stream->ray[l];
@@ -168,7 +168,7 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
                        .from_m = from_m, .list = list, .range_m = range_m, .hit = hit};
     unsigned busy = 0;
     for (int l = 0; l < lanes; l++) {
-        /* an idle lane stands in the first cell of level 0 and is not listened to */
+        /* an idle lane is in the first cell of level 0 and its results are ignored */
         const GroundLevel *g = stream.level[l] = &ground->level[0];
         put_piece(&w, l, g, &(LevelRay){.per_du = 1, .per_dv = 1, .last_m = 1}, 0, 1, 0);
         if (refill(&stream, &w, l)) busy |= 1u << l;
@@ -183,7 +183,7 @@ void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *groun
             const int l = __builtin_ctz(at_cell);
             if (meets_cell(&stream, &w, l)) decided |= 1u << l;
         }
-        /* below a cell there is nothing to go down to */
+        /* a cell is the lowest level */
         over = move(&w, 0, &low, f64x4_or(low.clear, f64x4_at_most(f64x4_load(w.k), f64x4_set(0))));
         over |= move(&w, 4, &high, f64x4_or(high.clear, f64x4_at_most(f64x4_load(w.k + 4), f64x4_set(0)))) << 4;
         for (over = (over | decided) & busy; over; over &= over - 1) {

@@ -1,14 +1,14 @@
-/* render/ground/ground_clear.c: a bundle of rays over the ground: in pieces along it, each twice as long as the
- * last, the lowest of the piece against the highest posts under it. */
+/* render/ground/ground_clear.c: proves that a bundle of rays is clear of the ground: in pieces along it, each twice
+ * as long as the last, the lowest point of the piece is compared with the highest posts under it. */
 #include "render/ground/ground.h"
 
-/* Over the posts by this: roundings of places of 1e6 m are 1e-9 of it, on the steepest ground. */
+/* Margin above the posts: rounding of coordinates of 1e6 m is 1e-9 of it, on the steepest ground. */
 static const double clear_m = 1e-3;
 static const double beside_cells = 1e-3;
 
 enum { pieces = 40 };
 
-/* Whether nothing of a level stands as high as low_m within x0 .. x1, y0 .. y1. */
+/* Whether no post of a level within x0 .. x1, y0 .. y1 is as high as low_m. */
 static bool level_is_below(const GroundLevel *g, double low_m, const double low[2], const double high[2])
 {
     const double most[2] = {g->cells_x - 1, g->cells_y - 1}, corner[2] = {g->x0_m, g->y0_m};
@@ -37,7 +37,7 @@ bool ground_is_clear(const Ground *ground, const double from[2][3], const double
     double             length_m = 0, size_m = 0;
     for (int c = 0; c < 2; c++) {
         if (!((from[0][c] - corner[c]) * all->cells_per_m > 0 && (from[1][c] - corner[c]) * all->cells_per_m < cells[c]))
-            return false; /* it could come in from the side */
+            return false; /* it could enter from the side */
         length_m = fmax(length_m, fmax(fabs(to[0][c] - from[0][c]), fabs(to[1][c] - from[1][c])));
         size_m   = fmax(size_m, from[1][c] - from[0][c]);
     }

@@ -1,5 +1,5 @@
-/* render/ground/ground_lanes.h: ground_cell_at for four rays, for the ground's eight-wide tracers: the compiler finds
- * control flow in these selections and gives up (half the speed). */
+/* render/ground/ground_lanes.h: ground_cell_at for four rays, for the SIMD ground tracers, in intrinsics: the
+ * compiler turns these selections into control flow and does not vectorise them (half the speed). */
 #ifndef RENDER_GROUND_GROUND_LANES_H
 #define RENDER_GROUND_GROUND_LANES_H
 

@@ -1,31 +1,32 @@
-/* render/ground/ground_near.c: rays that begin close to what they meet, or that all go one way: sixteen walk side by
- * side, all on one level of the pyramid, which spares them most of what a step costs where each is on its own; the
- * triangles of a cell are four rays' at a time. They wait for each other a little; who is not decided then is handed
- * on with the place to go on from. Which cells a ray is asked about, and what it finds there, is as in ground.c, to
- * the bit. */
+/* render/ground/ground_near.c: rays that begin close to their hits, or that are parallel: sixteen are traversed
+ * together on one level of the pyramid, which saves most of the cost of separate steps; triangles of a cell are
+ * tested for four rays at a time. Rays wait for each other for a limited number of steps; a ray that is undecided
+ * then is passed on with the distance from which to continue. The cells that are tested for a ray, and the results,
+ * are those of ground.c, to the bit. */
 #include "render/ground/ground_lanes.h"
 
-/* Quarters of a group: fewer, and one waits for its posts; more, and all wait for the slowest. The rest are from trials
- * on hills of 1 m posts: cells in a row before looking wider; steps that some wait for others; clear steps before the
- * next coarser level; steps until those still going are handed on. Within a tenth of these nothing changes much. */
+/* Quarters of a group: with fewer, one waits for its posts; with more, all wait for the slowest. The other constants
+ * are from trials on hills of 1 m posts: cells in a row before ascending; steps that some wait for others; clear
+ * steps before the next coarser level; steps until the remaining rays are passed on. Within a tenth of these values
+ * the speed changes little. */
 enum { quarters = 4, cells_tried = 4, wait = 3, run_up = 2, patience = 96 };
 
-/* Rays that rise more steeply than this outrun most ground: they are asked about that, and look wider sooner. For
- * others it is more often in vain: tried with suns 15, 35 and 60 degrees high. */
+/* Rays that rise more steeply than this are steeper than most ground: they are tested for that, and ascend sooner.
+ * For others the test fails too often: measured with suns 15, 35 and 60 degrees high. */
 static const double steep_sine = 0.3;
 
-/* A ray this far over the ground is over it, whatever rounding did: within 1e5 cells and 1e7 posts of the corner its
- * place is good to 1e-10 cells and 1e-8 posts, which the steepest ground makes 1e-5 posts. */
+/* A ray this far above the ground is above it despite rounding: within 1e5 cells and 1e7 posts of the corner its
+ * position is accurate to 1e-10 cells and 1e-8 posts, which the steepest ground makes 1e-5 posts. */
 static const double sure_posts = 1e-3, sure_cells = 1e5, sure_height_posts = 1e7;
 
-/* Four rays over one level: LevelRay, and where they are. */
+/* Four rays over one level: LevelRay, and their positions. */
 typedef struct Rays4 {
     F64x4 u0, v0, w0, du, dv, dw, per_du, per_dv, per_duv, first_m, last_m, stop_m;
-    F64x4 t_m, i, j, on;             /* on: mask of those still going; i, j: cell or node */
-    F64x4 gone;                      /* mask: above everything for good, or as far as was asked */
-    __m256i u_way, v_way;           /* bits before the rise that is theirs, in an ElevationRise */
-    F64x4 above, sure;               /* mask: known to be `sure` posts over the ground where they are */
-    F64x4 met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three places */
+    F64x4 t_m, i, j, on;             /* on: mask of the active rays; i, j: cell or node */
+    F64x4 gone;                      /* mask: above everything for good, or as far as was requested */
+    __m256i u_way, v_way;           /* shift of their bits in an ElevationRise */
+    F64x4 above, sure;               /* mask: proven to be `sure` posts above the ground at their position */
+    F64x4 met, at[3], clear[3], met_i, met_j; /* of those that met the surface: the cell and its three points */
 } Rays4;
 
 /* ground_inverse_across, ground_inverse, four times. */
@@ -81,22 +82,22 @@ static inline F64x4 usable(const double *const o[3], const double *const d[3], c
     return f64x4_and(good, f64x4_less(f64x4_set(0.25), square[0] + square[1] + square[2]));
 }
 
-/* Where (i, j) is among rows of nx. */
+/* Index of (i, j) in rows of nx. */
 static inline __m128i element(F64x4 i, F64x4 j, int nx)
 {
     return _mm_add_epi32(_mm_mullo_epi32(_mm256_cvttpd_epi32(j), _mm_set1_epi32(nx)), _mm256_cvttpd_epi32(i));
 }
 
-/* Off are those that have left the level, or everything. */
+/* Deactivates those that have left the level, or everything. */
 static inline void leave(Rays4 *r)
 {
     r->gone = f64x4_or(r->gone, f64x4_and(r->on, f64x4_at_most(r->stop_m, r->t_m)));
     r->on   = f64x4_and_not(f64x4_and(r->on, f64x4_less(r->t_m, r->last_m)), r->gone);
-    r->i    = f64x4_and(r->on, r->i); /* who is off stands in the first cell, where there are posts to look up */
+    r->i    = f64x4_and(r->on, r->i); /* an inactive ray is in the first cell, where posts can be loaded */
     r->j    = f64x4_and(r->on, r->j);
 }
 
-/* Two posts each, from four places. One at a time is faster than the instruction that gathers. */
+/* Two posts each, from four positions. Scalar loads are faster than the gather instruction. */
 static inline __m128i pairs(const uint16_t *post, __m128i at)
 {
     int32_t  index[4];
@@ -106,11 +107,11 @@ static inline __m128i pairs(const uint16_t *post, __m128i at)
     return _mm_set_epi32((int)pair[3], (int)pair[2], (int)pair[1], (int)pair[0]);
 }
 
-/* ground_cell_hit for four, up to which of the three places is under the surface; and on to the next cell. */
+/* ground_cell_hit for four, up to which of the three points is below the surface; then steps to the next cell. */
 static inline void cell(Rays4 *r, const GroundLevel *g)
 {
     const F64x4 zero = f64x4_set(0), one = f64x4_set(1), i = r->i, j = r->j;
-    /* the ways in and out, and the posts: two of a row at once */
+    /* entry and exit points, and the posts: two of a row at once */
     const F64x4    u_low = (i - r->u0) * r->per_du, u_high = (i + one - r->u0) * r->per_du;
     const F64x4    v_low = (j - r->v0) * r->per_dv, v_high = (j + one - r->v0) * r->per_dv;
     const __m128i at = element(i, j, g->nx);
@@ -128,7 +129,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
     const F64x4 low_end = f64x4_select(r->dw, f64x4_max(t[0], t[2]), f64x4_min(t[0], t[2]));
     const F64x4 clearance = r->w0 + low_end * r->dw - highest;
     const F64x4 unclear = f64x4_and_not(r->on, f64x4_less(f64x4_set(ground_clear_posts), clearance));
-    F64x4       meets = f64x4_set(0), at_end = clearance; /* posts over the ground at the way out, or fewer */
+    F64x4       meets = f64x4_set(0), at_end = clearance; /* posts above the ground at the exit, or fewer */
     if (f64x4_bits(unclear)) {
         t[1] = ((r->u0 - r->v0) - (i - j)) * r->per_duv;
         t[1] = f64x4_max(t[1], t[0]);
@@ -155,7 +156,7 @@ static inline void cell(Rays4 *r, const GroundLevel *g)
         r->met_j = f64x4_select(meets, j, r->met_j);
     }
 
-    /* on */
+    /* step */
     const F64x4 sign = f64x4_set(-0.0), next = t[2];
     r->on    = f64x4_and_not(r->on, meets);
     r->above = f64x4_select(r->on, f64x4_less(r->sure, at_end), r->above);
@@ -173,7 +174,7 @@ static inline void enter(Rays4 *r, const GroundLevel *g, int k)
     r->j = f64x4_and(r->on, f64x4_floor(cell_at(r->v0, r->dv, r->per_dv, t, f64x4_set(g->cells_y - 1)) * per_size));
 }
 
-/* From where it is to the node above it by so many levels. */
+/* From its position to the node so many levels above it. */
 static inline void ascend(Rays4 *r, int levels)
 {
     const F64x4 per_size = f64x4_set(1.0 / (1 << levels));
@@ -181,9 +182,9 @@ static inline void ascend(Rays4 *r, int levels)
     r->j = f64x4_floor(r->j * per_size);
 }
 
-/* Those that are clear of their node go on to the next; mask of the others. Clear is who is above its highest post, and
- * (asked of the steep only) who was over the ground and rises faster than any edge here: the ground is of triangles,
- * each of which rises along the ray by its edges' share. */
+/* Steps those that are clear of their node to the next; returns the mask of the others. A ray is clear if it is
+ * above the node's highest post, or (tested for steep rays only) if it was above the ground and rises faster than
+ * any edge here: the ground consists of triangles, each of which rises along the ray by its edges' share. */
 static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
 {
     const F64x4 one = f64x4_set(1), sign = f64x4_set(-0.0), size = f64x4_set(1 << k);
@@ -204,7 +205,7 @@ static inline F64x4 node(Rays4 *r, const GroundLevel *g, int k, bool steep)
         const __m256i all = _mm256_loadu_si256((const __m256i *)rise), low = _mm256_set1_epi64x(0xffff);
         const __m256i by_u = _mm256_and_si256(_mm256_srlv_epi64(all, r->u_way), low);
         const __m256i by_v = _mm256_and_si256(_mm256_srlv_epi64(all, r->v_way), low);
-        /* whole numbers below 2^52 become doubles by their exponent */
+        /* integers below 2^52 become doubles by their exponent */
         const F64x4    magic = f64x4_set(0x1p52);
         const F64x4    rise_u = _mm256_castsi256_pd(_mm256_or_si256(by_u, _mm256_castpd_si256(magic))) - magic;
         const F64x4    rise_v = _mm256_castsi256_pd(_mm256_or_si256(by_v, _mm256_castpd_si256(magic))) - magic;
@@ -229,8 +230,8 @@ static inline bool any(const Rays4 r[quarters])
     return f64x4_bits(on) != 0;
 }
 
-/* Innermost level over which the place is, or the outermost; -1: it does not lie well inside those outside it, so that
- * who is over it need not be over them. */
+/* Innermost level that contains the position, or the outermost; -1: it is not well inside the levels around it, so
+ * that a ray above one need not be above them. */
 static int level_of(const Ground *ground, double x_m, double y_m)
 {
     int n = 0;
@@ -253,7 +254,7 @@ static int level_of(const Ground *ground, double x_m, double y_m)
     return n;
 }
 
-/* Post of a level above which no level has anything. */
+/* Height, in posts of this level, that no level exceeds. */
 static double above_all(const Ground *ground, const GroundLevel *g)
 {
     double above = 0;
@@ -270,7 +271,7 @@ static inline __m256i bits_16(F64x4 mask)
     return _mm256_and_si256(_mm256_castpd_si256(mask), _mm256_set1_epi64x(16));
 }
 
-/* Sets four rays to where they begin. Off are those that do not begin on this level. */
+/* Initialises four rays at their start. Those that do not begin on this level are inactive. */
 static inline void begin(Rays4 *r, const Ground *ground, int level, const double *const o[3], const double *const d[3],
                          const double *far_m, const double *from_m, double above, int n)
 {
@@ -292,7 +293,7 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     r->sure = f64x4_select(tame, f64x4_set(sure_posts), f64x4_set(INFINITY));
     r->u_way = bits_16(f64x4_less(r->du, f64x4_set(0)));
     r->v_way = _mm256_add_epi64(_mm256_set1_epi64x(32), bits_16(f64x4_less(r->dv, f64x4_set(0))));
-    /* rising, it leaves everything behind at `above`, if it is near enough to tell; and nobody asks beyond far_m */
+    /* rising, it is above everything from `above` on, if that is near enough to be exact; far_m limits the search */
     const F64x4 rises = f64x4_and(f64x4_less(f64x4_set(1e-12), r->dw), f64x4_at_most(f64x4_abs(r->w0), f64x4_set(1e7)));
     r->stop_m =
         f64x4_min(f64x4_select(rises, (f64x4_set(above) - r->w0) / r->dw, f64x4_set(INFINITY)), f64x4_loadu(far_m + n));
@@ -303,7 +304,7 @@ static inline void begin(Rays4 *r, const Ground *ground, int level, const double
     for (int p = 0; p < 3; p++) r->at[p] = r->clear[p] = f64x4_set(0);
 }
 
-/* The end of ground_cell_hit. */
+/* The final part of ground_cell_hit. */
 static inline void end(double *range_m, GroundHit *hit, const Rays4 *r, int level, const double *far_m, int n)
 {
     const F64x4 zero = f64x4_set(0);
@@ -331,7 +332,7 @@ static inline void end(double *range_m, GroundHit *hit, const Rays4 *r, int leve
     }
 }
 
-/* The group's walk: all on one level of the pyramid. */
+/* The group's traversal: all on one level of the pyramid. */
 static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool steep)
 {
     int tried = 0, waited = 0, run = 0;
@@ -370,7 +371,7 @@ static inline void walk(Rays4 r[quarters], const GroundLevel *g, int k, bool ste
     }
 }
 
-/* Whether all of a group are known to be over the ground as far as they are asked about it: then they meet nothing. */
+/* Whether all of a group are proven to be above the ground up to their limits: then they meet nothing. */
 static inline bool none_asked(double *range_m, const double *far_m, const double *from_m)
 {
     F64x4 none = f64x4_set(0);
@@ -397,7 +398,7 @@ int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *g
     const double       above = above_all(ground, g);
     if (start_level > g->top) start_level = g->top;
     for (int done = 0; done < count; done += group) {
-        const int n = done + group <= count ? done : count - group; /* the last group has some once more */
+        const int n = done + group <= count ? done : count - group; /* the last group repeats some */
         Rays4     r[quarters];
         if (none_asked(range_m + n, far_m + n, from_m + n)) continue;
         for (int h = 0; h < quarters; h++) begin(&r[h], ground, level, o, d, far_m, from_m, above, n + 4 * h);

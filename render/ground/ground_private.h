@@ -1,22 +1,22 @@
 /* render/ground/ground_private.h: the arithmetic that the scalar and the eight-wide ground tracer share.
  *
- * A ray in one level's units is u0 + t du, v0 + t dv (cells), w0 + t dw (posts), t in metres. It meets the
- * line of posts u = e at t = (e - u0) / du: a computation that knows nothing of the way there and never
- * decreases in the order of the lines, not even by rounding. So "the cell at t" is a matter of counting the
- * lines met at or before t, a cell's own interval is the same from whichever side it is reached, and the
- * height w0 + t dw inside it lies between those at the ends of any interval that contains it. Skipping a
- * node whose highest post is below the ray's lower end is then exact, not merely safe. */
+ * In the units of one level a ray is u0 + t du, v0 + t dv (cells), w0 + t dw (posts), t in metres. It meets the line
+ * of posts u = e at t = (e - u0) / du: a value that does not depend on the path of traversal and never decreases in
+ * the order of the lines, not even by rounding. So "the cell at t" is found by counting the lines met at or before
+ * t, a cell's interval is the same from whichever side it is reached, and the height w0 + t dw inside it lies
+ * between those at the ends of any interval that contains it. Skipping a node whose highest post is below the ray's
+ * lower end is then exact, not only conservative. */
 #ifndef RENDER_GROUND_GROUND_PRIVATE_H
 #define RENDER_GROUND_GROUND_PRIVATE_H
 
 #include "render/ground/ground.h"
 
-/* Above a post by this much: clear of it, whatever rounding did to an interpolated height (65535 posts times
+/* Above a post by this much a ray is clear of it, despite the rounding of an interpolated height (65535 posts times
  * a few roundings is 3e-11 post). */
 static const double ground_clear_posts = 1e-6;
 
-/* Farther along a ray than this is no ground: from 1e9 m out, either the track would be past it, or the ray is
- * so steep that it comes over the level's rectangle far under or over the Earth. */
+/* Farther along a ray than this there is no ground: from 1e9 m out, either the track would be past it, or the ray is
+ * so steep that it is over the level's rectangle only far below or above the Earth. */
 static const double farthest_m = 1e10;
 
 typedef struct LevelRay {
@@ -25,8 +25,8 @@ typedef struct LevelRay {
     double first_m, last_m;         /* the piece of the ray over this level */
 } LevelRay;
 
-/* 1 / d, finite even for 0 and -0: a line that is never met is then met at 1e30 m or so, which needs no other
- * care. */
+/* 1 / d, finite even for 0 and -0: a line that is never met is then met at 1e30 m or so, which needs no special
+ * case. */
 static inline double ground_inverse(double d) { return fabs(d) < 1e-30 ? copysign(1e30, d) : 1 / d; }
 
 /* The same for the way across p0's lines, 0 .. cells. A ray along the last line runs in the last cell. */
@@ -48,11 +48,11 @@ static inline void ground_level_ray(LevelRay *r, const GroundLevel *g, const dou
     r->per_duv = ground_inverse(r->dv - r->du);
 }
 
-/* A ray over all the levels: its pieces in the order it meets them, inwards and out again. */
+/* A ray over all the levels: its pieces in the order in which it meets them, inwards and out again. */
 enum { ground_max_pieces = 2 * elevation_max_levels - 1 };
 
 typedef struct GroundRay {
-    int      piece_count, piece; /* 0 for a ray that misses the ground or is not usable; the present one */
+    int      piece_count, piece; /* 0 for a ray that misses the ground or is invalid; the present one */
     int      level[ground_max_pieces];
     double   first_m[ground_max_pieces], last_m[ground_max_pieces];
     LevelRay of_level[elevation_max_levels];
@@ -60,30 +60,30 @@ typedef struct GroundRay {
 
 void ground_ray(GroundRay *out, const Ground *ground, const double o_enu[3], const double d_enu[3], double far_m);
 
-/* Where to start and stop walking a piece: not before the ray has come down to the level's highest post, not
- * after it has left it upwards. Never part of a hit's arithmetic. */
+/* Interval of traversal of a piece: from where the ray has come down to the level's highest post to where it has
+ * left it upwards. Never part of a hit's arithmetic. */
 static inline void ground_walk(double *start_m, double *stop_m, const GroundLevel *g, const LevelRay *r, double far_m)
 {
     *start_m = r->first_m;
     *stop_m  = r->last_m < far_m ? r->last_m : far_m;
     const double top_m = (g->highest + 1e-3 - r->w0) * ground_inverse(r->dw);
-    if (!(r->w0 + top_m * r->dw > g->highest + ground_clear_posts)) return; /* from too far away to tell */
+    if (!(r->w0 + top_m * r->dw > g->highest + ground_clear_posts)) return; /* too far away to be exact */
     if (r->dw < 0) *start_m = *start_m > top_m ? *start_m : top_m;
     else *stop_m = *stop_m < top_m ? *stop_m : top_m;
 }
 
-/* The level of the pyramid to begin at. A ray that has come down to the highest post nearly always goes on
- * down from the coarsest nodes; a rising one mostly starts near the ground, where it must be looked at closely
- * before it is clear. Measured over 6001 x 6001 posts, eight wide: sun rays 1.2 times faster from level 2 than
- * from the top; 6 below the top is worth a tenth on small fields to primary rays. */
+/* The level of the pyramid to begin at. A ray that has come down to the highest post nearly always descends from the
+ * coarsest nodes; a rising one mostly starts near the ground, where fine nodes must be tested before it is clear.
+ * Measured over 6001 x 6001 posts, eight wide: sun rays 1.2 times faster from level 2 than from the top; 6 below the
+ * top is worth a tenth on small fields to primary rays. */
 static inline int ground_start_level(const GroundLevel *g, const LevelRay *r)
 {
     const int k = g->top > 6 ? g->top - 6 : 0;
     return r->dw > 0 && k > 2 ? 2 : k;
 }
 
-/* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The
- * estimate is off by at most one; the lines decide. */
+/* The cell at t along one axis: the furthest along the ray whose line of entry is met at or before t. The estimate
+ * is off by at most one and is corrected by the lines. */
 static inline int ground_cell_at(double p0, double dp, double per_dp, double t, int cells)
 {
     const double last = cells - 1;
@@ -103,9 +103,9 @@ static inline int ground_cell_at(double p0, double dp, double per_dp, double t, 
     return (int)e;
 }
 
-/* First place in cell (i, j) where the ray is not above it; INFINITY for none. Its height over the surface is
- * taken at the way in, the diagonal (again the way in where it is not crossed) and the way out, all four numbers
- * of one vector and without a branch: which way a ray passes through a cell cannot be predicted. */
+/* First point in cell (i, j) where the ray is not above the ground; INFINITY for none. Its height above the surface
+ * is computed at the entry, the diagonal (again the entry where it is not crossed) and the exit, all four numbers of
+ * one vector and without a branch: how a ray passes through a cell cannot be predicted. */
 static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, int ci, int cj, bool *north_west)
 {
     const uint16_t *post = g->post + (size_t)cj * (size_t)g->nx + (size_t)ci;
@@ -139,7 +139,7 @@ static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, in
 
     double from = in, to = in, hit = in;
     if (clear[0] > 0) {
-        const int p = clear[1] > 0; /* comes down before the diagonal, or after it */
+        const int p = clear[1] > 0; /* reaches the surface before the diagonal, or after it */
         from = t[p];
         to   = t[p + 1];
         hit  = from + (to - from) * (clear[p] / (clear[p] - clear[p + 1]));
@@ -149,22 +149,22 @@ static inline double ground_cell_hit(const GroundLevel *g, const LevelRay *r, in
     return hit;
 }
 
-/* ---- rays that keep together ------------------------------------------------------------------ */
+/* ---- coherent rays ---------------------------------------------------------------------------- */
 
 enum { ground_together = 1024 }; /* rays at most, of the two below */
 
-/* Distances before which rays from one eye meet nothing: from_m[i], INFINITY where that is everywhere. False:
- * nothing is known, from_m is not written. */
+/* Distances before which rays from one eye meet nothing: from_m[i], INFINITY where that is everywhere. False: not
+ * known, from_m is not written. */
 bool ground_sweep(double *from_m, const Ground *ground, int count, const double o_enu[3],
                   const double *const d_enu[3]);
 
-/* Decides what can be decided quickly, from from_m on; of the others left[] tells the numbers and from_m where to
- * go on. start_level: of the pyramid. Returns how many are left. */
+/* Decides rays that can be decided quickly, from from_m on; left[] receives the indices of the others and from_m the
+ * distances from which to continue. start_level: of the pyramid. Returns the number of those left. */
 int ground_near_hits(int *left, double *range_m, GroundHit *hit, const Ground *ground, int count,
                      const double *const o_enu[3], const double *const d_enu[3], const double *far_m, double *from_m,
                      int start_level);
 
-/* ground_first_hits for the count rays whose numbers are in list (NULL: 0 .. count - 1), of which nothing meets
+/* ground_first_hits for the count rays whose indices are in list (NULL: 0 .. count - 1), of which nothing meets
  * anything before from_m (NULL: 0). */
 void ground_first_hits_from(double *range_m, GroundHit *hit, const Ground *ground, int count,
                             const double *const o_enu[3], const double *const d_enu[3], const double *far_m,

@@ -1,20 +1,19 @@
-/* render/ground/ground_sweep.c: where rays from one eye may begin to be walked.
+/* render/ground/ground_sweep.c: distances at which the traversal of rays from one eye may begin.
  *
- * A strip is rays whose tracks run between two tracks from the eye. Along it, row by row of the max pyramid's nodes,
- * the highest post between the two says how steeply a ray may come down and be clear so far; the flattest ray comes
- * farthest. So one walk along a strip serves all its rays: each begins where the first row stands in its way. What
- * it meets there, if anything, is its own affair (see ground_private.h), so that it is enough here never to begin
- * too late.
+ * A strip is a set of rays whose tracks run between two tracks from the eye. Along it, row by row of the max pyramid's
+ * nodes, the highest post between the two limits how steeply a ray may descend and still be clear; the flattest ray is
+ * clear the farthest. So one sweep along a strip serves all its rays: each begins at the first row that may block it.
+ * The hit itself is computed elsewhere (see ground_private.h), so that the start only must not be too late.
  *
- * Distances a are along the axis that the tracks mostly follow. A ray is at c0 + m a across it and at the height
- * w0 + q a. Strips and what is flat and steep in them hold for every level: m of metres and metres. */
+ * Distances a are along the axis that the tracks mostly follow. A ray is at c0 + m a across it and at the height w0
+ * + q a. Strips and slopes hold for every level: m is in metres per metre. */
 #include "render/ground/ground_private.h"
 
-/* Rays to a strip: with fewer, sweeping costs more than it saves. Buckets are of rays equally steep. */
+/* Rays per strip: with fewer, sweeping costs more than it saves. Buckets hold rays of similar slope. */
 enum { strip_rays = 128, most_strips = 8, buckets = 128, highest_row = 8 };
 
-/* Room for rounding: the eye is within 1e6 cells and 1e7 posts of every level's corner, where c and w are good to
- * 1e-9; and distances to 1e-9 of themselves and 1e-9 m. A hundred times that and more. */
+/* Margins for rounding: the eye is within 1e6 cells and 1e7 posts of every level's corner, where c and w are
+ * accurate to 1e-9; and distances to 1e-9 of themselves and 1e-9 m. These are a hundred times that and more. */
 static const double near_cells = 1e6, near_posts = 1e7, room_posts = 1e-3, room_cells = 1e-6, room_m = 1e-6,
                     room_relative = 1e-9;
 
@@ -30,7 +29,7 @@ typedef struct Axis {
     bool   along_v, forward;
     double a0, c0, w0;
     int    a_cells, c_cells;
-    double eye_out; /* how far the eye is from being over the level, < 0 inside; cells */
+    double eye_out; /* distance of the eye from the level's rectangle, < 0 inside; cells */
 } Axis;
 
 static Axis axis_on(const GroundLevel *g, const double o_enu[3], bool along_v, bool forward)
@@ -50,7 +49,7 @@ static bool is_near(const Axis *axis)
     return fabs(axis->a0) <= near_cells && fabs(axis->c0) <= near_cells && fabs(axis->w0) <= near_posts;
 }
 
-/* Until which a the whole strip is over the level; 0 where the eye is not. Cells. */
+/* The a up to which the whole strip is above the level; 0 where the eye is not. Cells. */
 static double covered(const Axis *axis, const Strip *s)
 {
     if (!(axis->eye_out < -1)) return 0;
@@ -60,7 +59,7 @@ static double covered(const Axis *axis, const Strip *s)
     return a * (1 - room_relative) - room_cells;
 }
 
-/* Highest post of a row of nodes between two c; -1: no node is there. */
+/* Highest post of a row of nodes between two c; -1: no node there. */
 static int highest_between(const GroundLevel *g, const Axis *axis, int k, int row, double c_low, double c_high)
 {
     if (!(c_high >= 0 && c_low <= axis->c_cells)) return -1;
@@ -74,7 +73,7 @@ static int highest_between(const GroundLevel *g, const Axis *axis, int k, int ro
     return highest;
 }
 
-/* Brings the strip's starts back to where this level's rows stand in the way, looking from a on. */
+/* Reduces the strip's start distances to where this level's rows may block it, searching from a on. */
 static void sweep_level(Strip *s, const GroundLevel *g, const Axis *axis, double a)
 {
     const double sign = axis->forward ? 1 : -1;
@@ -115,7 +114,7 @@ static void sweep_strip(Strip *s, const Ground *ground, const double o_enu[3], b
     s->buckets_per = s->q_high > s->q_low ? buckets * (1 - room_relative) / (s->q_high - s->q_low) : 0;
     s->per_bucket  = s->q_high > s->q_low ? 1 / s->buckets_per : 0;
     for (int b = 0; b < buckets; b++) s->start_m[b] = INFINITY;
-    double from_m = 0; /* up to here an inner level has been seen to */
+    double from_m = 0; /* up to here an inner level has been processed */
     for (int n = 0; n < ground->level_count && !(s->start_m[buckets - 1] <= from_m); n++) {
         const GroundLevel *g    = &ground->level[n];
         const Axis         axis = axis_on(g, o_enu, along_v, forward);
@@ -140,7 +139,7 @@ bool ground_sweep(double *from_m, const Ground *ground, int count, const double 
         if (!is_near(&axis)) return false;
     }
     double m_low = INFINITY, m_high = -INFINITY;
-    bool   fit = true; /* not for tracks that run apart, nor near straight up or down */
+    bool   fit = true; /* not for tracks that diverge, nor near straight up or down */
     for (int i = 0; i < count; i++) {
         const double a = forward ? d_enu[along_v][i] : -d_enu[along_v][i];
         fit &= (a >= 0.02) & (a <= 2) & (fabs(d_enu[!along_v][i]) <= 2) & (fabs(d_enu[2][i]) <= 2);

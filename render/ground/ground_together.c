@@ -1,5 +1,5 @@
-/* render/ground/ground_together.c: rays that keep together: where they begin (ground_sweep.c), what they meet close
- * by (ground_near.c), and the rays that are left (ground8.c). */
+/* render/ground/ground_together.c: coherent rays: start distances (ground_sweep.c), nearby hits (ground_near.c), and
+ * the remaining rays (ground8.c). */
 #include "render/ground/ground_private.h"
 
 /* Whether all are the same. */
@@ -25,7 +25,7 @@ static void tile_hits(double *range_m, GroundHit *hit, const Ground *ground, int
         }
     } else if (one_vector(count, d)) {
         for (int i = 0; i < count; i++) from_m[i] = 0;
-    } else { /* each goes its own way */
+    } else { /* each is traced separately */
         ground_first_hits(range_m, hit, ground, count, o, d, far_m);
         return;
     }

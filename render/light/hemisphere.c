@@ -1,5 +1,6 @@
-/* render/light/hemisphere.c: see gather.h. Directions are drawn in proportion to their cosine, so that the irradiance is pi times
- * the mean radiance; the first bounce by a Fibonacci lattice turned at random for each hit, the second at random. */
+/* render/light/hemisphere.c: hemisphere sampling, see hemisphere.h. Directions are cosine-distributed, so that the
+ * irradiance is pi times the mean radiance; the first bounce by a Fibonacci lattice with a random rotation for each
+ * hit, the second at random. */
 #include "render/light/hemisphere.h"
 
 #include "render/light/optical.h"
@@ -15,11 +16,11 @@ typedef struct Paths {
     Rays rays;
     Hits hits;
     int of_hit[hits_capacity], of_sample[hits_capacity];
-    int of_path[hits_capacity]; /* its place among those that started together */
-    float share[AIR_BAND_COUNT][hits_capacity]; /* of what is met next, that arrives */
+    int of_path[hits_capacity]; /* its index among those that started together */
+    float share[AIR_BAND_COUNT][hits_capacity]; /* share of the radiance met next that reaches the hit */
     float texture[hits_capacity], temp_k[hits_capacity];
     float sun[hits_capacity]; /* share of the direct sun that arrives */
-    bool from_ground[hits_capacity]; /* hemisphere_change: the ground's own light stays as it is there */
+    bool from_ground[hits_capacity]; /* hemisphere_change: the ground's own light is kept unchanged */
 } Paths;
 
 /* Two directions at right angles to n and to each other. */
@@ -49,7 +50,7 @@ static bool may_meet(const HemisphereScene *scene, const double o_enu[3], const 
         for (int c = 0; c < 3; c++) {
             const double per = 1 / d[c], a = (e->box_low[c] - o[c]) * per, b = (e->box_high[c] - o[c]) * per;
             const double in_m = a < b ? a : b, out_m = a < b ? b : a;
-            /* a ray along a face gives NaN there, which leaves the span as it is; fmax would be a call */
+            /* a ray along a face gives NaN there, which leaves the interval as it is; fmax would be a call */
             near_m = in_m > near_m ? in_m : near_m;
             far_m  = out_m < far_m ? out_m : far_m;
         }
@@ -65,7 +66,7 @@ static bool ray_may_meet(const HemisphereScene *scene, const Rays *rays, int i, 
     return may_meet(scene, o_enu, d_enu, reach_m, list, listed);
 }
 
-/* Where rays leave a hit from. */
+/* Origins of the rays that leave a hit. */
 typedef struct Base {
     double n_enu[3], n_geo[3], t_enu[3], b_enu[3], o_enu[3];
 } Base;
@@ -80,7 +81,7 @@ static void base_at(Base *out, const Hits *hits, int from)
     axes_across(out->t_enu, out->b_enu, out->n_enu);
 }
 
-/* Adds a ray whose cosine with the normal is distributed as cosines are: u in [0, 1), turn: cosine and sine. */
+/* Adds a cosine-distributed ray about the normal: u in [0, 1), turn: cosine and sine. */
 static int leave_base(Rays *rays, const Base *base, double u, const double turn[2])
 {
     const double s = sqrt(u), c = sqrt(1 - u);
@@ -89,7 +90,7 @@ static int leave_base(Rays *rays, const Base *base, double u, const double turn[
     for (int k = 0; k < 3; k++)
         d_enu[k] = c * base->n_enu[k] + s * (turn[0] * base->t_enu[k] + turn[1] * base->b_enu[k]);
     v3_normalize(d_enu, d_enu);
-    /* an interpolated normal sends some into the facet itself: mirrored out of it */
+    /* an interpolated normal sends some rays into the facet itself: they are mirrored out of it */
     const double out = v3_dot(d_enu, base->n_geo);
     if (out < 0) v3_add_scaled(d_enu, d_enu, -2 * out, base->n_geo);
     for (int k = 0; k < 3; k++) {
@@ -138,7 +139,8 @@ static double ground_radiance(const HemisphereScene *scene, AirBand band)
                             : optical_ground_w_m2((int)band, scene->air, scene->materials) / pi_rad;
 }
 
-/* Radiance that path i brings from what it met, in one band; *rho: the share of its own surroundings still to come. */
+/* Radiance that path i carries from its hit, in one band; *rho: the share of that hit's own surroundings still to be
+ * added. */
 static double met(double *rho, const Paths *p, int i, const HemisphereScene *scene, AirBand band, double ground, bool last)
 {
     const Air *air = scene->air;
@@ -160,8 +162,8 @@ static double met(double *rho, const Paths *p, int i, const HemisphereScene *sce
     return radiance;
 }
 
-/* Follows one block of paths to its end, adding what they bring: each path's first, then path by path, so that where a
- * block ends changes no bit. */
+/* Follows one block of paths to its end and adds their radiance: each path's first, then path by path, so that block
+ * boundaries change no bit. */
 static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const HemisphereScene *scene, unsigned bands,
                    const uint64_t *key, VisibilityCounters *counters)
 {
@@ -185,7 +187,7 @@ static void follow(double sum[AIR_BAND_COUNT][hits_capacity], Paths *p, const He
             }
         }
         if (last) break;
-        /* those that met something go on, closed up; no slot is read after a later path was written to it */
+        /* paths that met something continue, compacted; no slot is read after a later path was written to it */
         p->rays.count = 0;
         for (int i = 0; i < p->hits.count; i++) {
             if (!(p->hits.range_m[i] < INFINITY)) continue;
@@ -229,12 +231,12 @@ void hemisphere_light(HemisphereLight *out, const HemisphereScene *scene, const 
             for (int i = 0; i < hits->count; i++) out->w_m2[b][i] = (float)(sum[b][i] * pi_rad / samples);
 }
 
-/* ---- what things close by change -------------------------------------------------------------- */
+/* ---- change of light by nearby objects -------------------------------------------------------- */
 
-/* The bright ring about the sun, apart from the rest of the sky: it is a few per cent of the sky's light within 1 % of
- * the directions, and would be most of the noise. ring_w_m2 is what the sky has there above its radiance at the ring's
- * edge, on a plane facing the sun. A place has directions of its own towards the ring; what paths meet later on sees
- * it where the sun shines there. */
+/* The bright ring about the sun is sampled apart from the rest of the sky: it is a few per cent of the sky's light
+ * within 1 % of the directions, and would cause most of the noise. ring_w_m2 is the excess of the sky there over its
+ * radiance at the ring's edge, on a plane facing the sun. A hit has separate directions towards the ring; surfaces
+ * met by later bounces receive it where the sun shines on them. */
 enum { ring_node = 6, ring_directions = 4, ring_sample = -1 };
 static const double ring_rad = 3.14159265358979323846 * ring_node * ring_node / (air_sky_angles * air_sky_angles);
 
@@ -317,7 +319,7 @@ static void follow_change(Change *sum, Paths *p, const HemisphereScene *scene, u
 
     for (int bounce = 0; bounce < change_bounces && p->rays.count > 0; bounce++) {
         for (int i = 0; i < p->rays.count; i++) p->rays.far_m[i] = reach_m;
-        bool parts_alone = true; /* the ground is not looked for from the ground */
+        bool parts_alone = true; /* from the ground, the ground is not traced */
         for (int i = 0; i < p->rays.count; i++) parts_alone &= p->from_ground[i];
         resolve(p, scene, bands, list, listed, parts_alone, counters);
         const int count = p->hits.count;
@@ -354,13 +356,14 @@ static void follow_change(Change *sum, Paths *p, const HemisphereScene *scene, u
                 brought[b][p->of_path[i]] += p->share[b][i] * (shown - behind);
                 share[b] = 2 * p->share[b][i] * (float)rho;
             }
-            /* half of them go on, for two; closed up: no slot is read after a later path was written to it */
+            /* half of them continue with double weight; compacted: no slot is read after a later path was written to
+             * it */
             if (bounce == change_bounces - 1 || (p->of_sample[i] >> bounce & 1)) continue;
             const uint64_t to = key[of];
             const uint32_t draw = (uint32_t)(2 * (p->of_sample[i] * change_bounces + bounce));
             const int at = leave(&p->rays, &p->hits, i, random_uniform(0, stream_change, draw, to),
                                  random_uniform(0, stream_change, draw + 1, to));
-            /* from the ground, too, only parts change what comes */
+            /* from the ground, too, only parts change the light */
             if (!p->hits.entity[i] && !ray_may_meet(scene, &p->rays, at, reach_m, list, listed)) {
                 p->rays.count = at;
                 continue;
@@ -378,7 +381,7 @@ static void follow_change(Change *sum, Paths *p, const HemisphereScene *scene, u
 
 enum { close_most = 64 };
 
-/* Of the listed entities those within whose reach a place lies. */
+/* The listed entities within whose reach a point lies. */
 static int list_close(int close[close_most], const HemisphereScene *scene, const Hits *hits, int i,
                       const double *list_reach_m, const int *list, int listed)
 {
@@ -396,8 +399,8 @@ static int list_close(int close[close_most], const HemisphereScene *scene, const
     return count;
 }
 
-/* Adds the ray n of those towards the ring, whose shares are what it takes away when it meets something; -1: it points
- * into the surface or below the horizon. */
+/* Adds ray n of those towards the ring; its shares are what is lost when it meets something; -1: it points into the
+ * surface or below the horizon. */
 static int leave_to_ring(Paths *p, const Hits *hits, int from, const HemisphereScene *scene, unsigned bands,
                          const Open *open, int n, int samples, double u, double v)
 {
@@ -422,7 +425,7 @@ static int leave_to_ring(Paths *p, const Hits *hits, int from, const HemisphereS
     return at;
 }
 
-/* By the angle whose cosine and sine are `by`: rounding stays below 1e-13 over all directions of a place. */
+/* Rotates by the angle whose cosine and sine are `by`: rounding stays below 1e-13 over all directions of a point. */
 static void v2_turn(double turn[2], const double by[2])
 {
     const double x = turn[0] * by[0] - turn[1] * by[1];
@@ -455,7 +458,7 @@ void hemisphere_change(HemisphereChange *out, const HemisphereScene *scene, cons
             v2_turn(turn, golden_turn);
             if (at < 0) continue;
             if (!hits->entity[i] && !ray_may_meet(scene, &paths.rays, at, reach_m, close, closes)) {
-                paths.rays.count = at; /* would bring nothing */
+                paths.rays.count = at; /* would contribute nothing */
                 continue;
             }
             paths.of_hit[at] = i;

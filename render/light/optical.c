@@ -1,8 +1,9 @@
-/* render/light/optical.c: what the eye gets of sun and sky: reflected by what was hit, then through the air.
+/* render/light/optical.c: sunlight and skylight at the aperture: reflected by the surface hit, then attenuated by the
+ * air.
  *
  * A surface reflects diffusely and, as far as it is glossy, in a lobe: the sun by its own width, the sky by the
- * mirror direction. Without gathered light, sky and ground light every surface by what its tilt sees of them and what
- * stands around does not hide them; a mirror shows sky or ground, not its neighbours. */
+ * mirror direction. Without hemisphere sampling, sky and ground light every surface according to its tilt alone, and
+ * nearby objects do not hide them; a mirror shows sky or ground, not its neighbours. */
 #include "render/light/optical.h"
 
 double optical_ground_w_m2(int channel, const Air *air, const Materials *materials)
@@ -67,7 +68,7 @@ void optical_shade(float *out, int channel, const Air *air, const Materials *mat
 
             double mirror_enu[3];
             v3_add_scaled(mirror_enu, d_enu, 2 * n_eye, n_enu);
-            /* a rough lobe near the horizon sees some of both */
+            /* a rough lobe near the horizon includes some of both */
             const double sees_sky = clamp(0.5 + 0.5 * mirror_enu[2] / fmax(m->roughness, 0.01), 0, 1);
             double seen = (1 - sees_sky) * ground_w_m2 / pi_rad;
             if (sees_sky > 0) seen += sees_sky * daylight_sky_there(&air->light.sky[band], &facing->mirror[i]);

@@ -1,10 +1,10 @@
-/* render/light/sky_entities.c: places on what the eye sees of an entity: their grid, their light, and what a hit
- * takes of it. See sky_visibility.h. */
+/* render/light/sky_entities.c: sample points on the visible surface of an entity: their grid, their light, and the
+ * interpolation at a hit. See sky_visibility.h. */
 #include "render/light/sky_visibility_private.h"
 
 #include "pitviper_simd.h"
 
-enum { grid_directions = 28 /* a place */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
+enum { grid_directions = 28 /* a point */, grid_least = 3, grid_most = 48 /* places over an entity's box, a side */ };
 enum { task_places = 32 };
 static const double grid_px = 2.75;
 
@@ -45,7 +45,7 @@ Status sky_entities_tasks(SkyVisibility *v, Arena *arena)
     return STATUS_OK;
 }
 
-/* The place's name: 2, the entity, the spot of its grid. The ground's: sky_visibility.c. */
+/* Key of the point: 2, the entity, the cell of its grid. Keys of ground points: sky_visibility.c. */
 static uint64_t spot_key(int entity, int spot)
 {
     return (uint64_t)2 << 62 | (uint64_t)entity << 20 | (uint64_t)spot;
@@ -53,7 +53,7 @@ static uint64_t spot_key(int entity, int spot)
 
 int sky_visibility_tasks(const SkyVisibility *v) { return v->tasks; }
 
-/* What the eye sees of the entity on some of its grid, and what light comes there. */
+/* Traces the visible surface of the entity at some points of its grid, and computes the light there. */
 void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
 {
     const SkyEntity    *e = &v->entity[v->task_entity[task]];
@@ -74,7 +74,7 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
         rays->far_m[i] = INFINITY;
     }
     rays->count = count, rays->columns = 0;
-    /* those that the rows of these places may see: in a crowd a fraction of all */
+    /* those that the rows of these points may see: with many entities a fraction of all */
     const double y_px = e->y0_px + e->step_px[1] * (first / e->columns),
                  end_px = e->y0_px + e->step_px[1] * ((first + count - 1) / e->columns + 1);
     const int    seen = visibility_block_entities(w->near, scene->visibility, view, e->x0_px, y_px,
@@ -113,8 +113,9 @@ void sky_visibility_task(SkyVisibility *v, SkyWorker *w, int task)
     }
 }
 
-/* Adds spots of columns and rows from, to (not beyond), each `step` of the rows, by how alike they are to a hit: of its
- * part, facing its way, in its plane, and near. Returns the sum of weights. Eight spots of a row at a time. */
+/* Adds grid points of columns and rows from, to (exclusive), each `step` of the rows, weighted by similarity to a
+ * hit: same part, same orientation, same plane, and near. Returns the sum of weights. Eight points of a row at a
+ * time. */
 static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int step, const float p_m[3],
                        const float n_enu[3], uint16_t part)
 {
@@ -141,7 +142,7 @@ static float add_spots(F32x8 *sum, const SkyEntity *e, const int span[4], int st
             f32x8_store(each, share * a4 * a4 * square_m2 * square_m2 /
                                   ((least_m2 + x * x + y * y + z * z) * (square_m2 + 16 * off * off)));
             for (int k = 0; k < lanes; k++) {
-                if (!(each[k] > 0)) continue; /* faces away, or is not there */
+                if (!(each[k] > 0)) continue; /* faces away, or is empty */
                 all += each[k];
                 *sum += _mm256_set1_ps(each[k]) * f32x8_load(e->spot.factor[at + k]);
             }
@@ -158,7 +159,7 @@ static void span_about(int span[4], const SkyEntity *e, int column, int row, int
 
 void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *hits)
 {
-    static const float enough = 0.3f; /* one spot of the part two steps away */
+    static const float enough = 0.3f; /* one point of the part two steps away */
     const int          index = (int)hits->entity[i] - 1;
     if (v->grid_of[index] == 0) return;
     const SkyEntity   *e = &v->entity[v->grid_of[index] - 1];
@@ -184,7 +185,7 @@ void sky_entities_open(SkyOpen *out, int i, const SkyVisibility *v, const Hits *
         sum = f32x8_set(0);
         all = add_spots(&sum, e, span, 1, p_m, n_enu, hits->part[i]);
     }
-    if (!(all > 1e-4f)) { /* the like of it was met nowhere near */
+    if (!(all > 1e-4f)) { /* no similar point was found nearby */
         span_about(span, e, 0, 0, grid_most);
         sum = f32x8_set(0);
         all = add_spots(&sum, e, span, e->rows > 16 ? 3 : 1, p_m, n_enu, hits->part[i]);

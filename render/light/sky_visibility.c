@@ -1,5 +1,5 @@
-/* render/light/sky_visibility.c: see sky_visibility.h. Places on the ground about a hit, rounds of refinement, and what
- * is kept. */
+/* render/light/sky_visibility.c: see sky_visibility.h. Sample points on the ground about a hit, refinement, and the
+ * cache of points. */
 #include "render/light/sky_visibility_private.h"
 
 #include "render/light/optical.h"
@@ -9,15 +9,15 @@ enum {
     ground_directions = 32,    /* a place */
     cached_slots    = 1 << 15,   /* places on the ground, of the frame */
     cached_probes   = 16,
-    finer_most    = 3,         /* times that a cell of the ground is halved */
+    finer_most    = 3,         /* number of halvings of a ground cell */
 };
-static const double hidden_share = 0.02;  /* of a level plane's light: less is left out */
+static const double hidden_share = 0.02;  /* of a level plane's light: smaller effects are left out */
 static const double fade_share = 0.3;     /* the reach ends over its last 30 % */
-static const double differ = 0.15;        /* shares of directions: places that differ more are looked at more finely */
+static const double differ = 0.15;        /* shares of directions: where points differ more the grid is refined */
 static const double cell_reach = 0.45; /* coarsest cells, of the reach */
 static const double lattice_px = 3.5;
 
-/* ---- the frame -------------------------------------------------------------------------------- */
+/* ---- of a frame ------------------------------------------------------------------------------- */
 
 /* A wall of width w and height h hides w h^2 / (4 pi d^3) of the sky from level ground at a distance d. */
 static double reach_of(const PosedEntity *e)
@@ -65,9 +65,9 @@ Status sky_visibility_create(SkyVisibility **out, const SkyVisibilityScene *scen
     return sky_entities_tasks(v, arena);
 }
 
-/* ---- names of places ------------------------------------------------------------------------------ */
+/* ---- keys of sample points ------------------------------------------------------------------------ */
 
-/* Ground: 1, then 31 bits of each place on the lattice. Entities have 2 there: sky_entities.c. */
+/* Ground: 1, then 31 bits of each coordinate on the lattice. Entities have 2 there: sky_entities.c. */
 static uint64_t ground_key(int64_t i, int64_t j)
 {
     return (uint64_t)1 << 62 | ((uint64_t)i & 0x7fffffff) << 31 | ((uint64_t)j & 0x7fffffff);
@@ -79,7 +79,7 @@ static double lattice_m(uint64_t bits)
     return ldexp((double)(at >= 1 << 30 ? at - ((int64_t)1 << 31) : at), -lattice_steps);
 }
 
-/* ---- a thread's block ------------------------------------------------------------------------------- */
+/* ---- of a block, in a thread ------------------------------------------------------------------------ */
 
 Status sky_worker_create(SkyWorker **out, const SkyVisibility *v, Arena *arena)
 {
@@ -112,7 +112,7 @@ static bool find_cached(SkyAnswer *out, const SkyVisibility *v, uint64_t key)
     return false;
 }
 
-/* The first thread to come writes; all would write the same. */
+/* The first thread writes; all would write the same. */
 static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
 {
     if (!skips(v->scene.skips_off, SKIP_LIGHT)) return;
@@ -129,7 +129,7 @@ static void keep(const SkyVisibility *v, uint64_t key, const SkyAnswer *place)
     }
 }
 
-/* The slot of a place: known, or queued to be asked. */
+/* The cache slot of a point: known, or queued for evaluation. */
 static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key)
 {
     for (uint64_t at = scramble(key);; at++) {
@@ -144,7 +144,7 @@ static const SkySlot *slot_of(SkyWorker *w, const SkyVisibility *v, uint64_t key
     }
 }
 
-/* ---- asking ------------------------------------------------------------------------------------------ */
+/* ---- evaluation -------------------------------------------------------------------------------------- */
 
 static void place_ground(Hits *to, int i, const SkyVisibility *v, uint64_t key)
 {
@@ -170,7 +170,7 @@ void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], c
 
 static void ask_ground(SkyWorker *w, const SkyVisibility *v, const int *slots, int count, const int *list, int listed)
 {
-    VisibilityCounters unused = {0}; /* which thread asks first is chance */
+    VisibilityCounters unused = {0}; /* the order of threads varies; the result does not */
     Hits              *places = &w->places;
     places->count = count;
     for (int i = 0; i < count; i++) {
@@ -203,7 +203,7 @@ static bool places_differ(const SkySlot *const s[4])
     return high[0] - low[0] > (float)differ || high[1] - low[1] > (float)differ || high[2] > low[2];
 }
 
-/* The cell about a hit and the weights of its corners, some of which may not be known yet. */
+/* The cell about a hit and the weights of its corners, some of which may not be computed yet. */
 static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibility *v, int step, const Hits *hits,
                                  int i)
 {
@@ -227,7 +227,8 @@ static const SkyCell *cell_about(double weight[4], SkyWorker *w, const SkyVisibi
     return cell;
 }
 
-/* In floats, eight bands at a time: factors are no better. Places within a body say nothing about those beside it. */
+/* In floats, eight bands at a time: the factors are no more accurate. Points inside a body are not used for those
+ * beside it. */
 static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, const SkyCell *cell,
                 const double weight[4])
 {
@@ -248,7 +249,7 @@ static void mix(SkyOpen *out, int i, const SkyVisibility *v, const SkyHit *h, co
         if (v->scene.air_bands >> b & 1) out->factor[b][i] = factor[b];
 }
 
-/* True: done. All hits of one of the finest cells that start alike end alike: the last such is remembered. */
+/* True: done. All hits in one of the finest cells that start alike end alike: the last such is cached. */
 static bool settle(SkyOpen *out, int i, const SkyVisibility *v, SkyWorker *w, const Hits *hits)
 {
     SkyHit       *h = &w->hit[i];
@@ -305,7 +306,7 @@ static void find_ground(SkyHit *h, const SkyVisibility *v, const SkyWorker *w, c
         body_m    = fmin(body_m, distance_m);
     }
     if (!(h->weight > 0)) return;
-    int          shown; /* log2 of what the picture shows, rounded */
+    int          shown; /* log2 of the picture's resolution there, rounded */
     const double half = frexp(lattice_px * hits->range_m[i] * v->px_rad, &shown);
     if (half <= 0.70710678118654752) shown--;
     h->last_step = (int8_t)clamp(fmax(shown, h->step - finer_most), -lattice_steps, coarsest_log2_m);
@@ -326,7 +327,7 @@ int sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double
 {
     int       count = 0;
     const int asked = visibility_near(w->near, v->scene.gather.visibility, box[0], box[1],
-                                      more_m + (with_reach ? look_m : 0)); /* no reach is longer */
+                                      more_m + (with_reach ? look_m : 0)); /* upper limit of the reach */
     for (int n = 0; n < asked; n++) {
         const int          k = w->near[n];
         const PosedEntity *e = visibility_posed(v->scene.gather.visibility, k);

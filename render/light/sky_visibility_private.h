@@ -1,5 +1,5 @@
-/* render/light/sky_visibility_private.h: a frame's places as sky_visibility.c (the ground) and sky_entities.c share
- * them. */
+/* render/light/sky_visibility_private.h: a frame's sample points, shared by sky_visibility.c (the ground) and
+ * sky_entities.c. */
 #ifndef RENDER_LIGHT_SKY_VISIBILITY_PRIVATE_H
 #define RENDER_LIGHT_SKY_VISIBILITY_PRIVATE_H
 
@@ -13,15 +13,15 @@ enum {
     lattice_steps = 4,         /* the ground's finest lattice: 2^-4 m */
     coarsest_log2_m = 4,
 };
-static const double look_m = 50;          /* what is farther from a place changes nothing there */
+static const double look_m = 50;          /* farther objects do not change the light of a point */
 
-/* What a place answered. */
+/* Result of a point. */
 typedef struct SkyAnswer {
     float factor[8]; /* by AirBand, and one to spare */
-    float blocked, sunlit, inside; /* as HemisphereChange; inside 1: nor is it there */
+    float blocked, sunlit, inside; /* as HemisphereChange; inside 1: the point is not valid */
 } SkyAnswer;
 
-/* Places on an entity, in columns; where nothing of it was met the normal is 0. */
+/* Points on an entity, in columns; where nothing of it was met the normal is 0. */
 enum { SPOT_X, SPOT_Y, SPOT_Z, SPOT_NORMAL_X, SPOT_NORMAL_Y, SPOT_NORMAL_Z, SPOT_PART, spot_values };
 typedef struct SkySpots {
     float *value[spot_values]; /* m, ENU, from the entity's centre; and which part */
@@ -54,7 +54,7 @@ struct SkyVisibility {
 
 typedef struct SkySlot {
     uint64_t key;
-    uint32_t block;  /* in which it was written: others are free */
+    uint32_t block;  /* number of the block in which it was written: others are free */
     bool     known;
     SkyAnswer place;
 } SkySlot;
@@ -62,19 +62,19 @@ typedef struct SkySlot {
 /* A hit on the ground near an entity. */
 typedef struct SkyHit {
     int8_t step, last_step; /* log2 of the cell, m: from the first down to the last */
-    bool   force;           /* close to a body: looked at finely whatever the places say */
+    bool   force;           /* close to a body: always at the finest cells */
     float  weight;          /* 0: none near */
 } SkyHit;
 
-/* The cell that was asked last of each size: neighbouring hits lie in it. */
+/* The cell used last of each size: neighbouring hits lie in it. */
 typedef struct SkyCell {
     int64_t  column, row;
     uint32_t block;
-    bool     known, differ, any_inside; /* all corners; they do; of those */
+    bool     known, differ, any_inside; /* all corners known; they agree; of those */
     const SkySlot *corner[4];
 } SkyCell;
 
-/* At which step hits of a finest cell ended. */
+/* The step at which hits of a finest cell ended. */
 typedef struct SkyEnd {
     double   column, row;
     uint32_t block;
@@ -87,24 +87,24 @@ struct SkyWorker {
     SkyCell      cell[coarsest_log2_m + lattice_steps + 1];
     SkySlot      slot[known_slots];
     uint32_t     block;
-    int          queue[known_slots], queued; /* slots to be asked */
+    int          queue[known_slots], queued; /* slots to be evaluated */
     SkyHit       hit[hits_capacity];
     Hits         places, met;
     Rays         rays;
     uint64_t     key[hits_capacity];
     HemisphereChange change[hits_capacity];
     int         *near;       /* [entities] */
-    double      *near_reach_m; /* of each: from its box the ground is looked at */
+    double      *near_reach_m; /* of each: distance from its box within which the ground is treated */
     int8_t      *near_step;  /* of each: first_step_of */
 };
 
-/* What the light at a place of this normal is of the open. */
+/* Ratio of the light at a point of this normal to that in the open. */
 void sky_answer(SkyAnswer *out, const SkyVisibility *v, const double n_enu[3], const HemisphereChange *change);
 void sky_box_grow(double box[2][3], const Hits *hits, int i);
-/* Entities whose spheres, grown by more_m (and their reach), touch the box, to w->near and what goes with it. */
+/* Entities whose spheres, grown by more_m (and their reach), touch the box, into w->near and the related arrays. */
 int  sky_list_near(SkyWorker *w, const SkyVisibility *v, double box[2][3], double more_m, bool with_reach);
 
-/* sky_entities.c. The grid over what of the box lies on the image; tasks of all grids; a hit's factors. */
+/* sky_entities.c. The grid over the visible part of the box; tasks of all grids; a hit's factors. */
 Status sky_entities_grid(SkyEntity *e, const SkyVisibility *v, const PosedEntity *posed, const double box_px[4],
                          Arena *arena);
 Status sky_entities_tasks(SkyVisibility *v, Arena *arena);

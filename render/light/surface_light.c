@@ -1,5 +1,5 @@
-/* render/light/surface_light.c: see surface_light.h. Formulas, and why they are, stand in optical.c, thermal.c and
- * materials.c; here are the forms of them that keep their digits in float. */
+/* render/light/surface_light.c: see surface_light.h. The formulas and their reasons are in optical.c, thermal.c and
+ * materials.c; here are forms of them that are accurate in float. */
 #include "render/light/surface_light.h"
 
 #include "render/light/optical.h"
@@ -48,7 +48,7 @@ Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials 
     return STATUS_OK;
 }
 
-/* ---- places in the tables ------------------------------------------------------------------- */
+/* ---- positions in the tables ---------------------------------------------------------------- */
 
 typedef struct Three { F32x8 x, y, z; } Three;
 
@@ -57,7 +57,7 @@ static inline F32x8 zero(void) { return _mm256_setzero_ps(); }
 static inline F32x8 one(void) { return f32x8_set(1); }
 static inline F32x8 square(F32x8 a) { return a * a; }
 
-/* F32x8 places in steps of a table: lower nodes and shares of the upper ones. */
+/* F32x8 positions in steps of a table: lower nodes and shares of the upper ones. */
 typedef struct Steps {
     I32x8 at;
     F32x8    share;
@@ -69,7 +69,7 @@ static inline Steps steps_of(F32x8 x, int most)
     return (Steps){i32x8_truncate(at), inside - at};
 }
 
-/* The arc cosine of +-(1 - less), by what is missing to 1: Abramowitz & Stegun 4.4.45, within 7e-5. */
+/* The arc cosine of +-(1 - less), from the difference to 1: Abramowitz & Stegun 4.4.45, within 7e-5. */
 static inline F32x8 arc_cosine(F32x8 less, F32x8 negative)
 {
     const F32x8 x = one() - less;
@@ -91,7 +91,7 @@ static inline F32x8 azimuth_from_sun(Three d, Three sun)
     return f32x8_and(arc_cosine(f32x8_min(less, one()), f32x8_less(along, zero())), has);
 }
 
-/* Values of all bands at eight places between nodes of a table of rows, a band after the other. */
+/* Values of all bands at eight positions between nodes of a table of rows, one band after the other. */
 static inline void look_up(F32x8 out[8], const float *table, int row, Steps up, Steps aside)
 {
     int32_t at[8];
@@ -118,7 +118,7 @@ static inline void light_on_plane(F32x8 out[8], const SurfaceLight *light, Three
     for (int b = 0; b < AIR_BAND_COUNT; b++) out[b] = out[b] * open;
 }
 
-/* Sky in the direction d, nothing about the sun finer than blur_rad. */
+/* Sky in the direction d, blurred about the sun to blur_rad. */
 static inline void sky_towards(F32x8 out[8], const SurfaceLight *light, Three d, Three sun, F32x8 blur_rad)
 {
     const Steps up = steps_of(f32x8_sqrt(f32x8_clamp(d.z, 0, 1)) * f32x8_set(air_sky_ups), air_sky_ups);
@@ -200,7 +200,7 @@ static inline F32x8 lobe(F32x8 slope2, Three n, Three eye, Three sun, F32x8 n_ey
 
 /* ---- eight hits ------------------------------------------------------------------------------ */
 
-/* F32x8 rows of a table by material, turned: of one material as a rule. */
+/* F32x8 rows of a table by material, transposed: usually of one material. */
 static inline void material_rows(F32x8 out[8], float (*table)[surface_light_bands], const uint16_t material[8],
                                  bool same)
 {

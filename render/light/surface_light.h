@@ -1,8 +1,8 @@
-/* render/light/surface_light.h: what ground and parts send to the eye in all bands, eight hits at a time.
+/* render/light/surface_light.h: radiance of ground and parts at the eye in all bands, eight hits at a time.
  *
- * The same light as render/light/optical.c and thermal.c give (no term is left out), in float, from tables that hold all
- * bands of a place side by side: what depends on the hit alone is found once for all bands. Within 3e-5 of those for
- * anything as rough as ground and flat paint, 1e-3 where a mirror flashes (tests/render/test_surface_light.c). */
+ * The same terms as in render/light/optical.c and thermal.c, in float, from tables that hold all bands of a node
+ * side by side: what depends on the hit alone is computed once for all bands. Within 3e-5 of those for surfaces as
+ * rough as ground and flat paint, 1e-3 in the glint of a mirror (tests/render/test_surface_light.c). */
 #ifndef RENDER_LIGHT_SURFACE_LIGHT_H
 #define RENDER_LIGHT_SURFACE_LIGHT_H
 
@@ -25,7 +25,7 @@ typedef struct SurfaceLight {
 /* STATUS_NO_MEMORY: of the arena, which owns the tables by material. */
 Status surface_light_prepare(SurfaceLight *out, const Air *air, const Materials *materials, Arena *arena);
 
-/* A block's hits and what is known of them. */
+/* A block's hits and their inputs. */
 typedef struct SurfaceBlock {
     const Hits    *hits;
     const Rays    *rays;
@@ -33,12 +33,12 @@ typedef struct SurfaceBlock {
     const float   *texture[AIR_BAND_COUNT];     /* of the optical bands: brightness over the material's */
     const float   *temp_k;                      /* thermal bands */
     const float   *sun;                         /* share of the direct sun that arrives, 0 .. 1 */
-    const float   *around_w_m2[AIR_BAND_COUNT]; /* gathered; NULL: sky and ground by what the slope sees of them */
+    const float   *around_w_m2[AIR_BAND_COUNT]; /* from hemisphere sampling; NULL: sky and ground by the slope alone */
     const float   *open[AIR_BAND_COUNT]; /* factor of the latter (render/light/sky_visibility.h); NULL: 1 */
     const AirPaths   *veils;                       /* [AIR_BAND_COUNT] */
 } SurfaceBlock;
 
-/* out: of the bands wanted, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
+/* out: of the requested bands, else NULL; [hits_capacity] each, W/(m2 sr). Rows of rays that met nothing are undefined:
  * optical_beyond and thermal_beyond give those. */
 void surface_light_shade(float *const out[AIR_BAND_COUNT], const SurfaceLight *light, const SurfaceBlock *block);
 

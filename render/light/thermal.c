@@ -1,12 +1,11 @@
-/* render/light/thermal.c: how warm things are, and what of it arrives.
+/* render/light/thermal.c: surface temperatures, and their radiance at the aperture.
  *
- * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get
- * unobstructed, in steady balance with the wind of the moment. That is the first model; layered conduction with a
- * history of shadow comes after it.
+ * Temperatures follow exposure, not the present shadow: a surface takes the sunlight its slope would get unobstructed,
+ * in steady balance with the wind of the moment. Layered conduction with a history of shadow is not modelled.
  *
- * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each through the veil as its own
- * spectrum goes. In a closed isothermal cavity
- * everything reads Planck(T), whatever the material (tests/render/test_thermal.c). */
+ * Radiance = emissivity Planck(T) + (1 - emissivity) surroundings + sunlight, each attenuated by the air path
+ * according to its own spectrum. In a closed isothermal cavity every surface has the radiance Planck(T), whatever
+ * its material (tests/render/test_thermal.c). */
 #include "render/light/thermal.h"
 
 #include "render/materials/surface_balance.h"
@@ -14,9 +13,10 @@
 
 /* ---- temperature -------------------------------------------------------------------------- */
 
-/* A part without a heat source of its own. Steel conducts and holds heat for an hour, so every face shares in what
- * the whole gets: 0.3 of the sun on level ground for a face turned down, 0.7 for one turned up (a guess, that puts
- * a green tank at 10 .. 20 K above the air at noon and keeps a turning vehicle from flipping its temperatures). */
+/* A part without a heat source of its own. Steel conducts and holds heat for an hour, so every face shares in the
+ * heat of the whole: 0.3 of the sun on level ground for a face that faces down, 0.7 for one that faces up (a guess,
+ * that puts a green tank at 10 .. 20 K above the air at noon and keeps a turning vehicle from reversing its
+ * temperatures). */
 static double passive_part_k(const Air *air, double air_temp_k, const Material *material, double n_up,
                              double sun_level_w_m2, double film)
 {
@@ -27,7 +27,7 @@ static double passive_part_k(const Air *air, double air_temp_k, const Material *
     return air_temp_k + gain_w_m2 / (film + emission_w_m2_k(emissivity, air_temp_k));
 }
 
-/* What holds for all of a class: its excess in this wind, and the temperatures between which it is what it is. */
+/* Constants of a class: its excess in this wind, and the temperatures between which it is valid. */
 typedef struct GroundDay {
     float rise_k[SURFACE_COUNT], fall_k[SURFACE_COUNT], least_k[SURFACE_COUNT], most_k[SURFACE_COUNT];
 } GroundDay;
@@ -59,10 +59,10 @@ static F32x8 air_k8(const Air *air, const Hits *hits, int first)
     return f32x8_lerp(low, high, at - f32x8_of_ints(node)) + f32x8_set(air->light.weather.air_temp_k);
 }
 
-/* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its
- * relative brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
- * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that law
- * would be colder than the air at noon. Eight hits at once, within 3e-5 K; what is not ground becomes air. */
+/* Ground by class, with the sun on its own slope. Brighter ground takes less sun: texture turns half of its relative
+ * brightness into relative warmth (a guess; bright patches are also dry ones), within the ground's own pattern
+ * (landscape_texture: 0.6 .. 1.4). A photograph's white roof is six times as bright as its class's mean, and by that
+ * relation would be colder than the air at noon. Eight hits at once, within 3e-5 K; what is not ground becomes air. */
 static void ground_k8(float temp_k[8], const Air *air, const GroundDay *day, F32x8 air_k, const uint8_t surface[8],
                       const float *const n_enu[3], const float texture[8])
 {
@@ -155,9 +155,9 @@ void thermal_shade(float *out, Band band, const Air *air, const Materials *mater
         double diffuse, lobe_rho;
         material_split(&diffuse, &lobe_rho, mwir ? m->rho_mwir : m->rho_lwir, m->gloss, m->roughness, n_eye);
 
-        /* Kirchhoff, at this angle: what is not reflected is emitted */
+        /* Kirchhoff, at this angle: emissivity = 1 - reflectance */
         const double emitted = (1 - diffuse - lobe_rho) * planck_table_radiance(planck, temp_k[i]);
-        /* diffuse: sky and ground as far as the surface faces them; gloss: what the mirror shows */
+        /* diffuse: sky and ground as far as the surface faces them; gloss: the mirror direction */
         const double around = around_w_m2 ? around_w_m2[i] / pi_rad
                                           : daylight_plane_there(&air->light, air_band, &facing->plane[i]) / pi_rad +
                                                 ground_w_m2_sr * 0.5 * (1 - n_enu[2]);

@@ -1,4 +1,4 @@
-/* render/light/thermal.h: temperatures of what is seen, and emitted + reflected radiance at the aperture. */
+/* render/light/thermal.h: surface temperatures, and emitted + reflected radiance at the aperture. */
 #ifndef RENDER_LIGHT_THERMAL_H
 #define RENDER_LIGHT_THERMAL_H
 
@@ -13,10 +13,10 @@
 void thermal_temperature(float *temp_k, const Air *air, const Materials *materials, const Catalog *catalog,
                          const Snapshot *snapshot, const Hits *hits, const uint16_t *material, const float *texture);
 
-/* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2: what sky and surroundings send
- * to each hit (render/light/hemisphere.h); NULL: sky and ground by what its tilt sees of them. veils: of this band and these
- * temperatures; facing: of these hits; either NULL: asked for here. out: W/(m2 sr). Frames take the quicker way of
- * render/light/surface_light.h, whose measure this is. */
+/* band: BAND_MWIR or BAND_LWIR. sun: share of the direct sun that arrives, 0 .. 1, in MWIR; NULL: all. around_w_m2:
+ * irradiance of each hit from sky and surroundings (render/light/hemisphere.h); NULL: sky and ground by the tilt
+ * alone. veils: of this band and these temperatures; facing: of these hits; either NULL: computed here. out: W/(m2
+ * sr). Frames use the faster form of render/light/surface_light.h, which is tested against this one. */
 void thermal_shade(float *out, Band band, const Air *air, const Materials *materials, const Hits *hits,
                    const Rays *rays, const uint16_t *material, const float *temp_k, const float *sun,
                    const float *around_w_m2, const AirPaths *veils, const Facing *facing);

@@ -1,5 +1,5 @@
-/* render/materials/materials.c: reads what things are made of, and ties names to rows once so that nobody compares
- * strings again. */
+/* render/materials/materials.c: reads the material tables and resolves names to rows once, so that no strings are
+ * compared later. */
 #include "render/materials/materials.h"
 
 #include <stdio.h>
@@ -14,8 +14,8 @@ int materials_find(const Materials *materials, const char *name)
     return -1;
 }
 
-/* Every number column of a material, where it goes and what is allowed. Without a name: rho_<name> of the channel in a
- * place. */
+/* Every number column of a material, its member and its valid range. Without a name: rho_<name> of the channel of
+ * that index. */
 static const struct {
     const char  *name;
     size_t       offset;
@@ -34,14 +34,14 @@ static const struct {
     {"roughness_rad", offsetof(Material, roughness), 0, 1.5, 0},
     {"metal", offsetof(Material, metal), 0, 1, 0},
     {"radar_gamma", offsetof(Material, radar_gamma), 0, 100, 0},
-    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with room */
+    /* from still air and aerogel to copper, tungsten and hydrogen-rich liquids, with margin */
     {"conductivity_w_mk", offsetof(Material, conductivity_w_mk), 0.01, 1000, 0},
     {"density_kg_m3", offsetof(Material, density_kg_m3), 1, 25000, 0},
     {"heat_capacity_j_kgk", offsetof(Material, heat_capacity_j_kgk), 50, 10000, 0},
 };
 enum { number_column_count = sizeof number_columns / sizeof *number_columns };
 
-/* The rows of one file behind those that are there; a name that an earlier file has is left out. */
+/* Appends the rows of one file to those present; a name that an earlier file has is left out. */
 static Status read_rows(Materials *m, const char *path)
 {
     Table table = {0};
@@ -91,7 +91,7 @@ static Status read_rows(Materials *m, const char *path)
             if (got != STATUS_OK) goto done;
             *(float *)((char *)&material + number_columns[i].offset) = (float)value;
         }
-        if (same < 0) m->material[m->count++] = material; /* else the user's own row stands in its place */
+        if (same < 0) m->material[m->count++] = material; /* else the user's own row replaces it */
     }
     status = STATUS_OK;
 done:
@@ -106,7 +106,7 @@ static Status read_materials(Materials *m, const char *path)
     Status status = STATUS_OK;
     m->material = calloc(1, sizeof *m->material);
     if (!m->material) return STATUS_NO_MEMORY;
-    /* row 0: absorbs everything, gives nothing back; its heat is that of dry sand */
+    /* row 0: absorbs everything, reflects nothing; its heat is that of dry sand */
     m->material[0] = (Material){.name = "none", .conductivity_w_mk = 0.24f, .density_kg_m3 = 1600,
                                 .heat_capacity_j_kgk = 800};
     m->count = 1;
@@ -171,7 +171,8 @@ static Status read_surfaces(Materials *m, const char *path)
     int land = 0;
     double sum[optical_channel_count] = {0};
     for (int s = SURFACE_NONE + 1; s < SURFACE_COUNT; s++) {
-        if (s >= SURFACE_WATER) continue; /* the common land: neither water nor what only cover files know */
+        if (s >= SURFACE_WATER) continue; /* the common land: neither water nor the classes that only cover files
+                                           * contain */
         for (int c = 0; c < optical_channel_count; c++) sum[c] += m->material[m->surface[s]].rho[c];
         land++;
     }
@@ -281,7 +282,7 @@ void materials_close(Materials *materials)
     *materials = (Materials){0};
 }
 
-/* Square of the refractive index whose reflectance at normal incidence, (n - 1)^2 / (n + 1)^2, this is. */
+/* Square of the refractive index with this reflectance at normal incidence, (n - 1)^2 / (n + 1)^2. */
 static double index_squared(double rho_normal)
 {
     const double root = sqrt(rho_normal), index = (1 + root) / (1 - root);
@@ -297,7 +298,7 @@ static double fresnel_dielectric(double index2, double cosine)
     return 0.5 * (ad * ad + bc * bc) / (bd * bd);
 }
 
-/* Schlick (Computer Graphics Forum 13, 1994): for metals, whose dip before grazing is slight. */
+/* Schlick (Computer Graphics Forum 13, 1994): for metals, where the dip before grazing is slight. */
 static double fresnel_schlick(double rho_normal, double cosine)
 {
     const double away = 1 - cosine, away2 = away * away;
@@ -305,8 +306,8 @@ static double fresnel_schlick(double rho_normal, double cosine)
 }
 
 /* What reflects less than water (0.02) at normal incidence is only partly covered by gloss, and rises by that part;
- * what reflects more than 0.3 is a metal, and between 0.2 and 0.3 we cannot know. A rough surface takes part less: its
- * facets seldom graze when it does (the square is a guess, that leaves grass dull). */
+ * what reflects more than 0.3 is a metal, and between 0.2 and 0.3 the kind is unknown. The effect is less for a
+ * rough surface: its facets are seldom at grazing angles when it is (the square is a guess, that keeps grass dull). */
 double material_fresnel(double gloss_rho, double roughness_rad, double cosine)
 {
     if (!(gloss_rho > 0)) return 0;
@@ -325,7 +326,7 @@ void material_split(double *diffuse, double *lobe, double rho, double gloss, dou
 {
     const double gloss_rho = rho * gloss;
     *lobe    = material_fresnel(gloss_rho, roughness_rad, cosine);
-    /* what the lobe takes at grazing angles the diffuse share gives up */
+    /* the increase of the lobe at grazing angles is taken from the diffuse share */
     *diffuse = gloss_rho < 1 ? (rho - gloss_rho) * (1 - *lobe) / (1 - gloss_rho) : 0;
 }
 

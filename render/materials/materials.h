@@ -1,4 +1,4 @@
-/* render/materials/materials.h: optics of every material, from etc/materials.csv (source a row).
+/* render/materials/materials.h: optics of every material, from etc/materials.csv (with a source for each row).
  *
  * Reflectances are hemispherical band averages; emissivity = 1 - reflectance (Kirchhoff, opaque). */
 #ifndef RENDER_MATERIALS_MATERIALS_H
@@ -23,7 +23,7 @@ typedef struct Material {
     float roughness;                  /* width of that lobe, rad rms slope */
     float metal;                      /* 1: mirrors radar; 0: does not */
     float radar_gamma;                /* diffuse backscatter, sigma0 = gamma sin(grazing), relative */
-    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of what lies under the surface */
+    float conductivity_w_mk, density_kg_m3, heat_capacity_j_kgk; /* of the layer below the surface */
 } Material;
 
 typedef struct Materials {
@@ -31,8 +31,8 @@ typedef struct Materials {
     Material *material;              /* [0] is "none", black */
     int       surface[SURFACE_COUNT];/* material of each surface class */
     int     **part;                  /* [model][part] */
-    int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. What a model
-                                      * says of itself, else destroyed is `burnt`, where there is such a row */
+    int     **damaged;               /* [model][part * model_damage_states + damage]; NULL: as undamaged. The
+                                      * model's own entry, else `burnt` for destroyed, where there is such a row */
     int       model_count;
     /* Ground of each surface class: kelvins above the air at 1000 W/m2 of sun, below it for each 100 W/m2 that
      * a horizontal plane loses to the sky (etc/ground_heat.csv). 0: at air temperature. */

@@ -1,8 +1,8 @@
 /* render/materials/planck.c: blackbody radiance, spectral, in band, and from a table.
  *
- * With x = h c / (wavelength k T) the in-band radiance is 2 k^4 T^4 / (h^3 c^2) times the integral of
- * x^3 / (e^x - 1) between the band's edges. Everything below is that integral, taken the way that loses
- * nothing: positive terms summed where the edges are close, tails subtracted where they are not. */
+ * With x = h c / (wavelength k T) the in-band radiance is 2 k^4 T^4 / (h^3 c^2) times the integral of x^3 / (e^x -
+ * 1) between the band's edges. All functions below compute that integral without cancellation: positive terms summed
+ * where the edges are close, tails subtracted where they are not. */
 #include "render/materials/planck.h"
 
 #include "pitviper_simd.h"
@@ -103,8 +103,8 @@ double planck_band(double low_m, double high_m, double temp_k, double *derivativ
     /* x2 - x1, without the digits that a difference of near edges would lose */
     const double width = isfinite(high_m) ? (high_m - low_m) / high_m * x2 : x2;
 
-    /* value and slope carry a factor e^x1 that is put back at the end in two halves, so that neither a tail
-     * that underflows by itself nor a T^4 in front of it spoils a result that is still normal */
+    /* value and slope carry a factor e^x1 that is applied at the end in two halves, so that neither a tail that
+     * underflows by itself nor a T^4 in front of it spoils a result that is still normal */
     double value, slope;
     if (width <= narrow_x) {
         scaled_narrow(&value, &slope, x1, width);
@@ -167,10 +167,11 @@ struct PlanckTable {
     double knot[table_cells + 2];       /* radiance, falling: cell 0 is the hottest; and nothing below */
     double c[table_cells][4];           /* L = c0 + t (c1 + t (c2 + t c3)), t = 0 .. 1 across the cell */
     float  narrow[table_cells][4];      /* the same */
-    /* where to look for a radiance, by the leading bits of its double: all but even in its logarithm, as cells are */
+    /* start of the search for a radiance, by the leading bits of its double: nearly uniform in its logarithm, as
+     * cells are */
     int      bin_shift;
     uint64_t first_bin;
-    uint16_t first_cell[table_bins];    /* none of the bin's radiances lies in a hotter one */
+    uint16_t first_cell[table_bins];    /* none of the bin's radiances is in a hotter one */
 };
 
 static uint64_t bits_of(double x)
@@ -198,7 +199,7 @@ static void index_knots(PlanckTable *table)
 static inline int cell_of_radiance(const PlanckTable *table, double radiance_w_m2_sr)
 {
     int cell = table->first_cell[(bits_of(radiance_w_m2_sr) >> table->bin_shift) - table->first_bin];
-    cell += table->knot[cell + 1] >= radiance_w_m2_sr; /* as a rule one of the next, and nobody can tell which */
+    cell += table->knot[cell + 1] >= radiance_w_m2_sr; /* usually one of the next; the branch is unpredictable */
     cell += table->knot[cell + 1] >= radiance_w_m2_sr;
     while (table->knot[cell + 1] >= radiance_w_m2_sr) cell++;
     return cell < table_cells ? cell : table_cells - 1;

@@ -1,9 +1,9 @@
-/* render/materials/surface_balance.h: what a surface warmer than the air gives away, and so how wind changes the excess.
+/* render/materials/surface_balance.h: heat losses of a surface warmer than the air, and so how wind changes the excess.
  *
- * A surface in a steady balance: excess over the air = what it gains / what it loses per kelvin. Losses: the air's film
+ * A surface in a steady balance: excess over the air = heat gain / heat loss per kelvin. Losses: the air's film
  * (McAdams, Heat Transmission, 1954: 5.7 + 3.8 v W/(m2 K), plates below 5 m/s; used above that too), longwave emission
  * (4 e sigma T^3, 5 W/(m2 K) at 288 K) and conduction into the ground by the daily wave (sqrt(k rho c omega), 2 .. 20).
- * Water that evaporates and the lag of the ground behind the sun are not in it. Against NOAA/ARL Bondville, May 1998:
+ * Evaporation and the lag of the ground behind the sun are not included. Against NOAA/ARL Bondville, May 1998:
  * tests/render/test_thermal.c. */
 #ifndef RENDER_MATERIALS_SURFACE_BALANCE_H
 #define RENDER_MATERIALS_SURFACE_BALANCE_H

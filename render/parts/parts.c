@@ -1,4 +1,4 @@
-/* render/parts/parts.c: models made ready to be traced: facets in double, and an Embree scene for each node. */
+/* render/parts/parts.c: prepares models for ray tracing: facets in double, and an Embree scene for each node. */
 #include "render/parts/parts_private.h"
 
 #include <stdatomic.h>
@@ -7,7 +7,7 @@
 typedef struct ModelMeshes {
     const Model *model;      /* NULL: not built yet */
     int          count;
-    NodeMesh    *mesh;       /* nodes that have triangles; one more for each way in which damage hides some */
+    NodeMesh    *mesh;       /* nodes that have triangles; one more for each combination of parts hidden by damage */
 } ModelMeshes;
 
 struct Tracer {
@@ -59,7 +59,7 @@ static void bound_mesh(NodeMesh *mesh)
             v3_sub(d, model->vertex[model->triangle[mesh->triangle[t]][c]], mesh->centre);
             square = fmax(square, v3_dot(d, d));
         }
-    /* a float of that size steps by 1e-7 of it: a hundred steps of room */
+    /* a float of that size has steps of 1e-7 of it: a margin of a hundred steps */
     const double room_m = (sqrt(square) + v3_length(mesh->centre)) * 1e-5 + 1e-4;
     mesh->radius_m = sqrt(square) + room_m;
     for (int a = 0; a < 3; a++) mesh->half[a] = 0.5 * (high[a] - low[a]) + room_m;
@@ -70,15 +70,15 @@ enum { hidden_groups = 1 << (model_damage_states - 1) };
 static int hidden_group_of(uint8_t hidden) { return hidden >> 1 & (hidden_groups - 1); }
 static int hidden_group(const ModelPart *part) { return hidden_group_of(part->damage_hidden); }
 
-/* Embree only nominates: by boxes, whose tests are safe, with a hundred times the room that the floats of a node of R
- * metres may need. What it names is judged in double. */
+/* Embree only finds candidates, by boxes with conservative tests and a hundred times the margin that the floats of a
+ * node of R metres may need. Candidates are tested exactly in double. */
 static void nominate_box(const struct RTCBoundsFunctionArguments *a)
 {
     const NodeMesh *mesh = a->geometryUserPtr;
     const Facet    *f = &mesh->facet[a->primID];
     const double    room_m = 1e-4 + 1e-5 * mesh->radius_m;
     float           low[3], high[3];
-    if (!(f->height_m[0] > 0 && f->height_m[1] > 0 && f->height_m[2] > 0)) { /* without area: met by nothing */
+    if (!(f->height_m[0] > 0 && f->height_m[1] > 0 && f->height_m[2] > 0)) { /* zero area: never hit */
         *a->bounds_o = (struct RTCBounds){.lower_x = NAN, .upper_x = NAN};
         return;
     }
@@ -181,7 +181,7 @@ static Status build_model(ModelMeshes *meshes, Tracer *tracer, const Model *mode
         if (triangle_count[g] > 0) {
             status = build_mesh(&meshes->mesh[meshes->count], tracer, meshes, g / hidden_groups,
                                 (uint8_t)(g % hidden_groups << 1), triangle_count[g]);
-            meshes->count++; /* a half-built one is closed as well */
+            meshes->count++; /* a partly built one is closed as well */
         }
 done:
     free(triangle_count);

@@ -1,9 +1,9 @@
 /* render/parts/parts.h: rays against the moving parts, through Embree.
  *
- * One committed Embree scene for each node of each model, in the node's own axes, shared by every entity of
- * that model. A ray is taken to the node in double, advanced to the node's bounding sphere, narrowed once, and
- * told whose boxes it passes; which triangle it meets, distance and normals are found in double. So a
- * joint that turns costs a transform and no commit, nothing here changes between frames, and any number of
+ * One committed Embree scene for each node of each model, in the node's own axes, shared by every entity of that
+ * model. A ray is transformed to the node in double, advanced to the node's bounding sphere and converted to float
+ * once; Embree reports the triangle boxes that it passes; the triangle hit, distance and normals are computed in
+ * double. So a moving joint costs a transform and no commit, nothing here changes between frames, and any number of
  * frames and threads may trace at once. */
 #ifndef RENDER_PARTS_PARTS_H
 #define RENDER_PARTS_PARTS_H
@@ -21,14 +21,15 @@ const Model *tracer_model(const Tracer *tracer, int model);
 
 typedef struct NodeMesh NodeMesh;
 
-/* A node that has triangles, where it is now. */
+/* A node that has triangles, in its present pose. */
 typedef struct PosedNode {
     const NodeMesh *mesh;
     double p_enu[3];
     double r_enu_from_node[9];
 } PosedNode;
 
-/* An entity where it is now. Sphere and box hold all of its nodes as they are posed, whatever the model says. */
+/* An entity in its present pose. Sphere and box hold all of its nodes as they are posed, independent of the model's
+ * own sphere. */
 typedef struct PosedEntity {
     int          damage;     /* 0 .. model_damage_states - 1 */
     int          model;      /* -1: not drawable (unknown model, or a pose that is not finite) */
@@ -47,37 +48,38 @@ typedef struct PartHit {
 /* All vertices of a posed node, each once, in its axes. */
 const double (*parts_node_corners(const PosedNode *node, int *count))[3];
 
-/* The three corners of its triangle number k, in its axes; NULL: it has no more. */
+/* The three corners of its triangle number k, in its axes; NULL: k is out of range. */
 const double (*parts_node_triangle(const PosedNode *node, int k))[3];
 
-/* The most nodes that posing an entity of this model needs room for. */
+/* Number of nodes that posing an entity of this model needs memory for, at most. */
 int parts_node_count(const Tracer *tracer, int model);
 /* Radius of the largest of their spheres, m. */
 double parts_largest_node_m(const Tracer *tracer, int model);
-/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides are
- * not there. */
+/* out->node must hold parts_node_count. pose: one for each node of the model, body axes. damage: parts that it hides
+ * are omitted. */
 void parts_pose(PosedEntity *out, const Tracer *tracer, int model, const NodePose *pose, const double p_enu[3],
                 const double r_enu_from_body[9], int damage);
 
-/* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is
- * asked even where the entity's box or a node's sphere is missed, which must not change the answer. */
+/* Distance to the first triangle nearer than far_m, both sides count; INFINITY for none. ask_all: Embree is called
+ * even where the entity's box or a node's sphere is missed, which must not change the result. */
 double parts_first_hit(PartHit *hit, const PosedEntity *entity, const double o_enu[3], const double d_enu[3],
                        double far_m, bool ask_all);
 /* Whether any triangle is ahead. */
 bool parts_occluded(const PosedEntity *entity, const double o_enu[3], const double d_enu[3], bool ask_all);
-/* The same of rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where one is
- * met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. Returns how many ray-node
- * pairs Embree was asked for. */
+/* The same for rays of a block, those of `list` (below hits_capacity), many at a time and to the same bits. Where
+ * one is met nearer than far_m, range_m and hit are written, else they stay. range_m may be far_m. Returns the
+ * number of ray-node pairs passed to Embree. */
 uint64_t parts_first_hits(double *range_m, PartHit *hit, const PosedEntity *entity, const double *const o_enu[3],
                       const double *const d_enu[3], const double *far_m, const int *list, int count, bool ask_all);
-/* met: becomes 1 where a triangle is met nearer than far_m; where it is 1 already nobody is asked. Returns as above. */
+/* met: becomes 1 where a triangle is met nearer than far_m; rays where it is 1 already are skipped. Returns as
+ * above. */
 uint64_t parts_any_hits(uint8_t *met, const PosedEntity *entity, const double *const o_enu[3], const double *const d_enu[3],
                     const double *far_m, const int *list, int count, bool ask_all);
-/* A place on a triangle of the model, in the axes of its node as the entity stands. */
+/* A point on a triangle of the model, in the axes of its node in the entity's present pose. */
 void parts_place_on_part(double p_node[3], const Model *model, const PosedEntity *entity, uint32_t triangle,
                          const double p_enu[3]);
 
-/* A triangle that was met, as it stands now: for as many hits as meet it. */
+/* A triangle that was hit, in its present pose: for all hits on it. */
 typedef struct PosedFacet {
     const PosedNode *node;     /* NULL: none */
     uint32_t triangle;

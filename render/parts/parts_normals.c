@@ -1,5 +1,5 @@
-/* render/parts/parts_normals.c: the triangle that a ray met, as it stands: normals of its plane and of the curved
- * surface that it stands for. */
+/* render/parts/parts_normals.c: normals of the triangle that a ray hit: of its plane and of the curved surface that
+ * it approximates. */
 #include "render/parts/parts.h"
 
 void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entity, const PartHit *hit)
@@ -23,14 +23,14 @@ void parts_facet(PosedFacet *facet, const Model *model, const PosedEntity *entit
     for (int c = 0; c < 3; c++) facet->even &= normal[0][c] == normal[1][c] && normal[0][c] == normal[2][c];
 }
 
-/* Shading normal at a place of the facet. False: none. */
+/* Shading normal at a point of the facet. False: none. */
 static bool interpolate(double n_enu[3], const Model *model, const PosedFacet *facet, const double o_enu[3],
                         const double d_enu[3], double range_m)
 {
     const PosedNode *node  = facet->node;
     const uint32_t  *index = model->triangle[facet->triangle];
     double           at_enu[3], at[3], w[3], cross[3], shading[3] = {0, 0, 0};
-    /* barycentric weights of the place on the plane; just outside the triangle they are held to it */
+    /* barycentric weights of the point on the plane; just outside the triangle they are clamped to it */
     for (int c = 0; c < 3; c++) at_enu[c] = o_enu[c] + range_m * d_enu[c] - node->p_enu[c];
     m3_tmul_v3(at, node->r_enu_from_node, at_enu);
     v3_sub(at, at, facet->corner);

@@ -1,4 +1,4 @@
-/* render/parts/parts_private.h: a node's triangles as parts.c builds them and parts_trace.c asks them. */
+/* render/parts/parts_private.h: a node's triangles, built by parts.c and traced by parts_trace.c. */
 #ifndef RENDER_PARTS_PARTS_PRIVATE_H
 #define RENDER_PARTS_PARTS_PRIVATE_H
 
@@ -6,7 +6,7 @@
 
 #include "render/parts/parts.h"
 
-/* A triangle as its judge wants it. */
+/* A triangle in the form of the exact test. */
 typedef struct Facet {
     double corner[3][3];  /* node axes */
     float  height_m[3];   /* over the side from corner c to the next */
@@ -16,18 +16,18 @@ struct NodeMesh {
     const Model *model;
     int          node;
     uint8_t      damage_hidden; /* of all its parts: ModelPart */
-    RTCScene     scene;         /* of its triangles' boxes, with room, about `centre` */
+    RTCScene     scene;         /* of its triangles' boxes, with margin, about `centre` */
     int          triangle_count;
     uint32_t    *triangle;      /* of the model, ascending */
     Facet       *facet;         /* in the same order, which is Embree's too */
     int          corner_count;
     double     (*corner)[3];    /* every vertex of its triangles, once */
     double       centre[3];     /* of a sphere and a box round its vertices, node axes */
-    double       radius_m;      /* both with room for the narrowing to float */
+    double       radius_m;      /* both with margin for the conversion to float */
     double       half[3];
 };
 
-/* What Embree calls for the boxes that rays pass through: parts_trace.c. */
+/* Embree's callback for the boxes that rays pass through: parts_trace.c. */
 void parts_intersect(const struct RTCIntersectFunctionNArguments *a);
 void parts_occlude(const struct RTCOccludedFunctionNArguments *a);
 

@@ -1,12 +1,12 @@
-/* render/parts/parts_trace.c: who is met. Embree nominates triangles, in floats, by boxes round them with ample room
- * (parts.c); each nominee is judged here, in double, by the triangle itself. So neither the instruction set nor the
- * company in which a ray travels can show in an answer.
+/* render/parts/parts_trace.c: ray-triangle intersection. Embree finds candidate triangles, in floats, by boxes round
+ * them with ample margin (parts.c); each candidate is tested exactly here, in double, against the triangle itself. So
+ * the result depends neither on the instruction set nor on the other rays of a packet.
  *
- * The answer: the nearest triangle that the ray passes through; and of all those at its distance to 0.1 mm that the
- * ray passes through, or by within 20 um, the lowest. Faces of two parts often lie in one place, a tyre's and its
- * disc's, and at an edge two always do.
+ * The result: the nearest triangle that the ray passes through; and of all triangles within 0.1 mm of its distance that
+ * the ray passes through, or passes within 20 um, the one of the lowest index. Faces of two parts often coincide, such
+ * as a tyre's and its disc's, and at an edge two always meet.
  *
- * Four rays at a time in intrinsics, as in ground8.c: the compiler would not. */
+ * Four rays at a time in intrinsics, as in ground8.c: the compiler does not vectorise this. */
 #include "render/parts/parts_private.h"
 
 #include "pitviper_simd.h"
@@ -14,8 +14,9 @@
 enum { lanes = 16, ties_kept = 8, chunk_rays = 128 };
 
 static const double same_edge_m = 2e-5, same_range_m = 1e-4;
-static const double through_m = -1e-9; /* inside by this: a corner leaves room for roundings between its triangles */
-static const double slack_m = 2e-3;    /* beyond the nearest: room for its ties, and for Embree's floats */
+static const double through_m = -1e-9; /* tolerance of the inside test: a corner leaves room for roundings between
+                                        * its triangles */
+static const double slack_m = 2e-3;    /* search distance beyond the nearest hit: for ties, and for Embree's floats */
 
 static inline double smaller(double a, double b) { return a < b ? a : b; }
 static inline double larger(double a, double b) { return a > b ? a : b; }
@@ -47,7 +48,7 @@ static inline Vector turned_back(const double m[9], Vector a)
                     f64x4_set(m[2]) * a.x + f64x4_set(m[5]) * a.y + f64x4_set(m[8]) * a.z};
 }
 
-/* Narrows the way in .. out through a box to one of its three slabs; a ray along it is in or out, by its sign. */
+/* Clips the interval in .. out to one of a box's three slabs; a ray along it is in or out, by its sign. */
 static inline void through_slab(F64x4 *in, F64x4 *out, F64x4 low, F64x4 high, F64x4 d)
 {
     const F64x4 along = f64x4_less(f64x4_abs(d), f64x4_set(1e-30));
@@ -62,7 +63,7 @@ static inline void through_slab(F64x4 *in, F64x4 *out, F64x4 low, F64x4 high, F6
 /* Rays close together, from a block's; filled up to a multiple of four. */
 typedef struct Chunk {
     double o[3][chunk_rays], d[3][chunk_rays];
-    double best_m[chunk_rays];  /* nothing farther is asked for */
+    double best_m[chunk_rays];  /* search limit */
     int    ray[chunk_rays];     /* of the block */
     int    count;
 } __attribute__((aligned(64))) Chunk;
@@ -70,11 +71,11 @@ typedef struct Chunk {
 /* In a node's axes, each from where it enters the node's sphere. */
 typedef struct NodeRays {
     double   o[3][chunk_rays], d[3][chunk_rays];
-    double   start_m[chunk_rays], length_m[chunk_rays]; /* of o along the ray that was asked; through the sphere */
-    unsigned meets[chunk_rays / 4]; /* 1 << place in four: the node's sphere and box, ahead and before best_m */
+    double   start_m[chunk_rays], length_m[chunk_rays]; /* of o along the ray as given; through the sphere */
+    unsigned meets[chunk_rays / 4]; /* 1 << lane in four: hits the node's sphere and box, ahead and before best_m */
 } __attribute__((aligned(64))) NodeRays;
 
-/* Those that Embree takes: where a ray does not come near a node nothing else has looked at its numbers. */
+/* Ranges of values that Embree accepts: a ray that misses a node's sphere has not been checked before. */
 static inline unsigned in_embree(Vector at, Vector d)
 {
     static const double most = 1e18;
@@ -82,7 +83,7 @@ static inline unsigned in_embree(Vector at, Vector d)
     return f64x4_bits(f64x4_and(f64x4_less(far, f64x4_set(most)), f64x4_less(dot(d, d), f64x4_set(2))));
 }
 
-/* A ray that misses the sphere is given a start as near as it comes. */
+/* A ray that misses the sphere starts at its point of closest approach. */
 static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool ask_all)
 {
     const NodeMesh *mesh = node->mesh;
@@ -113,7 +114,7 @@ static void to_node(NodeRays *r, const Chunk *chunk, const PosedNode *node, bool
     }
 }
 
-/* What a chunk's rays have in common: all from one point, or all one way. */
+/* What a chunk's rays have in common: a common origin, or a common direction. */
 typedef struct Bundle {
     double origin[3], radius_m; /* all begin in this sphere */
     double axis[3], sine, cosine; /* and stay within this angle; cosine 0: nothing in common */
@@ -165,21 +166,21 @@ static bool bundle_may_meet(const Bundle *b, const PosedNode *node)
     return away_m <= (node->mesh->radius_m + b->radius_m) * (1 + 1e-9) + 1e-6 + 1e-9 * fabs(along);
 }
 
-/* ---- nominees and their judge ----------------------------------------------------------------- */
+/* ---- candidates and the exact test ------------------------------------------------------------ */
 
-/* Rays of a node side by side, and what was found of each. */
+/* Rays of a node side by side, and their results. */
 typedef struct Packet {
-    struct RTCIntersectContext base; /* first: Embree hands it back */
+    struct RTCIntersectContext base; /* first: Embree passes it to the callback */
     const NodeMesh *mesh;
-    bool     lowest_only;         /* collects into `lowest`: nearest_m is known */
+    bool     lowest_only;         /* second pass, collects into `lowest`: nearest_m is known */
     int      count;
     double   o[3][lanes] __attribute__((aligned(64))), d[3][lanes];
     double   start_m[lanes], length_m[lanes];
-    double   far_m[lanes];        /* nothing farther counts */
+    double   far_m[lanes];        /* search limit */
     double   nearest_m[lanes];    /* of those passed through */
-    float    end_m[lanes];        /* where Embree stops */
+    float    end_m[lanes];        /* Embree's limit */
     int      ties[lanes];
-    bool     crowded[lanes];      /* more than were kept */
+    bool     crowded[lanes];      /* more than were stored */
     uint32_t tie[lanes][ties_kept]; /* of the node, at nearest_m and somewhat beyond */
     double   tie_m[lanes][ties_kept];
     uint32_t lowest[lanes];
@@ -188,15 +189,16 @@ typedef struct Packet {
     int      ray[lanes];          /* of the chunk */
 } __attribute__((aligned(64))) Packet;
 
-/* Of four lanes at a time, as they are asked for. */
+/* For four lanes at a time, as requested. */
 typedef struct Verdict {
-    double   at_m[lanes];   /* where near: distance to the plane, held between the corners: edge-on it says nothing */
+    double   at_m[lanes];   /* where near: distance to the plane, clamped between the corners: edge-on it is
+                             * undefined */
     unsigned judged;        /* 1 << lane / 4 */
     unsigned near[lanes / 4], through[lanes / 4]; /* 1 << lane % 4: passed by within same_edge_m, ahead; and through */
 } __attribute__((aligned(64))) Verdict;
 
-/* Neighbours find the same number with the other sign for their common side, whatever the rounding, so nothing gets
- * through between them. */
+/* Neighbours compute the same number with the opposite sign for their common side, whatever the rounding, so no ray
+ * passes between them. */
 static void judge(Verdict *v, const Packet *p, const Facet *facet, int four)
 {
     const int    l = 4 * four;
@@ -301,7 +303,7 @@ void parts_occlude(const struct RTCOccludedFunctionNArguments *a)
     }
 }
 
-/* ---- asking ------------------------------------------------------------------------------------- */
+/* ---- queries ------------------------------------------------------------------------------------ */
 
 static void packet_open(Packet *p, const NodeMesh *mesh)
 {
@@ -330,7 +332,7 @@ static inline void packet_add(Packet *p, const NodeRays *r, int i, double best_m
 static void packet_narrow(struct RTCRay16 *ray, int valid[lanes], Packet *p)
 {
     const double *centre = p->mesh->centre;
-    for (int l = p->count; l < lanes; l++) { /* lanes without a ray are judged with the others, and meet nothing */
+    for (int l = p->count; l < lanes; l++) { /* lanes without a ray are tested with the others, and meet nothing */
         for (int c = 0; c < 3; c++) p->o[c][l] = p->o[c][0], p->d[c][l] = p->d[c][0];
         p->length_m[l] = p->far_m[l] = p->nearest_m[l] = -INFINITY;
         p->ties[l] = 0;
@@ -371,7 +373,7 @@ static double settle(uint32_t *triangle, Packet *p, const struct RTCRay16 *rays,
         p->lowest_only = false;
     }
     for (int k = 0; k < p->ties[l]; k++) offer_lowest(p, l, p->tie[l][k], p->tie_m[l][k]);
-    /* it is among those above, were it not for a second look that found less than the first: then it is the answer */
+    /* it is among those stored, unless the second pass found less than the first: then it is the result */
     offer_lowest(p, l, p->nearest[l], nearest_m);
     *triangle = p->mesh->triangle[p->lowest[l]];
     return p->lowest_m[l];
@@ -426,7 +428,7 @@ static void packet_any_hits(uint8_t *met, Packet *p, const Chunk *chunk, bool al
 
 /* ---- a block's rays ------------------------------------------------------------------------------ */
 
-/* Lanes without a ray go where the last one goes. */
+/* Lanes without a ray repeat the last one. */
 static void fill_up(Chunk *chunk)
 {
     for (int i = chunk->count; i % 4; i++) {
@@ -438,7 +440,7 @@ static void fill_up(Chunk *chunk)
     }
 }
 
-/* Those of the list that may meet the entity's box ahead: one look that spares most rays a look at every node. */
+/* The rays of the list that may meet the entity's box ahead: one test that saves most rays a test of every node. */
 static void take_chunk(Chunk *chunk, const PosedEntity *entity, const double *const o[3], const double *const d[3],
                        const double *far_m, const int *list, int count, bool ask_all)
 {

@@ -1,14 +1,15 @@
 /* render/radar/radar_image.c: metal as mirrors, followed for a few bounces.
  *
- * The source is at the eye. A mirror sends the power of an eye ray into a lobe about the mirror direction (the
- * lobe stands for antenna cone and roughness together); what counts is the lobe's value in the direction back to
- * the eye, if the eye is in sight from there. The whole ray goes on along the mirror direction to the next mirror,
- * where the same question is asked. No power is made: each exit's lobe integrates to 1, times the mirrors' own
- * reflectances. Ground and whatever is no mirror ends a path.
+ * The source is at the eye. A mirror sends the power of an eye ray into a lobe about the mirror direction (the lobe
+ * stands for antenna cone and roughness together); its contribution is the lobe's value in the direction back to the
+ * eye, if the eye is visible from there. The whole ray continues along the mirror direction to the next mirror, where
+ * the same is computed. Energy is conserved: each exit's lobe integrates to 1, times the mirrors' own reflectances. A
+ * path ends at ground and at any surface that is not a mirror.
  *
  * Diffuse backscatter: sigma0 = gamma sin(grazing) is area of cross section by area of ground. A ray of solid angle
  * w at range R lights R^2 w / sin(grazing) of it, and a cross section spreads over 4 pi: gamma / (4 pi) of the ray's
- * power comes back a steradian, at any grazing angle. That is what constant gamma means, and the unit the lobe has. */
+ * power comes back a steradian, at any grazing angle. That is the constant-gamma model, in the same unit as the
+ * lobe. */
 #include "render/radar/radar_image.h"
 
 double radar_lobe(double lobe_rad, double cosine)
@@ -18,14 +19,14 @@ double radar_lobe(double lobe_rad, double cosine)
     return exp((cosine - 1) / s2) / (2 * pi_rad * s2 * -expm1(-1 / s2));
 }
 
-/* Below this the lobe's value matters to nobody (its peak is 1 / (pi lobe_rad^2)), and the ray back to the eye is
- * not worth tracing. exp(-40) of the peak. */
+/* Below this the lobe's value is negligible (its peak is 1 / (pi lobe_rad^2)), and the ray back to the eye is not
+ * worth tracing. exp(-40) of the peak. */
 static bool lobe_is_dark(double lobe_rad, double cosine)
 {
     return !(1 - cosine < 20 * lobe_rad * lobe_rad);
 }
 
-/* Paths still alive, as arrays: where the last mirror is, which way the ray leaves it. */
+/* Active paths, as arrays: position of the last mirror, direction in which the ray leaves it. */
 typedef struct Paths {
     int    count;
     int    sample[hits_capacity];       /* of the eye ray it started as */
@@ -44,17 +45,17 @@ static void add_ray(Rays *rays, const double p_enu[3], const double n_geo[3], co
     rays->far_m[k] = far_m;
 }
 
-/* Mirror direction at hit k of a ray going along d_enu; false when a shading normal turns it into the surface. */
+/* Mirror direction at hit k of a ray along d_enu; false when a shading normal tilts it into the surface. */
 static bool mirror(double out_enu[3], const Hits *hits, int k, const double d_enu[3])
 {
     const double n_enu[3] = {hits->n_enu[0][k], hits->n_enu[1][k], hits->n_enu[2][k]};
     const double n_geo[3] = {hits->n_geo[0][k], hits->n_geo[1][k], hits->n_geo[2][k]};
     v3_add_scaled(out_enu, d_enu, -2 * v3_dot(d_enu, n_enu), n_enu);
-    /* normals are floats: put the length right again */
+    /* normals are floats: normalise again */
     return v3_normalize(out_enu, out_enu) && v3_dot(out_enu, n_geo) > 0;
 }
 
-/* Everything one block needs besides its input. */
+/* Working memory of one block. */
 typedef struct Scratch {
     Rays   onward, back;
     Hits   met, between;
@@ -64,7 +65,7 @@ typedef struct Scratch {
     double back_slant_m[hits_capacity];
 } Scratch;
 
-/* The first bounce: seen from the eye by construction. Starts the paths that go on. */
+/* The first bounce: visible from the eye by construction. Starts the paths that continue. */
 static void first_bounce(RadarReturns *out, Scratch *s, const RadarConfig *config, const Materials *materials,
                          const Hits *hits, const Rays *rays)
 {
@@ -93,8 +94,8 @@ static void first_bounce(RadarReturns *out, Scratch *s, const RadarConfig *confi
     }
 }
 
-/* One more bounce of all paths: where they hit, what of it comes back to the eye, and who goes on. What comes back of
- * those beyond the last that is reported is added to it. */
+/* One more bounce of all paths: their hits, the power that returns to the eye, and the paths that continue. The
+ * return of bounces beyond the last that is reported is added to that one. */
 static void next_bounce(RadarReturns *out, int nth, Scratch *s, const RadarConfig *config, const Visibility *v,
                         const Materials *materials, const Rays *rays, int hidden, VisibilityCounters *counters)
 {

@@ -1,10 +1,9 @@
 /* render/radar/radar_image.h: the pseudo-radar picture: metal as a mirror, the source at the eye, a stated lobe.
  *
- * Relative units (model=pseudo-radar), never dBsm. From each eye hit a mirror path is followed for up to
- * six bounces; it counts by how near its exit direction comes to the way back to the eye, under a lobe
- * that keeps energy. Bounces are reported apart, those beyond the third with it: they are rare, and some vehicles send
- * a sixth of their power by five (bench precision, mirrors of a radar path). Ground and rough surfaces add diffuse
- * backscatter. */
+ * Relative units (model=pseudo-radar), never dBsm. From each eye hit a mirror path is followed for up to six
+ * bounces; its weight is the value of an energy-conserving lobe about its exit direction, towards the eye. Bounces
+ * are reported separately, those beyond the third together with it: they are rare, and some vehicles send a sixth of
+ * their power by five (bench precision, mirrors of a radar path). Ground and rough surfaces add diffuse backscatter. */
 #ifndef RENDER_RADAR_RADAR_IMAGE_H
 #define RENDER_RADAR_RADAR_IMAGE_H
 

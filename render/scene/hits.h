@@ -1,4 +1,4 @@
-/* render/scene/hits.h: rays and what they found, as arrays. One block of a tile; every band reads the same hits. */
+/* render/scene/hits.h: rays and their hits, as arrays. One block of a tile; all bands share the same hits. */
 #ifndef RENDER_SCENE_HITS_H
 #define RENDER_SCENE_HITS_H
 
@@ -8,24 +8,25 @@ enum { hits_capacity = 1024 }; /* samples in one block; arrays are padded to a m
 
 typedef struct Rays {
     int    count;
-    int    columns;                 /* of a picture, in rows one after another; 0: in no such order. For speed alone */
+    int    columns;                 /* of a picture, in rows one after another; 0: no such order. A hint for speed
+                                     * alone */
     double o_enu[3][hits_capacity]; /* origins */
     double d_enu[3][hits_capacity]; /* unit directions */
-    double far_m[hits_capacity];    /* nothing beyond; INFINITY: to the sky */
+    double far_m[hits_capacity];    /* search limit; INFINITY: to the sky */
 } Rays;
 
-/* What a hit is: sky, where nothing was met. */
+/* Kind of a hit: sky, where nothing was met. */
 typedef enum HitKind { hit_sky, hit_ground, hit_part } HitKind;
 
 /* A ray that met nothing: range_m INFINITY, everything else 0.
  *
- * Row i is what the ray in row i of its Rays met. A ray as it was shot may have several returns (kinds of ground within
- * its square; leaves and haze would be others): they follow one another, each a row of its own in Hits and Rays, and
- * `several` is set: ray[] then says which ray they were, and weight[] how much of its light each return is. */
+ * Row i is what the ray in row i of its Rays met. A traced ray may have several returns (ground classes within its
+ * square): they follow one another, each a row of its own in Hits and Rays, and `several` is set: ray[] is then the
+ * index of the traced ray, and weight[] the share of its light of each return. */
 typedef struct Hits {
     int      count, columns;            /* as Rays */
     bool     several;                   /* ray[] and weight[] hold; else one return a ray, of weight 1 */
-    uint16_t ray[hits_capacity];        /* as it was shot; ascending */
+    uint16_t ray[hits_capacity];        /* index of the traced ray; ascending */
     float    weight[hits_capacity];     /* 0 .. 1; 1 over the returns of a ray */
     double   range_m[hits_capacity];
     double   p_enu[3][hits_capacity];
@@ -41,7 +42,8 @@ typedef struct Hits {
     uint8_t  surface[hits_capacity];    /* SurfaceClass where the ground was met, else 0 */
 } Hits;
 
-/* Row `to` becomes row `from` of others, as one return of weight 1; rays as well. from and to may be the same arrays. */
+/* Row `from` of others is copied to row `to`, as one return of weight 1; rays as well. from and to may be the same
+ * arrays. */
 static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hits, const Rays *from_rays, int from)
 {
     hits->range_m[to]  = from_hits->range_m[from];
@@ -63,7 +65,7 @@ static inline void hits_copy(Hits *hits, Rays *rays, int to, const Hits *from_hi
     }
 }
 
-/* The ray, as it was shot, that a hit is a return of; and its share of that ray's light. */
+/* The traced ray of a hit; and the hit's share of that ray's light. */
 static inline int   hit_ray(const Hits *hits, int i) { return hits->several ? hits->ray[i] : i; }
 static inline float hit_weight(const Hits *hits, int i) { return hits->several ? hits->weight[i] : 1; }
 

@@ -1,7 +1,7 @@
-/* render/scene/lens.c: distortion of a lens: which lenses are good for a picture, and points outside of it. */
+/* render/scene/lens.c: distortion of a lens: validity of a lens for a picture, and points outside the picture. */
 #include "render/scene/lens.h"
 
-/* Least slopes of a lens that is taken: 0.1 is a picture squeezed tenfold. */
+/* Least slopes of an accepted lens: 0.1 is a picture compressed tenfold. */
 static const double least_slope = 0.1;
 
 enum { side_points = 16, march_steps = 64, grid = 32 };
@@ -49,7 +49,7 @@ static void outline_point(double out[2], const double half[2], int n)
     out[1] = half[1] * (side == 0 ? -1 : side == 1 ? along : side == 2 ? 1 : -along);
 }
 
-/* From the middle out to the outline on the branch that the middle is on; and whether the quick way back finds it. */
+/* From the centre out to the outline on the branch of the centre; and whether the fast inverse finds it. */
 static bool follow_outline(Lens *l, const double half[2])
 {
     double farthest = 0;
@@ -74,7 +74,7 @@ static bool follow_outline(Lens *l, const double half[2])
     return true;
 }
 
-/* Twice the largest second difference of the way back on a grid over the picture. */
+/* Twice the largest second difference of the inverse on a grid over the picture. */
 static void bound_bend(Lens *l, const double half[2])
 {
     const double hx = 2 * half[0] / grid, hy = 2 * half[1] / grid;

@@ -6,9 +6,10 @@
  * Source: Brown, "Decentering distortion of lenses", Photogrammetric Engineering 32 (1966) 444; "Close-range camera
  * calibration", 37 (1971) 855; signs and order of p1, p2 as OpenCV has them.
  *
- * Way back: Newton's method, a fixed number of steps, so that arrays and single points give the same bits; lens_make
- * refuses a lens that those steps do not bring to 1e-12. Beyond the picture a polynomial may fold back into it; from
- * `reach` on the image of a direction r u is therefore r / reach times that of reach u, which runs straight out. */
+ * Inverse: Newton's method, a fixed number of steps, so that arrays and single points give the same bits; lens_make
+ * rejects a lens for which those steps do not converge to 1e-12. Beyond the picture a polynomial may fold back into it;
+ * from `reach` on the image of a direction r u is therefore r / reach times that of reach u, a straight line
+ * outwards. */
 #ifndef RENDER_SCENE_LENS_H
 #define RENDER_SCENE_LENS_H
 
@@ -17,13 +18,14 @@
 typedef struct Lens {
     double k[3], p[2];
     double reach;      /* tangent off the axis up to which the polynomial holds; 0: no distortion at all */
-    double tangent[2]; /* what the picture shows at most to either side, and up or down; with room */
-    double bend;       /* bound of the second derivatives of the way back within the picture */
+    double tangent[2]; /* extent of the picture to either side, and up or down; with margin */
+    double bend;       /* bound of the second derivatives of the inverse within the picture */
 } Lens;
 
-static const double lens_room = 1.04; /* how far beyond the picture a lens must be good: room for lateral colour */
+static const double lens_room = 1.04; /* margin beyond the picture in which a lens must be valid: for lateral colour */
 
-/* half: of the picture, tangents on the image. STATUS_BAD_VALUE, not logged: it folds within the picture, or nearly. */
+/* half: of the picture, tangents on the image. STATUS_BAD_VALUE, not logged: the lens folds within the picture, or
+ * nearly. */
 Status lens_make(Lens *out, const double k[3], const double p[2], const double half[2]);
 
 /* By the polynomial alone. */
@@ -44,7 +46,7 @@ static inline void lens_slopes(double out[3], const Lens *l, double x, double y)
     out[2] = 2 * x * y * slope + 2 * l->p[0] * x + 2 * l->p[1] * y;
 }
 
-/* The way back for a point within the picture. */
+/* The inverse for a point within the picture. */
 enum { lens_newton_steps = 6 };
 static inline void lens_back_within(double out[2], const Lens *l, double x_image, double y_image)
 {

@@ -1,4 +1,4 @@
-/* render/scene/skip.c: the names of what a frame leaves out. */
+/* render/scene/skip.c: the names of the skips. */
 #include "render/scene/skip.h"
 
 static const struct {

@@ -1,27 +1,28 @@
-/* render/scene/skip.h: what a frame leaves out because it cannot change a bit: each with a name, and counted.
+/* render/scene/skip.h: skips: computations left out because they cannot change a bit of the result; each is named and
+ * counted.
  *
- * Every one may be turned off by itself (RenderRequest.skips_off); the planes stay the same to the bit
- * (tests/sensor/test_skips.c, over random scenes), and `pitviper bench skip` says what each saves. */
+ * Each may be disabled separately (RenderRequest.skips_off); the planes stay the same to the bit
+ * (tests/sensor/test_skips.c, over random scenes), and `pitviper bench skip` reports what each saves. */
 #ifndef RENDER_SCENE_SKIP_H
 #define RENDER_SCENE_SKIP_H
 
 #include "pitviper.h"
 
 typedef enum Skip {
-    SKIP_BLOCK,         /* entities whose sphere a block of pixels cannot see */
+    SKIP_BLOCK,         /* view-frustum cull: entities whose sphere a block of pixels cannot see */
     SKIP_SPHERE,        /* an entity, for rays that miss its sphere or met something before it */
     SKIP_PART,          /* a part, for rays that miss the entity's box or the part's sphere */
     SKIP_GROUND_BEHIND, /* ground beyond the part that a ray met */
-    SKIP_GROUND_BELOW,  /* ground that lies below all of a block's rays until the parts they met */
-    SKIP_GROUND_WALK,   /* steps of the ground's pyramid that neighbouring rays make together */
+    SKIP_GROUND_BELOW,  /* ground that is below all of a block's rays up to the parts they met */
+    SKIP_GROUND_WALK,   /* steps of the ground's pyramid that neighbouring rays share */
     SKIP_SUN_SPHERE,    /* an entity, for sun rays that miss its sphere or are stopped already */
     SKIP_SUN_STOPPED,   /* ground, for sun rays that a part stops */
     SKIP_SUN_CLEAR,     /* ground, for sun rays from where nothing towards the sun is high enough */
-    SKIP_AMODAL,        /* an entity as it would be seen alone, for rays on which none of it lies behind the hit */
+    SKIP_AMODAL,        /* the amodal test of an entity, for rays on which none of it is behind the hit */
     SKIP_CELL,          /* rays over a small target's box that miss it */
-    SKIP_RETRACE,       /* a pixel's first ray, when more are shot: its planes still say what it met */
+    SKIP_RETRACE,       /* a pixel's first ray, when more are traced: its planes still hold its hit */
     SKIP_SMOKE,         /* smoke and dust that a block of pixels cannot see */
-    SKIP_LIGHT,         /* light of places that a neighbour has asked for already in this frame */
+    SKIP_LIGHT,         /* light of sample points that a neighbouring hit has computed already in this frame */
     SKIP_TREE,          /* entities that the tree of their spheres leaves out: blocks, rays, sun rays, places near */
     SKIP_COUNT
 } Skip;
@@ -29,7 +30,7 @@ typedef enum Skip {
 enum { skips_all_off = (1 << SKIP_COUNT) - 1 };
 
 const char *skip_name(Skip skip); /* as in run.json: "block", "sphere" ... */
-const char *skip_what(Skip skip); /* one line for people, with the unit of its count */
+const char *skip_what(Skip skip); /* one line of description, with the unit of its count */
 
 static inline bool skips(unsigned off, Skip skip) { return !(off >> skip & 1); }
 

@@ -1,4 +1,4 @@
-/* render/scene/upright.c: axes of a camera from where it looks and where its top is. */
+/* render/scene/upright.c: axes of a camera from its viewing direction and its up direction. */
 #include "render/scene/upright.h"
 
 void camera_topped(double r_enu_from_cam[9], const double d_enu[3], const double top_enu[3])

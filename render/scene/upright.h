@@ -1,10 +1,10 @@
-/* render/scene/upright.h: axes of a camera, r_enu_from_cam, from where it looks and where its top is. */
+/* render/scene/upright.h: axes of a camera, r_enu_from_cam, from its viewing direction and its up direction. */
 #ifndef RENDER_SCENE_UPRIGHT_H
 #define RENDER_SCENE_UPRIGHT_H
 
 #include "pitviper.h"
 
-static const double camera_vertical_rad = 2e-3; /* why: sensor/node/seeker.h */
+static const double camera_vertical_rad = 2e-3; /* reason: sensor/node/seeker.h */
 
 bool camera_near_vertical(const double d_enu[3]);
 

@@ -1,4 +1,4 @@
-/* render/scene/view.h: one camera, and the bands and channels that it may see. */
+/* render/scene/view.h: one camera, and its possible bands and channels. */
 #ifndef RENDER_SCENE_VIEW_H
 #define RENDER_SCENE_VIEW_H
 
@@ -9,7 +9,7 @@ const char *band_name(Band band); /* optical, mwir, lwir, radar */
 
 /* Pinhole: x right, y down, z along the boresight. A direction (x, y, z) falls on
  * column = width / 2 + focal_px x / z, row = height / 2 + focal_px y / z; the first pixel's centre is
- * (0.5, 0.5). A lens (render/scene/lens.h) moves (x / z, y / z) before that; it must have been made for this picture. */
+ * (0.5, 0.5). A lens (render/scene/lens.h) moves (x / z, y / z) before that; it must be made for this picture. */
 typedef struct View {
     double p_enu[3];
     double r_enu_from_cam[9];
@@ -33,7 +33,7 @@ static inline void view_ray(double d_enu[3], const View *view, double column_px,
     m3_mul_v3(d_enu, view->r_enu_from_cam, d_cam);
 }
 
-/* Where a point before the eye (p_cam[2] > 0) falls. */
+/* Image position of a point in front of the eye (p_cam[2] > 0). */
 static inline void view_project(double image_px[2], const View *view, const double p_cam[3])
 {
     if (view_has_lens(view)) {
@@ -79,9 +79,9 @@ static inline double view_pixel_share(const View *view, int x, int y)
 /* Of the optical band: three pictures or one. */
 typedef enum OpticalChannels {
     OPTICAL_PAN, OPTICAL_RGB, OPTICAL_NIR,
-    OPTICAL_RED, OPTICAL_BLUE /* one of the three, as render() asks itself where colours differ in magnification */
+    OPTICAL_RED, OPTICAL_BLUE /* one of the three, as render() requests it where colours differ in magnification */
 } OpticalChannels;
 
-static const double view_most_lateral = 0.02; /* less than the room that a lens has */
+static const double view_most_lateral = 0.02; /* less than the margin of a lens */
 
 #endif

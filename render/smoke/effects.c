@@ -1,9 +1,11 @@
-/* render/smoke/effects.c: the light of a puff: its own by Planck, the sun's and the surroundings' by its albedo.
+/* render/smoke/effects.c: the radiance of smoke puffs: thermal emission by Planck, scattered light of sun and
+ * surroundings by the albedo.
  *
- * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean of what arrives. The sun arrives with a
- * phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in smoke_scatter_orders orders, each
- * with half the share, half the asymmetry and half the depth of the one before (Wrenninge, Kulla, Lundqvist 2013): an
- * approximation for pictures, that leaves a thick white cloud lit from behind the eye at a reflectance of about 0.4. */
+ * Source of a grey medium (Kirchhoff): (1 - albedo) Planck(T) + albedo * mean incident radiance. Sunlight is
+ * scattered with a phase function (Henyey and Greenstein, 1941) and, as multiple scattering fills a cloud, in
+ * smoke_scatter_orders orders, each with half the share, half the asymmetry and half the depth of the one before
+ * (Wrenninge, Kulla, Lundqvist 2013): an approximation; a thick white cloud lit from behind the eye gets a
+ * reflectance of about 0.4. */
 #include "render/smoke/effects.h"
 
 #include <stdlib.h>
@@ -19,7 +21,7 @@ static double phase_per_sr(double asymmetry, double cosine)
     return (1 - g2) / (4 * pi_rad * base * sqrt(base));
 }
 
-/* Below 500 K nothing shows to 1.1 um, and as little by Wien's law elsewhere: under 2e-5 W/(m2 sr). */
+/* Below 500 K emission up to 1.1 um is negligible, and by Wien's law as small elsewhere: under 2e-5 W/(m2 sr). */
 static double glow_w_m2_sr(int band, double temp_k)
 {
     double low_m, high_m;
@@ -33,16 +35,16 @@ typedef struct Placed {
     const EffectModel *law;
     double           d_eye_enu[3], temp_k; /* from the eye to its centre */
     uint32_t         group;
-    int              index; /* in the snapshot: decides between equals */
+    int              index; /* index in the snapshot: order of equals */
 } Placed;
 
-/* Source terms of one volume in one band. i: its path among the veils. */
+/* Source terms of one volume in one band. i: its air path. */
 static void light_volume(Placed *p, int band, const Air *air, const float *ground_rho, const AirPaths *veils, int i)
 {
     SmokeVolume  *v = &p->volume;
     const bool   optical = band < effect_band_mwir;
     const double albedo = p->law->albedo[band], sun_w_m2 = air->light.sun_w_m2[band];
-    /* mean radiances from above and below: thermal ground shines by itself, ground in daylight by what falls on it */
+    /* mean radiances from above and below: thermal ground emits, ground in daylight reflects */
     const double above = air->light.sky_w_m2[band] / pi_rad;
     const double below = optical ? ground_rho[band] * (sun_w_m2 * fmax(air->light.sun_d_enu[2], 0) / pi_rad + above)
                                  : air->light.ground_w_m2_sr[band];
@@ -60,7 +62,7 @@ static void light_volume(Placed *p, int band, const Air *air, const float *groun
     }
 }
 
-/* The paths from the eye to all centres, as many at a time as a block holds. */
+/* The air paths from the eye to all centres, as many at a time as a block holds. */
 static Status light_volumes(Placed *placed, int count, const View *view, const Air *air, const float *ground_rho,
                             unsigned bands, Arena *arena)
 {
@@ -106,7 +108,7 @@ static int by_range(const void *a, const void *b)
     return (p->index > q->index) - (p->index < q->index);
 }
 
-/* Depth of a cloud's other puffs before the sun, at each one's centre. */
+/* Optical depth of a cloud's other puffs towards the sun, at each puff's centre. */
 static void shade_group(Placed *first, int count, unsigned bands)
 {
     for (int i = 0; i < count; i++)
@@ -121,7 +123,8 @@ static void shade_group(Placed *first, int count, unsigned bands)
         }
 }
 
-/* Whether any of it can fall into the picture, or shade what does: a cone about the corners, widened. */
+/* View-frustum cull, including shadows: whether any of it can fall into the picture, or shade what does: a cone
+ * about the corners, widened. */
 static bool may_matter(const View *view, const EffectVolume *v)
 {
     double half[2], off[3], cam[3];
@@ -162,7 +165,7 @@ Status effects_scene(EffectScene *out, const Snapshot *snapshot, int hidden, con
         v->range_m = v3_length(d_eye_enu);
         if (!v3_normalize(d_eye_enu, d_eye_enu)) d_eye_enu[2] = 1;
         for (int k = 0; k < 3; k++) v->pattern[k] = 256 * random_uniform(puff->seed, 80, 0, (uint64_t)k);
-        v->pattern[2] -= 0.25 * puff->age_s; /* it rolls upwards through its own outline */
+        v->pattern[2] -= 0.25 * puff->age_s; /* its pattern moves upwards through its own outline */
         placed[count].law    = law;
         placed[count].temp_k = volume.temp_k + daylight_temp_at(&air->light, volume.p_enu) - air->light.weather.air_temp_k;
         placed[count].group  = puff->group;

@@ -1,5 +1,5 @@
-/* render/smoke/smoke_volume.c: spheroids along a ray. A spheroid is brought to a unit ball by stretching space along its axis; along
- * a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
+/* render/smoke/smoke_volume.c: spheroids along a ray. Scaling space along its axis maps a spheroid to a unit ball;
+ * along a ray the squared distance from the centre is then a parabola, and the density (1 - q^2)^2 a quartic. */
 #include "render/smoke/smoke_volume.h"
 
 #include <stdlib.h>
@@ -9,7 +9,7 @@ _Static_assert(smoke_bands == 7, "Passed begins with one in each band");
 /* ---- one volume along one ray ------------------------------------------------------------- */
 
 typedef struct Chord {
-    double middle_m, half_m; /* where the ray is nearest the centre, half its way inside */
+    double middle_m, half_m; /* parameter of closest approach to the centre, half the chord inside */
     double rate2;            /* |d|^2 in the ball's units: density is (rate2 (half^2 - u^2))^2 */
     double q2;               /* squared distance of nearest approach, 0 .. 1 */
 } Chord;
@@ -58,7 +58,7 @@ double smoke_column_m(const SmokeVolume *volume, const double o_enu[3], const do
     return chord_of(&chord, o, d) ? chord_column(&chord, volume->even, from_m, to_m) : 0;
 }
 
-/* ---- its pattern -------------------------------------------------------------------------- */
+/* ---- noise pattern ------------------------------------------------------------------------ */
 
 static inline float lattice(int32_t x, int32_t y, int32_t z)
 {
@@ -87,8 +87,8 @@ static float lattice_noise(const double p[3])
     return plane[0] + f[2] * (plane[1] - plane[0]);
 }
 
-/* Billows: three octaves, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0. Each octave
- * has axes of its own: lattices that lie over each other show as squares. */
+/* Billows: three octaves of noise, the finer ones folded so that they bulge outwards. About -1 .. 1, mean near 0.
+ * Each octave has axes of its own: aligned lattices show as squares. */
 static double billows(const double p[3])
 {
     static const double turn[9] = {0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64};
@@ -104,9 +104,9 @@ static double billows(const double p[3])
     return sum;
 }
 
-/* Where the ray passes nearest the centre the pattern says how far the ball has bulged out to there (space is
- * stretched by the answer, 1 .. 1.6) and how thick it is: the factor on the ray's whole column. The constant makes up
- * for what the stretching takes: on the whole the mass stays (tests/render/test_veil.c). */
+/* At the ray's closest approach to the centre the pattern gives the bulge of the ball there (space is scaled by it,
+ * 1 .. 1.6) and the density: the factor on the ray's whole column. The constant compensates the scaling: the mean
+ * mass is kept (tests/render/test_veil.c). */
 static double pattern_stretch(double *factor, const SmokeVolume *v, const double nearest[3], double q2)
 {
     double p[3];
@@ -125,7 +125,8 @@ typedef struct Crossing {
     double source[smoke_bands];
 } Crossing;
 
-/* What the volume shows on this ray: lit by what of the sun gets to the place where the eye's look comes to rest. */
+/* Source radiance of the volume on this ray, with the sunlight that reaches one point of its chord, in front of the
+ * middle. */
 static void light_crossing(Crossing *c, const double o[3], const double d[3], unsigned bands)
 {
     const SmokeVolume *v = c->volume;
@@ -157,7 +158,7 @@ static int compare_m(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* Sorted boundaries, joined to at most smoke_segments_max by leaving some of the inner ones out. */
+/* Sorted boundaries, merged to at most smoke_segments_max by dropping some of the inner ones. */
 static int cuts_of(double cut_m[smoke_segments_max], const Crossing *crossing, int count)
 {
     double edge_m[2 * veil_together];
@@ -179,13 +180,13 @@ static inline double absorbed(double depth)
     return depth > 1e-3 ? 1 - exp(-depth) : depth * (1 - depth * (0.5 - depth * (1.0 / 6 - depth * (1.0 / 24))));
 }
 
-/* What a ray has met so far, front to back. */
+/* What a ray has accumulated so far, front to back. */
 typedef struct Passed {
     double through[smoke_bands], added[smoke_bands];
-    bool   goes_on; /* something still comes through */
+    bool   goes_on; /* transmittance above 0 */
 } Passed;
 
-/* Puts the crossings behind what was passed. */
+/* Composites the segments behind those already passed. */
 static void compose(Passed *passed, const Crossing *crossing, int count, unsigned bands)
 {
     double    cut_m[smoke_segments_max], *const through = passed->through, *const added = passed->added;
@@ -242,7 +243,7 @@ void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list
             Crossing         *c = &crossing[crossed];
             double            off[3], o[3], d[3];
             v3_sub(off, o_enu, v->p_enu);
-            /* its ball first: most volumes of a block miss most rays */
+            /* bounding ball first: most volumes of a block miss most rays */
             const double along = v3_dot(off, d_enu), reach = fmax(v->along_m, v->across_m);
             if (v3_dot(off, off) - along * along > reach * reach * 1.001) continue;
             to_ball(o, v, off);
@@ -295,11 +296,11 @@ void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count)
 int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
                double column1_px, double row1_px)
 {
-    /* a cone about the block: its middle, and the widest of its corners */
+    /* bounding cone of the block: its axis, and the widest of its corners */
     const double corner_px[4][2] = {{column0_px, row0_px}, {column1_px, row0_px}, {column0_px, row1_px},
                                     {column1_px, row1_px}};
     double middle[3], cosine = 1, tangent[4];
-    if (view_has_lens(view)) /* its sides are bent: the straight box about them */
+    if (view_has_lens(view)) /* its sides are curved: the straight box about them */
         view_box_tangents(tangent, view, (const double[4]){column0_px, row0_px, column1_px, row1_px});
     view_ray(middle, view, 0.5 * (column0_px + column1_px), 0.5 * (row0_px + row1_px));
     for (int c = 0; c < 4; c++) {
@@ -321,7 +322,7 @@ int smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View
         double            off[3];
         v3_sub(off, v->p_enu, view->p_enu);
         const double along = v3_dot(off, middle), aside = sqrt(fmax(v3_dot(off, off) - along * along, 0));
-        /* distance from the cone's mantle; inside: negative. Behind the eye by more than its size: out */
+        /* distance from the cone's surface; inside: negative. Behind the eye by more than its size: culled */
         if (along > -reach && aside * cosine - along * sine <= reach) list[listed++] = n;
     }
     return listed;

@@ -1,47 +1,48 @@
 /* render/smoke/smoke_volume.h: smoke, dust and flame along rays: out = in * transmittance + added.
  *
- * A veil is a set of spheroids, each a grey medium of one temperature and albedo a band. Along a ray everything in
- * front of the solid hit is put together in order of depth: the ray is cut where volumes begin and end, and within a
- * cut the column of each is exact (a polynomial), so a transmittance is exact whatever overlaps. What a cut gives is
- * the mean of its volumes' sources weighted by their depths: exact where volumes are even inside or alone, and while
- * there are no more than smoke_segments_max boundaries; beyond that neighbouring cuts are joined. tests/render/test_veil.c. */
+ * Smoke is a set of spheroids, each a grey medium of one temperature and albedo a band. Along a ray everything in
+ * front of the solid hit is composited in order of depth: the ray is split into segments where volumes begin and
+ * end, and within a segment the column of each is exact (a polynomial), so the transmittance is exact whatever
+ * overlaps. The source of a segment is the mean of its volumes' sources weighted by their optical depths: exact
+ * where volumes are uniform inside or alone, and while there are no more than smoke_segments_max boundaries; beyond
+ * that neighbouring segments are merged. tests/render/test_veil.c. */
 #ifndef RENDER_SMOKE_SMOKE_VOLUME_H
 #define RENDER_SMOKE_SMOKE_VOLUME_H
 
 #include "render/scene/hits.h"
 #include "render/scene/view.h"
 
-/* Bands in the order of entities/effects.h. */
+/* Bands in the order of entities/effects/effects.h. */
 enum { smoke_bands = 7, smoke_scatter_orders = 3, smoke_segments_max = 24, veil_together = 96 };
 
 typedef struct SmokeVolume {
     double p_enu[3], axis_enu[3];
     double along_m, across_m;              /* half axes */
     double range_m;                        /* of the centre, from the eye */
-    bool   even;                           /* one density inside; else (1 - q^2)^2 from centre to surface */
+    bool   even;                           /* uniform density inside; else (1 - q^2)^2 from centre to surface */
     double extinction_per_m[smoke_bands];   /* at the centre */
-    /* What a thick piece of it shows at the eye, W/(m2 sr), the air between taken into account: by itself with what it
-     * scatters of the surroundings; half the difference from top to bottom; and by sunlight, to be taken times
-     * exp(-depth / 2^n) of the way to the sun. */
+    /* Source radiance of an optically thick piece at the eye, W/(m2 sr), including the air between: emission plus
+     * scattered light of the surroundings; half the difference from top to bottom; and sunlight, to be multiplied by
+     * exp(-depth / 2^n) of the path to the sun. */
     double source[smoke_bands], from_top[smoke_bands], sun[smoke_bands][smoke_scatter_orders];
-    double sun_depth[smoke_bands];          /* of other volumes before the sun */
+    double sun_depth[smoke_bands];          /* optical depth of other volumes towards the sun */
     double d_sun_enu[3];
-    double billow, pattern[3];             /* depth of the pattern; where it begins */
+    double billow, pattern[3];             /* amplitude of the noise pattern; its origin */
 } SmokeVolume;
 
-/* What the veil does to each ray of a block. */
+/* Transmittance and radiance of the smoke for each ray of a block. */
 typedef struct SmokeRays {
     bool  any;
     float transmittance[smoke_bands][hits_capacity], added[smoke_bands][hits_capacity];
 } SmokeRays;
 
-/* Volumes that columns column0_px .. column1_px, rows row0_px .. row1_px may see, nearest first: list has room for
+/* Volumes that columns column0_px .. column1_px, rows row0_px .. row1_px may see, nearest first: list holds up to
  * count. volume: sorted by range_m. */
 int  smoke_cull_block(int *list, const SmokeVolume *volume, int count, const View *view, double column0_px, double row0_px,
                 double column1_px, double row1_px);
 /* far_m: of the solid hit of each ray, INFINITY none. bands: 1 << band, those to compute. Of more than veil_together
- * volumes on a ray each further veil_together, in order of range, are put behind the ones before: transmittances stay
- * exact, and what is added is that of clouds one behind the other. */
+ * volumes on a ray each further veil_together, in order of range, are composited behind the previous ones:
+ * transmittances stay exact, and the added radiance is that of clouds one behind the other. */
 void smoke_trace_rays(SmokeRays *out, const SmokeVolume *volume, const int *list, int count, const Rays *rays,
                const double *far_m, unsigned bands);
 void smoke_apply(float *radiance, const SmokeRays *veil, int band, int count);

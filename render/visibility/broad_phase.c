@@ -65,7 +65,7 @@ static bool is_sphere(const double s[4])
 
 static void grow(Box *box, const double s[4])
 {
-    /* a million times what rounding can take, at any distance from the origin */
+    /* a million times the rounding error, at any distance from the origin */
     const double room_m = s[3] * (1 + 1e-9) + 1e-6 + 1e-10 * (fabs(s[0]) + fabs(s[1]) + fabs(s[2]));
     for (int c = 0; c < 3; c++) {
         box->low[c]  = fmin(box->low[c], s[c] - room_m);
@@ -131,7 +131,7 @@ Status broad_phase_create(BroadPhase **out, const int *item, const double (*sphe
 
 int broad_phase_count(const BroadPhase *tree) { return tree->count; }
 
-/* ---- volumes ------------------------------------------------------------------------------------ */
+/* ---- volume queries ----------------------------------------------------------------------------- */
 
 static int compare_items(const void *a, const void *b)
 {
@@ -289,7 +289,7 @@ int broad_phase_swept(int *list, int most, const BroadPhase *tree, const double 
     return count;
 }
 
-/* ---- rays --------------------------------------------------------------------------------------- */
+/* ---- ray queries -------------------------------------------------------------------------------- */
 
 typedef __m256d Four;
 

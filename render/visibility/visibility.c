@@ -1,8 +1,8 @@
-/* render/visibility/visibility.c: what rays meet first, and what stands between a place and the sun. */
+/* render/visibility/visibility.c: first hits of rays, and shadows of the sun. */
 #include "render/visibility/visibility_private.h"
 
-/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag
- * out: nothing here to branch on. */
+/* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. Plain arrays in, one flag out:
+ * no branches. */
 void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const double *const d[3],
                              const double *limit_m, const double centre[3], double radius_m)
 {
@@ -17,7 +17,7 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
     }
 }
 
-/* Rays of a picture's rows in squares of 4 x 4, which go through a tracer together; others as they are. */
+/* Rays of a picture's rows in squares of 4 x 4, which are traced as a packet; others as they are. */
 static void order_rays(int order[hits_capacity], int count, int columns)
 {
     const bool squares = columns > 1 && columns <= count && count % columns == 0;
@@ -29,7 +29,7 @@ static void order_rays(int order[hits_capacity], int count, int columns)
                 for (int x = x0; x < x0 + 4 && x < width; x++) order[at++] = y * width + x;
 }
 
-/* Which of them are to be asked, in that order. */
+/* Indices of the active rays, in that order. */
 static int list_asked(int list[hits_capacity], const int order[hits_capacity], const uint8_t *ask, int count)
 {
     int listed = 0;
@@ -40,8 +40,8 @@ static int list_asked(int list[hits_capacity], const int order[hits_capacity], c
     return listed;
 }
 
-/* The shading normal leans with the curved surface that the facets stand for; where it leans away from the
- * ray it is brought back to edge-on. */
+/* The shading normal follows the curved surface that the facets approximate; where it faces away from the ray it is
+ * turned back to edge-on. */
 static void store_normals(Hits *hits, int i, const double n_geo[3], const double n_enu[3], const double d_enu[3])
 {
     double       n[3] = {n_enu[0], n_enu[1], n_enu[2]};
@@ -103,7 +103,7 @@ static void complete_part_hit(Hits *hits, int i, const Visibility *v, int entity
         hits->material[i] = (uint16_t)material_of_part(v->materials, posed->model, hits->part[i] - 1, posed->damage);
 }
 
-/* What the ground is where it was met. */
+/* Surface class and material of the ground at the hit. */
 static void classify_ground(Hits *hits, const Landscape *landscape, const Materials *materials)
 {
     double x_m[hits_capacity], y_m[hits_capacity];
@@ -129,7 +129,7 @@ static void ground_hits(double *range_m, GroundHit *hit, const Visibility *v, in
     }
 }
 
-enum { clear_rays = 128 }; /* that are looked at together */
+enum { clear_rays = 128 }; /* that are tested together */
 
 static void grow_box(double box[2][3], const double p[3])
 {
@@ -139,7 +139,7 @@ static void grow_box(double box[2][3], const double p[3])
     }
 }
 
-/* Whether every ray meets an entity, and all of the ground lies below all of them until there. */
+/* Whether every ray meets an entity, and all of the ground is below all of them up to there. */
 static bool ground_lies_below(const Visibility *v, const uint32_t *entity, int count, const double *const o[3],
                               const double *const d[3], const double *until_m)
 {
@@ -215,7 +215,7 @@ static void first_hit(Hits *hits, const Visibility *v, const Rays *rays, const i
             hits->entity[i] = (uint32_t)index + 1;
         }
     }
-    /* the ground comes first where it is as near: it is asked just past whom the ray met */
+    /* the ground has priority at equal range: it is traced to just beyond the part's hit */
     const bool behind = skips(v->skips_off, SKIP_GROUND_BEHIND);
     for (int i = 0; i < count; i++) {
         until_m[i] = hits->entity[i] ? limit_m[i] * (1 + 1e-12) : limit_m[i];
@@ -293,7 +293,7 @@ static bool sphere_may_shadow(const PosedEntity *entity, const double centre[3],
     return along > -reach_m && v3_dot(across, across) < reach_m * reach_m;
 }
 
-/* ask: of sun rays from places close together, those that the ground might stop. */
+/* ask: the sun rays from neighbouring hits that the ground might block. */
 static void leave_out_clear(uint8_t *ask, const Visibility *v, int count, const double *const o[3], const uint8_t *dark,
                             const double d_enu[3])
 {
@@ -319,7 +319,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     int     hit_of[hits_capacity], order[hits_capacity], in_turn[hits_capacity], list[hits_capacity], count = 0;
     uint8_t dark[hits_capacity], ask[hits_capacity];
 
-    /* the lit candidates, close together: neither sky nor turned away */
+    /* the lit candidates, compacted: neither sky nor facing away */
     order_rays(order, hits->count, hits->columns);
     for (int k = 0; k < hits->count; k++) {
         const int i = order[k];
@@ -379,7 +379,7 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
     counters->skipped[SKIP_SUN_SPHERE] += offered - asked;
     if (by_tree) counters->skipped[SKIP_TREE] += drawable * (uint64_t)count - offered;
 
-    /* the ground is asked only for what the parts left lit */
+    /* the ground is traced only for rays that no part blocks */
     int left = 0, lit = 0;
     if (skips(v->skips_off, SKIP_SUN_CLEAR)) leave_out_clear(ask, v, count, o, dark, d_enu);
     else memset(ask, 1, (size_t)count);

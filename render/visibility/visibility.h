@@ -1,10 +1,10 @@
-/* render/visibility/visibility.h: what a ray meets first, and whether a point sees the sun. The only door to ground and
- * parts; nobody else knows how they are traced.
+/* render/visibility/visibility.h: first hits of rays, and shadows of the sun. The only interface to the tracing of
+ * ground and parts.
  *
- * The ground is our own height field, in double, scalar and eight wide with the same bits. Each moving part is
- * traced in its own node's frame: the ray is taken there in double, advanced to the node's bounding sphere,
- * narrowed once, and given to Embree, which only nominates triangles; who is met, range and normal are found in
- * double. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
+ * The ground is a height field, traced in double, scalar and eight wide with the same bits. Each moving part is
+ * traced in its own node's frame: the ray is transformed there in double, advanced to the node's bounding sphere,
+ * converted to float once and passed to Embree, which only finds candidate triangles; the hit, range and normal are
+ * computed in double. Equal distances go to the lower id (ground before entity 1 before entity 2), and of one
  * entity's triangles, within 0.1 mm, to the lowest. */
 #ifndef RENDER_VISIBILITY_VISIBILITY_H
 #define RENDER_VISIBILITY_VISIBILITY_H
@@ -19,13 +19,13 @@
 #include "terrain/landscape/landscape.h"
 #include "terrain/earth/local_frame.h"
 
-/* One frame's world: a tree over the spheres of all entities (render/visibility/broad_phase.h), and the nodes of those that
- * anything asks for. Posing costs transforms only; nothing is committed or kept between frames, so any number of them may
- * be alive and traced at once. */
+/* One frame's world: a tree over the spheres of all entities (render/visibility/broad_phase.h), and the nodes of
+ * those that are needed. Posing costs transforms only; nothing is committed or kept between frames, so any number of
+ * them may be alive and traced at once. */
 typedef struct Visibility Visibility;
 
 typedef struct VisibilityCounters {
-    uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* asked of each tracer */
+    uint64_t rays_ground, rays_parts, rays_sun_ground, rays_sun_parts; /* tests of each tracer */
     uint64_t skipped_parts, skipped_sun_parts;                        /* ray x entity pairs proven empty */
     uint64_t skipped[SKIP_COUNT];                                     /* in the units of skip_what */
 } VisibilityCounters;
@@ -35,30 +35,31 @@ typedef struct VisibilityCounters {
 Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *ground, const LocalFrame *frame,
                          const Snapshot *snapshot, unsigned skips_off, Arena *arena);
 
-/* Entities of the snapshot, and each as it stands, posed when it is first asked for (by any thread); its model is -1 where
- * it cannot be drawn (render/parts/parts.h). */
+/* Entities of the snapshot, and their poses, each computed on first use (by any thread); its model is -1 where it
+ * cannot be drawn (render/parts/parts.h). */
 struct PosedEntity;
 int visibility_count(const Visibility *v);
 const struct PosedEntity *visibility_posed(const Visibility *v, int index);
 
-/* Whose rows Hits.material names: before anything is traced. Without: all 0. They must outlive it. */
+/* The table that Hits.material indexes: set before anything is traced. Without: all 0. It must outlive the frame. */
 void visibility_materials(Visibility *v, const Materials *materials);
 
 /* A hit's place on its part, in the axes of the part's node: moves with the part. Of hits of kind hit_part. */
 void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits *hits, int i);
 
-/* How damaged an entity is shown: snapshot_damage. */
+/* The damage state that an entity is rendered with: snapshot_damage. */
 int visibility_damage(const Visibility *v, int index);
 
-/* STATUS_NO_MEMORY: some entity could not be posed, and the frame is not whole. To be asked once it is done. */
+/* STATUS_NO_MEMORY: some entity could not be posed, and the frame is incomplete. To be called once tracing is done. */
 Status visibility_status(const Visibility *v);
 
-/* Entities that may touch a box grown by more_m, ascending, and some more: each must still be looked at. list: capacity =
- * snapshot count. */
+/* Entities that may touch a box grown by more_m, ascending; conservative: each must still be tested. list: capacity
+ * = snapshot count. */
 int visibility_near(int *list, const Visibility *v, const double low[3], const double high[3], double more_m);
 
-/* Which entities a pixel block may see: those whose bounding sphere meets the block's pyramid (all of them
- * without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never listed (-1). */
+/* View-frustum cull: the entities that a pixel block may see, those whose bounding sphere meets the block's pyramid
+ * (all of them without SKIP_BLOCK). list: capacity = snapshot count; returns the count, ascending. hidden: never
+ * listed (-1). */
 int visibility_block_entities(int *list, const Visibility *v, const View *view, double column0_px, double row0_px,
                               double column1_px, double row1_px, int hidden,
                               VisibilityCounters *counters);
@@ -72,7 +73,7 @@ void visibility_first_hit(Hits *hits, const Visibility *v, const Rays *rays, con
 void visibility_first_part(Hits *hits, const Visibility *v, const Rays *rays, const int *list, int list_count,
                            VisibilityCounters *counters);
 
-/* 1 where something (any_sender, the hidden host too) is between the hit and the direction d_enu, else 0; 0 for
+/* 1 where any entity (also the hidden host) or the ground is between the hit and the direction d_enu, else 0; 0 for
  * sky hits. Origins are offset along the geometric normal by 1 mm; surfaces that face away give 1. */
 void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, const double d_enu[3],
                        VisibilityCounters *counters);
@@ -80,8 +81,8 @@ void visibility_shadow(uint8_t *shadow, const Visibility *v, const Hits *hits, c
 /* Whether each ray would meet entity `index` with nothing else in the world (amodal truth). */
 void visibility_entity_only(uint8_t *meets, const Visibility *v, const Rays *rays, int index, VisibilityCounters *counters);
 
-/* Whether any of entity `index` may lie farther along a ray than the first hit there, at range_m, which was looked for
- * with it: else it is not in the ray's way at all. True without SKIP_AMODAL. */
+/* Whether any part of entity `index` may lie farther along a ray than the first hit, at range_m, of a search that
+ * included it; otherwise the ray misses it. True without SKIP_AMODAL. */
 bool visibility_may_lie_beyond(const Visibility *v, int index, const double o_enu[3], const double d_enu[3], double range_m);
 
 /* Bounding box of an entity on the image (of its vertices; through a lens, which bows them, of its edges), clipped to

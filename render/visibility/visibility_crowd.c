@@ -1,5 +1,5 @@
-/* render/visibility/visibility_crowd.c: rays through the tree of entities, a few together, nearest first. What is met is what
- * asking for one entity after the other finds: the nearest, of equals that of the lowest index. */
+/* render/visibility/visibility_crowd.c: packets of rays through the tree of entities, nearest first. The result is
+ * that of testing one entity after the other: the nearest hit, of equals that of the lowest index. */
 #include "render/visibility/visibility_private.h"
 
 typedef struct Walk {
@@ -30,7 +30,7 @@ static bool is_listed(const int *list, int count, int item)
     return false;
 }
 
-/* Rays first .. of the order; returns how many. */
+/* Rays first .. of the order; returns their number. */
 static void take_rays(Walk *w, const double *const o[3], const double *const d[3], const int *order, int count)
 {
     w->count = count;
@@ -45,7 +45,7 @@ static void take_rays(Walk *w, const double *const o[3], const double *const d[3
     for (int c = 0; c < 3; c++) w->o[c] = w->rays.o[c], w->d[c] = w->rays.d[c];
 }
 
-/* Which of the rays are to be asked for, in order. */
+/* Indices of the active rays, in order. */
 static int list_rays(int list[broad_packet], const uint8_t *ask, int count)
 {
     int listed = 0;
@@ -63,7 +63,7 @@ static void visit_first(void *user, int item)
     if (item == w->hidden || !is_listed(w->list, w->list_count, item)) return;
     const PosedEntity *entity = visibility_posed(w->v, item);
     if (entity->model < 0) return;
-    /* what is as near as an entity of a higher index comes before it */
+    /* at equal range the lower index has priority */
     for (int k = 0; k < w->count; k++)
         until_m[k] = w->entity[k] > (uint32_t)item + 1 ? nextafter(w->rays.limit_m[k], INFINITY) : w->rays.limit_m[k];
     rays_meet_sphere(ask, w->count, w->o, w->d, until_m, entity->centre_enu, entity->radius_m);

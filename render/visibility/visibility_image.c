@@ -1,8 +1,8 @@
-/* render/visibility/visibility_image.c: entities on the image: which of them a block of pixels may see, and their
- * boxes. */
+/* render/visibility/visibility_image.c: entities on the image: the view-frustum cull of a block of pixels, and
+ * bounding boxes. */
 #include "render/visibility/visibility_private.h"
 
-/* ---- which entities a block may see ------------------------------------------------------- */
+/* ---- view-frustum cull of a block --------------------------------------------------------- */
 
 /* The four sides of a block's pyramid and the plane of the eye, ENU: dot(n, p) >= d within. */
 static void pyramid_planes(double plane[5][4], const View *view, const double box_px[4])
@@ -19,7 +19,7 @@ static void pyramid_planes(double plane[5][4], const View *view, const double bo
     }
 }
 
-/* Of list[count], those whose bounding sphere meets the block's pyramid. */
+/* The entities of list[count] whose bounding sphere meets the block's pyramid. */
 static int spheres_in_block(int *list, int count, const Visibility *v, const View *view, const double box_px[4])
 {
     /* tangents of the block's four sides, and what turns an offset from a side into a distance */
@@ -35,7 +35,7 @@ static int spheres_in_block(int *list, int count, const Visibility *v, const Vie
         double             from_eye[3], c_cam[3];
         v3_sub(from_eye, entity->centre_enu, view->p_enu);
         m3_tmul_v3(c_cam, view->r_enu_from_cam, from_eye);
-        /* room for rounding, a thousand times what it can be */
+        /* margin for rounding, a thousand times its maximum */
         const double r = entity->radius_m + 1e-6 + 1e-12 * v3_length(c_cam);
         if (c_cam[2] < -r || (c_cam[0] - left * c_cam[2]) * per_left < -r ||
             (right * c_cam[2] - c_cam[0]) * per_right < -r || (c_cam[1] - top * c_cam[2]) * per_top < -r ||

@@ -1,9 +1,10 @@
-/* render/visibility/visibility_pose.c: the entities of a frame: their spheres for all of them, their nodes when they are asked for. */
+/* render/visibility/visibility_pose.c: the entities of a frame: the spheres of all of them, and their nodes on first
+ * use. */
 #include "render/visibility/visibility_private.h"
 
 static const PosedEntity not_drawn = {.model = -1};
 
-/* Where entity k stands. */
+/* Pose of entity k. */
 static void place_entity(double p_enu[3], double r_enu_from_body[9], const Visibility *v, int k)
 {
     const SnapshotEntity *e = &v->snapshot->entity[k];
@@ -29,7 +30,7 @@ static const PosedEntity *pose_entity(const Visibility *v, int k)
     return posed;
 }
 
-/* The same entity posed by any thread is the same to the bit, so the first to come may do it. */
+/* Any thread computes the same bits for an entity, so the first to need it poses it. */
 const PosedEntity *visibility_posed(const Visibility *v, int index)
 {
     const PosedEntity *posed = atomic_load_explicit(&v->posed[index], memory_order_acquire);
@@ -64,16 +65,17 @@ void visibility_place_on_part(double p_node[3], const Visibility *v, const Hits 
 
 Status visibility_status(const Visibility *v) { return atomic_load(&v->poser->lost) ? STATUS_NO_MEMORY : STATUS_OK; }
 
-/* By how much the sphere of a posed entity may reach beyond that of its model: every node's sphere lies in a ball about
- * the origin, of the model's radius and that of the largest node; the entity's is about the middle of a box in it. */
+/* Bound of the distance by which the sphere of a posed entity may exceed that of its model: every node's sphere lies
+ * in a ball about the origin, of the model's radius and that of the largest node; the entity's is about the middle
+ * of a box in it. */
 static double wider_m(const Model *model, double largest_node_m)
 {
     const double ball_m = model->radius_m + largest_node_m;
     return (1 + 2 * sqrt(3.0)) * ball_m - model->radius_m;
 }
 
-/* A model's sphere holds it in every pose (entities/models/model.h); nodes that come with the snapshot are taken as they
- * are. */
+/* A model's sphere contains it in every pose (entities/models/model.h); nodes that come with the snapshot are taken
+ * as they are. */
 static Status bound_entities(Visibility *v, Arena *arena)
 {
     const size_t count = (size_t)v->count + 1;
@@ -95,7 +97,7 @@ static Status bound_entities(Visibility *v, Arena *arena)
         } else {
             enu_from_ecef(to, v->frame, e->p_ecef);
             const Model *model = tracer_model(v->tracer, e->model);
-            to[3] = model->radius_m * (1 + 1e-9) + 1e-3; /* what passes by within 20 um may be met, too */
+            to[3] = model->radius_m * (1 + 1e-9) + 1e-3; /* a near miss within 20 um may count as a hit, too */
             v->loose[k] = v3_is_finite(to) && parts_node_count(v->tracer, e->model) > 0;
             if (e->model != widest) v->wider_m = fmax(v->wider_m, wider_m(model, parts_largest_node_m(v->tracer, e->model)));
             widest = e->model;
@@ -118,7 +120,7 @@ Status visibility_create(Visibility **out, Tracer *tracer, const Landscape *grou
     v->loose = arena_alloc(arena, (size_t)v->count + 1, sizeof *v->loose);
     v->poser = arena_alloc(arena, 1, sizeof *v->poser);
     if (!v->posed || !v->loose || !v->poser) return STATUS_NO_MEMORY;
-    pthread_mutex_init(&v->poser->lock, NULL); /* holds nothing that must be given back */
+    pthread_mutex_init(&v->poser->lock, NULL); /* holds nothing that must be released */
     v->poser->arena = arena;
     const Status status = bound_entities(v, arena);
     if (status != STATUS_OK) return status;

@@ -1,4 +1,4 @@
-/* render/visibility/visibility_private.h: one frame's world, as the files visibility*.c share it. */
+/* render/visibility/visibility_private.h: one frame's world, shared by the files visibility*.c. */
 #ifndef RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
 #define RENDER_VISIBILITY_VISIBILITY_PRIVATE_H
 
@@ -10,8 +10,8 @@
 #include "render/visibility/broad_phase.h"
 #include "render/visibility/visibility.h"
 
-/* Up to so many entities are asked about one after the other, all rays of a block together; more go through the tree, a
- * few rays at a time. Which of the two shows in no bit. */
+/* Up to so many entities are tested one after the other, all rays of a block together; more are traversed by the
+ * tree, in packets. Both give the same bits. */
 enum { crowd_least = 40 };
 
 /* What posing needs beside the snapshot: for one thread at a time. */
@@ -20,23 +20,23 @@ typedef struct Poser {
     Arena          *arena;
     NodePose       *node;        /* [most nodes of a model] */
     double         *joint_value; /* likewise */
-    atomic_bool     lost;        /* no memory for some entity: the frame is not whole */
+    atomic_bool     lost;        /* no memory for some entity: the frame is incomplete */
 } Poser;
 
 struct Visibility {
     Tracer          *tracer;
     const Landscape *landscape;
-    const Materials *materials; /* NULL: hits do not say theirs */
+    const Materials *materials; /* NULL: hits have no material */
     const LocalFrame *frame;
     const Snapshot  *snapshot;
     Ground           ground;
     unsigned         skips_off;
     int              count, drawable;
     bool            *loose;      /* [count]: may be drawn, as far as is known without its nodes */
-    _Atomic(const PosedEntity *) *posed; /* [count], as in the snapshot; NULL: not asked for yet */
+    _Atomic(const PosedEntity *) *posed; /* [count], as in the snapshot; NULL: not posed yet */
     Poser           *poser;
     BroadPhase      *tree;       /* of those that may be drawn */
-    double           wider_m;    /* by so much the sphere of a posed entity may reach beyond that in the tree */
+    double           wider_m;    /* distance by which the sphere of a posed entity may exceed that in the tree */
 };
 
 /* Whether each ray comes within an entity's sphere, ahead of it and before limit_m. */
@@ -44,7 +44,7 @@ void rays_meet_sphere(uint8_t *meets, int count, const double *const o[3], const
                       const double *limit_m, const double centre[3], double radius_m);
 
 /* visibility_crowd.c. First hits by the tree; limit_m, entity (index + 1) and hit are as if all of the list had been
- * asked for one after the other. list: ascending; list_count -1: all but hidden. */
+ * tested one after the other. list: ascending; list_count -1: all but hidden. */
 typedef struct CrowdCounts {
     uint64_t asked, asked_nodes, nodes; /* ray-entity pairs, ray-node pairs; of the pairs' entities all nodes */
 } CrowdCounts;

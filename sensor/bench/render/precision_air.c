@@ -1,5 +1,4 @@
-/* sensor/bench/render/precision_air.c: the tables that a frame makes of the atmosphere's, against the atmosphere
- * itself. */
+/* sensor/bench/render/precision_air.c: the air tables of a frame against the atmosphere they are made from. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/air/air_private.h"
@@ -95,8 +94,8 @@ static void ask_atmosphere(void *user)
     bench_keep(s->path);
 }
 
-/* What a warm body, or one of a tenth's reflectance in the open, shows through the path: error in these bands,
- * %. */
+/* Error of the apparent radiance of a warm body, or of one of 10 % reflectance in the open, through the path, in
+ * these bands, %. */
 static int seen_errors(double *error, const AirSet *s, int first, int end)
 {
     int n = 0;
@@ -116,7 +115,7 @@ static int seen_errors(double *error, const AirSet *s, int first, int end)
 
 /* ---- tables with every second node ---------------------------------------------------------------- */
 
-/* Odd nodes become the mean of their neighbours: what a table of half as many along this axis would answer. lines:
+/* Odd nodes become the mean of their neighbours: the result of a table of half as many along this axis. lines:
  * outer x inner of them; stride: of the axis, in values. */
 static void thin(float *table, int outer, size_t outer_stride, int nodes, size_t stride, int inner)
 {
@@ -159,7 +158,7 @@ static void thin_scattered(AirTable *t)
 enum { ways = 4, eyes = 3 };
 typedef enum AirWay { AIR_ONE_BY_ONE, AIR_TABLED, AIR_THIN_DEPTHS, AIR_THIN_SCATTERED } AirWay;
 
-/* What the tables take, and would take if they were made as thin as they answer. */
+/* Errors of the tables, and the errors of tables of half their resolution. */
 static double table_bytes(const AirTable *t, AirWay way)
 {
     const double depths = t->lights * (double)sizeof t->light[0]->depth + (double)sizeof *t->heat;
@@ -265,7 +264,7 @@ static void ask_skies(void *user)
     bench_keep(s->out);
 }
 
-/* The visible sky at random places, as it is seen from the ground. */
+/* The visible sky at random directions, as seen from the ground. */
 static void knob_sky(Bench *bench, const AirSet *from)
 {
     enum { settings = 3 };

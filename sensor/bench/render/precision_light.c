@@ -115,7 +115,7 @@ static Status knob_planck(Bench *bench)
     return STATUS_OK;
 }
 
-/* The way back. */
+/* The inverse. */
 typedef struct InverseSet {
     int                way; /* 0: by itself, 1: table, 2: table, four at a time */
     const PlanckTable *table;
@@ -151,7 +151,7 @@ static Status knob_inverse(Bench *bench)
         double worst = 0;
         set[k] = (InverseSet){.way = k, .table = table, .radiance = radiance};
         ask_inverse(&set[k]);
-        for (int i = 0; i < temps; i++) { /* one step of Newton's from the answer tells how far off it is */
+        for (int i = 0; i < temps; i++) { /* the size of one Newton step from the result is its error */
             double       per_k;
             const double back = planck_band(low_m, high_m, set[k].out[i], &per_k);
             bench_worst(&worst, fabs(back - (double)radiance[i]) / per_k);
@@ -265,7 +265,7 @@ static Status knob_shading(Bench *bench, const Air *air, const Materials *materi
 enum { smoke_rays = 128, smoke_volumes = 10 };
 
 typedef struct SmokeSet {
-    int        steps; /* even ones along the ray; 0: smoke_trace_rays */
+    int        steps; /* uniform ones along the ray; 0: smoke_trace_rays */
     SmokeVolume volume[smoke_volumes];
     Rays       rays;
     double     far_m[smoke_rays];

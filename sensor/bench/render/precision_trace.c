@@ -1,4 +1,4 @@
-/* sensor/bench/render/precision_trace.c: where rays meet the ground, and parts. */
+/* sensor/bench/render/precision_trace.c: errors of the hits of rays on the ground and on parts. */
 #include "sensor/bench/render/rows.h"
 
 #include "render/ground/ground.h"
@@ -21,7 +21,7 @@ typedef struct GroundRays {
 
 typedef struct GroundSet {
     const GroundRays *rays;
-    double step_posts;   /* of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
+    double step_posts;   /* steps of a march; 0: the tracer, one at a time; -1: together; -2: line by line in float */
     double range_m[ground_rays];
 } GroundSet;
 
@@ -57,7 +57,7 @@ static float height_over_float(const ElevationLevel *g, const float u[2], float 
                                                             : sw + a * (ne - nw) + b * (nw - sw)));
 }
 
-/* As walk_ground does, below, with nothing but floats: what a tracer of triangles would do with this ground. */
+/* As walk_ground below, in float only: the accuracy of a float triangle tracer on this ground. */
 static double walk_ground_float(const ElevationLevel *g, const GroundRays *r, int i)
 {
     const float s = (float)g->spacing_m, d2 = (float)r->d[2][i], o2 = (float)r->o[2][i];
@@ -109,7 +109,8 @@ static long double height_over(const ElevationLevel *g, const long double p[3])
     return p[2] - ((long double)g->z0_m + (long double)g->step_m * posts);
 }
 
-/* From one line of posts or diagonals to the next, in long double; between them height over the ground is straight. */
+/* From one line of posts or diagonal to the next, in long double; between them the height above the ground is
+ * linear. */
 static long double walk_ground(const ElevationLevel *g, const GroundRays *r, int i)
 {
     const long double s = (long double)g->spacing_m;
@@ -192,7 +193,7 @@ static Status knob_ground(Bench *bench)
 enum { part_rays = 1024 };
 
 typedef struct PartSet {
-    /* 0: Embree's triangles from the eye, 1: from the model's sphere, 2: boxes, judged in double */
+    /* 0: Embree's triangles from the eye, 1: from the model's sphere, 2: boxes, tested exactly in double */
     int          way;
     PosedEntity *posed;
     RTCScene     scene;
@@ -297,7 +298,7 @@ static void time_parts(Bench *bench, const Model *model, PosedEntity *posed, con
     BenchWork      work[settings];
     BenchSetting     point[settings] = {0};
     RTCScene       scene = float_scene(device, model, posed, pose);
-    for (int k = settings - 1; k >= 0; k--) { /* the last says which triangle */
+    for (int k = settings - 1; k >= 0; k--) { /* the last is the index of the triangle */
         int met = 0;
         set[k].way = k, set[k].posed = posed, set[k].scene = scene;
         for (int i = 0; i < part_rays; i++) {

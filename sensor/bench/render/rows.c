@@ -1,4 +1,4 @@
-/* sensor/bench/render/rows.c: the suites of rays, air and light. */
+/* sensor/bench/render/rows.c: the benchmark suites of rays, air and light. */
 #include "sensor/bench/render/rows.h"
 
 #include "sensor/bench/render/stability.h"

@@ -1,4 +1,4 @@
-/* sensor/bench/render/rows.h: what `pitviper bench` can measure of this room. */
+/* sensor/bench/render/rows.h: the benchmarks of render for `pitviper bench`. */
 #ifndef SENSOR_BENCH_RENDER_ROWS_H
 #define SENSOR_BENCH_RENDER_ROWS_H
 

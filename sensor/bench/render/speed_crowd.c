@@ -1,5 +1,5 @@
-/* sensor/bench/render/speed_crowd.c: what a crowd costs a frame: 100,000 entities of which 20 are in view, and tanks
- * stacked in a square of 60 m. */
+/* sensor/bench/render/speed_crowd.c: cost of many entities in a frame: 100,000 entities of which 20 are in view, and
+ * tanks stacked in a square of 60 m. */
 #include "sensor/bench/render/rows.h"
 
 #include "sensor/bench/bench.h"
@@ -56,7 +56,7 @@ static Status add_tank(TrialScene *scene, int k, CrowdPlace *place)
     return entity_table_entity_state(scene->table, &pdu, scene->sun_now_s);
 }
 
-/* Vehicles in rows before the eye, and `more` tanks by place. */
+/* Vehicles in rows in front of the eye, and `more` tanks by position. */
 static Status crowd_open(CrowdFrame *c, const Landscape *landscape, int vehicles, int more, CrowdPlace *place)
 {
     EntityTableConfig config = entity_table_default_config();
@@ -101,7 +101,7 @@ static double thread_s(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* A thread's own time: of the snapshot of a world, and of the tree over it. */
+/* Time of a thread: for the snapshot of a world, and for the tree over it. */
 static Status time_tree(Crowds *all, const TrialScene *scene)
 {
     enum { rounds = 15 };
@@ -169,7 +169,7 @@ static Status time_world(Crowds *all)
     return status;
 }
 
-/* Tanks through each other. */
+/* Interpenetrating tanks. */
 static Status time_stack(Crowds *all, int count, double back_m, double hfov_rad, const char *what)
 {
     CrowdFrame stack = {0};

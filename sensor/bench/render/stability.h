@@ -1,8 +1,8 @@
 /* sensor/bench/render/stability.h: `pitviper bench stability`: stress cases with a measured figure each.
  *
- * A case's figure is held against what the code under test did not produce: a closed form, brute force in long double,
- * symmetry, energy. Cases that ask only whether something breaks count what is not finite or below 0, and their limit
- * is 0. A time beside a figure is that of the whole case. */
+ * The reference of a case is independent of the code under test: a closed form, brute force in long double,
+ * symmetry, conservation of energy. Robustness cases count values that are not finite or below 0, and their limit is
+ * 0. A time beside a figure is that of the whole case. */
 #ifndef SENSOR_BENCH_RENDER_STABILITY_H
 #define SENSOR_BENCH_RENDER_STABILITY_H
 
@@ -11,7 +11,7 @@
 
 typedef struct StabilityCase {
     const char *what;
-    double    (*figure)(void *user, bool quick); /* INFINITY: the case could not be made */
+    double    (*figure)(void *user, bool quick); /* INFINITY: the case could not be set up */
     double      limit;
     const char *unit, *against;
 } StabilityCase;
@@ -19,17 +19,17 @@ typedef struct StabilityCase {
 /* Runs each and adds its row. */
 void stability_cases(Bench *bench, const StabilityCase *cases, int count, void *user);
 
-/* A stream of numbers of its own for each case: same figure whichever cases ran before. */
+/* A separate random stream for each case: same figure whichever cases ran before. */
 typedef struct Dice {
     uint32_t stream;
     uint64_t index;
 } Dice;
 double dice_uniform(Dice *dice, double low, double high);
-double dice_log(Dice *dice, double low, double high); /* even in its logarithm; 0 < low */
+double dice_log(Dice *dice, double low, double high); /* log-uniform; 0 < low */
 void   dice_direction(double d[3], Dice *dice);
 void   dice_rotation(double r[9], Dice *dice);
 
-/* ---- models by hand: one node, one part ------------------------------------------------------- */
+/* ---- synthetic models: one node, one part ----------------------------------------------------- */
 
 /* STATUS_NO_MEMORY. */
 Status stress_model(Model *out, int vertices, int triangles);
@@ -47,6 +47,6 @@ Status stability_ground(Bench *bench);   /* rays against the height field */
 Status stability_light(Bench *bench);    /* Planck, air, smoke, surfaces */
 Status stability_sun(Bench *bench);      /* the sun at the horizon, overhead, behind */
 Status stability_pictures(Bench *bench); /* ranges, origins, views, sizes */
-Status stability_crowd(Bench *bench);    /* how many there are, where the eye is, the radar */
+Status stability_crowd(Bench *bench);    /* numbers of entities, positions of the eye, the radar */
 
 #endif

@@ -1,5 +1,6 @@
-/* sensor/bench/render/stability_crowd.c: nobody, ten thousand in a pixel, two in one place, eyes where none should
- * be, and a radar of any lobe. The judges: the picture without what cannot show, symmetry, and sums. */
+/* sensor/bench/render/stability_crowd.c: no entities, ten thousand in a pixel, two at one position, eyes at invalid
+ * positions, and a radar of any lobe width. References: the picture without the invisible entities, symmetry, and
+ * sums. */
 #include "sensor/bench/render/stability_world.h"
 
 static void level_attitude(double r[9], double turn_rad)
@@ -12,7 +13,7 @@ static const unsigned all_bands = 1 << BAND_OPTICAL | 1 << BAND_MWIR | 1 << BAND
 
 /* ---- how many ------------------------------------------------------------------------------------ */
 
-/* So many within one pixel, from 20 km: nothing breaks, and what they cover adds up to the pixel at most. */
+/* So many within one pixel, from 20 km: all values are valid, and their areas add up to the pixel at most. */
 static double crowd(StressWorld *w, int count)
 {
     const double north[3] = {0, 1, 0}, eye[3] = {0, 0, 50}, sun_enu[3] = {0, -0.6, 0.8};
@@ -29,7 +30,7 @@ static double crowd(StressWorld *w, int count)
         stress_add(w, p, r);
     }
     request.bands = all_bands;
-    /* time goes with the square of a crowd */
+    /* time grows with the square of the number of entities */
     if (count > 1000) request.target_samples = 8, request.bands = 1 << BAND_LWIR;
     if (!stress_render(w, &request)) return INFINITY;
     for (int k = 0; k < count; k++) visible += w->picture.target[k].visible;
@@ -39,7 +40,7 @@ static double crowd(StressWorld *w, int count)
 static double crowd_some(void *user, bool quick) { return crowd(user, quick ? 100 : 400); }
 static double crowd_many(void *user, bool quick) { (void)quick; return crowd(user, stress_entities); }
 
-/* Through each other in a square of 60 m, from 150 m: the request that is drawn and its picture. */
+/* Interpenetrating in a square of 60 m, from 150 m: the request that is rendered and its picture. */
 static bool draw_stack(StressWorld *w, RenderRequest *request, int count)
 {
     const double d[3] = {0, 1, -0.1}, eye[3] = {0, -150, 18}, sun_enu[3] = {0.3, -0.5, 0.8};
@@ -67,7 +68,7 @@ static double stacked_many(void *user, bool quick)
     return draw_stack(w, &request, stress_entities) ? stress_bad_values(&w->picture) : INFINITY;
 }
 
-/* By the tree, and by looking at every entity. */
+/* By the tree, and by testing every entity. */
 static double stacked_some(void *user, bool quick)
 {
     StressWorld  *w = user;
@@ -89,7 +90,8 @@ static double stacked_some(void *user, bool quick)
     return wrong;
 }
 
-/* Nobody; and those that are nowhere: not a number, behind the Moon, of no model. The picture is that of nobody. */
+/* No entities; and entities with invalid positions: not a number, behind the Moon, of no model. The picture is that
+ * without entities. */
 static double nobody(void *user, bool quick)
 {
     StressWorld *w = user;
@@ -122,7 +124,7 @@ static double nobody(void *user, bool quick)
     return wrong;
 }
 
-/* Two in exactly one place: the first is seen, the second not at all, and the picture is that of one. */
+/* Two at exactly one position: the first is visible, the second not at all, and the picture is that of one. */
 static double two_in_one_place(void *user, bool quick)
 {
     StressWorld *w = user;
@@ -158,7 +160,7 @@ static double two_in_one_place(void *user, bool quick)
 /* ---- where the eye is ------------------------------------------------------------------------------ */
 
 /* Inside a block, on its side and edge-on to it, under the ground, on it, at 1000 km; level, straight up and straight
- * down, by day, night and with the sun on the horizon, overhead and underfoot; wide and narrow. */
+ * down, by day, night and with the sun on the horizon, overhead and at the nadir; wide and narrow. */
 static double eyes(void *user, bool quick)
 {
     static const double place[][3] = {{0, 101, 20.3}, {0, 100, 20.3}, {0, 99.999999, 20.3}, {0, 0, -40}, {0, 0, 0},
@@ -190,8 +192,8 @@ static double eyes(void *user, bool quick)
     return wrong;
 }
 
-/* Straight down and straight up, turned by quarters about the axis: the same picture, turned. In one air of one
- * radiance and from over a block; worst change of a pixel's radiance. */
+/* Straight down and straight up, rotated by quarters about the axis: the same picture, rotated. In air of uniform
+ * radiance and from above a block; worst change of a pixel's radiance. */
 static double turned(void *user, bool quick)
 {
     enum { side = 64 };
@@ -213,7 +215,7 @@ static double turned(void *user, bool quick)
             if (!stress_render(w, &request)) return INFINITY;
             if (q == 0) memcpy(first, w->picture.lwir, sizeof first);
             for (int y = 0; y < side; y++)
-                for (int x = 0; x < side; x++) { /* what is at (x, y) of a turned camera was elsewhere at first */
+                for (int x = 0; x < side; x++) { /* where (x, y) of the rotated camera was before the rotation */
                     double u = x + 0.5 - 0.5 * side, v = y + 0.5 - 0.5 * side;
                     for (int k = 0; k < q; k++) {
                         const double old = u;
@@ -250,7 +252,7 @@ static double lobe_energy(void *user, bool quick)
     return worst;
 }
 
-/* Values that are none, of any lobe and cosine, 0 and beyond included. */
+/* Values that are not finite, for any lobe and cosine, 0 and beyond included. */
 static double lobe_values(void *user, bool quick)
 {
     static const double lobe[] = {0, 1e-300, 1e-12, 1e-9, 1e-3, 1, 100, 1e300},
@@ -265,8 +267,8 @@ static double lobe_values(void *user, bool quick)
     return bad;
 }
 
-/* Two plates that face each other, eye between, and a corner: bounces that go to and fro. Range bins whose edges are
- * where the returns are; what the profile holds is what the picture holds. */
+/* Two plates that face each other with the eye between them, and a corner: repeated bounces. Range bins with their
+ * edges at the returns; the sums of profile and picture are equal. */
 static double radar_bins(void *user, bool quick)
 {
     enum { side = 40 };

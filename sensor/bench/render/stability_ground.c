@@ -1,9 +1,9 @@
-/* sensor/bench/render/stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly
- * along its posts, lines and diagonals, from on it and under it.
+/* sensor/bench/render/stability_ground.c: rays against a ground of cliffs, pits and spikes of one post, exactly along
+ * its posts, lines and diagonals, from on it and under it.
  *
- * The judge follows a ray over every line of posts and every diagonal that there is, in long double: over each
- * triangle its height above the surface is a straight line, so a sign at each crossing says all. It skips nothing
- * and orders the crossings by sorting. */
+ * The reference follows a ray over every line of posts and every diagonal, in long double: over each triangle its
+ * height above the surface is linear, so the sign at each crossing is sufficient. It skips nothing and orders the
+ * crossings by sorting. */
 #include "sensor/bench/render/stability.h"
 #include "render/ground/ground.h"
 
@@ -48,7 +48,7 @@ static double post_m(const Field *f, int i, int j)
     return e->z0_m + e->step_m * e->post[j * side + i];
 }
 
-/* A ray of one of ten kinds of nastiness. */
+/* A ray of one of ten degenerate kinds. */
 static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int kind)
 {
     const ElevationLevel *e = &f->elevation.level[0];
@@ -59,7 +59,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
     const double sign = dice_uniform(dice, 0, 1) < 0.5 ? -1 : 1;
     const int    axis = dice_uniform(dice, 0, 1) < 0.5;
     switch (kind) {
-    case 0: /* down on anything */
+    case 0: /* down, anywhere */
         d[2] = -fabs(d[2]);
         v3_add_scaled(o, to, -dice_log(dice, 1, 5000), d);
         o[0] += dice_uniform(dice, -4, 4);
@@ -95,7 +95,7 @@ static void field_ray(double o[3], double d[3], const Field *f, Dice *dice, int 
         o[2] -= dice_log(dice, 1e-6, 100);
         if (i % 2) o[axis] += sign * 1000, v3_scale(d, -1, d);
         break;
-    default: /* grazing over everything */
+    default: /* grazing, anywhere */
         d[2] = dice_uniform(dice, -1e-3, 1e-3);
         v3_normalize(d, d);
         o[2] += dice_uniform(dice, -0.5, 0.5);
@@ -109,7 +109,7 @@ static int by_size(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Height over the surface, on the triangle of elevation.h; cells of the outline go on a little beyond it. */
+/* Height above the surface, on the triangle of elevation.h; cells of the outline are extended a little beyond it. */
 static long double clearance(const Field *f, const double o[3], const double d[3], long double t)
 {
     const ElevationLevel *e = &f->elevation.level[0];
@@ -124,11 +124,11 @@ static long double clearance(const Field *f, const double o[3], const double d[3
 }
 
 typedef struct Judged {
-    long double may_m, must_m; /* the first place where it may be met, and where it must; INFINITY: none */
+    long double may_m, must_m; /* the first point where it may be met, and where it must; INFINITY: none */
 } Judged;
 
-/* Surfaces steeper than a few 1000:1 turn a rounding of the place into this much height; between it and its opposite
- * either answer is right. */
+/* On surfaces steeper than a few 1000:1 a rounding of the position is this much height; within plus and minus this
+ * either result is correct. */
 static const long double hair_m = 1e-8L;
 
 static Judged judge(const Field *f, const double o[3], const double d[3])
@@ -201,7 +201,7 @@ static double field(bool quick, int want)
 static double field_missed(void *user, bool quick) { (void)user; return field(quick, count_missed); }
 static double field_invented(void *user, bool quick) { (void)user; return field(quick, count_invented); }
 
-/* The same rays eight at a time and as a tile: bits, cells and halves that differ. */
+/* The same rays eight at a time and as a tile: number of different bits, cells and halves. */
 static double field_company(void *user, bool quick)
 {
     enum { block = 1000 };
@@ -255,7 +255,7 @@ static double far_fields(void *user, bool quick)
         double o[3], d[3];
         field_ray(o, d, &near, &dice, 0);
         if (!(d[2] < -0.2)) continue;
-        o[1] += dice_uniform(&dice, -4, 4); /* exactly over a ridge a rounding would say before or behind it */
+        o[1] += dice_uniform(&dice, -4, 4); /* exactly over a ridge rounding decides between before and behind */
         const double moved[3] = {o[0] + away_m[0], o[1] + away_m[1], o[2]};
         const double a_m = ground_first_hit(NULL, &near.ground, o, d, INFINITY);
         const double b_m = ground_first_hit(NULL, &far.ground, moved, d, INFINITY);

@@ -1,6 +1,6 @@
 /* sensor/bench/render/stability_light.c: black bodies of 1 K to 10,000 K, air from the ground to space, smoke as
- * thick as a wall, surfaces that are black and mirrors. The judges: Planck's law summed up in long double, energy,
- * and the cavity in which everything looks alike. */
+ * thick as a wall, surfaces that are black and mirrors. References: Planck's law integrated in long double,
+ * conservation of energy, and the isothermal cavity. */
 #include "sensor/bench/render/stability.h"
 #include "render/materials/planck.h"
 #include "render/light/surface_light.h"
@@ -50,14 +50,14 @@ static double planck_wide(void *user, bool quick)
             const double      t = pow(10, 4.0 * i / temps),
                 got = planck_band(band_m[b].low_m, band_m[b].high_m, t, NULL);
             const long double want = ln_planck(band_m[b].low_m, band_m[b].high_m, t);
-            /* gone: 0, or what little is left */
+            /* negligible: 0, or a tiny remainder */
             if (want < -700) worse(&worst, got >= 0 && got < 1e-303 ? 0 : INFINITY);
             else worse(&worst, fabs((double)expm1l(logl(got) - want)));
         }
     return worst;
 }
 
-/* There and back by the exact functions. Where radiance has underflown there is nothing to come back from: NaN. */
+/* Temperature to radiance and back by the exact functions. Where radiance has underflowed there is no inverse: NaN. */
 static double planck_round_trip(void *user, bool quick)
 {
     double    worst_k = 0;
@@ -92,8 +92,8 @@ static double table_round_trip(void *user, bool quick)
     return worst_k;
 }
 
-/* Eight temperatures at a time, good, bad and none, in every lane: what differs from one at a time by more than a
- * float, or is a number where there is none. */
+/* Eight temperatures at a time, valid, invalid and NaN, in every lane: counts results that differ from one at a time
+ * by more than a float, or are a number where there is none. */
 static double table_by_eights(void *user, bool quick)
 {
     static const float odd[] = {0, -0.0f, -300, 1e-40f, 1e-30f, 1, 3, 179.99f, 180, 1500, 1500.01f, 1e4f, 1e30f,
@@ -145,8 +145,8 @@ static double path_values(void *user, bool quick)
     return wrong;
 }
 
-/* What a frame asks: eyes from under the ground to space, suns from nadir to zenith, rays of no length, of 1000 km and
- * to the sky, straight up and down. */
+/* The parameters of frames: eyes from below the ground to space, suns from nadir to zenith, rays of zero length, of
+ * 1000 km and to the sky, straight up and down. */
 static double veil_values(void *user, bool quick)
 {
     static const double eye_m[] = {-50, 0, 2, 300, 19999, 20000, 1e6},
@@ -201,8 +201,8 @@ static double veil_values(void *user, bool quick)
 
 /* ---- smoke --------------------------------------------------------------------------------------- */
 
-/* Spheroids from nothing to a wall, needles of 1e6:1 too, of one radiance all over before a background of the same:
- * nothing is to be seen of them, and no transmittance leaves 0 .. 1. */
+/* Spheroids from transparent to opaque, also needles of 1e6:1, of uniform radiance in front of a background of the
+ * same: they must be invisible, and transmittance stays in 0 .. 1. */
 static double smoke(void *user, bool quick)
 {
     enum { volumes = 40 };
@@ -249,8 +249,8 @@ static double smoke(void *user, bool quick)
 
 /* ---- surfaces -------------------------------------------------------------------------------------- */
 
-/* Surfaces black, white and mirrors, smooth and rough, face-on to edge-on, in a cavity of one temperature: every one
- * reads Planck(T). The quick form that frames take. */
+/* Surfaces black, white and mirrors, smooth and rough, face-on to edge-on, in an isothermal cavity: each has the
+ * radiance Planck(T). The quick form that frames use. */
 static double cavity(void *user, bool quick)
 {
     static const float rho[4] = {0, 1e-30f, 0.5f, 1}, gloss[3] = {0, 0.5f, 1}, roughness[4] = {0, 0.001f, 0.2f, 1};

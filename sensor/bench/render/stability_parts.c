@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_parts.c: rays against triangles that no modeller would be proud of, and from places
- * that no float can hold. The judge is every triangle by itself, in long double: it knows neither boxes nor Embree. */
+/* sensor/bench/render/stability_parts.c: rays against degenerate triangles, and from positions that a float cannot
+ * represent. The reference tests every triangle separately, in long double, without boxes or Embree. */
 #include "sensor/bench/render/stability.h"
 #include "render/parts/parts.h"
 
@@ -21,7 +21,7 @@ static void body_pose(Body *b, const double p_enu[3], const double r_enu_from_bo
 
 static const double origin[3] = {0, 0, 0}, upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-/* The model is made; this takes it over. */
+/* Takes ownership of the model. */
 static bool body_open(Body *b)
 {
     const Model *models[1] = {&b->model};
@@ -52,7 +52,7 @@ static bool plate_open(Body *b)
 
 static int rays_of(bool quick, int full) { return quick ? full / 10 : full; }
 
-/* A ray to a place on the plate, no flatter than 6 degrees to it; its range from the plane's equation. */
+/* A ray to a point on the plate, at 6 degrees to it or more; its range from the plane's equation. */
 static double plate_ray(double o[3], double d[3], Dice *dice, double far_m)
 {
     const double to[3] = {0, dice_uniform(dice, -1.99, 1.99), dice_uniform(dice, -1.49, 1.49)};
@@ -80,7 +80,7 @@ static double plate_ranges(void *user, bool quick)
     return worst;
 }
 
-/* 1e-6 of the range inside the edge is met, as much outside is not: where an edge lies in a picture. */
+/* 1e-6 of the range inside the edge is met, as much outside is not: the position of an edge in a picture. */
 static double plate_edges(void *user, bool quick)
 {
     Body   b;
@@ -106,7 +106,7 @@ static double plate_edges(void *user, bool quick)
     return wrong;
 }
 
-/* The whole scene carried away and turned, eye included: what changes in the range. */
+/* The whole scene translated and rotated, eye included: change of the range. */
 static double plate_far_origins(void *user, bool quick)
 {
     Body   b;
@@ -132,11 +132,12 @@ static double plate_far_origins(void *user, bool quick)
     return worst_m;
 }
 
-/* ---- a heap of bad triangles -------------------------------------------------------------------- */
+/* ---- a set of degenerate triangles -------------------------------------------------------------- */
 
 enum { heap_most = 400 };
 
-/* Needles and slivers to 1e6:1 and beyond, triangles without area, faces twice and turned round, edges with five. */
+/* Needles and slivers to 1e6:1 and beyond, triangles of zero area, duplicate and reversed faces, edges shared by
+ * five. */
 static bool heap_open(Body *b, Dice *dice)
 {
     *b = (Body){0};
@@ -174,8 +175,8 @@ static bool heap_open(Body *b, Dice *dice)
     return body_open(b);
 }
 
-/* How a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area as the ray sees
- * it. -INFINITY: never. */
+/* How a ray passes a triangle: metres inside its nearest edge, below 0 outside; range; twice its area projected
+ * along the ray. -INFINITY: never. */
 static long double passes(long double *range_m, long double *seen_m2, const Model *m, int triangle, const double o[3],
                           const double d[3])
 {
@@ -211,10 +212,10 @@ typedef struct HeapCount {
     double worst_m;          /* range of what was met, 0.1 mm of ties left out */
 } HeapCount;
 
-/* The tracer gives a triangle 1 nm beyond its edges, so that neighbours leave no gap, and of those within 0.1 mm of the
- * nearest the lowest, also where the ray passes it by 20 um: what lies within that is right either way. So is a
- * triangle so nearly edge-on that it shows the ray less than this: 0.01 x 0.01 mm, as roundings of 1e-15 of 8 x 8 m
- * leave of a per cent. */
+/* The tracer extends a triangle by 1 nm beyond its edges, so that neighbours leave no gap, and of those within 0.1
+ * mm of the nearest the lowest, also where the ray passes it by 20 um: within these tolerances either result is
+ * correct. So it is for a triangle so nearly edge-on that its projected area is less than this: 0.01 x 0.01 mm, of
+ * which roundings of 1e-15 of 8 x 8 m are a per cent. */
 static const long double least_seen_m2 = 1e-10L;
 
 static void judge_ray(HeapCount *count, const Body *b, const double o[3], const double d[3])
@@ -241,7 +242,7 @@ static void judge_ray(HeapCount *count, const Body *b, const double o[3], const 
     if (mine) count->worst_m = fmax(count->worst_m, fabs((double)(got_m - own_m)));
 }
 
-/* One round of heaps for the three figures; user: where they are kept. */
+/* One round of triangle sets for the three figures; user: where they are stored. */
 static const HeapCount *heap(void *user, bool quick)
 {
     Body       b;
@@ -276,7 +277,7 @@ static double heap_missed(void *user, bool quick) { return heap(user, quick)->mi
 static double heap_invented(void *user, bool quick) { return heap(user, quick)->invented; }
 static double heap_range(void *user, bool quick) { return heap(user, quick)->worst_m; }
 
-/* Many at a time and one by one, far limits and all: answers that differ in a bit. */
+/* Many at a time and one by one, with search limits: counts results that differ in a bit. */
 static double company(void *user, bool quick)
 {
     enum { block = 1000 };
@@ -314,7 +315,7 @@ static double company(void *user, bool quick)
     return wrong;
 }
 
-/* Twelve faces in one place, more than are kept aside: the lowest is met, whatever the order of the tree. */
+/* Twelve coincident faces, more than are stored as ties: the lowest is met, whatever the order of the tree. */
 static double coincident(void *user, bool quick)
 {
     static const double corner[3][3] = {{0, -3, -3}, {0, 3, -3}, {0, 0, 3}};
@@ -392,10 +393,10 @@ static double leaks(void *user, bool quick)
     return leaked;
 }
 
-/* ---- rays that are none ------------------------------------------------------------------------- */
+/* ---- invalid rays ------------------------------------------------------------------------------- */
 
-/* Along the plate's own plane, of no direction, not finite, from 1e300 m: no answer that is not a number, nothing met
- * by a ray that does not exist, and normals of what was met of unit length. */
+/* Along the plate's own plane, of no direction, not finite, from 1e300 m: no result is NaN, nothing is met by an
+ * invalid ray, and normals of hits have unit length. */
 static double odd_rays(void *user, bool quick)
 {
     static const double odd[] = {0, -0.0, 1, -1, 1e-310, 1e-30, 1e30, 1e300, INFINITY, -INFINITY, NAN};
@@ -413,7 +414,7 @@ static double odd_rays(void *user, bool quick)
             d[c] = dice_uniform(&dice, 0, 1) < 0.5 ? odd[(int)dice_uniform(&dice, 0, odds)]
                 : dice_uniform(&dice, -1, 1);
         }
-        /* too long or short to be turned into one */
+        /* too long or short to be normalised */
         if (!v3_normalize(d, d) && v3_is_finite(d) && v3_dot(d, d) > 0) continue;
         PartHit      hit;
         const double range_m = parts_first_hit(&hit, &b.entity, o, d, INFINITY, n % 3 == 0);

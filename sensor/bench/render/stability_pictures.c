@@ -1,5 +1,5 @@
 /* sensor/bench/render/stability_pictures.c: whole pictures: a block from 0.1 m to 200 km and at any place on the
- * Earth, every field of view and size. The judges: a rectangle of known size, reflectance and temperature; the same
+ * Earth, every field of view and size. References: a rectangle of known size, reflectance and temperature; the same
  * picture elsewhere. */
 #include "sensor/bench/render/stability_world.h"
 
@@ -10,7 +10,7 @@ static void worse(double *worst, double error)
     if (!(error <= *worst)) *worst = isnan(error) ? INFINITY : error;
 }
 
-/* Attitude of an upright block whose left side faces who looks along d_enu, which is level. */
+/* Attitude of an upright block whose left side faces a viewer along d_enu, which is level. */
 static void facing(double r[9], const double d_enu[3])
 {
     const double right[3] = {d_enu[0], d_enu[1], d_enu[2]}, down[3] = {0, 0, -1};
@@ -159,9 +159,9 @@ typedef struct Fields {
     double length, back_px;
 } Fields;
 
-/* Rays of 0.01 to 179 degrees: of unit length, and where projecting them says: 0.01 degree over 8192 px is a focal
- * length of 4.7e7 px, of which a rounding is 1e-8. Towards the rim of a wide view a pixel is as much larger as its
- * tangent. */
+/* Rays of 0.01 to 179 degrees: of unit length, and in agreement with their projection: 0.01 degree over 8192 px is a
+ * focal length of 4.7e7 px, of which a rounding is 1e-8. Towards the rim of a wide view a pixel is as much larger as
+ * its tangent. */
 static Fields fields(bool quick)
 {
     Fields worst = {0};
@@ -190,7 +190,8 @@ static double field_back(void *user, bool quick) { (void)user; return fields(qui
 
 /* ---- sizes --------------------------------------------------------------------------------------- */
 
-/* A view of the ground from 300 m with some blocks on it, one sample a pixel: edges would look at neighbours. */
+/* A view of the ground from 300 m with some blocks on it, one sample a pixel: the edges pass would depend on
+ * neighbours. */
 static RenderRequest size_request(StressWorld *w, int width, int height)
 {
     const double  d_enu[3] = {0, 1, -0.4};
@@ -241,7 +242,7 @@ static double sizes(void *user, bool quick)
     return wrong;
 }
 
-/* The largest there is, long-wave alone: its middle is that of a small one, its values are good. */
+/* The largest possible size, long-wave alone: its centre is that of a small one, its values are valid. */
 static double largest(void *user, bool quick)
 {
     StressWorld  *w = user;
@@ -268,12 +269,12 @@ static double largest(void *user, bool quick)
     }
     w->world.landscape = NULL;
     arena_destroy(kept);
-    arena_destroy(w->arena); /* what such a picture takes is given back */
+    arena_destroy(w->arena); /* the memory of such a picture is released */
     w->arena = arena_create();
     return made && w->arena ? wrong : INFINITY;
 }
 
-/* One block before every pixel, sampled as finely as may be: fixed-point sums at their fullest. Against count and
+/* One block in front of every pixel, at the finest sampling: the largest fixed-point sums. Compared with count and
  * mean. */
 static double full_sums(void *user, bool quick)
 {

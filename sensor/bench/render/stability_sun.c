@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. What it lights
- * must change evenly with its height: a jump from frame to frame would be seen, and there is none in nature. */
+/* sensor/bench/render/stability_sun.c: the sun about the horizon, at the zenith and at the nadir. Illumination must
+ * be continuous in its height: a jump from frame to frame would be visible, and there is none in nature. */
 #include "sensor/bench/render/stability.h"
 #include "render/light/surface_light.h"
 
@@ -10,11 +10,11 @@ typedef struct Lit {
     Atmosphere  *atmosphere;
     Arena       *arena;
     Status       status;
-    /* level ground, a wall that faces the sun, one that turns away; sky in three directions */
+    /* level ground, a wall that faces the sun, one that faces away; sky in three directions */
     double       value[values];
 } Lit;
 
-/* Temperatures are held: they follow the sun by the hour, and are not asked about here. */
+/* Temperatures are fixed: they follow the sun by the hour, and are not tested here. */
 static void light_at(Lit *lit, double elevation_rad)
 {
     static Air          air;
@@ -61,7 +61,7 @@ static void light_at(Lit *lit, double elevation_rad)
         }
 }
 
-/* Largest change over the bracket of any value, over what this value is at most in `scale`. */
+/* Largest change of any value over the bracket, relative to the value's maximum in `scale`. */
 static double change(const double *a, const double *b, const double *scale)
 {
     double most = 0;
@@ -72,7 +72,7 @@ static double change(const double *a, const double *b, const double *scale)
     return most;
 }
 
-/* How much more any value changes in a step than in those beside it: where a jump may hide. */
+/* Excess of the change of any value in a step over that in the neighbouring steps: a possible jump. */
 static double stands_out(double (*at)[values], int i, int steps, const double *scale)
 {
     double most = 0;
@@ -84,9 +84,9 @@ static double stands_out(double (*at)[values], int i, int steps, const double *s
     return most;
 }
 
-/* From -0.6 to 0.6 degrees in steps; those that stand out halved to 1e-8 degree towards the steeper half: what is even
- * goes to nothing with the step, a jump stays. There is one of 0.3 % on walls wherever a lamp of the ring about the sun
- * (air.c) sinks below the horizon: it goes out whole. */
+/* From -0.6 to 0.6 degrees in steps; those that stand out halved to 1e-8 degree towards the steeper half: a
+ * continuous change goes to zero with the step, a jump remains. There is one of 0.3 % on walls wherever a light of
+ * the ring about the sun (daylight.c) sinks below the horizon: it is switched off at once. */
 static double horizon_jump(void *user, bool quick)
 {
     enum { most_steps = 240 };
@@ -104,7 +104,7 @@ static double horizon_jump(void *user, bool quick)
     }
     for (int k = 0; k < values; k++) scale[k] = fmax(scale[k], 1e-6);
     for (int n = 0; n < (quick ? 2 : 8); n++) {
-        int    steepest = 0; /* of those not looked at */
+        int    steepest = 0; /* of those not tested */
         double most = -1;
         for (int i = 0; i < steps; i++) {
             const double here = looked_at[i] ? -1 : stands_out(at, i, steps, scale);

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-/* A catalog of the marker alone, a plain block; what is unknown keeps its shape. */
+/* A catalog of the marker alone, a plain block; unknown entities keep its shape. */
 static Status open_catalog(Catalog **out)
 {
     static const char text[] = "type,model,origin\n1,marker,base\n";

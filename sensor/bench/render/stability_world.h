@@ -1,5 +1,5 @@
-/* sensor/bench/render/stability_world.h: blocks of 4 x 2 x 1.5 m in no air, or on flat ground: pictures with answers on
- * paper. */
+/* sensor/bench/render/stability_world.h: blocks of 4 x 2 x 1.5 m in a vacuum, or on flat ground: pictures with
+ * closed-form results. */
 #ifndef SENSOR_BENCH_RENDER_STABILITY_WORLD_H
 #define SENSOR_BENCH_RENDER_STABILITY_WORLD_H
 
@@ -18,7 +18,7 @@ typedef struct StressWorld {
     SnapshotEntity *entity;    /* [stress_entities] */
     NodePose       *pose;
     Snapshot        snapshot;
-    Picture         picture;   /* the last one, good until the next */
+    Picture         picture;   /* the last one, valid until the next */
 } StressWorld;
 
 static const float  stress_rho = 0.5f, stress_rho_ir = 0.2f;
@@ -30,18 +30,18 @@ void   stress_world_close(StressWorld *w);
 void   stress_clear(StressWorld *w);
 /* A block with the middle of its left side at p_enu; r_enu_from_body: forward, right, down. */
 void   stress_add(StressWorld *w, const double p_enu[3], const double r_enu_from_body[9]);
-/* A sun, and nothing else that shines, dims or glows. */
+/* A sun, with no other source, extinction or emission. */
 void   stress_no_air(StressWorld *w, const double sun_enu[3]);
 /* The air of the tables. */
 Status stress_real_air(StressWorld *w, double sun_elevation_rad, double eye_m);
-/* Looking from p_enu along d_enu, columns turned about it. */
+/* Camera at p_enu towards d_enu, columns rotated about it. */
 View   stress_view(const double p_enu[3], const double d_enu[3], double turn_rad, int width, int height,
     double focal_px);
 RenderRequest stress_request(const View *view);
 /* Into w->picture. */
 bool   stress_render(StressWorld *w, const RenderRequest *request);
-/* Of all its planes: values that are not finite (range and temperature of the sky apart) or below 0 where none may
- * be. */
+/* Of all its planes: values that are not finite (range and temperature of the sky apart) or below 0 where they must
+ * not be. */
 double stress_bad_values(const Picture *picture);
 /* Values of all planes in which two pictures differ, over a window of both. */
 double stress_differences(const Picture *a, int ax, int ay, const Picture *b, int bx, int by, int width, int height);
