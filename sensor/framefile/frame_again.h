@@ -23,8 +23,7 @@ typedef struct FrameAgain {
 /* snapshot: the file's, with an effect table. Picture: in the arena. */
 Status frame_again(FrameAgain *out, const FrameFile *file, const Snapshot *snapshot, const World *world,
                    const Config *config, bool no_skip, Pool *pool, Arena *arena);
-/* How many planes differ from those of the file, including planes that only one of them has; each is logged on
- * request. */
+/* How many planes differ from those of the file, including planes that only one of them has. said: each is logged. */
 int    frame_differences(const FrameFile *file, const FrameMade *made, bool said);
 
 #endif
