@@ -9,7 +9,7 @@
  *     mount_x_m, mount_y_m, mount_z_m     forward, right, down; from the body's origin (centre of its base) or the
  *                                         part's pivot. Not given: of `auto` as above, of a part 0
  *     mount_yaw_deg, mount_pitch_deg      turn the axis of the gimbal, right and up, in this order
- *     mount_roll_deg                      turns the picture about the boresight, its right side down: the picture is
+ *     mount_roll_deg                      turns the image about the boresight, its right side down: the image is
  *                                         roll-stabilised, and that is where it is held */
 #ifndef SENSOR_NODE_MOUNT_H
 #define SENSOR_NODE_MOUNT_H

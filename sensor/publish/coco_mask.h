@@ -1,7 +1,7 @@
 /* sensor/publish/coco_mask.h: masks in COCO's compressed run lengths, as public readers (pycocotools) expect them.
  *
  * Runs go down the columns, the first one of pixels that are not in the mask (0 when the first pixel is). From the
- * fourth run on the difference to the run two before stands for it. Each number is written five bits at a time, the
+ * fourth run on it is coded as its difference to the run two before. Each number is written five bits at a time, the
  * lowest first, with a sixth bit when more follow and the sign in the last group's highest, as the character 48 +
  * group. */
 #ifndef SENSOR_PUBLISH_COCO_MASK_H

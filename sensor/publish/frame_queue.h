@@ -4,7 +4,7 @@
  *     QUEUE_WAIT       every frame is passed on; putting waits while another frame waits. The first failure is the
  *                      result of the next put and of the close; no frame after it is passed on
  *     QUEUE_LEAVE_OUT  putting never waits: the waiting frame is dropped for the newer one; that is counted, its
- *                      consumers are told; a failure is counted and ends nothing
+ *                      consumers are notified; a failure is counted and ends nothing
  *
  * With the frame being rendered, the one waiting and the one being published it takes three frames of a pool. */
 #ifndef SENSOR_PUBLISH_FRAME_QUEUE_H
