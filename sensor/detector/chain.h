@@ -2,7 +2,8 @@
  *
  *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, detector footprint,
  *     smear, jitter -> each line at its own time -> pixel-to-pixel gain -> shot, dark and read noise,
- *     three-dimensional noise, noise along lines -> AC coupling -> well, converter -> defective pixels and their replacement
+ *     three-dimensional noise, noise along lines -> AC coupling -> well, converter -> defective pixels and
+ *     their replacement
  *
  * Frames are independent: all noise is a function of (seed, frame, row, column), so frames may be made in any order. */
 #ifndef SENSOR_DETECTOR_CHAIN_H

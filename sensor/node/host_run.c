@@ -110,7 +110,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     }
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
     for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
-    if (result->host_count == 0) hosts[0] = host; /* still to come */
+    if (result->host_count == 0) hosts[0] = host; /* not received so far */
     for (int i = 0; i < session_stages; i++)
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);

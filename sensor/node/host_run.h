@@ -17,7 +17,7 @@ double frame_grid_s(const FrameGrid *grid, double n);
 typedef struct Run Run;
 struct Run {
     Options   options;
-    DisLog    view;              /* what is played; borrowed */
+    DisLog    view;              /* the log to play; borrowed */
     double    until_s;           /* causal: arrival time of the last datagram used by the choices */
     bool      stopped;           /* by a signal, before the last frame */
     uint64_t  own;               /* datagrams of this node, ignored */

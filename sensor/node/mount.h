@@ -3,14 +3,14 @@
  * By default (`auto`) the sensor of a munition is in its nose, that of a platform 0.3 m above its roof, and the axis
  * is the body's forward axis. sensor.mount names an articulated part instead, by the name of a node or part of the
  * host's model, by its name in SISO-REF-010 (`primary turret`, `secondary gun 2`; without a number the first) or by
- * the number of its class: the sensor then goes with that part, its position is given from the part's pivot, in the
+ * the number of its class: the sensor then moves with that part, its position is given from the part's pivot, in the
  * part's axes.
  *
  *     mount_x_m, mount_y_m, mount_z_m     forward, right, down; from the body's origin (centre of its base) or the
  *                                         part's pivot. Not given: of `auto` as above, of a part 0
  *     mount_yaw_deg, mount_pitch_deg      turn the axis of the gimbal, right and up, in this order
  *     mount_roll_deg                      turns the image about the boresight, its right side down: the image is
- *                                         roll-stabilised, and that is where it is held */
+ *                                         roll-stabilised to this angle */
 #ifndef SENSOR_NODE_MOUNT_H
 #define SENSOR_NODE_MOUNT_H
 

@@ -71,7 +71,7 @@ void player_destroy(Player *player)
     free(player);
 }
 
-/* ---- in -------------------------------------------------------------------------------------- */
+/* ---- input -------------------------------------------------------------------------------------- */
 
 static Status add_event(Player *player, const Event *event)
 {
@@ -151,7 +151,7 @@ Status player_add_log(Player *player, const DisLog *log)
     return status;
 }
 
-/* ---- out ------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------- */
 
 static int compare_events(const void *a, const void *b)
 {
@@ -218,7 +218,7 @@ void player_feed(Player *player, EntityTable *table, double t_s)
     }
 }
 
-/* ---- asked ----------------------------------------------------------------------------------- */
+/* ---- queries ----------------------------------------------------------------------------------- */
 
 double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
 double player_last_s(const Player *player) { return player->latest_s; }

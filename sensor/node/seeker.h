@@ -1,7 +1,7 @@
 /* sensor/node/seeker.h: a notional seeker head: a gimbal on a body that tracks an aim point.
  *
  * Two axes on the body (or on the mount, sensor/node/mount.h): azimuth about its z (positive to the right), then
- * elevation about the turned y (positive up), with a limit on the angle off its axis, a rate limit and a first-order
+ * elevation about the rotated y (positive up), with a limit on the angle off its axis, a rate limit and a first-order
  * lag. The image is roll-stabilised: its columns stay in the vertical plane of the boresight. The gimbal moves on a
  * fixed grid of exercise time, so its direction at t does not depend on which frames are rendered.
  *

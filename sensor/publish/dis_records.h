@@ -17,8 +17,8 @@
  *     variable
  *     600101   64 bits  exercise time of the frame, f64 s
  *     600102  192 bits  sensor position, ECEF, 3 f64 m
- *     600103  192 bits  camera attitude as of a body with x along the boresight, y right, z down: psi, theta, phi as in an Entity
- *                       State, 3 f64 rad
+ *     600103  192 bits  camera attitude as of a body with x along the boresight, y right, z down: psi, theta, phi
+ *                       as in an Entity State, 3 f64 rad
  *     600104   64 bits  host: u16 site, application, entity, 0; 0:0:0: an observer that is no entity
  *     600201  288 bits  kind sensor, one per visible target, largest first:
  *                       0  box of its visible pixels, u16 left, top, right, bottom, the last two beyond it

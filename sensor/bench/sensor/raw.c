@@ -345,7 +345,7 @@ double raw_worst_m(const RawRays *raw, int every)
         if (raw->dark[i]) continue;
         const double plain = walk(raw->elevation, o, d);
         if (isinf(plain) != isinf(raw->range_m[i])) return INFINITY;
-        if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* or NaN */
+        if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* NaN */
     }
     return worst;
 }
