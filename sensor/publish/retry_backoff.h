@@ -6,7 +6,7 @@
 #include "pitviper.h"
 
 typedef struct RetryBackoff {
-    const char *what;   /* `image files`, as messages name it */
+    const char *what;   /* the products, as messages name them */
     double      off_s;  /* wall clock: no retry before */
     bool        failed; /* the last try */
     int         lacking; /* number of failures */
