@@ -1,4 +1,4 @@
-/* sensor/probe.c: the probes of this folder: MTF, NETD, three-dimensional noise and MRTD for rows of CSV. */
+/* sensor/probe.c: `pitviper probe` for detectors: MTF, NETD, three-dimensional noise and MRTD as rows of CSV. */
 #include "sensor/probe.h"
 
 #include "sensor/detector/mrtd.h"

@@ -1,4 +1,4 @@
-/* sensor/probe.h: what `pitviper probe` can ask of this room. */
+/* sensor/probe.h: the subcommands of `pitviper probe` for detectors. */
 #ifndef SENSOR_PROBE_H
 #define SENSOR_PROBE_H
 

@@ -1,7 +1,7 @@
-/* sensor/bench/bench_command.c: the harness of benchmarks: who runs, how long, and the table.
+/* sensor/bench/bench_command.c: the harness of benchmarks: the order of runs, the rounds, and the table.
  *
- * Times are wall times of rounds; in a round every work that is compared runs once, so that a busy neighbour falls on
- * both sides of a ratio. The median says what to expect, the best what the machine can. */
+ * Times are wall times of rounds; in a round every compared work runs once, so that other load on the machine
+ * affects both sides of a ratio. The median is the expected time, the best the limit of the machine. */
 #include "sensor/bench/bench_private.h"
 
 #include <stdlib.h>
@@ -62,7 +62,7 @@ void bench_time_more(BenchTime *time, Bench *bench, const BenchWork *work, int c
     for (const double begun_s = wall_clock_s();
          rounds < bench_rounds_max && (rounds < least || wall_clock_s() - begun_s < budget_s); rounds++)
         for (int n = 0; n < count; n++) {
-            /* there and back, so that none always comes behind the same one and finds what that left in the caches */
+            /* forward and backward, so that no work always follows the same one and its state of the caches */
             const int    k = rounds % 2 ? count - 1 - n : n;
             const double start_s = wall_clock_s();
             work[k].run(work[k].user);

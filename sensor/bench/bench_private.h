@@ -1,4 +1,4 @@
-/* sensor/bench/bench_private.h: what the files of the bench command share. */
+/* sensor/bench/bench_private.h: shared by the files of the bench command. */
 #ifndef SENSOR_BENCH_BENCH_PRIVATE_H
 #define SENSOR_BENCH_BENCH_PRIVATE_H
 
@@ -12,23 +12,23 @@ typedef struct BenchOption {
     const char *value;
 } BenchOption;
 
-/* A row as it is kept for the report: its texts are its own. */
+/* A row stored for the report: it owns its texts. */
 typedef struct BenchKept {
     BenchRow row;
-    char    *plot;     /* SVG that stands behind the row; NULL: none */
+    char    *plot;     /* SVG placed after the row; NULL: none */
 } BenchKept;
 
-/* The rows of one approximation, for the report; its plot stands behind the last. */
+/* The rows of one tunable, for the report; its plot is placed after the last. */
 typedef struct BenchBlock {
-    int  first, rows, chosen;  /* of the rows kept; chosen: the default's, -1: none */
+    int  first, rows, chosen;  /* of the stored rows; chosen: the default's, -1: none */
     bool broken;               /* a row of it is beyond its limit */
     char name[96], turned_by[96], of[128], also[64], words[512];
 } BenchBlock;
 
-typedef struct BenchPart {     /* a suite, of all rooms */
+typedef struct BenchPart {     /* a suite, of all libraries */
     const char *name, *help, *reads;
-    int         first, count;  /* of the rows kept */
-    int         failed;        /* suites that could not be run to their end */
+    int         first, count;  /* of the stored rows */
+    int         failed;        /* suites that failed to complete */
     double      took_s;
 } BenchPart;
 
@@ -46,7 +46,7 @@ struct Bench {
     bool        quick, all;
     int         threads, options, rows, broken; /* broken: rows whose error is beyond its limit */
     BenchOption option[bench_options_max];
-    const char *plots;         /* folder; NULL: none asked for */
+    const char *plots;         /* folder; NULL: not requested */
     bool        out_of_memory, spoilt; /* spoilt: a plot could not be written */
     FILE       *csv;
     BenchKept  *kept;          /* [kept_count] */
@@ -57,18 +57,18 @@ struct Bench {
     int         parts;
 };
 
-/* At share 0 .. 1 of sorted values, between them in proportion. */
+/* At share 0 .. 1 of sorted values, interpolated linearly. */
 double bench_quantile(const double *value, int count, double share);
-/* Three figures and a unit; seconds in what fits. */
+/* Three digits and a unit; seconds with a fitting prefix. */
 void   bench_show(char out[32], double value, const char *unit);
-/* Whether its error keeps its limit, or has none. */
+/* Whether its error is within its limit, or has none. */
 bool   bench_holds(const BenchRow *row);
 
-/* The rows that are kept, part by part, with their plots, what failed first. took_s: the whole run. */
+/* The stored rows, part by part, with their plots, failures first. took_s: the whole run. */
 Status bench_report(const Bench *bench, const BenchMachine *machine, const char *path, double took_s);
 /* `bench compare A.csv B.csv [--report FILE] [--slower FACTOR]`; argv[0]: compare. Exit code. */
 int    bench_compare(int argc, char **argv);
-/* Frees what is kept. */
+/* Frees the stored rows. */
 void   bench_forget(Bench *bench);
 
 #endif

@@ -1,10 +1,10 @@
 /* sensor/bench/compare.c: two runs side by side, row by row.
  *
- * The runs were not in turn, so a time must move further than within one: it is faster or slower when the medians
- * differ by a tenth (quick rounds: by a third) and the middle halves of the rounds do not meet; where a row has no
- * quartiles, its best must say so, too; and a time that was measured once must differ by half. When most rows moved
- * alike it was the machine: the median of all ratios is said. An error is the same on the same inputs: a tenth is a
- * change. */
+ * The runs were not interleaved, so a time must change more than within one: it is faster or slower when the medians
+ * differ by a tenth (quick rounds: by a third) and the interquartile ranges of the rounds do not overlap; where a
+ * row has no quartiles, its best must differ, too; and a time that was measured once must differ by half. When most
+ * rows changed alike the cause is the machine: the median of all ratios is reported. An error is the same on the
+ * same inputs: a tenth is a change. */
 #include "sensor/bench/bench_private.h"
 
 #include <stdlib.h>
@@ -36,7 +36,7 @@ typedef struct Verdict {
 
 /* ---- reading ---------------------------------------------------------------------------------- */
 
-/* Empty: NaN. Else a number that is not below 0; inf where a comparison failed altogether. */
+/* Empty: NaN. Else a number that is not below 0; inf where a comparison failed. */
 static bool read_number(double *out, const Run *run, int row, const char *name)
 {
     const int   column = table_column(&run->table, name);
@@ -141,7 +141,7 @@ static void run_close(Run *run)
     free(run->other);
 }
 
-/* Rows of one name are matched in the order in which they stand. */
+/* Rows with one name are matched in their order. */
 static void match(Run *a, Run *b)
 {
     for (int i = 0, k = 0; i < a->count && k < b->count;) {
@@ -156,9 +156,9 @@ static void match(Run *a, Run *b)
     }
 }
 
-/* ---- judging ---------------------------------------------------------------------------------- */
+/* ---- evaluation ---------------------------------------------------------------------------------- */
 
-/* Beyond noise: see the top. */
+/* Beyond noise: see the head of this file. */
 static bool apart(const Entry *a, const Entry *b, double ratio, double least)
 {
     const double by = ratio > 1 ? ratio : 1 / ratio;
@@ -207,7 +207,7 @@ static void verdict_text(char out[128], const Verdict *v)
     if (n == 0) snprintf(out, 128, "within noise");
 }
 
-/* ---- telling ---------------------------------------------------------------------------------- */
+/* ---- output ---------------------------------------------------------------------------------- */
 
 typedef struct Tally {
     int both, noise, faster, slower, too_slow, broken, worse, better, gone, new;
@@ -289,7 +289,7 @@ static void remark(FILE *page, const char *text)
     if (page) show_text(page, text);
 }
 
-/* What makes two runs hard to compare. */
+/* Differences that make two runs hard to compare. */
 static void show_heads(FILE *page, const Run *a, const Run *b)
 {
     char text[700];
@@ -341,7 +341,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* The median of all ratios of times: what moved every row. */
+/* The median of all ratios of times: the change common to all rows. */
 static void show_drift(FILE *page, const Run *a, const Run *b)
 {
     double *ratio = calloc((size_t)b->count + 1, sizeof *ratio);

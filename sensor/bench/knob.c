@@ -1,16 +1,20 @@
-/* sensor/bench/knob.c: time against error: which settings of an approximation are worth having.
+/* sensor/bench/knob.c: time against error: which settings of a tunable are efficient.
  *
  * The rule. A setting dominates another when it is better, beyond noise, in time, error or memory, and not worse in
  * any of them.
- *     time    rounds are in turn, so each gives a ratio that a busy machine hardly touches. Better: their median is
- * below 0.9 and their upper quartile below 1. Worse: their median is above 1.05, or their lower quartile above 1. error
- * the same inputs give the same error: its noise is what other inputs, a finer reference or another rounding would
- * change. Better: below 0.9 of the other's, and by more than a hundredth of what is stated. Worse: above 1.02 of it. A
- * second error of the same settings (of another band) is judged like the first. memory  is counted, and has no noise; a
- * tenth less is better, anything more is worse. To be better takes more than not to be worse: what noise can explain
- * dominates nobody. The front are those that nobody dominates. A default off the front fails, as does one whose error
- * is above what is stated: there is another setting that costs nothing. On quick rounds the times judge nobody: what
- * dominates is shown. */
+ *
+ *     time    rounds are interleaved, so each gives a ratio that other load on the machine hardly affects. Better:
+ *             their median is below 0.9 and their upper quartile below 1. Worse: their median is above 1.05, or
+ *             their lower quartile above 1
+ *     error   the same inputs give the same error: its noise is the change by other inputs, a finer reference or
+ *             another rounding. Better: below 0.9 of the other's, and by more than a hundredth of the stated error.
+ *             Worse: above 1.02 of it. A second error of the same settings (of another band) is evaluated
+ *             like the first
+ *     memory  is counted, and has no noise; a tenth less is better, anything more is worse
+ *
+ * Better requires more than not worse: differences within noise dominate no setting. The front are the settings that
+ * no other dominates. A default off the front fails, as does one whose error is above the stated one: there is another
+ * setting at no cost. On quick rounds times are not checked: the dominating settings are printed. */
 #include "sensor/bench/bench_private.h"
 
 #include <errno.h>
@@ -70,7 +74,7 @@ bool bench_on_front(const BenchTunable *knob, const BenchSetting *point, int cou
 
 /* ---- the plot --------------------------------------------------------------------------------- */
 
-/* As a file is called: letters, digits and `-`. */
+/* As in a file name: letters, digits and `-`. */
 static void file_name(char out[64], const char *name)
 {
     int n = 0;
@@ -102,7 +106,7 @@ static void write_plot(Bench *bench, const BenchTunable *knob, const char *text)
     file_name(name, knob->name);
     const bool fits = (size_t)snprintf(path, sizeof path, "%s/%s", bench->plots, name) < sizeof path;
     errno = ENAMETOOLONG;
-    if (fits) mkdir(bench->plots, 0777); /* if it is not there; if it cannot be, fopen says so */
+    if (fits) mkdir(bench->plots, 0777); /* if it is absent; if it cannot be created, fopen reports it */
     FILE *file = fits ? fopen(path, "w") : NULL;
     bool  ok = file && fputs(text, file) >= 0;
     ok = file && fclose(file) == 0 && ok;
@@ -113,7 +117,7 @@ static void write_plot(Bench *bench, const BenchTunable *knob, const char *text)
 
 /* ---- rows ------------------------------------------------------------------------------------- */
 
-/* Who dominates the default: the best of those that do, NULL: nobody, and how many. */
+/* The settings that dominate the default: the best of them, NULL: none, and how many. */
 static const BenchSetting *who_dominates(int *how_many, const BenchTunable *knob, const BenchSetting *point, int count,
                                        int chosen)
 {
@@ -157,7 +161,7 @@ static void add_verdict(Bench *bench, const BenchTunable *knob, const BenchSetti
     bench_add(bench, &row);
 }
 
-/* ---- in words ----------------------------------------------------------------------------------- */
+/* ---- as text ----------------------------------------------------------------------------------- */
 
 __attribute__((format(printf, 3, 4))) static void say(char *out, size_t size, const char *format, ...)
 {

@@ -1,4 +1,4 @@
-/* sensor/bench/machine.c: on what, and of what, figures were taken. */
+/* sensor/bench/machine.c: the machine and the program of a run. */
 #include "sensor/bench/bench_private.h"
 
 #include <gnu/libc-version.h>
@@ -9,7 +9,7 @@
 #include <sys/utsname.h>
 #include <unistd.h>
 
-/* The first line of a file that begins with key, behind the colon; all of its first line without a key. */
+/* The first line of a file that begins with key, after the colon; all of its first line without a key. */
 static void line_of(char *out, size_t out_size, const char *path, const char *key)
 {
     char  line[512];

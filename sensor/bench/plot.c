@@ -1,6 +1,6 @@
-/* sensor/bench/plot.c: settings of an approximation as a picture: SVG, run time against error, both logarithmic.
+/* sensor/bench/plot.c: settings of a tunable as a plot: SVG, run time against error, both logarithmic.
  *
- * Labels are put one after the other where they cover least: other labels, points, lines, the edge. */
+ * Labels are placed one after the other where they cover least: other labels, points, lines, the edge. */
 #include "sensor/bench/bench_private.h"
 
 #include <stdlib.h>
@@ -36,14 +36,14 @@ typedef struct Box {
 
 typedef struct Plot {
     Axis   time, error;
-    double zero_y_px;                          /* where an error of 0 is shown; NaN: there is none */
-    int    points, index[points_max];          /* those that can be shown */
+    double zero_y_px;                          /* where an error of 0 is plotted; NaN: there is none */
+    int    points, index[points_max];          /* those that can be plotted */
     double x_px[points_max], y_px[points_max];
     bool   front[points_max];
-    double stated_y_px;                        /* NaN: nothing to show */
+    double stated_y_px;                        /* NaN: not plotted */
     int    boxes;
     Box    box[points_max + 4];                /* labels so far */
-    int    line[points_max], lines;            /* the front's points by time, each better than the one before */
+    int    line[points_max], lines;            /* the front's points by time, each better than the previous one */
 } Plot;
 
 /* ---- axes ------------------------------------------------------------------------------------- */
@@ -59,7 +59,7 @@ static void add_tick(Axis *a, double value)
     if (l >= a->low - 1e-9 && l <= a->high + 1e-9 && a->ticks < ticks_max) a->tick[a->ticks++] = value;
 }
 
-/* Whole decades where there are enough of them, else 1-3, 1-2-5, else even steps. */
+/* Whole decades where there are enough of them, else 1-3, 1-2-5, else uniform steps. */
 static void choose_ticks(Axis *a)
 {
     static const struct { int count; double m[3]; } steps[] = {{1, {1}}, {2, {1, 3}}, {3, {1, 2, 5}}};
@@ -77,7 +77,7 @@ static void choose_ticks(Axis *a)
     for (double v = ceil(low / step) * step; v <= high && a->ticks < ticks_max; v += step) add_tick(a, v);
 }
 
-/* From the least to the greatest and some room, at least a factor of two. */
+/* From the least to the greatest with a margin, at least a factor of two. */
 static Axis axis_of(double least, double most, double from_px, double to_px)
 {
     Axis a = {.low = log10(least), .high = log10(most), .from_px = from_px, .to_px = to_px};
@@ -115,7 +115,7 @@ static double shared(const Box *a, const Box *b)
     return x > 0 && y > 0 ? x * y : 0;
 }
 
-/* How much of a segment lies in the box, px. */
+/* Length of a segment inside the box, px. */
 static double crossed(const Box *b, double x0, double y0, double x1, double y1)
 {
     int       inside = 0;
@@ -146,7 +146,7 @@ static double cost_of(const Plot *p, const Box *b)
     return cost;
 }
 
-/* About a point: nearest first, right before left before above. */
+/* Around a point: nearest first, right before left before above. */
 static Box place_label(const Plot *p, int k, double near_px, double wide_px, double *leader)
 {
     static const double turn[8][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
@@ -184,10 +184,10 @@ static void draw_label(FILE *to, Plot *p, int k, const BenchSetting *point, cons
     fputs("</text>\n", to);
 }
 
-/* ---- the picture ------------------------------------------------------------------------------ */
+/* ---- the plot ------------------------------------------------------------------------------ */
 
-/* The default's median, and of others that times their ratio to it: where rounds are in turn, a busy minute moves no
- * point past another. */
+/* The default's median, and for others that times their ratio to it: where rounds are interleaved, a load on the
+ * machine does not exchange points. */
 static double shown_s(const BenchSetting *point, int count, int index)
 {
     for (int i = 0; i < count; i++)
@@ -225,7 +225,7 @@ static void lay_out(Plot *p, const BenchTunable *knob, const BenchSetting *point
         p->y_px[k]  = at->error > 0 ? at_px(&p->error, at->error) : p->zero_y_px;
         p->front[k] = bench_on_front(knob, point, count, p->index[k]);
     }
-    for (double after = -1;;) { /* by time, along the front, each lower than the one before */
+    for (double after = -1;;) { /* by time, along the front, each lower than the previous one */
         int next = -1;
         for (int k = 0; k < p->points; k++)
             if (p->front[k] && p->x_px[k] > after && (next < 0 || p->x_px[k] < p->x_px[next])) next = k;
@@ -269,7 +269,7 @@ static void draw_axes(FILE *to, const Plot *p, const BenchTunable *knob, const c
     fputs("</text>\n", to);
 }
 
-/* What is what, below the axis; and how the default does, above the plot. */
+/* The legend, below the axis; and the verdict on the default, above the plot. */
 static void draw_legend(FILE *to, const Plot *p, const BenchSetting *point)
 {
     const int y = height_px - 10;

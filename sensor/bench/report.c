@@ -1,5 +1,5 @@
-/* sensor/bench/report.c: what a run found, as one page: what failed, the machine, the ratios to the tracer alone, and
- * each suite's table with its plots. */
+/* sensor/bench/report.c: the results of a run as one page: failures, the machine, the ratios to the tracer alone,
+ * and each suite's table with its plots. */
 #include "sensor/bench/bench_private.h"
 
 static const char table_style[] =
@@ -79,7 +79,7 @@ static void begin_table(FILE *page)
 
 static void end_table(FILE *page) { fputs("</table></div>\n", page); }
 
-/* Before anything else: what does not hold. */
+/* Failures come first. */
 static void show_verdict(FILE *page, const Bench *bench)
 {
     int judged = 0, failed = 0;
@@ -130,7 +130,7 @@ static void show_machine(FILE *page, const Bench *bench, const BenchMachine *m, 
     fputs("</table>\n", page);
 }
 
-/* How far a frame is from the least that its rays take. */
+/* The time of a frame relative to the least that its rays take. */
 static void show_limit(FILE *page, const Bench *bench)
 {
     bool begun = false;
@@ -153,7 +153,7 @@ static void show_limit(FILE *page, const Bench *bench)
     if (begun) fputs("</table>\n", page);
 }
 
-/* ---- approximations ----------------------------------------------------------------------------- */
+/* ---- tunables ----------------------------------------------------------------------------- */
 
 static const BenchBlock *block_at(const Bench *bench, int row)
 {
@@ -169,7 +169,7 @@ static bool blocks_in(const Bench *bench, const BenchPart *part)
     return false;
 }
 
-/* A line for each: what holds, before any of its settings. */
+/* A line for each: its verdict, before any of its settings. */
 static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
 {
     bool begun = false;
@@ -200,7 +200,7 @@ static void show_overview(FILE *page, const Bench *bench, const BenchPart *part)
     if (begun) end_table(page);
 }
 
-/* Its plot beside its verdict in words, and its settings. */
+/* Its plot next to its verdict as text, and its settings. */
 static void show_block(FILE *page, const Bench *bench, const BenchBlock *b)
 {
     const char *plot = bench->kept[b->first + b->rows - 1].plot;

@@ -1,4 +1,4 @@
-/* sensor/bench/run.c: the bench command: which suites, on which machine, and what came of them. */
+/* sensor/bench/run.c: the bench command: the selected suites, the machine, and the results. */
 #include "sensor/bench/bench_private.h"
 
 #include <time.h>
@@ -16,7 +16,7 @@ static void usage_suite(FILE *to, const BenchSuite *suite)
     }
 }
 
-/* Whether it is the first of its name: rooms have parts of the same suite. */
+/* Whether it is the first of its name: several libraries have parts of the same suite. */
 static bool is_first(const BenchSuite *suite, BenchNext *next)
 {
     size_t            state[2] = {0};
@@ -60,7 +60,7 @@ static bool suite_has_option(const BenchSuite *suite, const char *name)
     return false;
 }
 
-/* Of any suite that is to be run. */
+/* Of any selected suite. */
 static bool has_option(const Bench *bench, const char *name, BenchNext *next)
 {
     size_t state[2] = {0};
@@ -84,7 +84,7 @@ typedef struct Outputs {
     const char *csv, *report;
 } Outputs;
 
-/* False when the line is not an option of this bench; says why. */
+/* False when the line is not an option of this bench; logs why. */
 static bool parse(Bench *bench, Outputs *out, int argc, char **argv, BenchNext *next)
 {
     for (int i = 1; i < argc; i++) {
@@ -139,7 +139,7 @@ static void csv_head(const Bench *bench, const BenchMachine *m, const char *line
           bench->csv);
 }
 
-/* Every room's suites of that name, one after the other. */
+/* The suites of that name in all libraries, one after the other. */
 static void run_part(Bench *bench, const char *name, BenchNext *next)
 {
     const double begun_s = wall_clock_s();
@@ -181,7 +181,7 @@ static bool known_suite(const char *name, BenchNext *next)
     return false;
 }
 
-/* What the last lines say, and the exit code. */
+/* The last lines of output, and the exit code. */
 static int conclude(const Bench *bench, double took_s)
 {
     int failed = 0;

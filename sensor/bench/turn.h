@@ -1,4 +1,4 @@
-/* sensor/bench/turn.h: what the rooms' files on time against error share. */
+/* sensor/bench/turn.h: shared by the suites that plot time against error. */
 #ifndef SENSOR_BENCH_TURN_H
 #define SENSOR_BENCH_TURN_H
 
@@ -13,8 +13,8 @@ static inline bool bench_default_dominated(const BenchTunable *knob, const Bench
     return false;
 }
 
-/* Times the settings of a knob in turn, work[k] being point[k]'s, and hands them on. A default that would fail is given
- * twice as many rounds before it does: a busy minute should not decide. */
+/* Times the settings of a tunable in turn, work[k] being point[k]'s, and passes them on. A default that would fail
+ * gets twice as many rounds first: a load on the machine should not decide. */
 static inline void bench_tunable(Bench *bench, const BenchTunable *knob, const BenchWork *work, BenchSetting *point, int count)
 {
     BenchTime time[bench_settings_max];
@@ -35,7 +35,7 @@ static inline int bench_by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* A number that takes part in a largest error; NaN shows. */
+/* A number that contributes to a largest error; NaN propagates. */
 static inline void bench_worst(double *worst, double error)
 {
     if (!(error <= *worst)) *worst = error;

@@ -1,5 +1,5 @@
-/* sensor/commands/exercise.c: the simulator's datagrams to a file, to the network by the clock, or one by one to a
- * folder. */
+/* sensor/commands/exercise.c: writes the datagrams of a scenario to a file, to the network by the clock, or one by
+ * one to a folder. */
 #include "sensor/commands/exercise.h"
 
 #include "dis/recorder.h"
@@ -199,7 +199,7 @@ static bool is_file(const char *path)
     return stat(path, &about) == 0 && !S_ISDIR(about.st_mode);
 }
 
-/* A file, or a name among those that come with the program; a folder of that name is neither. */
+/* A file, or the name of a scenario that comes with the program; a folder of that name is neither. */
 static Status read_scenario(Scenario *scenario, const Options *o)
 {
     char path[path_size], name[256];
@@ -217,7 +217,7 @@ static Status read_scenario(Scenario *scenario, const Options *o)
     return scenario_read(scenario, path);
 }
 
-/* ---- where datagrams go ----------------------------------------------------------------------- */
+/* ---- destinations of datagrams ----------------------------------------------------------------------- */
 
 typedef struct Run {
     DisUdp      *udp;
@@ -228,7 +228,7 @@ typedef struct Run {
     bool         failed, stopped; /* stopped: before the end of the scenario */
 } Run;
 
-/* DIR/NNNN.pdu: what a fuzzer begins with. */
+/* DIR/NNNN.pdu: the corpus of a fuzzer. */
 static bool datagram_file(Run *run, const uint8_t *bytes, size_t octets)
 {
     char path[path_size];
@@ -254,8 +254,8 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
 
 /* ---- the run ---------------------------------------------------------------------------------- */
 
-/* Sleeps until the wall clock reaches `until_s`, or a signal. Returns at once when that is past: what is due is sent,
- * late or not. */
+/* Sleeps until the wall clock reaches `until_s`, or a signal. Returns at once when that has passed: due datagrams
+ * are sent, late or not. */
 static void wait_until(double until_s)
 {
     while (!stop_asked()) {
@@ -333,7 +333,7 @@ static Status open_outputs(Run *run, const Options *o, double epoch_unix_s)
     if (o->send) status = dis_udp_open_sender(&run->udp, &o->udp);
     snprintf(comment, sizeof comment, "pitviper exercise %.200s", o->scenario);
     if (status == STATUS_OK && o->out) status = dis_recorder_open(&run->recorder, o->out, comment);
-    /* whole seconds and the rest apart: a double at Unix size has but 0.2 us */
+    /* whole seconds and the fraction apart: a double of Unix time resolves only 0.2 us */
     run->epoch_ns = (int64_t)floor(epoch_unix_s) * 1000000000 + llround(fmod(epoch_unix_s, 1) * 1e9);
     return status;
 }

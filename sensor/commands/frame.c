@@ -1,5 +1,5 @@
-/* sensor/commands/frame.c: `pitviper frame FILE`: says what a frame file is, renders it again, and says
- * whether the planes are the same to the bit. */
+/* sensor/commands/frame.c: `pitviper frame FILE`: describes a frame file, renders it again, and reports whether the
+ * planes are equal to the bit. */
 #include "sensor/commands/frame.h"
 
 #include "sensor/settings/next_option.h"
@@ -75,7 +75,7 @@ static int parse(FrameOptions *o, int argc, char **argv)
     return 0;
 }
 
-/* ---- what it is --------------------------------------------------------------------------------- */
+/* ---- description --------------------------------------------------------------------------------- */
 
 static void describe_ground(const LandscapeParts *g)
 {
@@ -117,7 +117,7 @@ static void describe(const FrameFile *file)
 
 /* ---- its products ------------------------------------------------------------------------------- */
 
-/* The line of truth.jsonl, from the picture as the frame loop makes it. */
+/* The line of truth.jsonl, from the image as in the frame loop. */
 static Status write_truth(const char *out, const FrameFile *file, const FrameScene *s, const FrameAgain *again,
                           const TruthNoise *noise, Arena *arena)
 {
@@ -148,7 +148,7 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
     return status;
 }
 
-/* The detectors begin with this frame: what they remember of those before (detector.agc_s, lines of AC coupling) is not
+/* The detectors start with this frame: their state from earlier frames (detector.agc_s, lines of AC coupling) is not
  * in the file. */
 static Status write_products(const FrameOptions *o, const FrameFile *file, FrameScene *s, const FrameAgain *again,
                              Pool *pool, Arena *arena)

@@ -1,4 +1,4 @@
-/* sensor/commands/inspect.c: `pitviper inspect`: its options, the log, and which of the two forms is printed. */
+/* sensor/commands/inspect.c: `pitviper inspect`: its options, the log, and which of the two formats is printed. */
 #include "sensor/commands/inspect.h"
 #include "sensor/commands/inspect_private.h"
 
@@ -94,7 +94,7 @@ int inspect_command(int argc, char **argv)
     DisLog log;
     Status status = dis_log_open(&log, options.path, (int)options.port);
     if (status == STATUS_NO_MEMORY) log_error("inspect: %s: %s", options.path, status_name(status));
-    if (status != STATUS_OK) return 1; /* all else was said where it happened */
+    if (status != STATUS_OK) return 1; /* all other errors have been logged */
     if (log.retimed)
         log_warn("inspect: packet times do not keep pace with the time stamps; the stamps are taken as the clock");
     if (log.any_port && options.port == dis_port_default)

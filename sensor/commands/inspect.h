@@ -1,4 +1,4 @@
-/* sensor/commands/inspect.h: `pitviper inspect LOG`: who was there, when, what they did, what was malformed. */
+/* sensor/commands/inspect.h: `pitviper inspect LOG`: entities, their times and events, senders, and malformed PDUs. */
 #ifndef SENSOR_COMMANDS_INSPECT_H
 #define SENSOR_COMMANDS_INSPECT_H
 

@@ -1,4 +1,4 @@
-/* sensor/commands/inspect_findings.h: what one pass over a log finds, for its summary. */
+/* sensor/commands/inspect_findings.h: the findings of one pass over a log, for its summary. */
 #ifndef SENSOR_COMMANDS_INSPECT_FINDINGS_H
 #define SENSOR_COMMANDS_INSPECT_FINDINGS_H
 
@@ -49,7 +49,7 @@ typedef struct Findings {
     double      first_s, last_s;
     Rows        entities, senders, events;
     uint64_t    removed, started, stopped;
-    ExerciseClockAnomalies doubts; /* senders whose stamps are no clock */
+    ExerciseClockAnomalies doubts; /* senders whose stamps are not a clock */
 } Findings;
 
 static inline void *findings_row(const Rows *rows, int i) { return rows->row + (size_t)i * rows->size; }

@@ -1,5 +1,4 @@
-/* sensor/commands/inspect_private.h: the two forms of what `pitviper inspect` prints. exercise: only this one; -1:
- * all. */
+/* sensor/commands/inspect_private.h: the two output formats of `pitviper inspect`. exercise: only this one; -1: all. */
 #ifndef SENSOR_COMMANDS_INSPECT_PRIVATE_H
 #define SENSOR_COMMANDS_INSPECT_PRIVATE_H
 

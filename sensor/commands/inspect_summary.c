@@ -142,7 +142,7 @@ static int by_entity(const void *a, const void *b)
     return (x->entity > y->entity) - (x->entity < y->entity);
 }
 
-/* The types there are, each once, in the order of their first entities; malloc'ed. NULL: memory is out. */
+/* All types, each once, in the order of their first entities; malloc'ed. NULL: memory is out. */
 static TypeRow *list_types(int *count, const Findings *f)
 {
     const size_t entities = (size_t)f->entities.count;
@@ -161,10 +161,10 @@ static TypeRow *list_types(int *count, const Findings *f)
     return row;
 }
 
-/* Each type once, in the order of the table above, with what it is seen as. */
+/* Each type once, in the order of the table above, with its model. */
 static Status print_shapes(const Findings *f)
 {
-    static const double chord_error_m = 0.1; /* sizes are wanted, not facets */
+    static const double chord_error_m = 0.1; /* sizes are needed, not facets */
     char     path[4096];
     Catalog *catalog;
     int      count = 0;

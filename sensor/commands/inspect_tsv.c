@@ -1,7 +1,7 @@
 /* sensor/commands/inspect_tsv.c: one line per Entity State.
  *
- * The lines are those of `tshark -T fields`, column names and number formats too, so that either program can be
- * held against the other. */
+ * The lines are those of `tshark -T fields`, column names and number formats too, so that the two programs can be
+ * compared. */
 #include "sensor/commands/inspect_private.h"
 
 #include "dis/datagram.h"
@@ -23,7 +23,7 @@ static const char tsv_full_header[] =
     "articulation";
 
 /* tshark divides by 2^31 - 1 and cuts to microseconds, here in integers; it is up to 1.7 us ahead of
- * dis_timestamp_seconds, and shown only to be compared. */
+ * dis_timestamp_seconds, and printed for comparison only. */
 static void print_stamp(uint32_t timestamp)
 {
     const uint64_t us = (uint64_t)(timestamp >> 1) * 3600000000u / 0x7FFFFFFF;

@@ -1,4 +1,4 @@
-/* sensor/commands/record.c: from the queue of arrivals to the file, and how it ends. */
+/* sensor/commands/record.c: from the receive queue to the file, and how it ends. */
 #include "sensor/commands/record.h"
 
 #include "dis/recorder.h"
@@ -95,15 +95,15 @@ static int parse(Options *o, int argc, char **argv)
 typedef struct Recording {
     DisUdp      *udp;
     DisRecorder *recorder;
-    long long    left;            /* datagrams to go; -1: any number */
+    long long    left;            /* datagrams left to record; -1: any number */
     uint64_t     datagrams, octets;
     double       begun_s, shown_s, flushed_s; /* wall clock */
     uint64_t     shown;
 } Recording;
 
-enum { turn = 4096 }; /* datagrams before the clock and the signals are looked at again */
+enum { turn = 4096 }; /* datagrams between two checks of the clock and the signals */
 
-/* What waits, not after until_ns, at most a turn of it. *more: there may be some left. */
+/* Queued datagrams, not after until_ns, at most one batch. *more: there may be some left. */
 static Status write_waiting(Recording *r, int64_t until_ns, bool *more)
 {
     DisArrival a;
@@ -133,7 +133,7 @@ static void show_progress(Recording *r, double now_s)
     r->shown_s = now_s;
 }
 
-/* Records until a stop by signal or by an option; then what had arrived by that moment, and no more. */
+/* Records until stopped by a signal or an option; then the datagrams that had arrived by that moment, and no more. */
 static Status record(Recording *r, double for_s)
 {
     const int64_t check_ns = 100000000; /* a signal does not end a wait */
@@ -172,8 +172,8 @@ int record_command(int argc, char **argv)
     if (stop) return stop - 1;
     if (overwrite_file("record", o.out, o.overwrite) != STATUS_OK) return 1;
     stop_by_signals();
-    /* The socket first: were it refused with the file open, an older recording would be gone for nothing. What arrives
-     * until the file is there waits. */
+    /* The socket first: if it failed with the file open, an older recording would be lost for nothing. Datagrams
+     * that arrive until the file is open are queued. */
     if (dis_udp_open(&r.udp, &o.udp) != STATUS_OK) return 1;
     dis_udp_where(where, &o.udp);
     snprintf(comment, sizeof comment, "pitviper record: %s", where);

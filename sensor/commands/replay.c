@@ -1,4 +1,4 @@
-/* sensor/commands/replay.c: a recorded exercise played to pictures and truth. */
+/* sensor/commands/replay.c: replays a recorded exercise to images and truth. */
 #include "sensor/commands/replay.h"
 
 #include "sensor/publish/frame_files.h"
@@ -26,7 +26,7 @@ static void show_progress(double n, double first, double last, double begun_s)
     log_status(text);
 }
 
-/* Waits until the log's own clock, times speed, has come to t_s, or a signal. */
+/* Waits until the log's own clock, times speed, has reached t_s, or a signal. */
 static void pace(double begun_s, double first_s, double t_s, double speed)
 {
     if (!isfinite(speed)) return;
@@ -39,7 +39,7 @@ static void pace(double begun_s, double first_s, double t_s, double speed)
     }
 }
 
-/* Whether frame n is wanted; at: of --only, the next one. */
+/* Whether frame n is requested; at: of --only, the next one. */
 static bool wanted(const Options *o, int *at, double n)
 {
     if (o->only_count == 0) return true;
@@ -47,7 +47,7 @@ static bool wanted(const Options *o, int *at, double n)
     return *at < o->only_count && o->only[*at] == n;
 }
 
-/* What --only leaves of a span: up to the last frame it names, which must all be there. */
+/* The part of a span that --only needs: up to the last frame it names; all of them must be in the span. */
 static Status take_only(double *last, const Options *o, double first)
 {
     if (o->only_count == 0) return STATUS_OK;
@@ -61,7 +61,7 @@ static Status take_only(double *last, const Options *o, double first)
     return STATUS_OK;
 }
 
-/* The span of the plan and of --from and --to, or, causal, to the last that was heard unless --to goes beyond. */
+/* The span of the plan and of --from and --to, or, causal, to the last datagram received unless --to is later. */
 static Status replay_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
     const Options *o      = &run->options;
@@ -77,7 +77,7 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
 
     double     first = ceil(from_s * grid->rate_hz - 1e-9) - grid->origin;
     double     last  = floor(to_s * grid->rate_hz + 1e-9) - grid->origin;
-    const bool single = to_s >= from_s && !(last >= first); /* too short for the grid: one frame, at its start */
+    const bool single = to_s >= from_s && !(last >= first); /* shorter than an interval: one frame, at its start */
     if (!(last >= first || single) || last > 999999) {
         log_error("replay: %s between %.3f and %.3f s at %g Hz: the recording goes from %.3f to %.3f s (+0 to +%.3f), "
                   "%s can be "
@@ -118,7 +118,7 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
 
 /* ---- the log --------------------------------------------------------------------------------- */
 
-/* All hosts before the first frame of any: a slip in the last is not found out after an hour. */
+/* All hosts before the first frame of any: an error in the last is not found after an hour. */
 static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
 {
     const Options *o = &run->options;
@@ -144,7 +144,7 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
     return STATUS_OK;
 }
 
-/* Arrival times as a live node had them, whatever the stamps say of the pace. */
+/* Arrival times as a live node received them, independent of the time stamps. */
 static void take_packet_times(DisLog *log)
 {
     if (log->retimed)
@@ -209,7 +209,7 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_OK && run.options.host_count > 1) frame_files_clear(run.options.out);
     for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {
         const Status one = run_host(&run, &host[i]);
-        if (one != STATUS_OK) failed = one; /* the others are still shown */
+        if (one != STATUS_OK) failed = one; /* the others are still rendered */
     }
     if (status == STATUS_OK) status = failed;
     if (status == STATUS_NO_MEMORY)

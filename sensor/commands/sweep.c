@@ -22,7 +22,7 @@
 enum { path_size = 4200, name_size = 16, words_size = 4096 };
 
 typedef struct Variant {
-    int  number;               /* of the file, 0 is the first */
+    int  number;               /* in the file, 0 is the first */
     char name[name_size];
     char config_sha256[sha256_text_size];
     char settings_sha256[sha256_text_size]; /* of its settings.yaml: equal ones are the same run */
@@ -41,7 +41,7 @@ typedef struct SweepRun {
     bool           stopped;            /* by a signal, before the last */
 } SweepRun;
 
-/* How one variant ended. */
+/* Result of one variant. */
 typedef struct Outcome {
     const char *status;
     bool        has_run;

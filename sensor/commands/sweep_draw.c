@@ -179,7 +179,7 @@ Status sweep_draw(Sweep *sweep, const char *path)
     seen.sha256    = calloc((size_t)seen.size, sizeof *seen.sha256);
     sweep->draw_of = calloc((size_t)sweep->count, sizeof *sweep->draw_of);
     if (!seen.sha256 || !sweep->draw_of) status = STATUS_NO_MEMORY;
-    /* past the draws every combination is met in order, and no more of them than are seen and wanted */
+    /* after the draws the combinations are enumerated in order, until there are as many as requested */
     for (; found < sweep->count && status == STATUS_OK && (draw < draws_max || ordered); draw++) {
         key_of(key, sweep, draw);
         if (add(&seen, key, &status)) sweep->draw_of[found++] = draw;

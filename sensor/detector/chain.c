@@ -231,8 +231,8 @@ static void run_channel(Chain *c, int index, const float *radiance, const SmallT
 
     for (size_t i = 0; i < count; i++) e[i] = (float)(c->exposure * photon_table_electrons(ch->photons, radiance[i]));
 
-    /* the sweep itself passes over a detector while a stage looks; the scene's own motion, which the stages do not
-     * follow, over all of them, that look side by side in time */
+    /* the motion of the sweep itself passes over a detector within a stage's integration time; the scene's own
+     * motion, which the stages do not follow, over all stages, which integrate one after the other */
     const double sweep_px = p->scan.by_columns ? c->exposure * d->integration_s / fmax(p->tdi, 1) / p->scan.line_s : 0;
     const double moving_px[2] = {sweep_px + (p->smear ? rate_px_s[0] * c->exposure * d->integration_s : 0),
                                  p->smear ? rate_px_s[1] * c->exposure * d->integration_s : 0};

@@ -1,8 +1,9 @@
 /* sensor/detector/chain.h: one band's sensor from radiance at the aperture to raw counts.
  *
- *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, footprint, smear, jitter -> each
- *     line at its own time -> pixel-to-pixel gain -> shot, dark and read noise, three-dimensional
- *     noise, noise along lines -> AC coupling -> well, converter -> defective pixels and their replacement
+ *     radiance -> electrons (solid angle, optics, quantum efficiency, time) -> optics, detector footprint,
+ *     smear, jitter -> each line at its own time -> pixel-to-pixel gain -> shot, dark and read noise,
+ *     three-dimensional noise, noise along lines -> AC coupling -> well, converter -> defective pixels and
+ *     their replacement
  *
  * Frames are independent: all noise is a function of (seed, frame, row, column), so frames may be made in any order. */
 #ifndef SENSOR_DETECTOR_CHAIN_H
@@ -18,8 +19,8 @@ typedef struct Chain Chain;
  * wavelengths: within 0.001 (tests/sensor/test_sensor_mtf.c). */
 double chain_wavelength_m(const SensorPreset *preset, int channel);
 
-/* places: along a row of a pixel, which the picture has averaged (MtfChain, render_places). Of the optical band there
- * are three channels, R G B, or one, by preset->optical; else one. */
+/* places: samples along a row of a pixel, which the image has averaged (MtfChain, render_places). Of the optical
+ * band there are three channels, R G B, or one, by preset->optical; else one. */
 Status chain_create(Chain **out, const SensorPreset *preset, int width, int height, int places, uint64_t seed);
 void   chain_destroy(Chain *chain);
 
@@ -33,7 +34,7 @@ void chain_run(Chain *chain, const float *const radiance[], const SmallTargets *
 const uint16_t *chain_counts(const Chain *chain, int channel);
 const float    *chain_values(const Chain *chain, int channel);
 
-/* Counts that this radiance gives, unbounded, before noise. */
+/* Counts for this radiance, unbounded, before noise. */
 double chain_counts_at(const Chain *chain, int channel, double radiance_w_m2_sr);
 /* Rms of all noise at this radiance, as radiance: temporal, fixed and along lines, without defective pixels. */
 double chain_sigma(const Chain *chain, int channel, double radiance_w_m2_sr);

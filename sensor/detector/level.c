@@ -97,7 +97,7 @@ static float order_statistic(const uint32_t top[digits], const float *const *pla
 
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count)
 {
-    /* A span below this part of the level is rounding of a constant, not a picture: 80 steps of a float. */
+    /* A span below this part of the level is rounding of a constant, not an image: 80 steps of a float. */
     static const double relative_floor = 1e-5, absolute_floor = 1e-30;
 
     DetectorLevel level = {config->level_low, config->level_high};
@@ -118,7 +118,7 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
         level.low = middle - 0.5 * span;
         level.high = middle + 0.5 * span;
         if (span == config->min_span && level.low < 0 && middle >= 0)
-            level = (DetectorLevel){0, span}; /* a dark picture is dark */
+            level = (DetectorLevel){0, span}; /* a dark image is displayed dark */
     }
     return level;
 }

@@ -1,15 +1,15 @@
-/* sensor/detector/mrtd.c: the minimum resolvable temperature difference that a sensor's figures promise. */
+/* sensor/detector/mrtd.c: the minimum resolvable temperature difference, from the figures of a sensor. */
 #include "sensor/detector/mrtd.h"
 
 #include "sensor/detector/chain.h"
 
-/* Of white noise in square pixels, what a mean over a length leaves; below a pixel, that of the pixel. */
+/* Share of white noise in square pixels that remains in a mean over a length; below a pixel, that of the pixel. */
 static double white_left(double length_px)
 {
     return length_px > 1 ? (1 - 1 / (3 * length_px)) / length_px : 1 - length_px / 3;
 }
 
-/* Of noise correlated as exp(-x / reach): variance of a mean over a length, and covariance of two such side by side. */
+/* Of noise correlated as exp(-x / reach): variance of a mean over a length, and covariance of two adjacent ones. */
 static double line_left(double length_px, double reach_px)
 {
     const double u = length_px / reach_px;
@@ -22,7 +22,7 @@ static double line_shared(double length_px, double reach_px)
     return mean * mean;
 }
 
-/* As the detector's chain has it (chain.c), on a picture that was averaged over whole pixels. */
+/* As in the detector's chain (chain.c), on an image averaged over whole pixels. */
 static double mtf_along(const SensorPreset *p, int axis, double f)
 {
     const PhotonDetector *d = &p->photons;
@@ -33,7 +33,7 @@ static double mtf_along(const SensorPreset *p, int axis, double f)
     return mtf_chain(&mtf, axis == 0 ? f : 0, axis == 0 ? 0 : f) * mtf_sinc(sweep_px * f);
 }
 
-/* Mean of a bar less that of the gap beside it, of bars of 1. */
+/* Mean of a bar minus that of the adjacent gap, of bars of 1. */
 static double contrast(const SensorPreset *p, int axis, double f, int harmonics)
 {
     double sum = 0;

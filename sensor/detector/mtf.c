@@ -1,4 +1,4 @@
-/* sensor/detector/mtf.c: closed-form modulation transfer functions of optics, footprint, smear and jitter. */
+/* sensor/detector/mtf.c: closed-form modulation transfer functions of optics, detector footprint, smear and jitter. */
 #include "sensor/detector/mtf.h"
 
 /* Overlap of two unit circles whose centres are 2 x apart, over the area of one. */
@@ -43,7 +43,7 @@ double mtf_optics(const MtfChain *c, double fx, double fy)
     return isinf(c->cutoff_cyc_px) ? 1 : mtf_aperture(sqrt(fx * fx + fy * fy) / c->cutoff_cyc_px, c->obscuration);
 }
 
-/* sinc(w f) over the mean of n places at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
+/* sinc(w f) over the mean of n samples at (k + 0.5) / n of a pixel, k = 0 .. n - 1. */
 static double footprint_axis(double footprint_px, int n, double f)
 {
     return mtf_sinc(footprint_px * f) * mtf_sinc(f / n) / mtf_sinc(f);

@@ -11,7 +11,7 @@ static const bool has_h[noise_axes] = {true, false, true, true, false, false, tr
 
 double noise3d_unit(NoiseAxis axis, uint64_t seed, uint32_t stream, int frame, int row, int column)
 {
-    /* streams of their own, away from the small numbers that others use */
+    /* separate streams, apart from the small numbers used elsewhere */
     const uint32_t own = 0x3d000000u + 8 * stream + (uint32_t)axis;
     return random_normal(seed, own, has_t[axis] ? (uint32_t)frame : 0,
                          (uint64_t)(has_v[axis] ? row : 0) << 32 | (uint32_t)(has_h[axis] ? column : 0));
@@ -51,7 +51,7 @@ void noise3d_add_fixed(float *plane, int width, int height, const Noise3d *noise
 {
     static const NoiseAxis axis[4] = {noise_axes, NOISE_V, NOISE_H, NOISE_VH};
     double *columns = malloc((size_t)width * sizeof *columns);
-    if (!columns) { /* as slow as it is rare: the same numbers one by one */
+    if (!columns) { /* rare, hence without SIMD: the same numbers one by one */
         const Noise3d fixed = {.sigma = {[NOISE_V] = noise->sigma[NOISE_V], [NOISE_H] = noise->sigma[NOISE_H],
                                          [NOISE_VH] = noise->sigma[NOISE_VH]}};
         for (int r = 0; r < height; r++)
@@ -70,9 +70,9 @@ void noise3d_add_moving(float *plane, int width, int height, const Noise3d *nois
     add(plane, width, height, noise, seed, stream, frame, axis, columns);
 }
 
-/* ---- estimate --------------------------------------------------------------------------------- */
+/* ---- estimation --------------------------------------------------------------------------------- */
 
-/* Sample variance of the residual array d[a][b] (means of rows and columns taken off), over (a - 1)(b - 1). */
+/* Sample variance of the residual array d[a][b] (means of rows and columns subtracted), over (a - 1)(b - 1). */
 static double pair_variance(const double *d, int a, int b)
 {
     double all = 0, sum = 0;
@@ -127,7 +127,7 @@ Status noise3d_estimate(Noise3d *out, const float *cube, int frames, int rows, i
         for (int c = 0; c < H; c++) h[c] += vh[r * H + c] / V;
     for (int k = 0; k < T; k++) all += t[k] / T;
 
-    /* what no average explains */
+    /* the part in no average */
     double sum = 0;
     for (int k = 0; k < T; k++)
         for (int r = 0; r < V; r++) {

@@ -37,7 +37,7 @@ double photon_band(double low_m, double high_m, double temp_k, double *derivativ
 
 double photon_mean_wavelength_m(double low_m, double high_m, double temp_k)
 {
-    /* a photon's energy is hc / wavelength: ratio of photons times wavelength to photons, each by the same nodes */
+    /* a photon's energy is hc / wavelength: ratio of photons times wavelength to photons, both by the same nodes */
     enum { panels = 16 };
     if (!(low_m > 0 && high_m > low_m && isfinite(high_m) && temp_k > 0)) return NAN;
     const double half_m = 0.5 * (high_m - low_m) / panels;
@@ -75,11 +75,11 @@ double photon_netd_k(const PhotonDetector *d, double temp_k, double count_e, dou
 
 /* ---- table ------------------------------------------------------------------------------------ */
 
-/* Photons over watts hardly change with temperature: knots even in the logarithm of radiance, linear between. */
+/* Photons per watt depend weakly on temperature: knots uniform in the logarithm of radiance, linear between. */
 enum { knots = 4096 };
 
 struct PhotonTable {
-    double low, high, per_log; /* logarithms of the ends; knots a unit of it. per_log 0: one ratio for all */
+    double low, high, per_log; /* logarithms of the ends; knots per unit of it. per_log 0: one ratio for all */
     double ratio[knots];       /* electrons / (W/(m2 sr)) */
 };
 

@@ -87,7 +87,7 @@ static Status bad_word(const Table *t, int row, const char *column, const char *
     return STATUS_BAD_VALUE;
 }
 
-/* A column that must be there. */
+/* A required column. */
 static int need(const Table *t, const char *name)
 {
     const int column = table_column(t, name);

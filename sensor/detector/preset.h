@@ -11,8 +11,8 @@
 typedef struct SensorPreset {
     char           name[32];
     Band           band;               /* optical, mwir or lwir */
-    const SpectralChannel *channel;    /* the one it was made for; NULL: the visible ones, or whatever the band has */
-    OpticalChannels optical;           /* what it sees of the optical band */
+    const SpectralChannel *channel;    /* the one it is for; NULL: the visible ones, or all of the band */
+    OpticalChannels optical;           /* its response in the optical band */
     double         width_px, height_px, hfov_deg;
     double         lens[5], lateral[2]; /* k1 k2 k3 p1 p2 (render/scene/lens.h); R and B over G, less 1 */
     PhotonDetector photons;            /* low_m, high_m: the band's; dark_e for integration_s; of one stage */

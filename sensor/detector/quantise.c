@@ -38,7 +38,7 @@ static void display_prepare(Display *d, const DetectorConfig *config, DetectorLe
     d->gamma = config->display_gamma;
     for (int i = 0; d->gamma && i <= curve_intervals; i++)
         d->curve[i] = (float)srgb_encode((double)i / curve_intervals);
-    d->curve[curve_intervals + 1] = 1; /* so that the very end needs no branch */
+    d->curve[curve_intervals + 1] = 1; /* so that the end needs no branch */
 }
 
 /* x: of full scale. */
@@ -94,7 +94,7 @@ void detector_display_db(void *out, const float *power, size_t count, double dyn
     for (size_t i = 0; i < count; i++)
         if (isfinite(power[i]) && power[i] > brightest) brightest = power[i];
 
-    /* brightest 0: nothing shows, and the division below is never used */
+    /* brightest 0: all black, and the division below is not used */
     const double full = bits == 16 ? 65535 : 255;
     const double per_max = brightest > 0 ? 1.0 / brightest : 0;
     const double least = brightest * pow(10, -0.1 * dynamic_range_db);

@@ -29,7 +29,7 @@ typedef struct Taps {
     float weight[phases + 1][scan_taps];
 } Taps;
 
-/* Weights for a place `phase / phases` behind tap 7. Each phase sums to 1, so that a constant stays one. */
+/* Weights for a position `phase / phases` after tap 7. Each phase sums to 1, so that a constant stays one. */
 static void make_taps(Taps *taps)
 {
     /* 5: the least ripple below 0.4 cycles a pixel that 16 taps give, by trial */
@@ -54,7 +54,7 @@ static int mirrored(int i, int count)
     return i < count ? i : period - 1 - i;
 }
 
-/* Whole and fraction of a shift; the place wanted is at - shift. */
+/* Whole and fraction of a shift; the position sampled is at - shift. */
 static int split(int *phase, double shift)
 {
     const double at = -clamp(shift, -1e6, 1e6), whole = floor(at);
@@ -64,7 +64,7 @@ static int split(int *phase, double shift)
 
 enum { before = scan_taps / 2 - 1 };
 
-/* Columns at their own times: along the rows at the time of the column's middle, then down it at each pixel's own. */
+/* Columns at their own times: along the rows at the time of the column's centre, then down it at each pixel's own. */
 static void resample_columns(float *out, const float *in, int width, int height, const Scan *scan,
                              const double rate_px_s[2], float *line, const Taps *taps)
 {
@@ -103,7 +103,7 @@ void scan_resample(float *out, const float *in, int width, int height, const Sca
         return;
     }
     for (int r = 0; r < height; r++) {
-        /* down the columns at the time of the line's middle, then along the line at each pixel's own */
+        /* down the columns at the time of the line's centre, then along the line at each pixel's own */
         int       phase;
         const int first = r + split(&phase, rate_px_s[1] * scan_time_s(scan, width, height, 0.5 * width, r)) - before;
         memset(line, 0, (size_t)width * sizeof *line);

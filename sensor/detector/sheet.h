@@ -1,10 +1,10 @@
-/* sensor/detector/sheet.h: a sensor from a data sheet, with the entries that the FLIR92 model is given.
+/* sensor/detector/sheet.h: a sensor from a data sheet, with the input parameters of the FLIR92 model.
  *
- * Text, a line an entry: key, value, and its unit, which may be left out but must otherwise be the one below; # begins
- * a comment. Every key once; unknown ones are refused. The example is etc/sensors/example_flir2.sheet.
+ * Text, one entry per line: key, value, and its unit, which may be omitted but must otherwise be the one below; #
+ * begins a comment. Every key once; unknown ones are refused. The example is etc/sensors/example_flir2.sheet.
  *
  *   name                     text          word of letters, digits, _ - .
- *   sensor_type              word          staring; parallel: one column of detectors swept over the picture
+ *   sensor_type              word          staring; parallel: one column of detectors swept over the image
  *   spectral_cut_on          microns       the band must be LWIR (7 .. 14) or MWIR (3 .. 5.5), of which our own
  *   spectral_cut_off         microns       is taken: 8 .. 12 or 3.4 .. 4.8
  *   f_number                 -             focal length over aperture

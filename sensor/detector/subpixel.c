@@ -29,7 +29,7 @@ struct SubPixel {
     MtfChain      chain;
     double        smear_px[2];   /* smear of the present kernels; NaN: none yet */
     double       *true_pass;     /* [fine][fine_half]: optics, footprint, jitter; over the nodes' own and the period */
-    double       *pixel_pass;    /* [period_px][coarse_half]: what the blur passes without smear, over the period */
+    double       *pixel_pass;    /* [period_px][coarse_half]: transfer of the blur without smear, over the period */
     double       *fine_value;    /* [fine][fine]: continuous point spread, px^-2 */
     double       *coarse_value;  /* [period_px][period_px] */
     double       *fine_wave, *coarse_wave; /* spectra, in pairs */
@@ -272,7 +272,7 @@ void subpixel_targets(SubPixel *s, float *electrons, double *more, int width, in
 {
     memset(more, 0, (size_t)width * (size_t)height * sizeof *more);
     make_kernels(s, smear_px);
-    /* first all that they hide, then all that they show: a pixel may hold parts of several */
+    /* first all the background that they hide, then all their own light: a pixel may contain parts of several */
     for (int n = 0; n < targets->count; n++) {
         const SmallTarget *t = &targets->target[n];
         for (int y = t->y0, k = 0; y < t->y1; y++)

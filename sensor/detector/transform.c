@@ -14,7 +14,7 @@ struct Transform {
 
 Status transform_create(Transform **out, TransformKind kind, int rows, int columns, double *from, double *to)
 {
-    /* plain code, whatever vectors a processor has: the same bits on every one */
+    /* no vector code, whatever the processor has: the same bits on every one */
     static const unsigned flags = FFTW_ESTIMATE | FFTW_NO_SIMD;
     static const fftw_r2r_kind real[] = {FFTW_REDFT10, FFTW_REDFT01, FFTW_RODFT01};
     Transform *t = calloc(1, sizeof *t);

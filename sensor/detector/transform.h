@@ -1,5 +1,5 @@
-/* sensor/detector/transform.h: Fourier, cosine and sine transforms of planes, of one size each, planned once. FFTW
- * behind it: in double, plans by estimate, without vector code, so that bits do not depend on threads or processor. */
+/* sensor/detector/transform.h: Fourier, cosine and sine transforms of planes, of one size each, planned once. Uses
+ * FFTW: in double, plans by estimate, without vector code, so that bits do not depend on threads or processor. */
 #ifndef SENSOR_DETECTOR_TRANSFORM_H
 #define SENSOR_DETECTOR_TRANSFORM_H
 
@@ -15,13 +15,13 @@ typedef enum TransformKind {
                              * to: [rows][columns]. From is overwritten */
 } TransformKind;
 
-/* For these two places alone, from transform_alloc; the same for all but WAVES_BACK. Several threads may call it. */
+/* For these two buffers alone, from transform_alloc; the same for all but WAVES_BACK. Several threads may call it. */
 Status transform_create(Transform **out, TransformKind kind, int rows, int columns, double *from, double *to);
 void   transform_destroy(Transform *t);
 /* No allocation. */
 void   transform_run(const Transform *t);
 
-/* Doubles aligned as transforms like them; NULL: no memory. */
+/* Doubles with the alignment that transforms need; NULL: no memory. */
 double *transform_alloc(size_t count);
 void    transform_free(double *values);
 

@@ -1,4 +1,4 @@
-/* sensor/framefile/chunks.c: named chunks, each with its size and checksum: put into memory, and read from it. */
+/* sensor/framefile/chunks.c: named chunks, each with its size and checksum: written to memory, and read from it. */
 #include "sensor/framefile/chunks.h"
 
 #include <stdlib.h>
@@ -12,7 +12,7 @@ enum { method_plain, method_zlib };
 
 /* ---- writing ------------------------------------------------------------------------------------ */
 
-/* Room for count more octets; NULL: none. */
+/* Space for count more octets; NULL: none. */
 static uint8_t *make_room(ByteSink *sink, size_t count)
 {
     if (sink->failed) return NULL;
@@ -183,7 +183,7 @@ Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSour
         return plain == 0 && stored == 0 ? STATUS_OK : damaged(chunks, STATUS_BAD_VALUE, "its end is damaged");
     }
     const uint8_t *bytes = source_bytes(rest, stored);
-    /* zlib packs a thousandfold at most: no more is made room for than the octets can hold */
+    /* zlib compresses by a factor of 1000 at most: no more is allocated than the octets can hold */
     if (method > method_zlib || (method == method_plain && plain != stored) || plain / 1032 > stored ||
         plain > chunk_most_octets - chunks->octets)
         return damaged(chunks, STATUS_BAD_VALUE, "the size of a chunk is damaged");

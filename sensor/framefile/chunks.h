@@ -2,7 +2,7 @@
  *
  *     "PVFRAME\n"   8 octets
  *     version       u32
- *     chunks        name 8 octets (padded with 0), method u32 (0: as it is, 1: zlib), CRC-32 of the plain octets u32,
+ *     chunks        name 8 octets (padded with 0), method u32 (0: stored, 1: zlib), CRC-32 of the plain octets u32,
  *                   octets plain u64, octets stored u64, the octets stored
  *
  * The last chunk is "end", empty. All numbers are little-endian; double and float are IEEE 754. */
@@ -14,12 +14,12 @@
 enum { chunk_name_size = 8, chunks_version = 1 };
 static const uint64_t chunk_most_octets = (uint64_t)1 << 30;
 
-/* ---- writing: octets that grow ------------------------------------------------------------------ */
+/* ---- writing: a growing buffer ------------------------------------------------------------------ */
 
 typedef struct ByteSink {
     uint8_t *bytes;
     size_t   count, capacity;
-    bool     failed; /* no memory; what is put then is lost */
+    bool     failed; /* no memory; later writes are lost */
 } ByteSink;
 
 void sink_bytes(ByteSink *sink, const void *bytes, size_t count);
@@ -32,24 +32,24 @@ static inline void sink_i32(ByteSink *sink, int value) { sink_u32(sink, (uint32_
 static inline void sink_f64(ByteSink *sink, double value) { sink_f64s(sink, &value, 1); }
 
 void chunks_begin(ByteSink *file);
-/* Compressed where that makes it shorter. */
+/* Compressed where that is shorter. */
 void chunks_put(ByteSink *file, const char *name, const ByteSink *content);
 void chunks_end(ByteSink *file);
 
 /* ---- reading: a cursor that cannot overrun ------------------------------------------------------- */
 
-/* Once truncated everything that follows reads as 0. */
+/* Once truncated all later reads return 0. */
 typedef struct ByteSource {
     const uint8_t *at, *end;
     bool           truncated;
 } ByteSource;
 
-/* NULL: there are not so many. */
+/* NULL: fewer octets are left. */
 const uint8_t *source_bytes(ByteSource *source, size_t count);
 uint32_t source_u32(ByteSource *source);
 uint64_t source_u64(ByteSource *source);
 void     source_f64s(ByteSource *source, double *value, int count);
-/* Within the arena, terminated; of at most `most` octets, none of them 0. NULL: not so. */
+/* Within the arena, terminated; at most `most` octets, none of them 0. NULL: otherwise. */
 char    *source_text(ByteSource *source, size_t most, Arena *arena);
 static inline int source_i32(ByteSource *source) { return (int)source_u32(source); }
 static inline double source_f64(ByteSource *source)
@@ -58,17 +58,17 @@ static inline double source_f64(ByteSource *source)
     source_f64s(source, &value, 1);
     return value;
 }
-/* A count of records of at least `octets` octets each, which the rest can hold; else 0, and truncated. */
+/* A count of records of at least `octets` octets each, which the remaining octets can hold; else 0, and truncated. */
 int      source_count(ByteSource *source, size_t octets, int most);
 
 typedef struct ChunkSource {
     ByteSource rest;
     Arena     *arena;     /* of what is decompressed */
     uint64_t   octets;    /* decompressed so far */
-    const char *fault;    /* in words, of the failure; static storage */
+    const char *fault;    /* text of the failure; static storage */
 } ChunkSource;
 
-/* STATUS_UNSUPPORTED: another version, STATUS_BAD_VALUE: no frame file. */
+/* STATUS_UNSUPPORTED: another version, STATUS_BAD_VALUE: not a frame file. */
 Status chunks_open(ChunkSource *out, const uint8_t *bytes, size_t count, Arena *arena);
 /* The next chunk; STATUS_OK with an empty name: the end. */
 Status chunks_next(ChunkSource *chunks, char name[chunk_name_size + 1], ByteSource *content);

@@ -1,4 +1,4 @@
-/* sensor/framefile/fields.c: fields of a chunk, put or taken and checked. */
+/* sensor/framefile/fields.c: fields of a chunk, written, or read and checked. */
 #include "sensor/framefile/fields.h"
 
 static void expect(Fields *f, const char *name, bool good)
@@ -26,7 +26,7 @@ void field_int(Fields *f, const char *name, int *value, int low, int high)
     *value = source_i32(f->from);
     if (*value >= low && *value <= high) return;
     expect(f, name, false);
-    *value = low; /* an index is never out of its array, even on the way out */
+    *value = low; /* an index is never out of its array, even when writing */
 }
 
 void field_u32(Fields *f, uint32_t *value) { field_bytes(f, value, sizeof *value); }

@@ -1,11 +1,11 @@
-/* sensor/framefile/frame_again.c: a frame file's picture made again, hashed plane by plane and compared. */
+/* sensor/framefile/frame_again.c: renders the picture of a frame file again, hashes it plane by plane and compares. */
 #include "sensor/framefile/frame_again.h"
 
 #include "sensor/world/frame_light.h"
 
-/* ---- what came out ------------------------------------------------------------------------------ */
+/* ---- results ------------------------------------------------------------------------------ */
 
-/* Of a complex one the magnitude. */
+/* Of a complex plane the magnitude. */
 static double value_at(const Plane *plane, size_t i)
 {
     const float *part = plane->values;
@@ -50,7 +50,7 @@ Status frame_made(FrameMade *out, const FrameArray *from, int count)
     return status;
 }
 
-/* ---- made again --------------------------------------------------------------------------------- */
+/* ---- rendered again --------------------------------------------------------------------------------- */
 
 Status frame_again(FrameAgain *out, const FrameFile *file, const Snapshot *snapshot, const World *world,
                    const Config *config, bool no_skip, Pool *pool, Arena *arena)

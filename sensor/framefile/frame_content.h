@@ -1,4 +1,5 @@
-/* sensor/framefile/frame_content.h: what a frame file holds: all that render() takes, and the hashes of its planes. */
+/* sensor/framefile/frame_content.h: the content of a frame file: all inputs of render(), and the hashes of its
+ * planes. */
 #ifndef SENSOR_FRAMEFILE_FRAME_CONTENT_H
 #define SENSOR_FRAMEFILE_FRAME_CONTENT_H
 
@@ -11,23 +12,24 @@
 
 enum { frame_models_max = 4096, frame_file_entities_max = 1 << 20 };
 
-/* A model that the snapshot holds. */
+/* A model in the snapshot. */
 typedef struct FrameModel {
-    int  model, node_count;          /* of the catalog that the frame was made with */
+    int  model, node_count;          /* of the catalog that the frame was rendered with */
     char name[model_name_size];
     char sha256[sha256_text_size];   /* of its nodes, parts and facets */
 } FrameModel;
 
-/* What came out. The figures are of the finite values alone: by how much a plane differs when its hash does. */
+/* The results. The statistics are of the finite values alone: they show by how much a plane differs when its hash
+ * does. */
 typedef struct FramePlane {
-    char   name[frame_plane_name_size]; /* lwir/Y, truth/range_m ... as hashes of frames name them */
+    char   name[frame_plane_name_size]; /* lwir/Y, truth/range_m ... as named in hashes of frames */
     char   sha256[sha256_text_size]; /* of this plane by itself (plane_hash) */
     double finite, mean, low, high;
 } FramePlane;
 
 typedef struct FrameFile {
     const char    *version, *host, *config_sha256; /* of the program; of the frame */
-    const char    *settings;         /* YAML as config_read takes it; without files of ground */
+    const char    *settings;         /* YAML as config_read accepts it; without terrain files */
     int            frame;
     double         time_s, unix_s;   /* exercise time; Unix time of exercise time 0 */
     TablesUsed     tables;
@@ -37,7 +39,7 @@ typedef struct FrameFile {
     RenderRequest  request;
     EyeState       eye;
     double         r_ecef_from_body[9];
-    double         rate_px_s[2];     /* how the scene moves over the picture, for detectors */
+    double         rate_px_s[2];     /* image motion of the scene, for detectors */
     bool           at_limit, all_on_ground;
     LandscapeParts ground;
     char           frame_sha256[sha256_text_size];

@@ -1,15 +1,16 @@
-/* sensor/framefile/frame_fields.c: what each chunk of a frame file holds: the fields, in order, with their ranges. */
+/* sensor/framefile/frame_fields.c: the content of each chunk of a frame file: the fields, in order, with their
+ * ranges. */
 #include "sensor/framefile/frame_fields.h"
 
 #include "entities/effects/effects_history.h"
 #include "sensor/framefile/ground_cutout.h"
 
-static const double earth_m = 1e8;    /* of a place in ECEF: far outside anything a picture shows */
-static const double local_m = 2e7;    /* of a place in a local frame */
+static const double earth_m = 1e8;    /* of a position in ECEF: far beyond any in an image */
+static const double local_m = 2e7;    /* of a position in a local frame */
 static const double fast_mps = 1e6;
 static const double long_s = 1e12;
 
-/* ---- what it is of ------------------------------------------------------------------------------ */
+/* ---- identification ------------------------------------------------------------------------------ */
 
 void frame_fields_about(Fields *f, FrameFile *file)
 {
@@ -129,9 +130,9 @@ void frame_fields_snapshot(Fields *f, FrameFile *file)
     if (f->from) check_order(f, s);
 }
 
-/* ---- eye and request ---------------------------------------------------------------------------- */
+/* ---- view and request ---------------------------------------------------------------------------- */
 
-/* A lens is made again from its coefficients: what else it holds follows from them. */
+/* A lens is rebuilt from its coefficients: its other fields follow from them. */
 static void lens_fields(Fields *f, View *view)
 {
     bool has = view_has_lens(view);
@@ -216,7 +217,7 @@ static void evidence_fields(Fields *f, LandscapeEvidence *said)
     said->place = place;
 }
 
-/* The values of a grid; reading, room is made for all of them. */
+/* The values of a grid; reading, they are all allocated. */
 static void grid_values(Fields *f, const GroundCutout *kept, void **values, int nx, int ny, int octets, double x0_m,
                         double y0_m, double spacing_m)
 {
@@ -312,7 +313,7 @@ void frame_fields_ground(Fields *f, FrameFile *file, const GroundCutout *kept)
     if (fields_good(f)) photo_fields(f, &g->photo, kept);
 }
 
-/* ---- what came out ------------------------------------------------------------------------------ */
+/* ---- results ------------------------------------------------------------------------------ */
 
 void frame_fields_planes(Fields *f, FrameFile *file)
 {

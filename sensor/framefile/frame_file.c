@@ -1,4 +1,4 @@
-/* sensor/framefile/frame_file.c: a frame file as a whole: its chunks, in order, and what must agree between them. */
+/* sensor/framefile/frame_file.c: a complete frame file: its chunks, in order, and the consistency between them. */
 #include "sensor/framefile/frame_file.h"
 
 #include "sensor/framefile/frame_fields.h"
@@ -9,7 +9,7 @@ typedef void ChunkFields(Fields *f, FrameFile *file);
 
 static const struct Chunk {
     const char  *name;
-    ChunkFields *fields; /* NULL: the ground, which may be cut out */
+    ChunkFields *fields; /* NULL: the ground, which may be a cut-out */
 } chunks[] = {
     {"about", frame_fields_about},       {"settings", frame_fields_settings}, {"tables", frame_fields_tables},
     {"models", frame_fields_models},     {"snapshot", frame_fields_snapshot}, {"request", frame_fields_request},
@@ -19,7 +19,7 @@ enum { chunk_kinds = sizeof chunks / sizeof *chunks };
 
 Status frame_file_pack(ByteSink *out, const FrameFile *file, const GroundCutout *kept)
 {
-    FrameFile fields = *file; /* the list of fields takes what it may also fill in */
+    FrameFile fields = *file; /* the list of fields takes a mutable value, for reading */
     chunks_begin(out);
     for (int c = 0; c < chunk_kinds; c++) {
         ByteSink content = {0};
@@ -33,7 +33,7 @@ Status frame_file_pack(ByteSink *out, const FrameFile *file, const GroundCutout 
     return out->failed ? STATUS_NO_MEMORY : STATUS_OK;
 }
 
-/* ---- what must agree ---------------------------------------------------------------------------- */
+/* ---- consistency ---------------------------------------------------------------------------- */
 
 static const FrameModel *model_of(const FrameFile *file, int model)
 {
@@ -68,7 +68,7 @@ static Status parse(FrameFile *out, ChunkSource *source, unsigned *met, const ch
         if (status != STATUS_OK || !*name) return status;
         int c = 0;
         while (c < chunk_kinds && strcmp(chunks[c].name, name) != 0) c++;
-        if (c == chunk_kinds) continue; /* of a later program, which adds what this one need not know */
+        if (c == chunk_kinds) continue; /* of a later version, with a field that this one need not know */
         Fields f = {.from = &content, .arena = source->arena};
         if (*met >> c & 1) source->fault = "a chunk is there twice";
         else if (chunks[c].fields) chunks[c].fields(&f, out);

@@ -1,5 +1,5 @@
-/* sensor/framefile/frame_save.c: gathers what a frame was made from, packs it, renders it again from the octets, and
- * writes the file when the planes are the same. */
+/* sensor/framefile/frame_save.c: collects the inputs of a frame, packs them, renders the frame again from the
+ * octets, and writes the file when the planes are equal. */
 #include "sensor/framefile/frame_save.h"
 
 #include "sensor/framefile/frame_again.h"
@@ -13,9 +13,9 @@
 
 enum { path_size = 4096 };
 
-/* ---- gathered ----------------------------------------------------------------------------------- */
+/* ---- collected ----------------------------------------------------------------------------------- */
 
-/* Without files of ground, which the file itself has in their place, and without what makes no picture. */
+/* Without terrain files, which the frame file replaces, and without settings that affect no plane. */
 static Status write_settings(char **text, const Config *config)
 {
     Config plain = *config;
@@ -52,7 +52,7 @@ static Status list_models(FrameFile *file, const Catalog *catalog, Arena *arena)
     return status;
 }
 
-/* The nodes of all entities: the snapshot of a frame poses only those that are drawn. */
+/* The nodes of all entities: the snapshot of a frame poses only those that are rendered. */
 static Status pose_nodes(FrameFile *file, const Catalog *catalog, Arena *arena)
 {
     Snapshot *s = &file->snapshot;
@@ -94,7 +94,7 @@ static Status gather(FrameFile *file, FrameMade *made, char **settings, const Fr
     return STATUS_OK;
 }
 
-/* Where the frame's rays meet the ground, or what stands on it; the eye, the origin, and smoke on the ground. */
+/* Points where the frame's rays hit the ground, or entities on it; the sensor, the origin, and smoke on the ground. */
 static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
 {
     const Picture    *picture = &f->seen.picture;
@@ -125,7 +125,7 @@ static Status gather_places(GroundCutout *out, const Frame *f, Arena *arena)
     return STATUS_OK;
 }
 
-/* ---- proved ------------------------------------------------------------------------------------- */
+/* ---- verified ------------------------------------------------------------------------------------- */
 
 /* Whether the octets give the same planes. */
 static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Arena *arena)
@@ -153,8 +153,8 @@ static Status prove(bool *same, const ByteSink *bytes, const FrameSave *save, Ar
     return status;
 }
 
-/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. What is seen directly is in the first;
- * glossy surfaces mirror hills that are farther away than what the picture shows. */
+/* The smallest of a few cut-outs that gives the same bits. reach_m: its own. Directly visible ground is in the
+ * first; glossy surfaces reflect hills that are farther away than those in the image. */
 static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *file, const FrameSave *save,
                           Arena *gathered)
 {
@@ -183,7 +183,7 @@ static Status pack_proved(ByteSink *bytes, double *reach_m, const FrameFile *fil
     return status;
 }
 
-/* Beside its place first: a file is whole or not there. */
+/* Written next to its final path and renamed: a file is complete or absent. */
 static Status write_file(const char *path, const ByteSink *bytes)
 {
     char  part[path_size + 8];

@@ -1,4 +1,4 @@
-/* sensor/framefile/frame_save.h: a frame that was just made, written as OUT/frame_NNNNNN.pvf (frame_file.h). */
+/* sensor/framefile/frame_save.h: writes a frame that was just rendered as OUT/frame_NNNNNN.pvf (frame_file.h). */
 #ifndef SENSOR_FRAMEFILE_FRAME_SAVE_H
 #define SENSOR_FRAMEFILE_FRAME_SAVE_H
 
@@ -15,8 +15,8 @@ typedef struct FrameSave {
     Pool           *pool;
 } FrameSave;
 
-/* Writes it only after rendering it again from its own octets to the same bits; with ground of files it takes more of
- * the ground until that is so. Takes the time of a few frames. Logs failures. */
+/* Writes it only after rendering it again from its own octets to the same bits; with terrain from files it includes
+ * more of the terrain until that holds. Takes the time of a few frames. Logs failures. */
 Status frame_save(const FrameSave *save);
 
 #endif

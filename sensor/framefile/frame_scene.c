@@ -25,8 +25,8 @@ static Status read_settings(Config *config, const FrameFile *file)
     return status;
 }
 
-/* Channels first: sensors and tables depend on them. Samples may have been chosen for the frame (quality.*), and the
- * picture's size by its sensor. */
+/* Channels first: sensors and tables depend on them. Samples may have been selected for the frame (quality.*), and
+ * the image size by its sensor. */
 static Status choose_sensors(FrameScene *s, const FrameFile *file)
 {
     const RenderRequest *r = &file->request;
@@ -79,8 +79,8 @@ static int compare_tables(const TablesUsed *was, const TablesUsed *is, bool forc
     return differ;
 }
 
-/* Every entity's model by its type, as the entity table finds it; each model's facets by hash. Nodes that do not fit
- * cannot be forced: their poses are the file's. */
+/* Every entity's model by its type, as the entity table finds it; each model's facets by hash. Nodes that do not
+ * match cannot be forced: their poses are the file's. */
 static Status take_models(FrameScene *s, const FrameFile *file, bool forced)
 {
     Status status = STATUS_OK;
@@ -111,7 +111,7 @@ static Status take_models(FrameScene *s, const FrameFile *file, bool forced)
     return status;
 }
 
-/* ---- the whole ---------------------------------------------------------------------------------- */
+/* ---- all of it ---------------------------------------------------------------------------------- */
 
 static Status open_ground(FrameScene *s, const FrameFile *file)
 {

@@ -1,5 +1,5 @@
-/* sensor/framefile/frame_scene.h: everything that a frame file needs of this installation, opened and compared with
- * what the frame was made with: settings, tables, models, sensors; and its own ground. */
+/* sensor/framefile/frame_scene.h: everything that a frame file needs from this installation, opened and compared
+ * with that of the original frame: settings, tables, models, sensors; and its own ground. */
 #ifndef SENSOR_FRAMEFILE_FRAME_SCENE_H
 #define SENSOR_FRAMEFILE_FRAME_SCENE_H
 
@@ -17,8 +17,8 @@ typedef struct FrameScene {
     int         tables_differ;
 } FrameScene;
 
-/* Tables and models that are not those of the frame are logged by name: STATUS_BAD_VALUE unless forced. Whatever it
- * returns, frame_scene_close must follow. isa: as world_open. */
+/* Tables and models that differ from those of the frame are logged by name: STATUS_BAD_VALUE unless forced.
+ * frame_scene_close must follow, also on failure. isa: as world_open. */
 Status frame_scene_open(FrameScene *out, const FrameFile *file, bool forced, const char *isa);
 void   frame_scene_close(FrameScene *scene);
 

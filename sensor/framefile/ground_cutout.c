@@ -1,4 +1,4 @@
-/* sensor/framefile/ground_cutout.c: grids by tiles, of which those about given places are kept. */
+/* sensor/framefile/ground_cutout.c: grids by tiles, of which those around given positions are kept. */
 #include "sensor/framefile/ground_cutout.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static Tiles tiles_of(const CutoutGrid *grid)
 
 static bool is_kept(const uint8_t *kept, size_t tile) { return kept[tile / 8] >> tile % 8 & 1; }
 
-/* First and last tile of one axis with the values next to a place; false: none. */
+/* First and last tile of one axis with the values next to a position; false: none. */
 static bool tiles_about(int range[2], double at_m, double x0_m, double spacing_m, int n)
 {
     const double at = floor((at_m - x0_m) / spacing_m), low = at - 1, high = at + 2;
@@ -31,7 +31,7 @@ static bool tiles_about(int range[2], double at_m, double x0_m, double spacing_m
 /* Marks grow by `more` tiles each way along one axis; stride: between tiles of the axis. */
 static void grow(uint8_t *mark, int n, size_t stride, int more)
 {
-    int from = -1; /* last mark on the way up, then on the way down */
+    int from = -1; /* last mark in ascending order, then in descending order */
     for (int i = 0; i < n; i++) {
         uint8_t *m = &mark[(size_t)i * stride];
         if (*m == 1) from = i;
@@ -88,7 +88,7 @@ static TileBox box_of(const Tiles *t, const CutoutGrid *grid, size_t tile)
     return b;
 }
 
-/* Differences along a tile's values, low octets first: neighbours are alike, and high octets hardly change. */
+/* Differences along a tile's values, low octets first: neighbours are similar, and high octets hardly change. */
 static void pack_u16(uint8_t *out, const uint16_t *value, size_t count)
 {
     uint16_t before = 0;
@@ -109,7 +109,7 @@ static void unpack_u16(uint16_t *value, const uint8_t *in, size_t count)
     }
 }
 
-/* Colours: a channel after the other, as differences. */
+/* Colours: one channel after the other, as differences. */
 static void pack_rgba(uint8_t *out, const uint8_t *value, size_t count)
 {
     for (size_t c = 0; c < 4; c++) {

@@ -1,6 +1,6 @@
-/* sensor/framefile/ground_cutout.h: the part of a ground of files that one frame needs: tiles about the places that
- * its rays meet. What is left out reads as the lowest post, no cover and no photograph; the size of the grids stays, so
- * that every index does. Whether it suffices is not estimated: frame_save renders with it and compares. */
+/* sensor/framefile/ground_cutout.h: the part of terrain from files that one frame needs: tiles around the points
+ * that its rays hit. Omitted tiles read as the lowest post, no cover and no photograph; the size of the grids stays,
+ * so that every index does. Whether it suffices is not estimated: frame_save renders with it and compares. */
 #ifndef SENSOR_FRAMEFILE_GROUND_CUTOUT_H
 #define SENSOR_FRAMEFILE_GROUND_CUTOUT_H
 
@@ -9,8 +9,9 @@
 
 typedef struct GroundCutout {
     int           count;
-    const double (*p_m)[2]; /* places, ENU */
-    double        reach_m;  /* posts: the tiles of the places, and those within this of them, are kept; INFINITY: all */
+    const double (*p_m)[2]; /* positions, ENU */
+    double        reach_m;  /* posts: the tiles of the positions, and those within this distance of them, are kept;
+                             * INFINITY: all */
     double        looks_reach_m; /* the same of cover and photograph */
 } GroundCutout;
 

@@ -81,11 +81,11 @@ int choose_exercise(Choices *choices, const DisLog *log, const Config *config)
 
 /* ---- host and aim --------------------------------------------------------------------------- */
 
-/* Entity nearest a place at an instant, other than `not`; munitions do not count. */
+/* Entity nearest to a position at an instant, other than `not`; munitions do not count. */
 static DisEntityId nearest_entity(const Survey *survey, const double p_ecef[3], double t_s, DisEntityId not)
 {
     DisEntityId nearest = {0};
-    double      least_m = 200; /* farther than that, it is not what was shot at */
+    double      least_m = 200; /* farther than that, it was not the target */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         TrackPose    pose;
@@ -150,7 +150,7 @@ static Status aim_is_known(const Survey *survey, const Config *config)
     return STATUS_OK;
 }
 
-/* asked: for one, not for want of a munition. */
+/* requested explicitly, not for lack of a munition */
 static Status plan_observer(HostPlan *out, Choices *choices, const Survey *survey, const Config *config, bool asked)
 {
     char         name[who_size];
@@ -158,7 +158,7 @@ static Status plan_observer(HostPlan *out, Choices *choices, const Survey *surve
     const Track *target = NULL;
     double       most_m = -1;
 
-    for (int i = 0; i < survey->track_count; i++) /* land entities first, then any; the one that went farthest */
+    for (int i = 0; i < survey->track_count; i++) /* land entities first, then any; the one with the longest path */
         if (choice_is_land(&survey->track[i]) && path_m(&survey->track[i]) > most_m) {
             target = &survey->track[i];
             most_m = path_m(target);
@@ -222,7 +222,7 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
     return STATUS_OK;
 }
 
-/* A munition that burst, was taken away or fell silent by the end of what was heard. */
+/* A munition that detonated, was removed or fell silent before the end of the received data. */
 static bool has_ended(const Survey *survey, const Track *track, const Config *config)
 {
     const Shot       *shot = choice_shot_of(survey, track->id);
@@ -231,7 +231,8 @@ static bool has_ended(const Survey *survey, const Track *track, const Config *co
            survey->last_s - last->t_s > config->entities.timeout_s;
 }
 
-/* Whatever its category says: a munition that was never anywhere else, and never said that it moves, is no flight. */
+/* Independent of the category: a munition whose position never changes and that never reports a velocity is not in
+ * flight. */
 static bool lies(const Track *track)
 {
     static const double still_m = 1;
@@ -243,12 +244,12 @@ static bool lies(const Track *track)
     return true;
 }
 
-/* Longest flight among munitions, guided or not; mines do not fly. impact: only those whose Detonation says entity
+/* Longest flight among munitions, guided or not, except mines. impact: only those with a Detonation of result entity
  * impact. NULL: none. */
 static const Track *longest_flight(const Survey *survey, const Config *config, bool guided, bool impact)
 {
     const Track *longest = NULL;
-    double       most_s  = config->causal ? -1 : 0; /* one report is a flight that may go on */
+    double       most_s  = config->causal ? -1 : 0; /* a single report: the flight may continue */
     for (int i = 0; i < survey->track_count; i++) {
         const Track *track = &survey->track[i];
         const Shot  *shot  = choice_shot_of(survey, track->id);
@@ -274,8 +275,8 @@ static bool may_fly(const Track *track)
            (track->type.category == dis_munition_guided || !lies(track));
 }
 
-/* From the first report of any munition that flies to the end of the last; the frame is where the longest flight
- * goes. */
+/* From the first report of any munition in flight to the end of the last; the origin of the frame is where the
+ * longest flight goes. */
 static Status span_of_munitions(HostPlan *plan, const Survey *survey, const Config *config)
 {
     int munitions = 0;
@@ -349,13 +350,13 @@ void choose_rate(HostPlan *plan, Choices *choices, const Config *config)
 {
     plan->rate_hz = config->sensor.rate_hz;
     if (plan->rate_hz > 0) return;
-    plan->rate_hz = plan->munition ? 5 : 1; /* a flight lasts seconds, a watch minutes */
+    plan->rate_hz = plan->munition ? 5 : 1; /* a flight lasts seconds, an observation minutes */
     choice_add(choices, "rate: %g frames a second (sensor.rate_hz)", plan->rate_hz);
 }
 
 /* ---- time of day ---------------------------------------------------------------------------- */
 
-/* Of senders that do not write the time into their stamps. */
+/* Of senders whose time stamps are not a clock. */
 static void report_anomalies(Choices *choices, const Survey *survey)
 {
     enum { most_lines = 4 };
@@ -437,7 +438,7 @@ Status choose_frame(LocalFrame *out, const Survey *survey, const HostPlan *plan)
 {
     const Track *track = survey_track(survey, plan->aim);
     if (!track) track = survey_track(survey, plan->host);
-    for (int i = 0; !track && i < survey->track_count; i++) /* who comes later comes to these */
+    for (int i = 0; !track && i < survey->track_count; i++) /* entities that appear later use these */
         if (choice_is_land(&survey->track[i])) track = &survey->track[i];
     if (!track && survey->track_count > 0) track = &survey->track[0];
     if (!track) return STATUS_BAD_VALUE;

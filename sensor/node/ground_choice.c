@@ -1,5 +1,5 @@
-/* sensor/node/ground_choice.c: the ground: of the files that the configuration names, or invented to fit what the
- * exercise says of it; and who is set onto it. */
+/* sensor/node/ground_choice.c: the ground: from the files that the configuration names, or synthetic terrain fitted
+ * to the positions in the exercise; and the entities clamped to it. */
 #include "sensor/node/choices.h"
 
 #include "entities/table/contact.h"
@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/* ---- invented ------------------------------------------------------------------------------- */
+/* ---- synthetic ------------------------------------------------------------------------------- */
 
 static int on_land(const GroundEvidence *e) { return e->count[STANCE_GROUND] + e->count[STANCE_LANDED]; }
 
@@ -25,7 +25,7 @@ static void report_sea(Choices *choices, const GroundEvidence *e)
                    submerged == 1 ? " is" : "s are");
 }
 
-/* After the misfits are known: those it is not fitted to. */
+/* After the inconsistent positions are known: those excluded from the fit. */
 static void report_synthetic(Choices *choices, const Landscape *landscape, const GroundEvidence *e, int misfits)
 {
     const int fitted = on_land(e) - misfits;
@@ -127,7 +127,7 @@ static Status import(Landscape *out, Choices *choices, const Config *config, con
     return STATUS_OK;
 }
 
-/* ---- who is set onto it ----------------------------------------------------------------------- */
+/* ---- clamped entities ----------------------------------------------------------------------- */
 
 static int by_value(const void *a, const void *b)
 {
@@ -135,7 +135,7 @@ static int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* How far the senders' own places are from this ground. */
+/* Distances of the reported positions from this ground. */
 static Status report_contact(Choices *choices, bool clamp, const Landscape *landscape, const Survey *survey,
                           const GroundEvidence *e)
 {
@@ -186,7 +186,7 @@ static int worst_first(const void *pa, const void *pb)
     return (a->track > b->track) - (a->track < b->track);
 }
 
-/* The report of an entity that is farthest from this ground (or its sea). */
+/* The report of the entity farthest from this ground (or its sea). */
 static double farthest_m(const ContactGround *ground, const Track *track, const GroundEvidence *e, int t)
 {
     double farthest = 0;
@@ -200,7 +200,7 @@ static double farthest_m(const ContactGround *ground, const Track *track, const 
     return farthest;
 }
 
-/* The invented ground, and who stands on it only because of being set onto it, the worst by name. */
+/* Reports the synthetic terrain and the entities that are on it only because they are clamped, the worst by name. */
 static Status report_fit(Choices *choices, GroundContact contact, const Landscape *landscape, const Survey *survey,
                       const GroundEvidence *e)
 {
@@ -242,7 +242,7 @@ static Status report_fit(Choices *choices, GroundContact contact, const Landscap
     return STATUS_OK;
 }
 
-/* An eye above the water sees nothing of an aim that is under it. */
+/* From above the water an aim below it is not visible. */
 static void report_aim_below_ground(Choices *choices, const Survey *survey, const GroundEvidence *e, const HostPlan *plan)
 {
     char         id[dis_id_text_size];

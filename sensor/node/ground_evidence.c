@@ -1,4 +1,4 @@
-/* sensor/node/ground_evidence.c: what an exercise says of its ground and its sea. */
+/* sensor/node/ground_evidence.c: what the reports of an exercise imply about its ground and its sea. */
 #include "sensor/node/ground_evidence.h"
 
 #include "dis/enumerations.h"
@@ -16,7 +16,7 @@ typedef struct Gathering {
     int               voters;
 } Gathering;
 
-/* Places far outside the landscape say nothing about it. */
+/* Positions far outside of the landscape are not used. */
 static const double evidence_reach_m = 60000;
 
 /* ---- one entity --------------------------------------------------------------------------- */
@@ -32,7 +32,7 @@ static const Model *model_of(const Gathering *g, const Track *track, Origin *ori
     return catalog_model(g->catalog, catalog_find(g->catalog, track->type, origin, NULL));
 }
 
-/* Rotorcraft, and unmanned ones, which may be: these can stand still in the air. */
+/* Rotorcraft, and unmanned aircraft, which may be: these can hover. */
 static bool may_hover(DisEntityType type)
 {
     const int c = type.category;
@@ -51,7 +51,7 @@ static bool is_aircraft(DisEntityType type)
     return type.kind == dis_kind_platform && type.domain == dis_domain_air;
 }
 
-/* Carried or falling, as entities/table/contact.h has it. */
+/* Carried or falling, as in entities/table/contact.h. */
 static bool goes_through_the_air(const Track *track, const TrackPoint *point)
 {
     double up[3], v = v3_length(point->v_ecef_mps);
@@ -82,7 +82,7 @@ static double apart_m(const TrackPoint *a, const TrackPoint *b)
     return v3_length(d);
 }
 
-/* The end of the run of reports from `from` on that are all at one place, not moving and not frozen. */
+/* The end of the run of reports from `from` on that are all at one position, not moving and not frozen. */
 static int still_until(const Track *track, int from)
 {
     static const double same_m = 0.005, same_mps = 0.05;
@@ -94,8 +94,8 @@ static int still_until(const Track *track, int from)
     return n;
 }
 
-/* Does any aircraft of this sender ever say that its engine runs? Then one that does not say so stands. Tracks are
- * sorted by id: a sender's are side by side. */
+/* Whether any aircraft of this sender ever reports a running engine. If so, one that does not is parked. Tracks are
+ * sorted by id, so those of a sender are contiguous. */
 static bool says_engines(const Survey *survey, const bool *runs, int t)
 {
     const DisEntityId id = survey->track[t].id;
@@ -107,7 +107,7 @@ static bool says_engines(const Survey *survey, const bool *runs, int t)
     return false;
 }
 
-/* Which aircraft ever say that their engine runs: [track_count]. */
+/* Which aircraft ever report a running engine: [track_count]. */
 static void find_running(bool *runs, const Survey *survey)
 {
     for (int t = 0; t < survey->track_count; t++)
@@ -121,7 +121,7 @@ typedef struct Still {
     double p_enu[3];
 } Still;
 
-/* Runs of reports of aircraft that stand still, at most `most`. */
+/* Runs of reports of stationary aircraft, at most `most`. */
 static int find_still(Still *out, int most, const Gathering *g)
 {
     static const double least_s = 5;
@@ -144,11 +144,12 @@ static int find_still(Still *out, int most, const Gathering *g)
 
 static void add_voter(Gathering *g, int t, bool landed);
 
-/* Those that stand on the ground give fixes as others do. After the others: they are asked. */
+/* Those on the ground give fixes as others do; called after the others, whose fixes it uses. */
 static Status judge_landed(Gathering *g)
 {
     enum { most = 4096 };
-    static const double step_m = 1, slope = 0.05; /* how far from its neighbours' plane one that has landed may be */
+    static const double step_m = 1, slope = 0.05; /* largest distance of a landed aircraft from the plane of its
+                                                   * neighbours */
     Still  *still = calloc(most, sizeof *still);
     double(*place)[3] = calloc(most, sizeof *place), *above_m = calloc(2 * most, sizeof *above_m);
     bool   *runs = calloc((size_t)g->survey->track_count + 1, sizeof *runs);
@@ -209,7 +210,7 @@ static void add_place(Gathering *g, const double p_ecef[3], bool sea)
         g->e->place[g->e->said.place_count++] = (CoastPlace){p_enu[0], p_enu[1], sea};
 }
 
-/* An entity's base at its reports; landed: at those that are marked. Dry land is where it went, 10 m apart. */
+/* An entity's base at its reports; landed: at the marked ones. Dry land is along its path, every 10 m. */
 static void add_voter(Gathering *g, int t, bool landed)
 {
     static const double step_m = 10;
@@ -238,12 +239,12 @@ static void add_flight(Gathering *g, int t)
     const Shot   *shot   = track->type.kind == dis_kind_munition ? choice_shot_of(survey, track->id) : NULL;
     const Track  *target = shot ? survey_track(survey, shot->hit) : NULL;
     const bool   *fixed  = g->e->fixed + g->e->first[t];
-    /* a hit without an entity: what the host's own was found to have hit */
+    /* a hit without an entity id: the hit found for the host's own munition */
     if (shot && !target && shot->result == dis_result_entity_impact && dis_entity_id_compare(track->id, g->host) == 0)
         target = survey_track(survey, g->aim);
     for (int i = 0; i + 1 < track->count; i++)
         if (!(fixed[i] && fixed[i + 1])) add_line(g, track->point[i].p_ecef, track->point[i + 1].p_ecef);
-    /* a shot that hit saw its target all the way */
+    /* a shot that hit had a clear line of sight to its target */
     for (int i = 0; target && i < track->count; i++) {
         TrackPose pose;
         double    centre_ecef[3];
@@ -253,7 +254,8 @@ static void add_flight(Gathering *g, int t)
     }
 }
 
-/* Bursts on the ground: those of one shooter are one voter. On the sea's level they say nothing of dry land. */
+/* Bursts on the ground: those of one firing entity count as one source. At sea level they are no evidence of dry
+ * land. */
 static Status add_impacts(Gathering *g)
 {
     static const double wave_m = 3;
@@ -277,7 +279,7 @@ static Status add_impacts(Gathering *g)
 
 /* ---- the sea ------------------------------------------------------------------------------ */
 
-/* The middle height of a ship's waterline. */
+/* The mean height of a ship's waterline. */
 static double waterline_h_m(const Gathering *g, int t, double *highest_m)
 {
     enum { most = 64 };
@@ -304,7 +306,7 @@ static bool near_here(const Gathering *g, const Track *track)
     return hypot(p_enu[0], p_enu[1]) < 2 * evidence_reach_m;
 }
 
-/* Level, then which submarines are ever at the surface; their places, along a ship's whole hull. */
+/* Sea level, then which submarines are ever at the surface; their positions, along a ship's whole hull. */
 static Status find_sea(Gathering *g)
 {
     static const double surface_m = 3;

@@ -1,4 +1,4 @@
-/* sensor/node/health.c: from counters to a reason, from a reason to a line. */
+/* sensor/node/health.c: from counters to a reason, from a reason to a message. */
 #include "sensor/node/health.h"
 
 #include "sensor/node/opening.h"
@@ -8,7 +8,7 @@
 #include <errno.h>
 #include <stdio.h>
 
-/* A heartbeat is 5 s: what was not heard for that long may be judged by what else came. */
+/* The heartbeat interval is 5 s: after that long without it, other traffic decides. */
 static const double quiet_s = 5, nothing_s = 10, hostless_s = 5, unseen_s = 10, failing_s = 1, trouble_s = 60;
 static const double remind_s = 60;
 
@@ -25,7 +25,7 @@ static HealthReason hear(const HealthSample *s, double patience)
 {
     const double silent_s = s->now_s - s->usable_s;
     if (s->away) return HEALTH_AWAY;
-    /* until they have timed out: who stands still may report once a minute */
+    /* until they have timed out: stationary entities may report once a minute */
     if ((s->making && s->entities > 0) || silent_s < quiet_s * patience) return HEALTH_FINE;
     if (s->now_s - s->any_s >= nothing_s && patience > 0) return HEALTH_NOTHING;
     if (s->pdus) return HEALTH_NO_ENTITY;
@@ -94,7 +94,7 @@ const char *health_name(HealthReason reason)
     return "";
 }
 
-/* `2 (14 PDUs), 7 (1)` of those that were heard most, and the first of them. */
+/* `2 (14 PDUs), 7 (1)`: the exercises with the most PDUs, and the first of them. */
 static int list_exercises(char *out, size_t size, const HealthSample *s)
 {
     enum { most = 4 };
@@ -116,7 +116,7 @@ static int list_exercises(char *out, size_t size, const HealthSample *s)
     return first;
 }
 
-/* What helps against an error of the system. */
+/* The remedy for an error of the system. */
 static const char *send_advice(int error)
 {
     switch (error) {
@@ -300,7 +300,7 @@ static void read_counters(HealthSample *s, const LiveCounters *c)
     s->failed = c->send_failed;
 }
 
-/* Nothing twice within a minute. That it is over is said where no other line does. */
+/* No message twice within a minute. The end of a condition is reported where no other message is due. */
 static void say(Health *h, HealthTopic topic, const HealthNames *names)
 {
     const HealthReason reason = h->now[topic];

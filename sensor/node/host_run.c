@@ -1,4 +1,4 @@
-/* sensor/node/host_run.c: from what was heard to choices, a world, a session and run.json. */
+/* sensor/node/host_run.c: from received datagrams to choices, a world, a session and run.json. */
 #include "sensor/node/host_run.h"
 
 #include "sensor/world/frame_world.h"
@@ -15,7 +15,7 @@ double frame_grid_s(const FrameGrid *grid, double n) { return (grid->origin + n)
 
 /* ---- before ---------------------------------------------------------------------------------- */
 
-/* What threads, speed and paths cannot change: every setting that the pictures depend on. */
+/* Every setting that the images depend on; unchanged by threads, speed and paths. */
 static Status hash_config(char out[sha256_text_size], const Options *o)
 {
     char   text[config_text_size];
@@ -110,7 +110,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
     }
     for (int i = 0; i < choices->count; i++) choice[i] = choices->line[i];
     for (int i = 0; i < result->host_count; i++) hosts[i] = result->host[i];
-    if (result->host_count == 0) hosts[0] = host; /* still to come */
+    if (result->host_count == 0) hosts[0] = host; /* not received so far */
     for (int i = 0; i < session_stages; i++)
         log_detail("%s: %s: %.3g ms a frame (median; 95 %%: %.3g; most: %.3g)", options_command(&run->options),
                    session_stage_name[i], stage_ms[i][0], stage_ms[i][1], stage_ms[i][2]);
@@ -167,7 +167,8 @@ static void report_visibility(Choices *choices, const Config *config, const Atmo
                    "infrared (weather.visibility_m)", config->weather.visibility_m);
 }
 
-/* The air's model stands on the ground, wherever that is: high ground has the temperature of low ground. */
+/* The model of the atmosphere begins at the ground, whatever its height: high ground has the temperature of low
+ * ground. */
 static void report_air_temp(Choices *choices, const Config *config, const Atmosphere *atmosphere, double ground_m)
 {
     const double here_k = atmosphere_temp_k(atmosphere, 0), high_k = atmosphere_temp_k(atmosphere, ground_m);
@@ -176,7 +177,7 @@ static void report_air_temp(Choices *choices, const Config *config, const Atmosp
                    "where this ground lies (weather.air_temp_k)", here_k - 273.15, high_k - 273.15, ground_m);
 }
 
-/* World and all that is said of it. */
+/* The world, with its messages. */
 static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, GroundContact *contact, Choices *choices, Run *run,
                      const DisEntityId *host)
 {
@@ -201,7 +202,7 @@ static Status choose(HostPlan *plan, double *unix_s, Landscape *landscape, Groun
     return STATUS_OK;
 }
 
-/* The recorded truth of what was made, also when it stopped early. */
+/* The recorded truth of the frames rendered, also when it stopped early. */
 static Status conclude(const Run *run, const char *out, const char *host, const Choices *choices,
                        const SessionResult *result, const DisCounters *heard, const char *state)
 {
@@ -244,7 +245,7 @@ Status run_host(Run *run, const DisEntityId *host)
     if (status == STATUS_OK) status = player_create(&player, run->exercise, o->config.causal);
     if (status == STATUS_OK) status = player_add_log(player, &run->view);
     if (status != STATUS_OK) goto done;
-    if (o->config.causal) { /* nothing is shown of what the choices were made from; the end is open */
+    if (o->config.causal) { /* nothing is rendered of the time before the choices; the end is open */
         plan.start_s = player_time_s(player, run->until_s);
         plan.end_s   = INFINITY;
     }

@@ -1,4 +1,5 @@
-/* sensor/node/host_run.h: what replay and run share: from what was heard to choices, a world, a session, run.json. */
+/* sensor/node/host_run.h: shared by replay and run: from received datagrams to choices, a world, a session,
+ * run.json. */
 #ifndef SENSOR_NODE_HOST_RUN_H
 #define SENSOR_NODE_HOST_RUN_H
 
@@ -7,7 +8,7 @@
 #include "sensor/settings/tables_used.h"
 
 /* Frame n is at (origin + n) / rate_hz of exercise time: on multiples of the interval, wherever the span begins, so
- * that a part of a run equals that part of the whole. */
+ * that a part of a run equals that part of the full run. */
 typedef struct FrameGrid {
     double origin, rate_hz;
 } FrameGrid;
@@ -16,10 +17,10 @@ double frame_grid_s(const FrameGrid *grid, double n);
 typedef struct Run Run;
 struct Run {
     Options   options;
-    DisLog    view;              /* what is played; borrowed */
-    double    until_s;           /* causal: arrival time of the last that the choices know */
+    DisLog    view;              /* the log to play; borrowed */
+    double    until_s;           /* causal: arrival time of the last datagram used by the choices */
     bool      stopped;           /* by a signal, before the last frame */
-    uint64_t  own;               /* datagrams of this node, left out */
+    uint64_t  own;               /* datagrams of this node, ignored */
     const DisLogCounters *link;  /* NULL: live */
     LiveCounters         *live;  /* NULL: a replay */
     const char *log_name;        /* in run.json */
@@ -30,23 +31,23 @@ struct Run {
     Catalog  *catalog;
     World     world;
     Pool     *pool;
-    Choices   choices;           /* those that all hosts share */
+    Choices   choices;           /* shared by all hosts */
     Sensors   sensors;
     TablesUsed tables;           /* in run.json */
-    /* Makes the frames. */
+    /* Renders the frames. */
     Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     void     *user;              /* of both */
 };
 
-/* Bands, sensors, hash of the configuration: before anything is heard. */
+/* Bands, sensors, hash of the configuration: before anything is received. */
 Status run_prepare(Run *run);
-/* Exercise and survey out of what was heard; catalog and pool. */
+/* Exercise and survey from the received datagrams; catalog and pool. */
 Status run_survey(Run *run, const DisLog *heard);
 /* One host: its own ground and frame, its own folder when there are several. host: NULL: as configured, or chosen. */
 Status run_host(Run *run, const DisEntityId *host);
 void   run_close(Run *run);
-/* Where the products of one host go. */
+/* The folder for the products of one host. */
 enum { run_folder_size = 4096 };
 void   run_folder(char out[run_folder_size], const Options *options, DisEntityId host);
 

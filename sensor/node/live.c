@@ -1,4 +1,4 @@
-/* sensor/node/live.c: listen, choose, then one frame after the other by the clock. */
+/* sensor/node/live.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the clock. */
 #include "sensor/node/live.h"
 
 #include "dis/exercise_clock.h"
@@ -22,20 +22,20 @@
 #include <unistd.h>
 
 static const double  flush_s = 0.5, show_s = 1;
-static const int64_t check_ns = 100000000; /* a signal may come to another thread: looked for so often */
+static const int64_t check_ns = 100000000; /* a signal may be delivered to another thread: polled at this interval */
 
 typedef struct Live {
     Run          run;
     DisUdp      *udp;
     LiveRecording *recording;       /* NULL: none, or closed */
-    bool         record_whole;      /* all that was heard is in it, and it can be read again */
+    bool         record_whole;      /* it holds all received datagrams, and can be read again */
     char         where[dis_udp_where_size];
     LiveCounters counters;
     Health       health;
-    double       health_s;          /* when it was looked at last */
+    double       health_s;          /* when it was last checked */
     char         host[dis_id_text_size]; /* at the end */
-    char         to[dis_udp_address_size + 16]; /* where it sends, for people */
-    /* what was heard before the choices, each datagram its own memory */
+    char         to[dis_udp_address_size + 16]; /* destination, for messages */
+    /* datagrams received before the choices, each with its own memory */
     DisDatagram *heard;
     int          received_count, received_capacity;
     DisHeader    first;             /* of the first usable Entity State */
@@ -43,8 +43,8 @@ typedef struct Live {
     /* wall clock, s */
     double       begun_s, flushed_s, shown_s;
     uint64_t     shown_frames;      /* by then */
-    int64_t      due_ns;            /* Unix time of the frame that is made */
-    double       latency_s;         /* from then until it was made, the worst since shown_s; NaN: none */
+    int64_t      due_ns;            /* Unix time of the present frame */
+    double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
 } Live;
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
@@ -64,7 +64,7 @@ static void flush_recording(Live *l)
     l->flushed_s = now_s;
 }
 
-/* -1: any. Before the choices, what was asked for. */
+/* -1: any. Before the choices, as configured. */
 static int exercise_to_join(const Live *l)
 {
     return l->player ? l->run.exercise : l->run.options.config.exercise.exercise;
@@ -110,7 +110,7 @@ static HealthNames names_of(const Live *l, const Session *session)
                          .host = session ? session_host(session) : config->exercise.host};
 }
 
-/* Why it is silent, as it changes, and the line of a terminal; session: NULL before there is one. About ten times a
+/* Reports changes of health, and the status line of a terminal; session: NULL before there is one. About ten times a
  * second. */
 static void check_health(Live *l, const Session *session)
 {
@@ -160,7 +160,8 @@ static Status store_received(Live *l, const DisDatagram *datagram)
     return STATUS_OK;
 }
 
-/* What the choices are made from: the rule of opening.h, as it comes. heard: false when told to stop before. */
+/* Collects the datagrams for the choices: the rule of opening.h, applied on arrival. heard: false when stopped
+ * before. */
 static Status listen_first(bool *heard, Live *l)
 {
     const Config *config   = &l->run.options.config;
@@ -199,7 +200,7 @@ static Status listen_first(bool *heard, Live *l)
 
 /* ---- publishing -------------------------------------------------------------------------------- */
 
-/* Every frame made: noted, and sent where that is asked for. */
+/* Every frame rendered: counted, and sent if configured. */
 static void publish_frame(void *user, const FrameRecord *frame)
 {
     Live         *l      = user;
@@ -233,7 +234,7 @@ static Status feed(Live *l, Player *player, int64_t until_ns)
     return STATUS_OK;
 }
 
-/* Until that Unix time has passed, taking in what comes. False: it is over. */
+/* Receives until that Unix time has passed. False: the run is over. */
 static Status wait_until(bool *there, Live *l, const Session *session, Player *player, int64_t until_ns)
 {
     for (;;) {
@@ -247,7 +248,7 @@ static Status wait_until(bool *there, Live *l, const Session *session, Player *p
     }
 }
 
-/* The rest of what came into the recording, and what it is known by. */
+/* The remaining datagrams into the recording, and its hash. */
 static void conclude(Live *l)
 {
     DisDatagram   datagram;
@@ -269,7 +270,7 @@ static void conclude(Live *l)
     }
 }
 
-/* The newest frame whose time has come, else the next: who is late leaves frames out, and queues none. */
+/* The newest frame that is due, else the next: when late, frames are dropped, not queued. */
 static Status live_frames(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid)
 {
     Live          *l      = run->user;
@@ -337,8 +338,8 @@ static Status open_network(Live *l)
     return live_recording_open(&l->recording, config->record.path, comment, l->udp, udp.port);
 }
 
-/* How long this machine takes over a frame, once: the one clock that a choice of quality hangs on. Said so that a
- * replay with the same quality.machine_factor makes the same pictures. */
+/* The time of a frame on this machine, measured once: the only clock that a choice of quality depends on. Reported
+ * so that a replay with the same quality.machine_factor gives the same images. */
 static Status measure_machine(Live *l)
 {
     Config *config = &l->run.options.config;
@@ -371,7 +372,7 @@ static void say_summary(const Live *l)
                  (unsigned long long)c->files_failed);
 }
 
-/* A run that made nothing of what it was told to make was no success: no frame, no file of any frame, no PDU of any. */
+/* A run without any result of one requested kind is a failure: no frame, no file of any frame, no PDU of any. */
 static Status verdict(Live *l)
 {
     HealthSample *s = &l->health.sample;
@@ -406,7 +407,7 @@ static Status run_node(Live *l)
         status = overwrite_file("run", o->config.record.path, o->overwrite);
     if (status == STATUS_OK) status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
-    /* now, not when the first entity is heard, hours later */
+    /* now, not hours later when the first entity is received */
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
     if (status != STATUS_OK) return status;

@@ -8,7 +8,7 @@
 
 struct LiveRecording {
     DisUdp         *udp;
-    pthread_mutex_t lock; /* of what follows */
+    pthread_mutex_t lock; /* protects the following */
     DisRecorder    *recorder;
     uint64_t        failed;
 };

@@ -1,5 +1,5 @@
-/* sensor/node/live_recording.h: what a live node hears into a file, in the thread that takes it off the socket: a node
- * that is busy with a frame, or a queue that is full, leaves nothing out of it. */
+/* sensor/node/live_recording.h: records the datagrams of a live node to a file, in the receiving thread: the
+ * recording is complete also when the node is busy with a frame or its queue is full. */
 #ifndef SENSOR_NODE_LIVE_RECORDING_H
 #define SENSOR_NODE_LIVE_RECORDING_H
 
@@ -7,13 +7,14 @@
 
 typedef struct LiveRecording LiveRecording;
 
-/* From now on all that arrives is recorded. STATUS_IO, logged: the file cannot be written. */
+/* Records every datagram from now on. STATUS_IO, logged: the file cannot be written. */
 Status live_recording_open(LiveRecording **out, const char *path, const char *comment, DisUdp *udp, int port);
-/* To the system, so that what a killed program had recorded is whole. NULL is fine, here and below. */
+/* Flushes to the operating system, so that the recording of a killed program is complete. NULL is valid, here and
+ * below. */
 void   live_recording_flush(LiveRecording *recording);
 /* Datagrams that could not be recorded. */
 uint64_t live_recording_failed(LiveRecording *recording);
-/* Nothing more is recorded. STATUS_IO when anything was not written. The udp must still be open. */
+/* Stops recording. STATUS_IO when anything was not written. The udp must still be open. */
 Status live_recording_close(LiveRecording *recording);
 
 #endif

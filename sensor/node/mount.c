@@ -1,4 +1,4 @@
-/* sensor/node/mount.c: the sensor's place and axes on its host. See the header. */
+/* sensor/node/mount.c: the sensor's position and axes on its host. See the header. */
 #include "sensor/node/mount.h"
 
 #include "dis/enumerations.h"

@@ -1,15 +1,16 @@
-/* sensor/node/mount.h: where a host carries the sensor, and which way its axis points (sensor.mount*).
+/* sensor/node/mount.h: position and axis of the sensor on its host (sensor.mount*).
  *
- * By default (`auto`) a munition's eye is in its nose, a platform's 0.3 m above its roof, and the axis is the body's
- * forward axis. sensor.mount names an articulated part instead, by the name of a node or part of the host's model, by
- * the words of SISO-REF-010 (`primary turret`, `secondary gun 2`; without a number the first) or by the number of its
- * class: the sensor then goes with that part, its place is given from the part's pivot, in the part's axes.
+ * By default (`auto`) the sensor of a munition is in its nose, that of a platform 0.3 m above its roof, and the axis
+ * is the body's forward axis. sensor.mount names an articulated part instead, by the name of a node or part of the
+ * host's model, by its name in SISO-REF-010 (`primary turret`, `secondary gun 2`; without a number the first) or by
+ * the number of its class: the sensor then moves with that part, its position is given from the part's pivot, in the
+ * part's axes.
  *
  *     mount_x_m, mount_y_m, mount_z_m     forward, right, down; from the body's origin (centre of its base) or the
  *                                         part's pivot. Not given: of `auto` as above, of a part 0
  *     mount_yaw_deg, mount_pitch_deg      turn the axis of the gimbal, right and up, in this order
- *     mount_roll_deg                      turns the picture about the boresight, its right side down: the picture is
- *                                         roll-stabilised, and that is where it is held */
+ *     mount_roll_deg                      turns the image about the boresight, its right side down: the image is
+ *                                         roll-stabilised to this angle */
 #ifndef SENSOR_NODE_MOUNT_H
 #define SENSOR_NODE_MOUNT_H
 
@@ -30,7 +31,7 @@ Mount mount_of(const Config *config);
 int   mount_node(const Mount *mount, const Model *model);
 /* Class number of an articulated part's words or number; 0: neither. */
 uint32_t mount_class(const char *part);
-/* Eye and mount axes. node: poses of the host's nodes; at: of mount_node, negative: on the body. */
+/* Sensor position and mount axes. node: poses of the host's nodes; at: of mount_node, negative: on the body. */
 void  mount_place(double p_ecef[3], double r_ecef_from_mount[9], const Mount *mount, const SnapshotEntity *host,
                   const Model *model, const NodePose *node, int at);
 

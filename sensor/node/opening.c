@@ -1,4 +1,4 @@
-/* sensor/node/opening.c: which datagrams a causal run makes its choices from. */
+/* sensor/node/opening.c: selects the datagrams on which the choices of a causal run are based. */
 #include "sensor/node/opening.h"
 
 #include "dis/datagram.h"

@@ -4,8 +4,9 @@
 
 #include "pitviper.h"
 
-/* Both log, prefixed with the name of a command, what exists and which option replaces it; STATUS_BAD_VALUE then.
- * folder: of a run; other files in it are ignored. file: an empty or irregular file may be replaced. */
+/* Both log, prefixed with the name of a command, the existing product and the option that replaces it;
+ * STATUS_BAD_VALUE then. folder: of a run; other files in it are ignored. file: an empty or irregular file may be
+ * replaced. */
 Status overwrite_folder(const char *command, const char *out, bool allowed);
 Status overwrite_file(const char *command, const char *path, bool allowed);
 

@@ -10,18 +10,18 @@
 enum { shots_kept = 1024, munitions_kept = 256 };
 
 typedef struct Event {
-    double         counts_s, t_s; /* from when it counts; its own exercise time */
+    double         counts_s, t_s; /* time from which it counts; its own exercise time */
     uint32_t       order;
     uint16_t       length;
     uint8_t        type;
     bool           kept;
     union {
         const uint8_t *octets;
-        size_t         at; /* in kept octets */
+        size_t         at; /* in the stored octets */
     };
 } Event;
 
-/* Those of one sort that were heard of: a ring, the latest. */
+/* Received ids of one kind: a ring of the latest. */
 typedef struct Munitions {
     DisEntityId id[munitions_kept];
     uint64_t    count;
@@ -36,12 +36,12 @@ struct Player {
     int            exercise, count, next, capacity;
     uint32_t       order;
     Event         *event;
-    uint8_t       *octets; /* of what is kept until it is fed */
+    uint8_t       *octets; /* of the octets stored until they are fed */
     size_t         octets_used, octets_capacity;
     ExerciseClock *clock;
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
     DisCounters    counters;
-    DisPdu         pdu;                          /* the one that is fed */
+    DisPdu         pdu;                          /* the PDU being fed */
     Aimed          aimed[shots_kept];            /* rings: the latest */
     uint64_t       shots;
     Munitions      guided, unguided;
@@ -71,7 +71,7 @@ void player_destroy(Player *player)
     free(player);
 }
 
-/* ---- in -------------------------------------------------------------------------------------- */
+/* ---- input -------------------------------------------------------------------------------------- */
 
 static Status add_event(Player *player, const Event *event)
 {
@@ -102,7 +102,7 @@ static Status keep_octets(size_t *at, Player *player, const uint8_t *pdu, size_t
     return STATUS_OK;
 }
 
-/* Counts stamps that are no clock; says it of a sender heard live, once. Of a log the survey says it. */
+/* Counts stamps that are not a clock; of a live sender it is reported once, of a log by the survey. */
 static void note_anomalies(Player *player, bool say)
 {
     const ExerciseClockAnomalies *doubts = exercise_clock_anomalies(player->clock);
@@ -151,7 +151,7 @@ Status player_add_log(Player *player, const DisLog *log)
     return status;
 }
 
-/* ---- out ------------------------------------------------------------------------------------- */
+/* ---- output ------------------------------------------------------------------------------------- */
 
 static int compare_events(const void *a, const void *b)
 {
@@ -190,7 +190,7 @@ static void note_munition(Player *player, const DisEntityState *state)
     if (!munition_known(m, state->id)) m->id[m->count++ % munitions_kept] = state->id;
 }
 
-/* Decoded here, once: until then a PDU is its octets. */
+/* Decoded here, once: until then a PDU is stored as octets. */
 static void feed_event(Player *player, EntityTable *table, const Event *event)
 {
     const uint8_t *octets = event->kept ? player->octets + event->at : event->octets;
@@ -209,16 +209,16 @@ void player_feed(Player *player, EntityTable *table, double t_s)
 {
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
-    player->sorted = true; /* arrivals are by themselves */
+    player->sorted = true; /* arrivals are ordered already */
     for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++)
         feed_event(player, table, &player->event[player->next]);
-    if (player->causal && player->next == player->count) { /* a live node's memory is what it has not fed */
+    if (player->causal && player->next == player->count) { /* of a live node only datagrams not yet fed take memory */
         player->next = player->count = 0;
         player->octets_used          = 0;
     }
 }
 
-/* ---- asked ----------------------------------------------------------------------------------- */
+/* ---- queries ----------------------------------------------------------------------------------- */
 
 double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
 double player_last_s(const Player *player) { return player->latest_s; }
@@ -226,7 +226,7 @@ double player_last_s(const Player *player) { return player->latest_s; }
 double player_arrival_s(const Player *player, double t_s)
 {
     double capture_s = t_s - player->tie_s;
-    /* the difference is rounded; what counts is the sum */
+    /* the difference is rounded; the sum decides */
     while (capture_s + player->tie_s > t_s) capture_s = nextafter(capture_s, -INFINITY);
     for (double next_s; (next_s = nextafter(capture_s, INFINITY)) + player->tie_s <= t_s;) capture_s = next_s;
     return capture_s;
@@ -265,7 +265,7 @@ bool player_munition(DisEntityId *munition, bool *guided, const Player *player, 
     DisEntityType type;
     const bool    there = !dis_entity_id_is_none(*munition) &&
                        entity_table_type(&type, table, entity_table_find(table, *munition));
-    /* what it is, not whether it is among the latest: a salvo must not take the sensor off its carrier */
+    /* by its type, not by whether it is among the latest: a salvo must not move the sensor to another host */
     *guided = there && type.kind == dis_kind_munition && type.category == dis_munition_guided;
     if (*guided) return true;
     if (first_there(munition, &player->guided, table)) return *guided = true;

@@ -1,8 +1,9 @@
-/* sensor/node/player.h: what was heard, fed to an entity table in order of time: a log's datagrams, or a live node's.
+/* sensor/node/player.h: received datagrams, fed to an entity table in order of time: those of a log, or a live
+ * node's.
  *
  * By stamp: a PDU counts from its own time stamp on, whenever it was received; all must be added before the first is
- * fed. Causal: it counts from when it was received, and may be added as it comes. Exercise time is arrival time plus a
- * tie, which the first PDU fixes. */
+ * fed. Causal: it counts from its arrival, and may be added on arrival. Exercise time is arrival time plus an
+ * offset, which the first PDU fixes. */
 #ifndef SENSOR_NODE_PLAYER_H
 #define SENSOR_NODE_PLAYER_H
 
@@ -17,11 +18,11 @@ void   player_destroy(Player *player);
 
 /* Next datagram in order of arrival. keep: its octets are copied, else they must outlive the player. */
 Status player_add(Player *player, const DisDatagram *datagram, bool keep);
-/* All of a log, which must outlive the player. */
+/* All datagrams of a log, which must outlive the player. */
 Status player_add_log(Player *player, const DisLog *log);
 
-/* Everything that counts at or before t_s and was not fed before. Who has been silent too long is the caller's to
- * remove, on a grid of his own: so the table does not depend on which frames are made. */
+/* Feeds everything that counts at or before t_s and was not fed before. Timed-out entities are removed by the
+ * caller, on a time grid of its own: so the table does not depend on which frames are rendered. */
 void   player_feed(Player *player, EntityTable *table, double t_s);
 
 /* Exercise time of an arrival; NaN before the first PDU. */
@@ -30,20 +31,21 @@ double player_time_s(const Player *player, double capture_s);
 double player_arrival_s(const Player *player, double t_s);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
-enum { munition_still_mps = 1 }; /* an unguided munition slower than this lies there, as mines of any category do */
+enum { munition_still_mps = 1 }; /* an unguided munition slower than this is at rest, as mines of any category are */
 
 /* Target of the latest Fire fed that names this munition. */
 bool   player_target(DisEntityId *target, const Player *player, DisEntityId munition);
-/* Of the munitions that were fed, who carries the sensor now. munition: in, who does (0:0:0: none so far). A guided one
- * (SISO-REF-010, category 1) that is in the table stays; else the guided one heard first of those in the table; else
- * who carries it, while it is there; else the one heard first that is neither guided nor fixed and has moved. Fixed
- * ones (category 3: mines) never do. False, and nothing changed: there is none. Of each sort the latest 256 are
- * known. */
+/* The munition that is the host now, of those fed. munition: in and out (0:0:0: none so far). A guided one
+ * (SISO-REF-010, category 1) that is in the table stays; else the guided one received first of those in the table;
+ * else the present one, while it is in the table; else the one received first that is neither guided nor fixed and
+ * has moved. Fixed ones (category 3: mines) are never the host. False, and nothing changed: there is none. Of each
+ * kind the latest 256 are stored. */
 bool   player_munition(DisEntityId *munition, bool *guided, const Player *player, const EntityTable *table);
 
-/* Fire PDUs and munitions that went for newer ones, since only the latest are known. */
+/* Fire PDUs and munitions dropped for newer ones, since only the latest are stored. */
 void   player_forgotten(uint64_t *shots, uint64_t *munitions, const Player *player);
 
-const DisCounters *player_counters(const Player *player); /* everything added, and what the table refused of it */
+const DisCounters *player_counters(const Player *player); /* all PDUs added, and those of them that the table
+                                                           * rejected */
 
 #endif

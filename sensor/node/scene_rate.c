@@ -1,4 +1,4 @@
-/* sensor/node/scene_rate.c: how what the camera looks at moves over the picture. */
+/* sensor/node/scene_rate.c: image motion of the point that the camera is aimed at. */
 #include "sensor/node/scene_rate.h"
 
 void turn_rate(double w_cam_rps[3], const double r_world_from_before[9], const double r_world_from_after[9],

@@ -39,7 +39,7 @@ void seeker_step(Seeker *seeker, const double d_body[3])
     seeker->elevation_rad += clamp(share * (elevation_rad - seeker->elevation_rad), -most, most);
 }
 
-/* Part of a vector across d, unit; false where it has none to speak of. */
+/* Component of a vector perpendicular to d, unit; false where it vanishes. */
 static bool across(double out[3], const double v[3], const double d[3])
 {
     double part[3];
@@ -55,7 +55,7 @@ static void boresight(double d_enu[3], const Seeker *seeker, const double r_enu_
     v3_normalize(d_enu, d_enu);
 }
 
-/* The first top of a head that looks straight up or down. */
+/* The first up direction of a head that points straight up or down. */
 static void first_top(double top_enu[3], const double d_enu[3], const double r_enu_from_body[9])
 {
     const double nose[3] = {r_enu_from_body[0], r_enu_from_body[3], r_enu_from_body[6]};

@@ -1,4 +1,4 @@
-/* sensor/node/session.c: one host's seeker: frames made, handed to consumers, and listed. */
+/* sensor/node/session.c: the seeker of one host: frames rendered, passed to consumers, and listed. */
 #include "sensor/node/session_private.h"
 
 #include "sensor/framefile/frame_save.h"
@@ -12,7 +12,7 @@
 
 const char *const session_stage_name[session_stages] = {"frame", "snapshot", "visibility", "shade", "radar", "publish"};
 
-/* A thing at rest where the middle of the picture looks. */
+/* A stationary point at the image centre. */
 static void rate_of_scene(double rate_px_s[2], const Eye *eye, const Picture *picture)
 {
     const size_t middle = (size_t)(picture->height / 2) * (size_t)picture->width + (size_t)(picture->width / 2);
@@ -63,7 +63,7 @@ static Status look(FrameView *view, const Session *s, const RenderRequest *reque
     return STATUS_OK;
 }
 
-/* The same without what is aimed at, or without all. */
+/* The same without the target, or without all entities. */
 static Status look_without(Frame *f, const Session *s, const Air *air, const double r_host_from_enu[9], int host)
 {
     const bool all = strcmp(s->shared->config->publish.pairs, "all") == 0;
@@ -75,7 +75,7 @@ static Status look_without(Frame *f, const Session *s, const Air *air, const dou
     return status == STATUS_OK ? look(f->without, s, &f->request, air, r_host_from_enu, f->arena) : status;
 }
 
-/* Targets, and how wrong the frame is. */
+/* Targets, and the error budget of the frame. */
 static Status know_targets(Frame *f, const Session *s, const Eye *eye)
 {
     const SessionShared *shared  = s->shared;
@@ -109,7 +109,7 @@ static void fill_record(Frame *f, const Session *s, const Eye *eye)
     memcpy(r->r_ecef_from_cam, eye->state.r_ecef_from_cam, sizeof r->r_ecef_from_cam);
 }
 
-/* Where it is asked for: the frame as a file of its own. */
+/* The frame as a frame file, if requested. */
 static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
 {
     const SessionShared *shared = s->shared;
@@ -120,7 +120,7 @@ static Status save_frame(const Session *s, const Frame *f, const Eye *eye)
     return STATUS_OK;
 }
 
-/* shown: false when the host is not there. left_out: entities that are not in it. */
+/* shown: false when the host is absent. left_out: entities that are not in it. */
 static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int number, double t_s)
 {
     const SessionShared *shared = s->shared;
@@ -261,7 +261,7 @@ static Status room_in_lists(SessionResult *r, int *capacity)
     return STATUS_OK;
 }
 
-/* A frame that all consumers have had; in the publishing thread. */
+/* A frame that all consumers have received; called in the publishing thread. */
 static void list_frame(void *user, const Frame *f)
 {
     Session            *s     = user;
@@ -287,7 +287,7 @@ static void list_frame(void *user, const Frame *f)
     r->listed++;
 }
 
-/* What did not fit: at once, and then once a minute where there is more. */
+/* Entities that did not fit: reported at once, and then once a minute while there are more. */
 static void report_crowd(Session *s, int left_out)
 {
     static const double   remind_s = 60;
@@ -321,7 +321,7 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
     Status status   = STATUS_OK;
     session_advance(s, t_s);
     *shown = false;
-    if (session_host_is_there(s)) { /* else nothing is extrapolated for it */
+    if (session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
         status       = make_frame(shown, &left_out, frame, s, number, t_s);
         if (status == STATUS_OK && *shown) status = consumers_put(&s->consumers, frame);

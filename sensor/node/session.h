@@ -1,4 +1,4 @@
-/* sensor/node/session.h: one host's seeker through what is heard: frame after frame, rendered and published. */
+/* sensor/node/session.h: the seeker of one host over an exercise: frame after frame, rendered and published. */
 #ifndef SENSOR_NODE_SESSION_H
 #define SENSOR_NODE_SESSION_H
 
@@ -10,7 +10,7 @@
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
 
-/* What all hosts of one run share. */
+/* Shared by all hosts of one run. */
 typedef struct SessionShared {
     const Config  *config;
     const Survey  *survey;
@@ -20,11 +20,11 @@ typedef struct SessionShared {
     double         unix_s;    /* Unix time of exercise time 0 */
     unsigned       bands;
     bool           no_skip;
-    GroundContact  contact;   /* which entities are set onto the world's ground */
-    bool           live;      /* a file that cannot be written does not end it */
+    GroundContact  contact;   /* which entities are clamped to the world's ground */
+    bool           live;      /* a file that cannot be written does not end the session */
     const char    *config_sha256;
     const Sensors *sensors;
-    void         (*publish)(void *user, const FrameRecord *frame); /* every frame made; NULL: nobody asks */
+    void         (*publish)(void *user, const FrameRecord *frame); /* every frame; NULL: not published */
     void          *user;
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
@@ -33,16 +33,16 @@ typedef struct SessionShared {
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };
 extern const char *const session_stage_name[session_stages];
 
-/* Lists hold the first session_frames_kept frames; a live node may make more. */
+/* Lists hold the first session_frames_kept frames; a live node may render more. */
 typedef struct SessionResult {
     int     frames;
     int     listed;
-    int     buried;                   /* frames whose eye was below the ground */
-    int     at_limit;                 /* frames whose aim was beyond the gimbal */
-    int     frames_crowded, most_left_out; /* frames without all entities; the most that one of them lacks */
-    int     host_count;               /* the first session_hosts_kept that carried the sensor, in order */
+    int     buried;                   /* frames with the sensor below the ground */
+    int     at_limit;                 /* frames whose aim was beyond the gimbal limit */
+    int     frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
+    int     host_count;               /* the first session_hosts_kept hosts, in order */
     char    host[session_hosts_kept][dis_id_text_size];
-    int     files_failed, files_left_out; /* live: frames without files, for want of a disk, of time; when closed */
+    int     files_failed, files_left_out; /* live: frames without files, for disk errors, for time; when closed */
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */
@@ -57,14 +57,15 @@ typedef struct Session Session;
 /* Prepares the folder `out` (frames, profiles, truth.jsonl). The player and shared must outlive the session. */
 Status session_open(Session **out, const SessionShared *shared, const HostPlan *plan, Player *player,
                     const char *folder);
-/* Everything up to t_s, then the frame. t_s must not decrease. shown: false when the host is not there. */
+/* Processes everything up to t_s, then renders the frame. t_s must not decrease. shown: false when the host is
+ * absent. */
 Status session_frame(bool *shown, Session *session, int number, double t_s);
 /* So far. */
 const SessionResult *session_result(const Session *session);
-int         session_entities(const Session *session); /* how many are there */
-uint64_t    session_over_rate(const Session *session); /* reports of new ones that came too fast: entities.new_per_s */
-const char *session_host(const Session *session); /* id as text, `observer`, or `munition` that is still to come */
-/* The session's result is the caller's to free with session_result_free; NULL: it goes too. */
+int         session_entities(const Session *session); /* entities present */
+uint64_t    session_over_rate(const Session *session); /* reports of new entities above the rate: entities.new_per_s */
+const char *session_host(const Session *session); /* id as text, `observer`, or `munition` while there is none */
+/* The caller frees the session's result with session_result_free; NULL: it is freed too. */
 Status session_close(Session *session, SessionResult *result);
 void   session_result_free(SessionResult *result);
 

@@ -1,4 +1,4 @@
-/* sensor/node/session_consumers.c: who gets a session's frames, from the configuration. */
+/* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
 #include "sensor/publish/pairs.h"
@@ -90,7 +90,7 @@ static Status add_queue(Session *s, Consumers *behind, QueueRule rule)
     return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
 }
 
-/* A replay with more than one thread publishes a frame while the next is made. */
+/* A replay with more than one thread publishes a frame while the next is rendered. */
 static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 {
     const Config *config  = s->shared->config;
@@ -110,7 +110,8 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
     return status;
 }
 
-/* A disk never holds a live node: picture files are written by a thread of their own, and left out when it is late. */
+/* A slow disk never delays a live node: image files are written by a thread of their own, and dropped when it is
+ * late. */
 static Status for_live(Session *s, FrameDone *done)
 {
     Consumers pictures = {0};

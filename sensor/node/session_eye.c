@@ -1,4 +1,4 @@
-/* sensor/node/session_eye.c: where the eye is, and where it looks. */
+/* sensor/node/session_eye.c: position and direction of the sensor. */
 #include "sensor/node/session_private.h"
 
 #include "dis/enumerations.h"
@@ -6,10 +6,10 @@
 
 #include <stdio.h>
 
-/* nobody sees the silent meanwhile: poses and snapshots leave them out */
+/* timed-out entities are not visible meanwhile: poses and snapshots omit them */
 enum { expire_ticks = seeker_ticks_per_s / 10 };
 
-/* The middle of the aim at t_s; false when it is not there. */
+/* The centre of the aim at t_s; false when it is absent. */
 static bool aim_pose(double p_ecef[3], const Session *s, double t_s)
 {
     SnapshotEntity aim;
@@ -28,7 +28,7 @@ static bool tracked(const Session *s, double t_s)
     return s->plan.munition && !s->shared->config->causal && track && t_s <= track->point[track->count - 1].t_s;
 }
 
-/* Pose of the host at t_s, and of its nodes where the sensor goes with one. */
+/* Pose of the host at t_s, and of its nodes where the sensor is mounted on one. */
 static bool host_pose(SnapshotEntity *host, const Session *s, double t_s)
 {
     const SessionShared *shared = s->shared;
@@ -55,7 +55,7 @@ typedef struct Mounted {
     double         p_ecef[3], r_ecef_from_mount[9];
 } Mounted;
 
-/* Once a model: where the sensor sits on it. */
+/* Once per model: the mount position of the sensor. */
 static void find_node(Session *s, const Model *model, int index)
 {
     if (s->mount_model == index) return;
@@ -88,8 +88,8 @@ static bool mounted(Mounted *out, Session *s, double t_s)
     return true;
 }
 
-/* The same a tick later, as far as it is known at t_s: dead reckoning by the same report, so that the next report is no
- * jerk of the camera. Where a replay's track ends, it goes on as it went. */
+/* The same a tick later, as far as it is known at t_s: dead reckoning from the same report, so that the next report
+ * does not make the camera jump. At the end of a replay's track it is extrapolated. */
 static bool mounted_ahead(Mounted *out, Session *s, const Mounted *now, double t_s)
 {
     static const double step_s = 1.0 / seeker_ticks_per_s;
@@ -105,7 +105,7 @@ static bool mounted_ahead(Mounted *out, Session *s, const Mounted *now, double t
     return true;
 }
 
-/* Another host: its gimbal, its aim and its model are its own. */
+/* For a new host: its gimbal, its aim and its model. */
 static void take_host(Session *s, DisEntityId host, bool guided)
 {
     const bool first = dis_entity_id_is_none(s->plan.host);
@@ -125,7 +125,7 @@ static void take_host(Session *s, DisEntityId host, bool guided)
              guided ? "guided" : "unguided");
 }
 
-/* Who was still to come, or comes after one that is gone: the host, and a munition's target by its Fire. */
+/* Finds a host that has not appeared yet or that follows one that left, and a munition's target by its Fire PDU. */
 static void find_host(Session *s)
 {
     HostPlan   *plan = &s->plan;
@@ -151,7 +151,7 @@ void session_keep(Session *s)
     entity_table_focus(s->table, dis_entity_id_is_none(plan->host) ? plan->aim : plan->host, plan->aim);
 }
 
-/* Axes of the local frame: what upright means. */
+/* Axes of the local frame: the vertical that upright refers to. */
 static void enu_axes(double r_enu_from_mount[9], const Session *s, const Mounted *at)
 {
     m3_tmul(r_enu_from_mount, s->shared->world->frame.r_ecef_from_enu, at->r_ecef_from_mount);
@@ -170,7 +170,7 @@ static void turn_gimbal(Seeker *seeker, const Session *s, const Mounted *at, con
     seeker_roll(seeker, r_enu_from_mount);
 }
 
-/* When it changes, and once a second at most. */
+/* Reported when it changes, and at most once a second. */
 static void report_limit(Session *s, double t_s)
 {
     char aim[dis_id_text_size] = "its aim";
@@ -190,13 +190,13 @@ static void report_limit(Session *s, double t_s)
 static void step_gimbal(Session *s, double t_s)
 {
     Mounted at;
-    s->aim_known |= aim_pose(s->p_aim_ecef, s, t_s); /* gone: the last place is kept */
+    s->aim_known |= aim_pose(s->p_aim_ecef, s, t_s); /* gone: the last position is kept */
     if (!mounted(&at, s, t_s)) return;
     turn_gimbal(&s->seeker, s, &at, s->p_aim_ecef);
     report_limit(s, t_s);
 }
 
-/* How the camera turns, and how the eye goes: to where it will be a tick later. */
+/* Rotation of the camera and motion of the sensor: to its position a tick later. */
 static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
 {
     static const double step_s = 1.0 / seeker_ticks_per_s;
@@ -205,7 +205,7 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     double              p_aim_ecef[3], r_enu_from_mount[9], r_next[9], lever[2][3];
     memcpy(eye->state.v_ecef_mps, now->host.v_ecef_mps, sizeof eye->state.v_ecef_mps);
     if (!seeker.started || !mounted_ahead(&next, s, now, t_s)) return;
-    /* its own motion is the host's at t_s; only what the host's turning adds is a difference */
+    /* its own motion is the host's at t_s; only the part due to the host's rotation is a difference */
     v3_sub(lever[0], now->p_ecef, now->host.p_ecef);
     v3_sub(lever[1], next.p_ecef, next.host.p_ecef);
     for (int k = 0; k < 3; k++) eye->state.v_ecef_mps[k] += (lever[1][k] - lever[0][k]) / step_s;
@@ -216,7 +216,7 @@ static void camera_motion(Eye *eye, Session *s, const Mounted *now, double t_s)
     turn_rate(eye->w_cam_rps, eye->view.r_enu_from_cam, r_next, step_s);
 }
 
-/* What lasts beyond a frame changes at ticks alone: it does not depend on which frames are made. */
+/* State that outlasts a frame changes at ticks alone: it does not depend on which frames are rendered. */
 void session_advance(Session *s, double t_s)
 {
     /* a quotient is rounded correctly, so that tick 35 is 0.35 to the bit; 35 * 0.01 is more */
@@ -248,7 +248,7 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     const int index = snapshot_find(snapshot, s->plan.host);
     if (index < 0 || !mounted(&at, s, t_s)) return false;
 
-    /* the interpolated pose is the host's in every product: it casts its shadow from there */
+    /* the interpolated pose is the host's in every product: its shadow starts from there */
     const SnapshotEntity *host  = &at.host;
     SnapshotEntity       *shown = &snapshot->entity[index];
     memcpy(shown->p_ecef, host->p_ecef, sizeof shown->p_ecef);
@@ -270,7 +270,7 @@ static bool host_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s)
     return true;
 }
 
-/* On a circle about the aim, clockwise from above, starting in the south; never in the ground. */
+/* On a circle about the aim, clockwise from above, starting in the south; never below the ground. */
 static void observer_position(double p_ecef[3], double aim_enu[3], const Session *s, double t_s)
 {
     const Config     *config = s->shared->config;
@@ -299,7 +299,7 @@ static void observer_camera(double r_enu_from_cam[9], const double p_ecef[3], co
 
 static bool observer_eye(Eye *eye, const Session *s, double t_s)
 {
-    static const double half_s = 0.005; /* velocity by difference: it rides with the aim, and over the hills */
+    static const double half_s = 0.005; /* velocity by difference: it follows the aim, and the terrain */
     const LocalFrame   *frame  = &s->shared->world->frame;
     double              before_ecef[3], after_ecef[3], p_enu[3], aim_enu[3], d_enu[3], r_before[9], r_after[9];
     observer_position(before_ecef, aim_enu, s, t_s - half_s);

@@ -1,4 +1,4 @@
-/* sensor/node/session_private.h: one host's seeker between frames. */
+/* sensor/node/session_private.h: the state of a session between frames. */
 #ifndef SENSOR_NODE_SESSION_PRIVATE_H
 #define SENSOR_NODE_SESSION_PRIVATE_H
 
@@ -12,7 +12,7 @@
 
 struct Session {
     const SessionShared *shared;
-    HostPlan             plan;          /* host and aim are filled in when they are heard of */
+    HostPlan             plan;          /* host and aim are filled in when they are received */
     char                 out[4096];
     char                 host_text[dis_id_text_size];
     EntityTable         *table;
@@ -22,23 +22,24 @@ struct Session {
     double               p_aim_ecef[3]; /* last known */
     bool                 aim_known;
     Mount                mount;
-    int                  mount_model, mount_node; /* the model whose node that is; -1: none yet */
+    int                  mount_model, mount_node; /* the model of that node; -1: none yet */
     NodePose            *node;          /* of the host, [most nodes of a model]; joint: the same */
     double              *joint;
-    bool                 limit_reported;    /* what was last said of the gimbal's limit, and at which tick */
+    bool                 limit_reported;    /* last report of the gimbal limit, and its tick */
     int64_t              limit_tick;
-    uint64_t             given_up_reported; /* what was last said of a full table, and when; wall clock */
+    uint64_t             given_up_reported; /* last report of a full table, and its time; wall clock */
     double               given_up_reported_s, left_out_reported_s;
-    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: what noise targets have */
+    Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
+                                             * targets */
     Consumers            consumers;
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
-    FrameLevel           level[BAND_COUNT]; /* of the picture files: the publishing thread's */
-    QueueCounters        written;       /* live: picture files; when closed */
+    FrameLevel           level[BAND_COUNT]; /* of the image files: used by the publishing thread */
+    QueueCounters        written;       /* live: image files; when closed */
     int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
-    int                  published;     /* frames that all consumers have had: the publishing thread's */
-    Status               listed;        /* of the result's lists: the publishing thread's */
+    int                  published;     /* frames that all consumers have received: used by the publishing thread */
+    Status               listed;        /* of the result's lists: used by the publishing thread */
     SessionResult        result;
     int                  capacity;      /* of the result's lists */
 };
@@ -55,17 +56,17 @@ typedef struct Eye {
 
 /* The present host into the result's list, once. */
 void session_note_host(Session *s);
-/* Feeds what counts by t_s, finds host and aim, and turns the gimbal, on a fixed grid of exercise time. */
+/* Feeds everything that counts by t_s, finds host and aim, and moves the gimbal, on a fixed grid of exercise time. */
 void session_advance(Session *s, double t_s);
-/* Tells the table what a full one is to keep: host and aim, and what is near the host, else near the aim. */
+/* Sets the entities that a full table keeps: host and aim, and those near the host, else near the aim. */
 void session_keep(Session *s);
-/* False: there will be no picture. */
+/* False: no image will be rendered. */
 bool session_host_is_there(const Session *s);
-/* Where the eye is at t_s and where it looks. The host's pose goes into the snapshot as it is seen from. False: the
- * host is not there. */
+/* Position and direction of the sensor at t_s. The host's pose is written into the snapshot. False: the host is
+ * absent. */
 bool session_eye(Eye *eye, Session *s, Snapshot *snapshot, double t_s);
-/* Who gets this session's frames, from the configuration; and room for as many frames as that takes. done: each frame
- * that all have had. */
+/* The consumers of this session's frames, from the configuration; and a pool for as many frames as they need. done:
+ * each frame that all consumers have received. */
 Status session_consumers(Session *s, FrameDone *done);
 
 #endif

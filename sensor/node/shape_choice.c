@@ -1,4 +1,4 @@
-/* sensor/node/shape_choice.c: types that are not seen, or by a stand-in alone. */
+/* sensor/node/shape_choice.c: types that are not rendered, or only with a default shape. */
 #include "sensor/node/shape_choice.h"
 
 #include <stdio.h>
@@ -21,7 +21,7 @@ static void note(Unshaped *u, DisEntityType type)
     u->entities++;
     for (int i = 0; i < u->named; i++)
         if (same_type(u->type[i], type)) return;
-    u->types++; /* one that is beyond those kept may count again */
+    u->types++; /* a type beyond the stored ones may be counted again */
     if (u->named < most_named) u->type[u->named++] = type;
 }
 

@@ -1,4 +1,4 @@
-/* sensor/node/stop.c: the signals that ask to stop, remembered. */
+/* sensor/node/stop.c: records the signals that request a stop. */
 #include "sensor/node/stop.h"
 
 #include <signal.h>

@@ -1,16 +1,16 @@
-/* sensor/node/stop.h: how a command that goes on until it is told to ends: by Ctrl-C, or a signal that asks for it. */
+/* sensor/node/stop.h: stops a command on Ctrl-C, SIGTERM or SIGHUP. */
 #ifndef SENSOR_NODE_STOP_H
 #define SENSOR_NODE_STOP_H
 
 #include <stdbool.h>
 
-/* From here on the first SIGINT, SIGTERM or SIGHUP asks to stop, and the second ends the program the hard way, should a
- * disk or a device hang. SIGINT counts even where it was ignored: so shells start what runs in the background of a
- * script. nohup's SIGHUP stays ignored. A signal may come to any thread and ends no wait: look now and then. */
+/* From here on the first SIGINT, SIGTERM or SIGHUP requests a stop, and the second ends the program at once, in case
+ * a disk or a device hangs. SIGINT counts even where it was ignored, as shells do for background jobs of a script.
+ * SIGHUP stays ignored under nohup. A signal may be delivered to any thread and ends no wait: poll regularly. */
 void stop_by_signals(void);
 bool stop_asked(void);
-/* 128 and the number of the signal that asked, as a shell says it of what a signal ended: 130 of Ctrl-C, 143 of
- * SIGTERM, 129 of SIGHUP; 0: none has. */
+/* 128 plus the number of the stop signal, as in a shell's exit status: 130 for Ctrl-C, 143 for SIGTERM, 129 for
+ * SIGHUP; 0: none. */
 int  stop_exit_code(void);
 
 #endif

@@ -1,4 +1,4 @@
-/* sensor/publish/coco.c: a run's coco.json, from the records that truth.jsonl is made of and the truth plane. */
+/* sensor/publish/coco.c: a run's coco.json, from the same records as truth.jsonl and the truth plane. */
 #include "sensor/publish/coco.h"
 
 #include "sensor/publish/coco_file.h"
@@ -13,7 +13,7 @@ struct Coco {
     CocoLimits  limits;
     char        config_sha256[80];
     long long   seed;
-    int         extents;    /* room for so many, and so much text; both grow to what a frame needs */
+    int         extents;    /* capacity in masks and in text; both grow to what a frame needs */
     MaskExtent *extent;
     size_t      text_size;
     char       *text;
@@ -50,7 +50,7 @@ static json_t *image_json(const Coco *c, const FrameRecord *r, Band band, long l
                      r->time_s);
 }
 
-/* Seen by too little to ask a recogniser for it. A share that is not known fits no limit. */
+/* Too little visible to be asked of a recogniser. An unknown share fits no limit. */
 static bool ignored(const CocoLimits *limits, const MaskExtent *extent, const Target *t)
 {
     return extent->pixels < limits->min_pixels ||
@@ -79,7 +79,7 @@ static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target
     return out;
 }
 
-/* Room for the masks of a frame, which stays for the next one. */
+/* Memory for the masks of a frame, which is reused for the next one. */
 static Status measure(Coco *c, const FrameRecord *r, const uint32_t *entity)
 {
     const int count = r->snapshot->count, width = r->request->view.width, height = r->request->view.height;

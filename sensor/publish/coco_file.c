@@ -1,4 +1,4 @@
-/* sensor/publish/coco_file.c: writes coco.json part by part, and names it when it is whole. */
+/* sensor/publish/coco_file.c: writes coco.json part by part, and renames it when it is complete. */
 #include "sensor/publish/coco_file.h"
 
 #include "sensor/publish/target_class.h"

@@ -1,4 +1,4 @@
-/* sensor/publish/coco_mask.c: where each entity's pixels lie in the truth plane, and their run lengths as text. */
+/* sensor/publish/coco_mask.c: pixels of each entity in the truth plane, and their run lengths as text. */
 #include "sensor/publish/coco_mask.h"
 
 void mask_extents(MaskExtent *extent, int count, const uint32_t *plane, int width, int height)
@@ -36,7 +36,7 @@ static void put_run(RunText *t, long long run)
     bool      more = true;
     while (more) {
         const int group = (int)(rest & 31);
-        rest >>= 5; /* of negative numbers too: gcc and clang keep the sign */
+        rest >>= 5; /* of negative numbers too: gcc and clang shift arithmetically */
         more    = group & 16 ? rest != -1 : rest != 0;
         *t->at++ = (char)(48 + (group | (more ? 32 : 0)));
     }
@@ -51,8 +51,8 @@ void mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int
     long long end = 0; /* of the last run */
     bool      on  = false;
     for (int x = extent->box[0]; x < extent->box[2]; x++) {
-        /* from row 0 on where the column before ended within the mask, to the row behind the box or the picture's
-         * last */
+        /* from row 0 on where the previous column ended within the mask, to the row after the box or the last row of
+         * the image */
         const int first = on ? 0 : extent->box[1], behind = extent->box[3] < height ? extent->box[3] + 1 : height;
         for (int y = first; y < behind; y++) {
             if ((plane[(size_t)y * (size_t)width + (size_t)x] == value) == on) continue;
@@ -63,7 +63,7 @@ void mask_text(char *text, const uint32_t *plane, uint32_t value, int width, int
         }
     }
     const long long rest = (long long)width * height - end;
-    if (on && extent->box[2] < width) { /* its last column ends with the picture's last row */
+    if (on && extent->box[2] < width) { /* its last column ends with the last row of the image */
         put_run(&t, (long long)extent->box[2] * height - end);
         end = (long long)extent->box[2] * height;
         if ((long long)width * height > end) put_run(&t, (long long)width * height - end);

@@ -107,7 +107,7 @@ Status coco_merge_close(CocoMerge *m, bool whole)
                                            PITVIPER_VERSION, "variants", m->variants),
                                  whole);
     char path[coco_path_size + 16];
-    snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* beside it: coco.json is that run's own */
+    snprintf(path, sizeof path, "%s/truth.jsonl", m->folder); /* next to it: coco.json is that run's own */
     if ((!m->open || !whole || status != STATUS_OK) && access(path, F_OK) != 0) {
         snprintf(path, sizeof path, "%s/coco.json", m->folder);
         unlink(path);

@@ -1,4 +1,4 @@
-/* sensor/publish/consume_by_call.c: consumers that call: with each record; with each frame and its hash. */
+/* sensor/publish/consume_by_call.c: consumers that call a function: with each record; with each frame and its hash. */
 #include "sensor/publish/consumers.h"
 
 #include <stdlib.h>

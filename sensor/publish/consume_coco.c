@@ -1,4 +1,4 @@
-/* sensor/publish/consume_coco.c: a consumer: coco.json. */
+/* sensor/publish/consume_coco.c: the consumer that writes coco.json. */
 #include "sensor/publish/consumers.h"
 
 #include <stdlib.h>

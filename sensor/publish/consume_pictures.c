@@ -1,11 +1,11 @@
-/* sensor/publish/consume_pictures.c: a consumer: picture files. */
+/* sensor/publish/consume_pictures.c: the consumer that writes image files. */
 #include "sensor/publish/consumers.h"
 
 #include <pthread.h>
 #include <stdlib.h>
 
-/* Levels of frames that were left out, until the next frame is put: the last levels_kept, beyond which a memory of
- * seconds (detector.agc_s) has forgotten them. */
+/* Levels of dropped frames, until the next frame is put: the last levels_kept, beyond which an automatic level with
+ * a time constant of seconds (detector.agc_s) no longer depends on them. */
 enum { levels_kept = 1024 };
 
 typedef struct Pictures {
@@ -14,7 +14,7 @@ typedef struct Pictures {
     Chains          spare;
     bool            patient;
     RetryBackoff        patience;
-    pthread_mutex_t lock; /* of what follows: frames are left out in another thread than they are put */
+    pthread_mutex_t lock; /* protects the following: frames are dropped in another thread than they are put */
     DisplayLevels  *missed;
     int             first, count;
 } Pictures;
@@ -44,7 +44,7 @@ static FrameFiles files_of(const Pictures *p, const Frame *frame, const Chains *
                         .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}};
 }
 
-/* Where displays are made at all. */
+/* Whether displays are computed at all. */
 static bool shows(const Pictures *p) { return p->of.config->publish.png || p->of.config->detector.raw; }
 
 static void note_levels(Pictures *p, const Frame *frame, const Chains *chains)

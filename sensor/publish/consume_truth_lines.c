@@ -1,4 +1,4 @@
-/* sensor/publish/consume_truth_lines.c: a consumer: truth.jsonl. */
+/* sensor/publish/consume_truth_lines.c: the consumer that writes truth.jsonl. */
 #include "sensor/publish/consumers.h"
 
 #include <errno.h>

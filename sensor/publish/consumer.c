@@ -1,4 +1,4 @@
-/* sensor/publish/consumer.c: a list of consumers as one. */
+/* sensor/publish/consumer.c: a list of consumers used as one. */
 #include "sensor/publish/consumer.h"
 
 Status consumers_add(Consumers *list, Consumer *consumer)

@@ -1,4 +1,4 @@
-/* sensor/publish/dis_records.c: what the seeker sees, packed into Data PDUs. */
+/* sensor/publish/dis_records.c: measurements of the sensor and ground truth, packed into Data PDUs. */
 #include "sensor/publish/dis_records.h"
 
 #include "dis/reader.h"
@@ -7,7 +7,7 @@
 
 enum { seen_octets = 36, truth_octets = 56, datum_head_octets = 8, target_room = 2048 };
 
-/* Values for variable datums are written here first; big-endian. */
+/* Values of variable datums are assembled here first; big-endian. */
 typedef struct Octets {
     uint8_t at[target_room];
     size_t  used;
@@ -53,7 +53,7 @@ static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
     pdu->fixed[pdu->fixed_count++] = (DisFixedDatum){id, value};
 }
 
-/* From there to where the octets now end. */
+/* The octets written since `from`. */
 static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from)
 {
     pdu->variable[pdu->variable_count++] = (DisVariableDatum){.id = id, .bits = (uint32_t)(8 * (o->used - from)),
@@ -89,12 +89,12 @@ static void put_truth(Octets *o, const Target *t, const Snapshot *snapshot, Band
     put_f32(o, t->band[band].snr);
 }
 
-/* Largest first, then as listed; its place in list. */
+/* Largest first, then in the order of the list; its index in list. */
 static int next_largest(const FrameRecord *r, const int *chosen, int count, bool truth)
 {
     int best = -1;
     for (int i = 0; i < r->target_count; i++) {
-        bool taken = !truth && !(r->target[i].pixels > 0); /* nobody measures what is hidden */
+        bool taken = !truth && !(r->target[i].pixels > 0); /* a hidden target is not measured */
         for (int k = 0; k < count; k++) taken |= chosen[k] == i;
         if (!taken && (best < 0 || r->target[i].pixels > r->target[best].pixels)) best = i;
     }

@@ -1,31 +1,31 @@
-/* sensor/publish/dis_records.h: what the seeker sees, as Data PDUs (type 20) on the exercise: one a frame and band,
- * never more than 1400 octets, to all (0xFFFF), originating site:application:0, request 0.
+/* sensor/publish/dis_records.h: measurements of the sensor and ground truth, as Data PDUs (type 20) on the exercise:
+ * one per frame and band, never more than 1400 octets, to all (0xFFFF), originating site:application:0, request 0.
  *
- * Ids of datums are this program's own, experimental, registered with nobody.
- * Numbers are big-endian as all of DIS; f32 and f64 are IEEE 754; NaN: not computed.
+ * Datum ids are this program's own, experimental, not registered. Numbers are big-endian as all of DIS; f32 and f64
+ * are IEEE 754; NaN: not computed.
  *
  *     fixed, 32 bits
  *     600001  frame number, u32
  *     600002  band, u32: 0 optical, 1 mwir, 2 lwir, 3 radar
- *     600003  kind, u32: 1 sensor (what a seeker could measure), 2 truth
+ *     600003  kind, u32: 1 sensor (measurable by a seeker), 2 truth
  *     600004  raster, u16 columns, u16 rows
  *     600005  horizontal field of view, f32 rad
  *     600006  vertical field of view, f32 rad
  *     600007  targets in this PDU, u32
- *     600008  targets left out for want of room, the smallest, u32
+ *     600008  targets omitted for lack of space, the smallest, u32
  *
  *     variable
  *     600101   64 bits  exercise time of the frame, f64 s
- *     600102  192 bits  the eye, ECEF, 3 f64 m
- *     600103  192 bits  the camera as a body that looks along x, y right, z down: psi, theta, phi as in an Entity
- *                       State, 3 f64 rad
- *     600104   64 bits  who carries it: u16 site, application, entity, 0; 0:0:0: an observer that is no entity
- *     600201  288 bits  kind sensor, one a target that is seen, largest first:
+ *     600102  192 bits  sensor position, ECEF, 3 f64 m
+ *     600103  192 bits  camera attitude as of a body with x along the boresight, y right, z down: psi, theta, phi
+ *                       as in an Entity State, 3 f64 rad
+ *     600104   64 bits  host: u16 site, application, entity, 0; 0:0:0: an observer that is no entity
+ *     600201  288 bits  kind sensor, one per visible target, largest first:
  *                       0  box of its visible pixels, u16 left, top, right, bottom, the last two beyond it
  *                       8  f32 area, px       12 f32 boresight error right, rad   16 f32 the same up, rad
  *                       20 f32 contrast: K (mwir, lwir), a share (optical, radar) 24 f32 signal to noise
  *                       28 f32 range, m, and 32 f32 closing speed, m/s: radar only, else NaN
- *     600202  448 bits  kind truth, one a target in the field of view, largest first:
+ *     600202  448 bits  kind truth, one per target in the field of view, largest first:
  *                       0  u16 site, application, entity, 0                       8  box, as above; 0 0 0 0: hidden
  *                       16 f32 visible area, px   20 f32 visible fraction         24 f32 range, m
  *                       28 f32 closing speed, m/s 32 f32 aspect, rad, 0 nose on   36 f32 line of sight, azimuth from
@@ -46,12 +46,12 @@ enum {
 };
 
 typedef struct DisRecordSender {
-    uint8_t  version, exercise; /* as the exercise has them */
+    uint8_t  version, exercise; /* as in the exercise */
     uint16_t site, application;
-    uint32_t timestamp;         /* raw, of the frame's instant */
+    uint32_t timestamp;         /* raw, at the time of the frame */
 } DisRecordSender;
 
-/* One frame's PDU of one band. Returns its octets, at most dis_smallest_mtu. */
+/* One frame's PDU of one band. Returns its size in octets, at most dis_smallest_mtu. */
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
                         Band band, bool truth);
 

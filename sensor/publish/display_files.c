@@ -1,5 +1,4 @@
-/* sensor/publish/display_files.c: what a display behind a band's detector shows, its raw counts, and the preview of
- * truth. */
+/* sensor/publish/display_files.c: display images of a band's detector, its raw counts, and the preview of truth. */
 #include "sensor/publish/frame_files.h"
 
 #include "sensor/detector/colour.h"
@@ -10,7 +9,7 @@
 
 #include <stdlib.h>
 
-/* The planes that a band's detector looks at; how many. */
+/* The planes that a band's detector receives; returns how many. */
 static int band_radiance(const float *plane[3], const Picture *p, int band)
 {
     int n = 0;
@@ -36,7 +35,7 @@ static double mean_radiance(const Picture *picture, int band)
     return planes ? fmax(0, sum / ((double)count * planes)) : 0;
 }
 
-/* Without a sensor: a share of the picture's mean in each optical channel. */
+/* Without a sensor: a share of the image's mean in each optical channel. */
 static double optical_sigma(const Picture *picture, const Config *config)
 {
     return config->detector.noise * config->detector.noise_optical * mean_radiance(picture, BAND_OPTICAL);
@@ -62,8 +61,8 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
     }
 }
 
-/* What the display of one band shows: gain and level, quantisation; and noise, without a sensor. In radiance, or
- * in counts of the band's sensor. */
+/* The display of one band: gain and level, quantisation; and noise, without a sensor. In radiance, or in counts of
+ * the band's sensor. */
 static DetectorConfig detector_of(const FrameFiles *frame, int band)
 {
     const Config  *c     = frame->config;
@@ -75,7 +74,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     d.auto_level         = strcmp(c->detector.level, "auto") == 0;
     if (band == BAND_OPTICAL) {
         d.display_gamma = true;
-        if (!chain) d.min_span = 1e-3; /* W/(m2 sr): grey things under some 4 lux; a night shows as one */
+        if (!chain) d.min_span = 1e-3; /* W/(m2 sr): grey surfaces below some 4 lux; a night is displayed dark */
         d.noise_sigma   = optical_sigma(frame->noise_of ? frame->noise_of : frame->picture, c);
         d.level_low     = 0;
         d.level_high    = c->detector.optical_high_w_m2_sr;
@@ -85,7 +84,7 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
         preset_band(&low_m, &high_m, (Band)band, OPTICAL_PAN, -1);
         const double at_300_k = planck_band(low_m, high_m, 300, &slope);
         d.noise_sigma = c->detector.noise * slope * (mwir ? c->detector.netd_mwir_k : c->detector.netd_lwir_k);
-        d.min_span    = 2 * slope; /* never stretch less than 2 K over the screen */
+        d.min_span    = 2 * slope; /* never stretch less than 2 K over the display */
         d.level_low   = planck_band(low_m, high_m, mwir ? c->detector.mwir_low_k : c->detector.lwir_low_k, NULL);
         d.level_high  = planck_band(low_m, high_m, mwir ? c->detector.mwir_high_k : c->detector.lwir_high_k, NULL);
         if (chain)
@@ -98,8 +97,8 @@ static DetectorConfig detector_of(const FrameFiles *frame, int band)
     return d;
 }
 
-/* White balance of this frame's day, in radiance or in counts. Photons of a band are in proportion to its radiance, so
- * white is asked for at a radiance that any sensor can count. */
+/* White balance for the light of this frame, in radiance or in counts. Photons of a band are in proportion to its
+ * radiance, so white is taken at a radiance that any sensor can count. */
 static DisplayColour colour_of(const FrameFiles *frame)
 {
     const Chain  *chain = frame->chain[BAND_OPTICAL];
@@ -133,8 +132,8 @@ static Status write_raw(const FrameFiles *frame, int band, int planes)
     return status;
 }
 
-/* What a display shows of a band, before its level: counts or radiance with noise, of R G B balanced. noisy: room for
- * three planes. Returns gain and level of this frame alone. */
+/* The input of a display of a band, before its level: counts or radiance with noise, of R G B balanced. noisy:
+ * memory for three planes. Returns gain and level of this frame alone. */
 static DetectorLevel detect(const float *out[3], int *planes, DetectorConfig *detector, float *noisy,
                             const FrameFiles *frame, int band)
 {
@@ -158,14 +157,14 @@ static DetectorLevel detect(const float *out[3], int *planes, DetectorConfig *de
         const DisplayColour colour      = colour_of(frame);
         display_colour_apply(coloured, out, count, &colour);
         for (int c = 0; c < 3; c++) out[c] = coloured[c];
-        /* counts of white whose bands' mean is 1 W/(m2 sr) */
+        /* counts of a white whose mean over the bands is 1 W/(m2 sr) */
         if (chain && colour.white > 0)
             detector->level_high = colour.zero + colour.white * frame->config->detector.optical_high_w_m2_sr;
     }
     return detector_level(detector, out, *planes, count);
 }
 
-/* One task a band at a time, frame after frame: the level's memory is its own. */
+/* One task per band at a time, frame after frame: the state of the level is its own. */
 static DetectorLevel follow_level(FrameLevel *state, DetectorLevel now, double time_s, double agc_s)
 {
     if (!state->known) state->level = now;
@@ -205,7 +204,7 @@ void display_follow(FrameLevel level[BAND_COUNT], const DisplayLevels *now, doub
         if (now->bands >> b & 1) follow_level(&level[b], now->level[b], now->time_s, agc_s);
 }
 
-/* Runs the band's detector; display picture and raw counts, as asked for. */
+/* Runs the band's detector; display image and raw counts, as requested. */
 Status display_write(const FrameFiles *frame, int band)
 {
     char           path[frame_path_size];

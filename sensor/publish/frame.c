@@ -1,4 +1,4 @@
-/* sensor/publish/frame.c: frames that are counted, and the pool they go back to. */
+/* sensor/publish/frame.c: reference-counted frames, and their pool. */
 #include "sensor/publish/frame.h"
 
 #include <pthread.h>
@@ -7,7 +7,7 @@
 struct FramePool {
     int             count;
     Frame          *frame;    /* [count] */
-    pthread_mutex_t lock;     /* of the frames' holds */
+    pthread_mutex_t lock;     /* of the frames' reference counts */
     pthread_cond_t  released;
 };
 

@@ -1,4 +1,4 @@
-/* sensor/publish/frame_files.c: one frame's files, a task a file. */
+/* sensor/publish/frame_files.c: the files of one frame, one task per file. */
 #include "sensor/publish/frame_files.h"
 
 #include "sensor/settings/plane_choice.h"
@@ -70,7 +70,7 @@ static void date_time(char out[32], double unix_s)
     if (!gmtime_r(&whole, &date) || strftime(out, 32, "%Y:%m:%d %H:%M:%S", &date) == 0) strcpy(out, "1970:01:01 00:00:00");
 }
 
-/* Ids of the frame's table in order, so that value k of the entity plane is the k-th. */
+/* Ids of the frame's table in order: value k of the entity plane is the k-th. */
 static char *entity_ids(const Snapshot *snapshot)
 {
     const size_t size = (size_t)snapshot->count * dis_id_text_size + 1;
@@ -93,8 +93,8 @@ static char *material_names(const Materials *materials)
     return text;
 }
 
-/* `model:part,part,...;model:...` for the models that the frame holds: value k of the part plane is the k-th
- * part of its entity's model. */
+/* `model:part,part,...;model:...` for the models in the frame: value k of the part plane is the k-th part of its
+ * entity's model. */
 static char *part_names(const FrameFiles *frame)
 {
     const Catalog *catalog = frame->world->catalog;
@@ -116,8 +116,8 @@ static char *part_names(const FrameFiles *frame)
     return text;
 }
 
-/* Noisy radiance hardly shrinks; truth and radar have large uniform areas. Measured through OpenEXR, 720 x 486, a frame
- * of the demonstration, one core, ms of CPU and kB:
+/* Noisy radiance hardly compresses; truth and radar have large uniform areas. Measured through OpenEXR, 720 x 486, a
+ * frame of the demonstration, one core, ms of CPU and kB:
  *
  *             truth, 8 planes    lwir       optical, 3    radar
  *     none     15  11206        4  1408     14  4207     9  1408
@@ -193,7 +193,7 @@ static Status write_profile(const FrameFiles *frame, int band)
     return STATUS_IO;
 }
 
-/* Over every plane, whatever of truth goes into files. */
+/* Over every plane, whichever planes of truth are written to files. */
 static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
 {
     FrameView view;
@@ -204,7 +204,7 @@ static Status hash_planes(char hash[sha256_text_size], const FrameFiles *frame)
     return status;
 }
 
-/* Task 0 hashes, each other one writes a file. */
+/* Task 0 computes the hash, each other one writes a file. */
 static void run_job(void *user, int worker, int task)
 {
     FileJobs *jobs = user;

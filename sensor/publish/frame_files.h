@@ -1,6 +1,6 @@
-/* sensor/publish/frame_files.h: one frame's pictures into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the
- * aperture, and what a display behind the detector shows. Raw counts of a band with a sensor:
- * OUT/raw/<band>/NNNNNN.png, 16 bits. */
+/* sensor/publish/frame_files.h: one frame's images into OUT/frames/<band>/NNNNNN.exr and .png: radiance at the
+ * aperture, and the display behind the detector. Raw counts of a band with a sensor: OUT/raw/<band>/NNNNNN.png, 16
+ * bits. */
 #ifndef SENSOR_PUBLISH_FRAME_FILES_H
 #define SENSOR_PUBLISH_FRAME_FILES_H
 
@@ -11,12 +11,12 @@
 #include "sensor/truth/truth.h"
 #include "sensor/publish/frame.h"
 
-/* An automatic level that follows; begins with the first frame made. */
+/* An automatic level with a time constant; starts with the first frame. */
 typedef struct FrameLevel {
     bool          known;
     double        time_s;
     DetectorLevel level;
-    DetectorLevel shown;            /* of the last display made: what its black and white stand for; R G B: balanced */
+    DetectorLevel shown;            /* of the last display: values of its black and white; R G B: balanced */
 } FrameLevel;
 
 typedef struct FrameFiles {
@@ -24,7 +24,7 @@ typedef struct FrameFiles {
     const Config   *config;
     const World    *world;
     const Picture  *picture;
-    const Picture  *noise_of;       /* whose mean white noise is a share of; NULL: picture */
+    const Picture  *noise_of;       /* the image whose mean white noise is a share of; NULL: picture */
     const Snapshot *snapshot;
     const RenderRequest *request;
     const char     *host, *config_sha256;
@@ -33,35 +33,37 @@ typedef struct FrameFiles {
     bool            png;
     Chain *const   *chain;          /* [BAND_COUNT]; NULL: white noise as configured */
     FrameLevel     *level;          /* [BAND_COUNT] */
-    double          rate_px_s[2];   /* how the scene moves over the picture: column, row */
+    double          rate_px_s[2];   /* image motion of the scene: column, row */
 } FrameFiles;
 
-/* Bands whose pictures come from a detector: all but radar. */
+/* Bands with a detector: all but radar. */
 enum { detector_bands = ((1 << BAND_COUNT) - 1) & ~(1 << BAND_RADAR) };
 
-/* OUT may be as long as leaves frame_path_room characters for what goes below it; a longer one is refused, logged.
- * folder: makes OUT, or says why not; what is in it stays.
- * earlier: whether OUT holds something of an earlier run that would be lost, and the path of such a thing.
- * clear: takes away what an earlier run left in OUT (known by its truth.jsonl or run.json), nothing else.
- * prepare: that, and makes OUT and the folders below it for these bands, and for raw counts of those in
- * raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with frame_truth, truth too.
- * prepare_displays: only for what frame_files_write_displays makes; clears nothing. */
+/* OUT must leave frame_path_room characters for the paths below it; a longer one is refused, logged.
+ *     folder            creates OUT, or logs why not; its content stays
+ *     earlier           whether OUT holds a product of an earlier run that would be lost, and its path
+ *     clear             removes the products of an earlier run from OUT (recognised by its truth.jsonl or run.json),
+ *                       nothing else
+ *     prepare           clear, and creates OUT and the folders below it for these bands, and for raw counts of those
+ *                       in raw; a clear message when the place cannot be written. No bands: OUT alone. bands: with
+ *                       frame_truth, truth too
+ *     prepare_displays  only for the products of frame_files_write_displays; clears nothing */
 enum { frame_path_size = 4096, frame_path_room = 64, frame_truth = 1 << BAND_COUNT };
 Status frame_files_folder(const char *out);
 bool   frame_files_earlier(char found[frame_path_size], const char *out);
 void   frame_files_clear(const char *out);
 Status frame_files_prepare(const char *out, unsigned bands, unsigned raw);
 Status frame_files_prepare_displays(const char *out, unsigned bands, unsigned raw);
-/* Folders below OUT for each frame's other pictures (sensor/publish/pairs.h). */
+/* Folders below OUT for each frame's other images (sensor/publish/pairs.h). */
 enum { pair_folders = 3 };
 extern const char *const pair_folder[pair_folders];
-/* Whether any plane of truth goes into files. */
+/* Whether any plane of truth is written to files. */
 bool   frame_files_truth(const Config *config);
-/* Exposes the sensors for this picture, and says what noise they have at its mean radiance. */
+/* Exposes the sensors for this image, and gives their noise at its mean radiance. */
 void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
-/* Writes everything of the frame, a task a file. hash: over all planes, before encoding; NULL: none. */
+/* Writes all files of the frame, one task per file. hash: over all planes, before encoding; NULL: none. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
-/* What lies behind a detector alone: display pictures and raw counts of its bands. */
+/* Only the products of detectors: display images and raw counts of its bands. */
 Status frame_files_write_displays(const FrameFiles *frame, Pool *pool);
 /* OUT/FOLDER/NAME/NNNNNN.ENDING. False, logged: it is too long. */
 bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const char *folder, const char *name,
@@ -69,11 +71,12 @@ bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const cha
 
 /* ---- displays (display_files.c) ---------------------------------------------------------------- */
 
-/* Runs the band's detector, writes what its display shows and its raw counts, as configured. BAND_COUNT: truth as a
- * picture for people. */
+/* Runs the band's detector, writes its display image and its raw counts, as configured. BAND_COUNT: the preview of
+ * truth. */
 Status display_write(const FrameFiles *frame, int band);
-/* Gain and level of a frame by itself, by band: what a display's memory (detector.agc_s) takes of a frame that is not
- * written. No bands where there is no memory. Runs the detectors, which must be exposed for this picture. */
+/* Gain and level of a frame by itself, by band: the contribution of a frame that is not written to the state of a
+ * display (detector.agc_s). No bands where there is no state. Runs the detectors, which must be exposed for this
+ * image. */
 typedef struct DisplayLevels {
     double        time_s;
     unsigned      bands;

@@ -1,5 +1,5 @@
-/* sensor/publish/frame_folders.c: the folders of OUT: made, looked into for what an earlier run left, and cleared of
- * it. */
+/* sensor/publish/frame_folders.c: the folders of OUT: created, searched for the products of an earlier run, and
+ * cleared of them. */
 #include "sensor/publish/frame_files.h"
 
 #include <dirent.h>
@@ -46,7 +46,7 @@ Status frame_files_folder(const char *path)
     return STATUS_OK;
 }
 
-/* NNNNNN.exr, .png, .csv: what frame_files_write makes and nothing else. */
+/* NNNNNN.exr, .png, .csv: the files of frame_files_write and nothing else. */
 static bool is_frame_name(const char *name)
 {
     for (int i = 0; i < 6; i++)
@@ -54,7 +54,7 @@ static bool is_frame_name(const char *name)
     return strcmp(name + 6, ".exr") == 0 || strcmp(name + 6, ".png") == 0 || strcmp(name + 6, ".csv") == 0;
 }
 
-/* frame_NNNNNN.pvf: what frame_save makes. */
+/* frame_NNNNNN.pvf: the files of frame_save. */
 static bool is_frame_file(const char *name)
 {
     int end = 0;
@@ -62,7 +62,7 @@ static bool is_frame_file(const char *name)
            sscanf(name, "frame_%*6d.pvf%n", &end) == 0 && end > 0;
 }
 
-/* What ours says is the program's own. */
+/* Removes the files for which ours(name) holds. */
 static void clear_folder(const char *folder, bool (*ours)(const char *name))
 {
     DIR *directory = opendir(folder);
@@ -98,7 +98,7 @@ static void clear_products(const char *out)
     for (int b = 0; b < folder_count; b++) {
         product_folder(path, out, b);
         clear_folder(path, is_frame_name);
-        rmdir(path); /* when nothing else is in it */
+        rmdir(path); /* only if it is empty otherwise */
     }
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", out, parents[i]);
@@ -106,7 +106,7 @@ static void clear_products(const char *out)
     }
 }
 
-/* The first picture or table of a frame in a folder. */
+/* The first image or table of a frame in a folder. */
 static bool first_frame(char path[path_size], const char *folder)
 {
     DIR *directory = opendir(folder);
@@ -121,9 +121,9 @@ bool frame_files_earlier(char found[frame_path_size], const char *out)
 {
     char        path[path_size], truth[path_size];
     struct stat about;
-    if (too_long(out)) return false; /* none was ever made there */
+    if (too_long(out)) return false; /* no run was ever started there */
     snprintf(truth, sizeof truth, "%s/truth.jsonl", out);
-    const bool begun = stat(truth, &about) == 0; /* one without a line never came to its first frame */
+    const bool begun = stat(truth, &about) == 0; /* a run without a line did not reach its first frame */
     if (begun && about.st_size > 0) return snprintf(found, frame_path_size, "%s", truth) > 0;
     snprintf(path, sizeof path, "%s/run.json", out);
     if (!begun && access(path, F_OK) == 0) return snprintf(found, frame_path_size, "%s", path) > 0;
@@ -155,7 +155,7 @@ void frame_files_clear(const char *out)
     }
     for (int i = 0; i < 3; i++) {
         snprintf(path, sizeof path, "%s/%s", out, beside[i]);
-        remove(path); /* a folder: when nothing else is in it */
+        remove(path); /* a folder: only if it is empty otherwise */
     }
 }
 

@@ -1,6 +1,5 @@
-/* sensor/publish/frame_planes.c: a picture as a list of named planes: the one place that knows a Picture's fields for
- * all
- * that goes through planes. */
+/* sensor/publish/frame_planes.c: an image as a list of named planes: the one place that lists the fields of a
+ * Picture for all code that works on planes. */
 #include "pitviper_channels.h"
 #include "sensor/publish/frame.h"
 

@@ -61,7 +61,7 @@ static Status put(Consumer *consumer, Frame *frame)
         for (int i = 0; i < q->list.count; i++)
             if (q->list.consumer[i]->left_out) q->list.consumer[i]->left_out(q->list.consumer[i], older);
         frame_release(older);
-        q->counters.left_out++; /* of this thread alone until it is joined */
+        q->counters.left_out++; /* used by this thread alone until it is joined */
     }
     frame_hold(frame);
     pthread_mutex_lock(&q->lock);
@@ -79,7 +79,7 @@ static Status close_queue(Consumer *consumer)
         q->stop = true;
         pthread_cond_signal(&q->work);
         pthread_mutex_unlock(&q->lock);
-        pthread_join(q->thread, NULL); /* what waits is handed on before */
+        pthread_join(q->thread, NULL); /* a waiting frame is passed on before */
     }
     const Status closed = consumers_close(&q->list);
     const Status status = q->rule == QUEUE_WAIT && q->status != STATUS_OK ? q->status : closed;
@@ -106,7 +106,7 @@ Status frame_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCo
     pthread_mutex_init(&q->lock, NULL);
     pthread_cond_init(&q->work, NULL);
     pthread_cond_init(&q->room, NULL);
-    sigset_t all, before; /* signals are for the program's own thread */
+    sigset_t all, before; /* signals are for the main thread */
     sigfillset(&all);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     q->running = pthread_create(&q->thread, NULL, work, q) == 0;

@@ -1,4 +1,4 @@
-/* sensor/publish/html.c: reports as one HTML file: its style, its pictures inside it. */
+/* sensor/publish/html.c: reports as one HTML file: its style, its embedded images. */
 #include "sensor/publish/html.h"
 
 #include <errno.h>

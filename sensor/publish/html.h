@@ -4,15 +4,14 @@
 
 #include "pitviper.h"
 
-/* Opens path.part and writes the head, with the house's style; NULL, logged. What follows is written by fprintf as
- * markup, or by these. */
+/* Opens path.part and writes the head, with the common style; NULL, logged. The content is then written by fprintf
+ * as markup, or by the functions below. */
 FILE  *html_begin(const char *path, const char *title);
-/* Text as text: what would be markup is escaped. */
+/* Plain text: markup characters are escaped. */
 __attribute__((format(printf, 2, 3))) void html_text(FILE *page, const char *format, ...);
-/* A picture inside the page. type: "png", "svg+xml". */
+/* An embedded image. type: "png", "svg+xml". */
 void   html_image(FILE *page, const char *type, const void *bytes, size_t count, const char *alt);
-/* Ends the page and gives the file its name. STATUS_IO, logged, and no file, when anything of it could not be written.
- */
+/* Ends the page and renames the file into place. STATUS_IO, logged, and no file, when any part could not be written. */
 Status html_end(FILE *page, const char *path);
 
 #endif

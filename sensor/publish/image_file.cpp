@@ -1,4 +1,4 @@
-/* sensor/publish/image_file.cpp: pictures as files, through OpenImageIO. */
+/* sensor/publish/image_file.cpp: image files, through OpenImageIO. */
 #include "sensor/publish/image_file.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -30,7 +30,7 @@ static const int  png_level      = 1;
 static const int  png_filter     = 0x10; /* libpng's PNG_FILTER_SUB */
 static const char png_strategy[] = "rle";
 
-/* One thread each: the pool above us has one frame a worker, and the bytes must not depend on threads. */
+/* One thread each: the caller's pool has one frame per worker, and the bytes must not depend on threads. */
 static void library_set_up()
 {
     static std::once_flag once;
@@ -40,15 +40,15 @@ static void library_set_up()
     });
 }
 
-/* Never throws: a log line must be possible when memory is out. */
+/* Never throws: logging must be possible when memory is out. */
 static Status refuse(Status status, const char *what, const char *path, const char *reason)
 {
     log_error("image: cannot %s %s: %s", what, path, reason);
     return status;
 }
 
-/* PATH.part, which takes the name PATH when it is whole, and is removed otherwise. The library writes into it chunk by
- * chunk; what the disk said at the first failure is kept, as the library tells only that it failed. */
+/* PATH.part, which is renamed to PATH when complete, and is removed otherwise. The library writes into it chunk by
+ * chunk; errno at the first failure is kept, as the library reports only that it failed. */
 class PartFile final : public OIIO::Filesystem::IOFile {
 public:
     PartFile(std::string part, FILE *file) : IOFile(file, Write), part_(std::move(part)), file_(file) {}
@@ -77,7 +77,7 @@ public:
         return ok;
     }
 
-    /* A full disk may show only here. */
+    /* A full disk may be detected only here. */
     bool finish(const char *path)
     {
         errno = 0;
@@ -149,8 +149,8 @@ static void set_attribute(ImageSpec *spec, const ImageAttribute &a)
     }
 }
 
-/* Native calls only: the library converts uint32 to float and back otherwise, and loses it. They want the
- * channels of a pixel side by side, so a band of lines at a time is interleaved; a plane alone is written as it is. */
+/* Native calls only: the library converts uint32 to float and back otherwise, which loses bits. They need the
+ * channels of a pixel interleaved, so a band of lines at a time is interleaved; a single plane is written as it is. */
 static bool write_planes(ImageOutput *out, const Plane *plane, int plane_count)
 {
     const int    width = plane[0].width, height = plane[0].height, band = 16; /* a block of zip */
@@ -251,7 +251,7 @@ try {
     return refuse(STATUS_NO_MEMORY, "read", path, e.what());
 }
 
-/* Channels come back in the alphabet's order, not the writer's: by name only. */
+/* Channels come back in alphabetical order, not the writer's: by name only. */
 static Status read_channel(void *out, const char *path, const char *channel, TypeDesc type)
 try {
     auto in = open_input(path);

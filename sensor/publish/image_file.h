@@ -1,8 +1,8 @@
-/* sensor/publish/image_file.h: pictures as files, through OpenImageIO (image_file.cpp, the only file that knows it).
+/* sensor/publish/image_file.h: image files, through OpenImageIO (image_file.cpp, the only file that uses it).
  *
- * A file appears whole or not at all: it is written chunk by chunk as `PATH.part` and renamed. Every failure is one log
- * line with path and reason, and a Status; nothing of a failed file is left behind.
- * Thread-safe for different paths. Each call allocates and frees its own memory. */
+ * A file appears complete or not at all: it is written chunk by chunk as `PATH.part` and renamed. Every failure is
+ * one log line with path and reason, and a Status; nothing of a failed file is left behind. Thread-safe for
+ * different paths. Each call allocates and frees its own memory. */
 #ifndef SENSOR_PUBLISH_IMAGE_FILE_H
 #define SENSOR_PUBLISH_IMAGE_FILE_H
 
@@ -45,11 +45,11 @@ static inline ImageAttribute image_double(const char *name, double number)
 
 enum { image_max_planes = 64, image_max_size_px = 32768 };
 
-/* EXR, one channel a plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a
- * compression by name (`none`, `rle`, `zips`, `zip:1`, `piz`, ...; frame_files.c has measurements).
- * date_time: `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock
- * there; NULL: 1970:01:01 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64,
- * a name that is empty or used twice. STATUS_IO: the disk or the library refused. */
+/* EXR, one channel per plane, float32 or uint32 each, bit for bit (a uint32 never passes through a float), in a
+ * compression by name (`none`, `rle`, `zips`, `zip:1`, `piz`, ...; frame_files.c has measurements). date_time:
+ * `YYYY:MM:DD HH:MM:SS`, stored as DateTime, so that the library does not put the wall clock there; NULL: 1970:01:01
+ * 00:00:00. STATUS_BAD_VALUE: no planes or too many, sizes that differ, PLANE_F64, a name that is empty or used
+ * twice. STATUS_IO: the disk or the library refused. */
 Status image_write_exr_as(const char *path, const char *compression, const Plane *plane, int plane_count,
                           const char *date_time, const ImageAttribute *attribute, int attribute_count);
 
@@ -73,7 +73,7 @@ typedef struct ImageInfo {
 } ImageInfo;
 
 Status image_info(ImageInfo *out, const char *path);
-/* One channel by name, [height][width] as image_info says. The type must be the one in the file: no
+/* One channel by name, [height][width] as image_info gives them. The type must be the one in the file: no
  * conversion, hence no loss. STATUS_BAD_VALUE: no such channel, or of another type. */
 Status image_read_f32(float *out, const char *path, const char *channel);
 Status image_read_u32(uint32_t *out, const char *path, const char *channel);

@@ -26,7 +26,7 @@ static Status add(JsonValues *out, const char *path, const char *text, double nu
     return STATUS_OK;
 }
 
-/* path holds `length` characters, and gets its old end back. */
+/* path holds `length` characters, and is restored before return. */
 static Status flatten(JsonValues *out, char path[path_size], size_t length, const json_t *json, int depth)
 {
     Status      status = STATUS_OK;
@@ -69,7 +69,7 @@ static int compare_paths(const void *a, const void *b)
     return strcmp(((const JsonValue *)a)->path, ((const JsonValue *)b)->path);
 }
 
-/* NULL, logged: it is none. */
+/* NULL, logged: not a JSON object. */
 static json_t *object_of(const char *text, size_t octets, const char *module, const char *source)
 {
     json_error_t error;

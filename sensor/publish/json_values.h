@@ -1,9 +1,9 @@
-/* sensor/publish/json_values.h: JSON of ours read back, as a flat list of paths and values.
+/* sensor/publish/json_values.h: reads this program's JSON back, as a flat list of paths and values.
  *
  *     {"frame":3,"targets":[{"entity":"1:3001:12","box_px":[4,5]}]}
  *
- * gives `frame`, `targets[1:3001:12].entity`, `targets[1:3001:12].box_px[0]`, `...[1]`: an element of a list is called
- * by its `entity` where it has one, else by its place. Sorted by path. */
+ * gives `frame`, `targets[1:3001:12].entity`, `targets[1:3001:12].box_px[0]`, `...[1]`: an element of a list is
+ * named by its `entity` where it has one, else by its index. Sorted by path. */
 #ifndef SENSOR_PUBLISH_JSON_VALUES_H
 #define SENSOR_PUBLISH_JSON_VALUES_H
 
@@ -26,9 +26,9 @@ enum { json_values_most = 4000000 };
  * deeper than 16, longer paths than 500, more values than json_values_most. On failure *out is empty. */
 Status json_values_read(JsonValues *out, const char *text, size_t octets, const char *module, const char *source);
 void   json_values_free(JsonValues *values);
-const JsonValue *json_values_find(const JsonValues *values, const char *path); /* NULL: not there */
-/* The object of `text` without these keys of its own, as run.json is written. *out: the caller's, freed with free.
- * STATUS_BAD_VALUE, logged: not one JSON object. */
+const JsonValue *json_values_find(const JsonValues *values, const char *path); /* NULL: absent */
+/* The object of `text` without these top-level keys, formatted as run.json. *out: the caller's, freed with free.
+ * STATUS_BAD_VALUE, logged: not a JSON object. */
 Status json_text_without(char **out, const char *text, size_t octets, const char *const *key, int keys,
                          const char *module, const char *source);
 

@@ -21,7 +21,7 @@ static json_t *member_json(const PairRecord *r, const PairMember *m)
         const char *name = band_name((Band)b);
         json_t     *band = json_object();
         set_file(band, "radiance", m->radiance, "frames", name, r->frame, "exr");
-        /* radar holds no detector noise: its picture goes with its radiance */
+        /* radar has no detector noise: its image is listed with its radiance */
         if (r->png)
             set_file(band, "display", b == BAND_RADAR ? m->radiance : m->shown, "frames", name, r->frame, "png");
         if (r->raw >> b & 1) set_file(band, "raw", m->shown, "raw", name, r->frame, "png");

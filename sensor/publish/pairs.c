@@ -1,4 +1,4 @@
-/* sensor/publish/pairs.c: a consumer: each frame with and without its target, with and without noise. */
+/* sensor/publish/pairs.c: the consumer that writes each frame with and without its target, with and without noise. */
 #include "sensor/publish/pairs.h"
 
 #include "sensor/publish/pair_record.h"
@@ -8,7 +8,7 @@
 
 enum { WITH, CLEAN, BACKGROUND, BACKGROUND_CLEAN, path_size = frame_path_size };
 
-/* What lies behind a detector, of one member. The first is the run's own. */
+/* The detector products of one member. The first is the run's own. */
 typedef struct Member {
     char       folder[path_size];
     Chains     chains;
@@ -21,7 +21,7 @@ typedef struct Pairs {
     Config   noiseless;
     bool     all;
     FILE    *index;
-    int      frames, taken; /* taken: entities, over all frames */
+    int      frames, taken; /* taken: entities removed, over all frames */
     Member   member[pair_members];
 } Pairs;
 
@@ -136,7 +136,8 @@ static Status open_members(Pairs *p, const PairsOf *of)
                                  : frame_files_prepare_displays(member->folder, of->bands, of->raw);
     }
     if (status != STATUS_OK) return status;
-    snprintf(path, sizeof path, "%.*s/pairs.jsonl", path_size - 32, of->out); /* the folders, longer, are there */
+    snprintf(path, sizeof path, "%.*s/pairs.jsonl", path_size - 32, of->out); /* the longer paths of the folders are
+                                                                               * valid */
     p->index = fopen(path, "w");
     if (p->index) return STATUS_OK;
     log_error("pairs: cannot write %s: %s; choose another place with --out", path, strerror(errno));

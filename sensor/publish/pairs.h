@@ -1,18 +1,18 @@
-/* sensor/publish/pairs.h: each frame four times - with and without what is looked at, with and without noise - from one
+/* sensor/publish/pairs.h: each frame four times - with and without the target, with and without noise - from one
  * run, one seed and one noise field.
  *
- *     OUT/frames, raw                 with, noisy: as ever
+ *     OUT/frames, raw                 with, noisy: as without pairs
  *     OUT/pairs/clean                 with, noiseless
  *     OUT/pairs/background            without, noisy; its radiance, truth and profiles too
  *     OUT/pairs/background_clean      without, noiseless
- *     OUT/pairs.jsonl                 a line a frame: what was taken away, every file, what black and white stand for
+ *     OUT/pairs.jsonl                 a line per frame: removed entities, every file, values of black and white
  *
- * Radiance and radar hold no detector noise: a noiseless member names those of its noisy one. Without: the entity is
- * not drawn, and with it go its shadow, its echoes and the light it threw on others. All else stays: the ground, the
- * other entities, smoke and dust, its own too (they hang in the air; their veil is the same in both), motion for the
- * smear. Each member has detectors of its own: exposure, gain, level and coupling follow what it sees. Noise is a
- * function of (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the frame with the
- * target.
+ * Radiance and radar contain no detector noise: a noiseless member names those of its noisy one. Without: the entity
+ * is not drawn, and neither are its shadow, its echoes and the light it reflects onto others. All else stays: the
+ * ground, the other entities, smoke and dust, its own too (they are volumes of their own, the same in both), motion
+ * for the smear. Each member has detectors of its own: exposure, gain, level and coupling follow its own image.
+ * Noise is a function of (seed, frame, pixel), the same for all; without a sensor its sigma, too, is that of the
+ * frame with the target.
  *
  * A frame costs a second rendering, the files of a second frame, and three more runs of each band's detector
  * (tests/system/test_pairs.sh). */
@@ -21,9 +21,9 @@
 
 #include "sensor/publish/consumers.h"
 
-/* What the members are made of. */
+/* The inputs of the members. */
 typedef struct PairsOf {
-    const char       *out;    /* the run's folder; those below are made */
+    const char       *out;    /* the run's folder; those below it are created */
     const Config     *config; /* publish.pairs: target or all */
     const char       *config_sha256;
     Pool             *pool;
@@ -32,10 +32,10 @@ typedef struct PairsOf {
     Chains            clean, background, background_clean; /* taken over, also on failure; clean: without noise */
 } PairsOf;
 
-/* Wants each frame without its target too (Frame.without). */
+/* Requires each frame without its target too (Frame.without). */
 Status consume_pairs(Consumer **out, const PairsOf *made_of);
-/* The same snapshot, indices and all, less what is taken away, whose ids are listed: aim, or all. host: snapshot index,
- * stays; -1. */
+/* The same snapshot, including its indices, without the removed entities, whose ids are listed: aim, or all. host:
+ * snapshot index, stays; -1. */
 Status pairs_take_away(Snapshot *without, const DisEntityId **taken, int *taken_count, const Snapshot *with, bool all,
                        DisEntityId aim, int host, Arena *arena);
 

@@ -1,4 +1,4 @@
-/* sensor/publish/plane.h: one named plane of numbers, as files and hashes take it. */
+/* sensor/publish/plane.h: one named plane of numbers, for files and hashes. */
 #ifndef SENSOR_PUBLISH_PLANE_H
 #define SENSOR_PUBLISH_PLANE_H
 

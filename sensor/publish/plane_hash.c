@@ -1,7 +1,7 @@
 /* sensor/publish/plane_hash.c: the hash of a frame: names, sizes and values of its planes. */
 #include "sensor/publish/plane_hash.h"
 
-/* Values are hashed as they lie in memory. */
+/* Values are hashed in their memory representation. */
 _Static_assert(__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__, "planes are hashed little-endian");
 
 static const uint32_t nan_f32 = 0x7fc00000u;

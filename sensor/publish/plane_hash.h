@@ -1,7 +1,7 @@
-/* sensor/publish/plane_hash.h: what makes two frames the same, as 64 hexadecimal digits.
+/* sensor/publish/plane_hash.h: the hash that identifies equal frames, as 64 hexadecimal digits.
  *
- * SHA-256 over the planes before encoding, never over file bytes (encoders differ, and stamp dates). Planes
- * are taken in the byte order of their names, whatever order they come in. For each plane, in turn:
+ * SHA-256 over the planes before encoding, never over file bytes (encoders differ, and stamp dates). Planes are
+ * taken in the byte order of their names, whatever order they come in. For each plane, in turn:
  *
  *     name          its bytes, then one octet 0
  *     width, height two uint32, little-endian

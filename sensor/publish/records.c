@@ -8,7 +8,7 @@
 #include <jansson.h>
 #include <unistd.h>
 
-/* JSON has no NaN: what was not computed is absent. */
+/* JSON has no NaN: values not computed are absent. */
 static void set_number(json_t *object, const char *key, double value)
 {
     if (isfinite(value)) json_object_set_new(object, key, json_real(value));
@@ -151,7 +151,7 @@ static json_t *target_json(const FrameRecord *r, const Target *t)
     return target;
 }
 
-/* rms over the picture as a share of the band's mean, by source; _k: the same in kelvin about that mean. */
+/* rms over the image as a share of the band's mean, by source; _k: the same in kelvin about that mean. */
 static json_t *error_json(const FrameRecord *r)
 {
     static const char *const name[error_sources] = {"sampling", "level_of_detail", "table", "dead_reckoning", "total"};
@@ -209,14 +209,15 @@ static void set_count(json_t *object, const char *key, uint64_t count)
     json_object_set_new(object, key, json_integer((json_int_t)count));
 }
 
-/* Absent: 0. So records from before it was counted stay comparable. */
+/* Absent: 0. So records from before this counter stay comparable. */
 static void set_if_any(json_t *object, const char *key, uint64_t count)
 {
     if (count) set_count(object, key, count);
 }
 
-/* What these pictures were computed with. Headers of the libraries belong to the files that know them: versions come
- * from the build (CMakeLists.txt); of the C library, whose functions are in every number, from the running one. */
+/* Versions of the program and its libraries. Headers of the libraries are included only by the files that use them:
+ * versions come from the build (CMakeLists.txt); that of the C library, whose functions affect every number, from
+ * the running one. */
 static json_t *libraries_json(void)
 {
     json_t *libraries = json_object();

@@ -1,8 +1,9 @@
-/* sensor/publish/records.h: truth.jsonl and run.json: the names that outside tools read (see README, Products).
+/* sensor/publish/records.h: truth.jsonl and run.json: the names that other tools read (see
+ * etc/reference/products.md).
  *
- * What is numbered in files: frames as the run counts them, from 0 on; pixels of boxes from 0 on; everything else - the
- * values of the truth planes entity, part and material, plane_value, ids of coco.json, variants of a manifest - from 1
- * on, and 0 is none. */
+ * Numbering in files: frames as the run counts them, from 0 on; pixels of boxes from 0 on; everything else - the
+ * values of the truth planes entity, part and material, plane_value, ids of coco.json, variants of a manifest - from
+ * 1 on, and 0 is none. */
 #ifndef SENSOR_PUBLISH_RECORDS_H
 #define SENSOR_PUBLISH_RECORDS_H
 
@@ -26,18 +27,18 @@ typedef struct FrameRecord {
     const RenderRequest  *request;
     double                hfov_rad;
     bool                  gimbal_at_limit;
-    double                scene_rate_px_s[2]; /* column, row: of what lies still in the middle */
+    double                scene_rate_px_s[2]; /* column, row: image motion of a stationary point at the centre */
     const Sun            *sun;
     const Target         *target;
     int                   target_count;
-    const char           *frame_sha256; /* NULL: not said */
-    const FrameError     *error;        /* NULL: not said */
+    const char           *frame_sha256; /* NULL: not given */
+    const FrameError     *error;        /* NULL: not given */
 } FrameRecord;
 
-/* One line, flushed. STATUS_IO when the file does not take it. */
+/* One line, flushed. STATUS_IO when it cannot be written. */
 Status record_write_frame(FILE *file, const FrameRecord *record);
 
-/* What only a live node counts. */
+/* Counters of a live node only. */
 typedef struct LiveCounters {
     uint64_t datagrams, lost_kernel, lost_queue, sent, send_failed, record_failed;
     uint64_t frames_late, files_failed, files_left_out;
@@ -45,28 +46,28 @@ typedef struct LiveCounters {
 
 typedef struct RunRecord {
     const char *config_sha256, *log_name, *log_sha256, *isa;
-    const char *settings;             /* `section.key=value`, lines: what config_sha256 is of */
+    const char *settings;             /* `section.key=value`, lines: the text hashed as config_sha256 */
     int         table_count;          /* files that were read from etc/, and models */
     const char *const *table, *const *table_sha256;
     long long   seed;
     const char *planes;               /* of truth in files: all, none or a list; NULL: no files */
     const char *status;               /* complete; stopped: by a signal before its last frame; failed */
     int         threads, host_count, choice_count, frames;
-    int         listed;               /* how many of them the two lists hold */
+    int         listed;               /* length of the two lists */
     const int  *frame_number;
     const char *const *host;          /* ids as text */
     const char *const *choice;
     const char *const *frame_sha256;
     const DisCounters *dis;
-    uint64_t    link_dropped;         /* packets of the capture that gave no datagram */
+    uint64_t    link_dropped;         /* packets of the capture without a datagram */
     uint64_t    own;                  /* datagrams of this node itself, ignored */
     const LiveCounters *live;         /* NULL: a replay */
-    int         at_limit;             /* frames whose aim was beyond the gimbal */
+    int         at_limit;             /* frames whose aim was beyond the gimbal limit */
     uint64_t    entities_created, entities_timed_out, entities_deactivated, entities_removed;
     uint64_t    entities_evicted, entities_refused; /* by a full table */
     uint64_t    entities_over_rate, tombstones_dropped;
-    uint64_t    shots_forgotten, munitions_forgotten; /* of those that may yet carry the sensor */
-    int         frames_crowded, most_left_out; /* frames without all entities; the most that one of them lacks */
+    uint64_t    shots_forgotten, munitions_forgotten; /* of those that may yet become the host */
+    int         frames_crowded, most_left_out; /* frames without all entities; the most that one frame lacks */
     EffectCounters effects;
     RenderCounters render;
     int         stage_count;          /* timings */
@@ -74,7 +75,7 @@ typedef struct RunRecord {
     double (*stage_ms)[3];            /* median, p95, max */
 } RunRecord;
 
-/* Whole file, atomically. */
+/* The complete file, atomically. */
 Status record_write_run(const char *path, const RunRecord *record);
 
 #endif

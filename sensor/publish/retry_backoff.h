@@ -6,15 +6,15 @@
 #include "pitviper.h"
 
 typedef struct RetryBackoff {
-    const char *what;   /* `picture files`, as messages name it */
-    double      off_s;  /* wall clock: not before */
+    const char *what;   /* the products, as messages name them */
+    double      off_s;  /* wall clock: no retry before */
     bool        failed; /* the last try */
-    int         lacking; /* how often it was not there */
+    int         lacking; /* number of failures */
 } RetryBackoff;
 
 static const double retry_interval_s = 10;
 
-/* Whether to try now. What is tried again in this thread says nothing of its own: retry_done says how it went. */
+/* Whether to try now. During a retry the messages of this thread are suppressed: retry_done reports the result. */
 static inline bool retry_due(const RetryBackoff *p)
 {
     const bool due = wall_clock_s() >= p->off_s;

@@ -77,11 +77,11 @@ int         target_class_count(void) { return class_end - 1; }
 const char *target_class_name(int number) { return classes[number].name; }
 const char *target_class_group(int number) { return classes[number].group; }
 
-/* ---- which a type is -------------------------------------------------------------------------- */
+/* ---- the class of a type -------------------------------------------------------------------------- */
 
 enum { any = -1 };
 
-/* Of the rows that fit the first counts: what says more stands before. SISO-REF-010 (2006 and later), UID 7 .. 27; the
+/* The first matching row counts: more specific rows come first. SISO-REF-010 (2006 and later), UID 7 .. 27; the
  * categories were checked against Wireshark's packet-dis.c and open-dis's siso-std-010.xml, as etc/catalog.csv was. */
 static const struct Rule {
     int16_t kind, domain, country, category[2], subcategory[2]; /* from, to; any */

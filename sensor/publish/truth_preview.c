@@ -1,4 +1,4 @@
-/* sensor/publish/truth_preview.c: truth as a picture for people. */
+/* sensor/publish/truth_preview.c: truth as a preview image. */
 #include "sensor/publish/truth_preview.h"
 
 typedef struct Rgb {
@@ -40,7 +40,7 @@ void truth_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, c
         if (range_m[i] > farthest_m) farthest_m = range_m[i];
     }
     const double near_m = nearest_m, far_m = farthest_m;
-    /* light 0.85 at the nearest, 0.15 at the farthest; 0 .. 1 m of depth is no depth */
+    /* brightness 0.85 at the nearest, 0.15 at the farthest; a depth of 0 .. 1 m is not shaded */
     const double log_near = near_m < far_m ? log(near_m) : 0;
     const double per_log = near_m < far_m ? 0.7 / fmax(log(far_m) - log_near, 1e-6) : 0;
 
@@ -51,7 +51,7 @@ void truth_preview(uint8_t *rgb, const float *range_m, const uint32_t *entity, c
             const uint32_t index = entity[i] - 1;
             const bool     known = index < (uint32_t)snapshot->count;
             const Rgb      c = known ? id_colour(snapshot->entity[index].id) : (Rgb){1, 1, 1};
-            const double   shade = 0.45 + 0.55 * up; /* hues stay apart: range does not darken them */
+            const double   shade = 0.45 + 0.55 * up; /* hues stay distinguishable: range does not darken them */
             put(rgb + 3 * i, (Rgb){c.r * shade, c.g * shade, c.b * shade});
         } else if (sky) {
             put(rgb + 3 * i, (Rgb){0.05, 0.07, 0.2});

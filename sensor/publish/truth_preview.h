@@ -1,4 +1,4 @@
-/* sensor/publish/truth_preview.h: truth as a picture for people: one colour an entity, over range shading. */
+/* sensor/publish/truth_preview.h: truth as a preview image: one colour per entity, over range shading. */
 #ifndef SENSOR_PUBLISH_TRUTH_PREVIEW_H
 #define SENSOR_PUBLISH_TRUTH_PREVIEW_H
 

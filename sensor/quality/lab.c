@@ -1,4 +1,4 @@
-/* sensor/quality/lab.c: the scenes in which sampling settings are measured. Times are of two of the views. */
+/* sensor/quality/lab.c: the scenes in which sampling settings are measured. Times are those of two of the views. */
 #include "sensor/quality/lab.h"
 
 #include "terrain/landscape/quick_landscape.h"

@@ -19,20 +19,20 @@ typedef struct QualitySettings {
     int samples, edge_samples, target_samples;
 } QualitySettings;
 
-/* The quickest settings, the first row of every table: machines are compared by their time. */
+/* The fastest settings, the first row of every table: machines are compared by their time. */
 static const QualitySettings quality_quickest = {1, 0, 0};
 
 enum { quality_lab_views = 7 };
 
-/* Close it whatever open returns. quick: small pictures. */
+/* quality_lab_close must follow even on failure. quick: small images. */
 Status quality_lab_open(QualityLab *out, int threads, bool quick);
 void   quality_lab_close(QualityLab *lab);
 TrialFrame quality_lab_frame(const QualityLab *lab, int view, QualitySettings settings);
 
-/* Larger pictures for times, but where quick; small targets cost the same in any. */
+/* Larger images for times, except where quick; the cost of small targets is the same in any. */
 void   quality_lab_enlarge(QualityLab *lab);
-/* The views that are timed, once, in s per megapixel, by the thread's own clock, which other programs on the machine do
- * not lengthen, or by the wall's. NaN: a frame failed. */
+/* The timed views, once, in s per megapixel, by the thread's CPU clock, which does not count other programs on the
+ * machine, or by the wall clock. NaN: a frame failed. */
 double quality_lab_time(const QualityLab *lab, QualitySettings settings, bool wall);
 
 #endif

@@ -1,4 +1,4 @@
-/* sensor/quality/machine_factor.c: the quickest settings timed by the wall clock, the best of five. */
+/* sensor/quality/machine_factor.c: times the fastest settings by the wall clock, the best of five. */
 #include "sensor/quality/machine_factor.h"
 
 #include "sensor/quality/lab.h"

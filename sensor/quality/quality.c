@@ -1,4 +1,4 @@
-/* sensor/quality/quality.c: the table of settings, the pick from it, and what is set in the configuration. */
+/* sensor/quality/quality.c: the table of settings, the selection from it, and its application to the configuration. */
 #include "sensor/quality/quality.h"
 
 #include <errno.h>
@@ -78,7 +78,7 @@ Status quality_write(const char *path, const QualityTable *table, const char *co
     return ok ? STATUS_OK : STATUS_IO;
 }
 
-/* ---- the pick --------------------------------------------------------------------------------- */
+/* ---- the selection --------------------------------------------------------------------------------- */
 
 static double frame_ms(const QualityRow *r, const QualityTarget *t)
 {

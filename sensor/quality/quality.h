@@ -1,8 +1,9 @@
-/* sensor/quality/quality.h: settings picked off a measured front, where error or time is configured and not settings.
+/* sensor/quality/quality.h: selects settings from a measured Pareto front, where error or time is configured instead
+ * of settings.
  *
- * etc/quality.csv: rows of rays a pixel, at edges and over small targets, each with the largest error it was found to
- * have over several scenes and its time; `pitviper bench quality --table FILE` writes it. A pick is a function of table
- * and configuration alone: times are the table's times quality.machine_factor, never a clock's. */
+ * etc/quality.csv: rows of rays per pixel, at edges and over small targets, each with its largest error over several
+ * scenes and its time; `pitviper bench quality --table FILE` writes it. The selection is a function of table and
+ * configuration alone: times are the table's times quality.machine_factor, never a clock's. */
 #ifndef SENSOR_QUALITY_QUALITY_H
 #define SENSOR_QUALITY_QUALITY_H
 

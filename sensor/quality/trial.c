@@ -1,10 +1,10 @@
-/* sensor/quality/trial.c: a scene made to be measured in, and one frame of it with the time of each stage. */
+/* sensor/quality/trial.c: the scene of a measurement, and one frame of it with the time of each stage. */
 #include "sensor/quality/trial.h"
 
 #include "entities/motion/dead_reckoning.h"
 #include "render/scene/upright.h"
 
-/* ---- who is there ----------------------------------------------------------------------------- */
+/* ---- entities ----------------------------------------------------------------------------- */
 
 enum { a_row = 5 };
 

@@ -1,5 +1,4 @@
-/* sensor/quality/trial.h: what frames are measured on: a bare ground, vehicles on it, the sun of a summer noon, a
- * view. */
+/* sensor/quality/trial.h: the scene of measurements: bare ground, vehicles on it, the sun of a summer noon, a view. */
 #ifndef SENSOR_QUALITY_TRIAL_H
 #define SENSOR_QUALITY_TRIAL_H
 
@@ -16,16 +15,16 @@ typedef struct TrialScene {
     double           unix_s, sun_now_s;
 } TrialScene;
 
-/* vehicles: so many in rows of five, 40 m apart, about the origin, turrets and guns turned; types: theirs, in turn. */
+/* vehicles: this many in rows of five, 40 m apart, around the origin, turrets and guns rotated; types: used in turn. */
 Status trial_scene_open(TrialScene *out, const Landscape *landscape, const char *catalog_path,
                         const DisEntityType *types, int type_count, int vehicles);
 void   trial_scene_close(TrialScene *scene);
 
-/* One more report at the scene's time: so far east and north of the origin, this high above the ground. */
+/* One more report at the scene's time: at this distance east and north of the origin, this high above the ground. */
 typedef struct TrialPlace {
     DisEntityType type;
-    int           number;        /* 1 .. 65535: whose report it is */
-    double        east_m, north_m, above_m, turn_rad; /* turn: from north by east */
+    int           number;        /* 1 .. 65535: the entity */
+    double        east_m, north_m, above_m, turn_rad; /* turn: heading, from north towards east */
     uint32_t      appearance;
 } TrialPlace;
 Status trial_scene_place(const TrialScene *scene, const TrialPlace *place);
@@ -33,15 +32,15 @@ Status trial_scene_place(const TrialScene *scene, const TrialPlace *place);
 /* A view of the origin from this far south of it and this high above it. */
 View trial_view(const TrialScene *scene, double back_m, double above_m, double hfov_rad, int width, int height);
 
-/* The stages of a frame, in order. Of those summed over threads the share of one: on one thread they add up to the
- * frame. The passes tell the same time otherwise: by what is being sampled. */
+/* The stages of a frame, in order. Of those summed over threads the mean per thread: on one thread they add up to
+ * the frame. The passes split the same time differently: by the kind of sample. */
 typedef enum TrialStage {
     STAGE_FRAME, STAGE_SNAPSHOT, STAGE_AIR, STAGE_PREPARE, STAGE_VISIBILITY, STAGE_SUN, STAGE_SHADE, STAGE_RADAR,
     STAGE_REST,     /* of the pixels: truth planes, areas of targets, edges found */
     STAGE_TRUTH, STAGE_FOOTPRINTS, STAGE_BASE, STAGE_EDGES, TRIAL_STAGE_COUNT
 } TrialStage;
 
-/* One frame as a node makes it, up to the planes; all in the arena, which is reset first. */
+/* One frame as a node renders it, up to the planes; all in the arena, which is reset first. */
 typedef struct TrialFrame {
     const TrialScene *scene;
     RenderRequest     request;

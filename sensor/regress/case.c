@@ -62,7 +62,7 @@ Case case_default(void)
                       .optical_rel = 0.01, /* a step of the baseline is 0.8 %; the sun 0.1 degree off is 7 x .share */
                       .optical_w_m2_sr = 1e-3, /* half a step of 8 bits on a screen; a dark night */
                       .mwir_k = 0.05,
-                      .lwir_k = 0.05, /* NETD of the sensors that look at it */
+                      .lwir_k = 0.05, /* NETD of the sensors of this band */
                       .radar_db = 0.1,
                       .profile_db = 0.1,   /* stated accuracy of the radar models: Mie, trihedral */
                       .radar_span_db = 60, /* range of the display */

@@ -64,7 +64,7 @@ Case   case_default(void);
 Status case_read(Case *out, const char *folder);
 /* The same for a file outside of a case folder. On failure *out is untouched. */
 Status case_read_file(Case *out, const char *path);
-/* Where a file that the case names is: ${NAME} from the environment, else relative to the folder. False, and why in
+/* Path of a file that the case names: ${NAME} from the environment, else relative to the folder. False, with the
  * reason, when that variable is not set or the path too long. */
 bool   case_path(char out[case_path_size], char reason[256], const Case *c, const char *name);
 /* The keys of case.yaml with ranges and meaning: for --help. */

@@ -1,4 +1,4 @@
-/* sensor/regress/case_result.h: what is known of a case: how it ended, and what it said. */
+/* sensor/regress/case_result.h: the result of a case, and its messages. */
 #ifndef SENSOR_REGRESS_CASE_RESULT_H
 #define SENSOR_REGRESS_CASE_RESULT_H
 
@@ -17,7 +17,7 @@ typedef struct CaseResult {
     Case      c;
     CaseState state;
     bool      compared, updated;
-    char      line[700];         /* printed behind the name */
+    char      line[700];         /* printed after the name */
     char      chosen[8192];      /* of an update: lines with host, aim and other automatic choices */
     double    seconds;
     Verdict   verdict;

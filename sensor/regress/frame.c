@@ -201,7 +201,7 @@ Status frame_from_run(RecordFrame *out, const char *folder, int number)
     for (int p = 0; p < FRAME_PLANES && status == STATUS_OK; p++) {
         snprintf(path, sizeof path, "%s/frames/%s/%06d.exr", folder, rows[p].folder, number);
         if (p > 0 && strcmp(rows[p].folder, "truth") != 0 && access(path, F_OK) != 0)
-            continue; /* a band not asked for */
+            continue; /* a band not requested */
         if (strcmp(opened, rows[p].folder) != 0) {
             status = image_info(&info, path);
             if (status == STATUS_OK) status = take_size(&f, &info, path);

@@ -43,7 +43,7 @@ bool        frame_plane_is_id(FramePlane plane);
 Status frame_from_run(RecordFrame *out, const char *folder, int number);
 /* The same of record/. like: only a frame of that size and number of bins is read; else STATUS_BAD_VALUE, logged. */
 Status frame_from_record(RecordFrame *out, const char *folder, const RecordFrame *like);
-/* Of record/: what its files say of their size, without reading planes. bins 0: no profile. */
+/* Of record/: sizes in the headers of its files, without reading planes. bins 0: no profile. */
 typedef struct FrameSize {
     int width, height, bins;
 } FrameSize;

@@ -262,7 +262,7 @@ static void put_failed(FILE *page, const CaseResult *r, int number)
     put_block(page, "To reproduce", r->command);
 }
 
-/* One picture a band, of the first frame. */
+/* One image per band, of the first frame. */
 static void put_thumbnails(FILE *page, const CaseResult *r)
 {
     static const FramePlane band[] = {FRAME_OPTICAL_R, FRAME_OPTICAL_Y, FRAME_MWIR, FRAME_LWIR, FRAME_RADAR};

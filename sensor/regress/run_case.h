@@ -14,7 +14,7 @@ typedef struct CaseHow {
 /* result->c has been read and result->work named; the folder is made here. Log lines of the calling thread go to
  * result->said. */
 void run_case(CaseResult *result, const CaseHow *how);
-/* While inside: where the log's lines go. NULL: nowhere special. */
+/* Destination of the log lines during a case. NULL: the default. */
 void run_case_log(void *user, LogLevel level, const char *line); /* a LogSink */
 
 #endif

@@ -306,7 +306,7 @@ bool channel_planes(ChannelPlanes *out, const ChannelResult *r, const RecordFram
     return true;
 }
 
-/* ---- the whole ------------------------------------------------------------------------------- */
+/* ---- all of it ------------------------------------------------------------------------------- */
 
 __attribute__((format(printf, 2, 3))) static void remark(Verdict *v, const char *format, ...)
 {

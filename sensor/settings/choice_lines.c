@@ -1,4 +1,4 @@
-/* sensor/settings/choice_lines.c: lines of what was chosen. */
+/* sensor/settings/choice_lines.c: lines of automatic choices. */
 #include "sensor/settings/choice_lines.h"
 
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* sensor/settings/choice_lines.h: what the program chose where the settings leave it open: a line for each choice, with
- * the key that changes it. */
+/* sensor/settings/choice_lines.h: automatic choices where the settings are open: a line for each, with the key that
+ * changes it. */
 #ifndef SENSOR_SETTINGS_CHOICE_LINES_H
 #define SENSOR_SETTINGS_CHOICE_LINES_H
 

@@ -318,7 +318,7 @@ Config config_default(void)
 
 OpticalChannels config_optical(const Config *config)
 {
-    /* a channel that stands in nir's place is what there is of the band */
+    /* a channel selected in place of nir is all there is of the band */
     return strcmp(config->sensor.optical, "nir") == 0 || !channel_in(SPECTRAL_NIR)->standard ? OPTICAL_NIR
            : strcmp(config->sensor.optical, "rgb") == 0                                     ? OPTICAL_RGB
                                                                                             : OPTICAL_PAN;

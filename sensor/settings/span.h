@@ -15,7 +15,7 @@ bool   span_good(const char *text);
 double span_time_s(const char *text, double first_s, double last_s);
 /* Whether `from` is after `to` in every recording: both are of one kind. */
 bool   span_backward(const char *from, const char *to);
-/* Whether a recording of that span holds nothing at or behind `from`, or nothing up to `to`: logged, with the span. */
+/* Whether a recording of that span holds nothing at or after `from`, or nothing up to `to`: logged, with the span. */
 bool   span_outside(const char *from, const char *to, double first_s, double last_s);
 
 #endif

@@ -1,22 +1,23 @@
-/* sensor/truth/frame_error.c: a frame's error budget from the render's estimates and the node's own shares. */
+/* sensor/truth/frame_error.c: the error budget of a frame, from the renderer's estimates and the node's own
+ * contributions. */
 #include "sensor/truth/frame_error.h"
 
 #include "dis/enumerations.h"
 #include "render/frame/error_budget.h"
 
-/* Rows of a target that are looked at, at most about so many pixels. */
+/* Rows of a target are subsampled to about this many pixels at most. */
 enum { most_px = 4096 };
 
-/* Of one target in one plane: squared differences of neighbours, one of them at least the target's, less what the
- * ground of those pixels differs by itself, as it does about it; and of its pixels to the mean about it. Sums over
- * pixels. */
+/* Sums over the pixels of one target in one plane: squared differences between neighbours, at least one of them the
+ * target's, less the squared differences of the ground alone, estimated from the surrounding ground; and squared
+ * differences of its pixels from the mean of the surroundings. */
 typedef struct Outline {
     double steps, apart;
 } Outline;
 
 static double square(double x) { return x * x; }
 
-/* How much of a pixel is the target's. */
+/* Share of a pixel that the target covers. */
 static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, size_t at)
 {
     if (px->small && p->covered && p->covered[at] > 0) return (double)p->covered[at];
@@ -24,7 +25,7 @@ static double share_of(const Picture *p, const TargetPixels *px, uint32_t id, si
 }
 
 typedef struct Steps {
-    /* squares with the target and without; squared shares of ground with */
+    /* squared differences with the target and without; squared shares of ground with */
     double on, ground, ground_pairs, ground_visible;
 } Steps;
 
@@ -67,8 +68,8 @@ static Outline outline_of(const Picture *p, const TargetPixels *px, int index, c
     return o;
 }
 
-/* Squared error over the picture of showing it `way` pixels off: by the square of the way below a pixel, as what is
- * swept beyond, and at most as if it were somewhere else altogether. */
+/* Squared error over the image of a displacement by `way` pixels: proportional to the square of the displacement
+ * below a pixel, to the swept area beyond, and at most that of a target at an unrelated position. */
 static double shifted(const Outline *o, double way_px)
 {
     const double swept = o->steps * way_px * way_px / (2 + 0.5 * pi_rad * way_px), most = 2 * o->apart;
@@ -83,8 +84,8 @@ static Band band_of(int plane)
                                     : BAND_OPTICAL;
 }
 
-/* How far the ground under four places of it, half its radius from its middle, may be from where it should be shifts
- * and leans who stands on it. */
+/* A ground error displaces and tilts a clamped entity: taken from the errors of the ground at four points, at half
+ * its radius from its centre. */
 static double ground_way_m(const World *world, const SnapshotEntity *e, const Model *model)
 {
     static const double place[4][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
@@ -96,7 +97,8 @@ static double ground_way_m(const World *world, const SnapshotEntity *e, const Mo
         if (!error_budget_coarser(turn_enu, &rise_m[k], &world->landscape->elevation, p_enu[0] + half_m * place[k][0],
                                   p_enu[1] + half_m * place[k][1]))
             return 0;
-    /* as much as the places rise is what its middle rises by, and its outline, as far from there, leans by */
+    /* the mean error of the points raises its centre; their differences tilt its outline, at the same distance from
+     * the centre */
     const double mean_m = 0.25 * (rise_m[0] + rise_m[1] + rise_m[2] + rise_m[3]);
     const double lean_m = 0.5 * hypot(rise_m[0] - rise_m[1], rise_m[2] - rise_m[3]);
     return hypot(mean_m, lean_m);
@@ -122,8 +124,8 @@ bool frame_error(FrameError *out, const Picture *picture, const World *world, co
             const double  per_m = request->view.focal_px / target[i].range_m;
             const Model  *model = catalog_model(world->catalog, e->model);
             const Outline o = outline_of(picture, px, target[i].index, value);
-            /* of a way in space two of three directions show; a turn moves the outline by half the radius, in the
-             * mean */
+            /* two of three directions of a displacement in space are visible; a rotation moves the outline by half
+             * the radius, in the mean */
             const double way_m = hypot(sqrt(2.0 / 3) * e->drift_m, 0.5 * model->radius_m * e->drift_rad);
             drift += shifted(&o, way_m * per_m);
             const double ground_m = clamped ? ground_way_m(world, e, model) : 0;

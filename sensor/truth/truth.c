@@ -1,4 +1,4 @@
-/* sensor/truth/truth.c: truth of each target of a frame: place, size, visibility, contrast. */
+/* sensor/truth/truth.c: ground truth of each target of a frame: position, size, visibility, contrast. */
 #include "sensor/truth/truth.h"
 
 #include "terrain/earth/geodesy.h"
@@ -17,7 +17,7 @@ static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *
     t->range_m = v3_length(r_ecef);
     if (!v3_normalize(u_ecef, r_ecef)) return;
 
-    /* velocity of the centre: of the origin, and the body's turning */
+    /* velocity of the centre: that of the origin, plus the rotation of the body */
     double turn_body[3], turn_ecef[3], v_ecef[3];
     v3_cross(turn_body, entity->w_body_rps, centre_body);
     m3_mul_v3(turn_ecef, entity->r_ecef_from_body, turn_body);
@@ -47,7 +47,7 @@ static void line_of_sight(Target *t, const SnapshotEntity *entity, const Model *
         t->depression_rad = -t->los_el_rad;
         if (t->los_az_rad < 0) t->los_az_rad += 2 * pi_rad;
     }
-    /* nose-on 0: where the eye is, seen from the target, clockwise from above = towards its right */
+    /* nose-on 0: direction of the sensor as seen from the target, clockwise from above = towards its right */
     double back_body[3], back_ecef[3];
     v3_scale(back_ecef, -1, u_ecef);
     m3_tmul_v3(back_body, entity->r_ecef_from_body, back_ecef);
@@ -75,7 +75,7 @@ static double moments_variance(const Moments *m)
     return fmax(0, m->sum_2 / m->n - mean * mean);
 }
 
-/* Box about the target that holds at least as many other pixels as the target has, grown evenly; clipped. */
+/* Box around the target that holds at least as many other pixels as the target has, grown evenly; clipped. */
 static void ring_box(int ring[4], const Target *t, const Picture *picture)
 {
     const double pixels = fmax(t->pixels, 1);
@@ -92,7 +92,7 @@ static void ring_box(int ring[4], const Target *t, const Picture *picture)
 
 enum { run_px = 256 };
 
-/* What is compared, of pixels side by side from px on, at most run_px. */
+/* The compared values, of adjacent pixels from px on, at most run_px. */
 typedef void PixelValues(double *value, const void *user, size_t px, int count);
 
 /* Ring: pixels in the box that show neither this target nor another, nor part of a small one. */
@@ -154,7 +154,7 @@ static double per_intensity(const Target *t, const View *view)
     return 1 / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
 }
 
-/* Sampling's share of it; channels are sampled together, so that their errors add up. */
+/* The contribution of sampling; channels are sampled together, so that their errors add up. */
 static void intensity_error(Target *t, const TargetPixels *px, const Picture *picture, const View *view)
 {
     static const int first[BAND_RADAR + 1] = {picture_optical, picture_mwir, picture_lwir, picture_radar};
@@ -172,8 +172,8 @@ static double intensity(const Target *t, const TargetPixels *px, const View *vie
     return px->radiance[plane] / (view->focal_px * view->focal_px) * t->range_m * t->range_m;
 }
 
-/* What a band shows of a target and about it. A small target's pixels are part ground, and it may have none to call its
- * own: mean and variance are those of its own samples, for the caller to fill in. */
+/* Values of a band on a target and around it. A small target's pixels are part ground, and it may have no full
+ * pixel: mean and variance are those of its own samples, filled in by the caller. */
 typedef struct Look {
     double mean, variance;
     double ring_mean, ring_variance;
@@ -192,7 +192,7 @@ static bool look_at(Look *look, const Target *t, const TargetPixels *px, const P
     return true;
 }
 
-/* A small target shows through its fullest pixel, by the share that it has of it. */
+/* The contrast of a small target is that of its fullest pixel: proportional to its share of it. */
 static double to_noise(const Look *look, const TargetPixels *px, double noise_sigma)
 {
     const double sigma = sqrt(look->ring_variance + noise_sigma * noise_sigma);
@@ -206,7 +206,7 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
     Look               look = {0};
     if (!look_at(&look, t, px, picture, apparent_temp, &user)) return;
     if (px->small) {
-        /* temperature is all but straight in radiance over a target: the slope at its mean will do */
+        /* temperature is nearly linear in radiance over a target: the slope at its mean is used */
         const double mean = px->mean[plane], step = 1e-3 * mean;
         look.mean          = planck_table_temp(planck, mean);
         const double slope = step > 0 ? (planck_table_temp(planck, mean + step) - look.mean) / step : 0;
@@ -217,7 +217,7 @@ static void thermal_band(TargetBand *out, const Target *t, const TargetPixels *p
     out->snr        = to_noise(&look, px, netd_k);
 }
 
-/* planes: of which a pixel's value is the mean, from `plane` on. */
+/* planes: a pixel's value is the mean of these, from `plane` on. */
 static void plain_band(TargetBand *out, const Target *t, const TargetPixels *px, const Picture *picture,
                        PixelValues *values, const void *user, int plane, int planes, double noise_sigma)
 {
@@ -238,7 +238,7 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
     if (!(px->visible > 0)) return;
     if (picture->optical[0]) {
         const int channels = picture->optical[1] ? 3 : 1;
-        /* the mean of three channels has a root of three less noise than one */
+        /* the noise of the mean of three channels is lower by a factor of sqrt(3) */
         plain_band(&t->band[BAND_OPTICAL], t, px, picture, luminance, picture, picture_optical, channels,
                    noise->optical_w_m2_sr / sqrt(channels));
         t->band[BAND_OPTICAL].intensity_w_sr = 0; /* the channels together: 0.4-0.7 um */
@@ -258,8 +258,9 @@ static void radiometry(Target *t, const TargetPixels *px, const Picture *picture
         plain_band(&t->band[BAND_RADAR], t, px, picture, plain_value, picture->radar, picture_radar, 1, 0);
 }
 
-/* Who stands on the ground has wheels a little in it: a hidden share below truth_occluded_least hides nothing, and then
- * all of the target counts as visible; otherwise who hides most is named, and the fraction is below 1. */
+/* The wheels of an entity on the ground are partly below it: a hidden share below truth_occluded_least is no
+ * occlusion, and all of the target counts as visible; otherwise the largest occluder is named, and the fraction is
+ * below 1. */
 static void visibility_of(Target *t, const TargetPixels *px)
 {
     const double hidden = px->occluded_ground + px->occluded_entity;

@@ -1,4 +1,4 @@
-/* sensor/truth/truth.h: what an automatic target recogniser is trained and judged by: per target and frame.
+/* sensor/truth/truth.h: ground truth per target and frame, to train and evaluate an automatic target recogniser.
  *
  * A value that was not computed is NaN here and absent in the files. */
 #ifndef SENSOR_TRUTH_TRUTH_H
@@ -6,17 +6,17 @@
 
 #include "render/frame/render.h"
 
-/* The target's pixels are those whose truth it is. A small one (TargetPixels.small) has its own samples instead, and a
- * ring of pixels that no small target touches. */
+/* The target's pixels are those with its id in the truth planes. A small one (TargetPixels.small) has its own
+ * samples instead, and a ring of pixels without any small target. */
 typedef struct TargetBand {
     double contrast_k;      /* mean of the target's pixels less mean of a ring of its own area, apparent K */
     double dt_rss_k;        /* root of the squared mean difference plus the target's variance */
     double contrast;        /* optical, radar: the same difference over the ring's mean, dimensionless */
     double snr;             /* contrast over the ring's sigma and the detector's noise together; of a small target:
                              * times the share it has of the pixel it fills most */
-    double intensity_w_sr;  /* in-band, at the aperture: its own radiance by the area it fills, at its range */
-    double intensity_error_w_sr; /* rms of the sampling; of a small target, in a frame with a budget */
-    double veil_transmittance; /* of smoke and dust before it, mean over its visible pixels; 1: none */
+    double intensity_w_sr;  /* in-band, at the aperture: its own radiance times the area it fills, at its range */
+    double intensity_error_w_sr; /* rms sampling error; of a small target, in a frame with a budget */
+    double veil_transmittance; /* of smoke and dust in front of it, mean over its visible pixels; 1: none */
 } TargetBand;
 
 typedef struct Target {
@@ -34,16 +34,16 @@ typedef struct Target {
     TargetBand band[BAND_COUNT];
 } Target;
 
-/* Hidden share of a target below which nothing occludes it: what a fraction of two decimals shows, and what the tracks
- * of vehicles on uneven ground are in it (up to 0.9 % in etc/scenarios/demo.yaml). */
+/* Hidden share of a target below which it is not occluded: the resolution of a fraction with two decimals, and the
+ * share that tracks of vehicles are below uneven ground (up to 0.9 % in etc/scenarios/demo.yaml). */
 static const double truth_occluded_least = 0.01;
 
-/* What noise the detector adds, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
+/* Detector noise, for snr: sigma in W/(m2 sr) per optical channel, in K for the thermal bands. */
 typedef struct TruthNoise {
     double optical_w_m2_sr, netd_mwir_k, netd_lwir_k;
 } TruthNoise;
 
-/* The eye, as line of sight and its rate need it. */
+/* The sensor's position and motion, for line of sight and its rate. */
 typedef struct EyeState {
     double p_ecef[3], v_ecef_mps[3];
     double r_ecef_from_cam[9];

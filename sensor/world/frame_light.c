@@ -1,4 +1,4 @@
-/* sensor/world/frame_light.c: sun and air of one frame from time, place, weather and view. */
+/* sensor/world/frame_light.c: sun and atmosphere of one frame from time, position, weather and view. */
 #include "sensor/world/frame_light.h"
 
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
@@ -22,7 +22,7 @@ Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *w
     m3_tmul_v3(local.d_enu, world->frame.r_ecef_from_enu, d_ecef);
     m3_tmul(r_host_from_enu, r_ecef_from_host, world->frame.r_ecef_from_enu);
 
-    /* heights of the air are above the ground at the origin, and the tangent plane leaves the Earth */
+    /* heights in the atmosphere are above the ground at the origin, and the tangent plane departs from the Earth */
     const double     *p_enu = eye->view->p_enu;
     const double      ground_m = world->landscape ? elevation_height(&world->landscape->elevation, 0, 0, NULL) : 0;
     const double      eye_height_m = p_enu[2] - ground_m + (p_enu[0] * p_enu[0] + p_enu[1] * p_enu[1]) / (2 * 6371e3);

@@ -1,11 +1,11 @@
-/* sensor/world/frame_light.h: sun and air of one frame, and the axes that its products give normals in. */
+/* sensor/world/frame_light.h: sun and atmosphere of one frame, and the axes for normals in its products. */
 #ifndef SENSOR_WORLD_FRAME_LIGHT_H
 #define SENSOR_WORLD_FRAME_LIGHT_H
 
 #include "render/frame/render.h"
 #include "sensor/settings/config.h"
 
-/* What sun and air depend on, beside the world and the settings of the weather. */
+/* The inputs of sun and atmosphere, besides the world and the settings of the weather. */
 typedef struct FrameEye {
     double      unix_s;
     double      p_ecef[3];
@@ -13,8 +13,8 @@ typedef struct FrameEye {
     unsigned    bands;
 } FrameEye;
 
-/* Sun at the eye's own place, its direction turned into the world's frame. r_host_from_enu: from the world's ENU to
- * that of the eye's place. */
+/* Sun at the sensor position, its direction rotated into the world's frame. r_host_from_enu: from the world's ENU to
+ * that of the sensor position. */
 Status frame_light(Air *air, Sun *sun, double r_host_from_enu[9], const World *world, const Config *config,
                    const FrameEye *eye, Pool *pool, Arena *arena);
 /* Products give normals in the host's own ENU. */

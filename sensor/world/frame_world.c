@@ -1,4 +1,4 @@
-/* sensor/world/frame_world.c: a world opened with the air and the radar of the settings. */
+/* sensor/world/frame_world.c: opens a world with the atmosphere and the radar of the settings. */
 #include "sensor/world/frame_world.h"
 
 Status frame_world(World *out, const Config *config, const Catalog *catalog, const Landscape *landscape,

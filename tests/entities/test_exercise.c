@@ -141,7 +141,7 @@ static void keeps_its_promise(const char *set)
             const double skew[3] = {turn[7] - turn[5], turn[2] - turn[6], turn[3] - turn[1]};
             const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
             /* What an error grows by in a tick once it has come to the threshold T: an acceleration a that nobody
-             * knew of has by then made sqrt(2 a T). It is the truth's own (2 |a|: the sender may sanitize_vector the
+             * knew of has by then made sqrt(2 a T). It is the truth's own (2 |a|: the sender may validate the
              * opposite), and 2 m/s2 for what begins, and w x v where the path turns with the body; of the attitude
              * 0.5 rad/s2, and the whole rate where the algorithm holds it. */
             const double spin_rps = v3_length(truth.w_body_rps), limit_m = scenario.dis.threshold_m;

@@ -5,7 +5,7 @@
  *     plane lwir.Y frames 8 pixels 49152 changed 120 slight 50 clear 31 largest 0.81 relative 0.019 edge_px 1
  *
  * changed   pixels that are not the same bits (NaN is NaN)
- * clear     pixels that any_sender would notice: another id; 0.05 m of range, or hit against none; 0.1 K; 0.01 of a
+ * clear     pixels that a person would notice: another id; 0.05 m of range, or hit against none; 0.1 K; 0.01 of a
  *           normal; 1 % of a radiance; of radar 5 %, beside 1e-3 of the frame's brightest
  * slight    pixels that differ by more than a tenth of that
  * largest   largest difference, in the plane's unit; none of ids

@@ -1,10 +1,10 @@
 /* sensor/bench/sensor/network.c: a live node in a process of its own, an exercise sent to it from another, over
  * loopback.
  *
- * The node records what it hears, and what it says: a Data PDU a frame, which it hears as everybody would. So the
- * recording has the kernel's stamp of each report, the time that each frame stands for, and the stamp at which the
- * frame was known outside. Both processes end by themselves, and are ended if they do not. On quick rounds, which
- * run beside other work, times and losses are shown and not judged. */
+ * The node records the datagrams it receives, and those it sends: a Data PDU per frame, which it receives like every
+ * other. So the recording has the kernel's stamp of each report, the time of each frame, and the stamp at which the
+ * frame was published. Both processes end by themselves, and are killed if they do not. On quick rounds, which run
+ * beside other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
 
 #include "dis/datagram.h"
@@ -40,7 +40,7 @@ typedef struct Live {
 
 /* ---- processes -------------------------------------------------------------------------------- */
 
-/* Standard output and error into these. */
+/* Redirects standard output and error to these. */
 static pid_t start(const char *const *argument, int out, int err)
 {
     posix_spawn_file_actions_t actions;
@@ -54,7 +54,7 @@ static pid_t start(const char *const *argument, int out, int err)
     return child;
 }
 
-/* Its exit code; killed, and -1, after so long. */
+/* Its exit code; killed, and -1, after the timeout. */
 static int finish(pid_t child, double within_s, struct rusage *usage)
 {
     const double begun_s = wall_clock_s();
@@ -69,7 +69,7 @@ static int finish(pid_t child, double within_s, struct rusage *usage)
     return ended == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/* Until it has said that, or for so long. */
+/* Waits until it has printed this text, or for the timeout. */
 static bool hears(int from, const char *text, double within_s)
 {
     static char  said[4096];
@@ -96,7 +96,7 @@ static Status run_both(Live *l)
     int        ears[2];
     snprintf(port, sizeof port, "%d", l->port);
     snprintf(to, sizeof to, "127.0.0.1:%d", l->port);
-    snprintf(length, sizeof length, "%.0f", 3 * retry_interval_s); /* if all else fails */
+    snprintf(length, sizeof length, "%.0f", 3 * retry_interval_s); /* the last resort */
     snprintf(threads, sizeof threads, "%d", bench_threads(l->bench));
     snprintf(rate, sizeof rate, "%d", rate_hz);
     const char *const node[] = {"pitviper",
@@ -144,7 +144,7 @@ static Status run_both(Live *l)
         kill(sender, SIGTERM);
         ok = finish(sender, 5, &unused) >= 0 && ok;
         l->sent_for_s = wall_clock_s() - sending_s;
-        if (ok) usleep(300000); /* the last of it is on its way */
+        if (ok) usleep(300000); /* the last of it is in transit */
     }
     if (listener > 0) {
         kill(listener, SIGINT);
@@ -157,9 +157,9 @@ static Status run_both(Live *l)
     return ok ? STATUS_OK : STATUS_IO;
 }
 
-/* ---- what came of it -------------------------------------------------------------------------- */
+/* ---- results -------------------------------------------------------------------------- */
 
-/* The number behind the first such key that stands behind the others. */
+/* The number after the first such key that follows the other keys. */
 static double number_at(const char *text, const char *const *key, int keys)
 {
     char quoted[32];
@@ -201,10 +201,10 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* From one place in the hour to the next, the short way round. */
+/* From one time in the hour to another, by the shorter way. */
 static double after_s(double from_s, double to_s) { return remainder(to_s - from_s, 3600); }
 
-/* The place in the hour that a datagram's frame stands for; NaN: it is no frame of the node. */
+/* The time in the hour of a datagram's frame; NaN: it is not a frame of the node. */
 static double frame_of(const DisDatagram *d, const Config *config)
 {
     DisCounters    counters = {0};
@@ -218,7 +218,7 @@ static double frame_of(const DisDatagram *d, const Config *config)
                : NAN;
 }
 
-/* Of each report between the first frame and the last: how much later the first frame after it stands. */
+/* Of each report between the first frame and the last: the delay to the first frame after it. */
 static Status read_latency(Live *l)
 {
     const Config config = config_default();

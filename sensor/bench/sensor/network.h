@@ -1,5 +1,4 @@
-/* sensor/bench/sensor/network.h: `pitviper bench network`, this room's part: a live node and somebody who sends to
- * it. */
+/* sensor/bench/sensor/network.h: `pitviper bench network`: a live node, and a process that sends an exercise to it. */
 #ifndef SENSOR_BENCH_SENSOR_NETWORK_H
 #define SENSOR_BENCH_SENSOR_NETWORK_H
 

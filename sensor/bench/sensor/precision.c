@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/precision.c: the pictures that errors are measured in. */
+/* sensor/bench/sensor/precision.c: the images in which errors are measured. */
 #include "sensor/bench/sensor/precision.h"
 
 #include "sensor/settings/config.h"
@@ -8,7 +8,7 @@
 const char *const precision_shot_name[SHOT_COUNT] =
     {"ground alone", "vehicles of 70 px", "vehicles of 5 px", "horizon"};
 
-enum { vehicles = 5 }; /* a row; the third stands where views aim */
+enum { vehicles = 5 }; /* a row; views are aimed at the third */
 
 static const double focal_px = 989; /* 720 px across 40 degrees */
 

@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/precision_detector.c: from radiance to what is stored: blur, photons, counts, displays. */
+/* sensor/bench/sensor/precision_detector.c: from radiance to stored values: blur, photons, counts, displays. */
 #include "sensor/bench/sensor/precision.h"
 
 #include "render/materials/planck.h"
@@ -24,7 +24,7 @@ static void make_plane(float *plane, double low, double span)
     }
 }
 
-/* The chain's product in the cosine transform of both axes, by sums, to Nyquist as it is. */
+/* The chain's product in the cosine transform of both axes, by direct sums, to Nyquist without taper. */
 static void blur_by_sums(double *out, const float *in, const MtfChain *chain)
 {
     static double across[wide][wide], down[high][high], half[high][wide], value[high][wide];
@@ -63,7 +63,7 @@ typedef struct Blurring {
     float *out;
 } Blurring;
 
-/* The point spread within a radius, of sum 1: the chain's product, turned back on 64 x 64 frequencies. */
+/* The point spread within a radius, of sum 1: the inverse transform of the chain's product on 64 x 64 frequencies. */
 static void make_kernel(Blurring *b, const MtfChain *chain)
 {
     enum { n = 64 };
@@ -160,7 +160,7 @@ static Status knob_blur(Bench *bench)
 enum { photon_count = 512 };
 
 typedef struct Photons {
-    const PhotonTable    *table;           /* NULL and ratio NULL: asked for each */
+    const PhotonTable    *table;           /* NULL and ratio NULL: computed for each */
     const PhotonDetector *detector;
     int     knots;
     double *ratio, low, per_log;           /* a table of the bench's own */
@@ -261,7 +261,7 @@ static void convert(void *user)
     bench_keep(c->out);
 }
 
-/* Rms of what the counts stand for against what is true. */
+/* Rms difference between the values that the counts represent and the true ones. */
 static double convert_rms(const Converter *c)
 {
     double       square = 0;
@@ -285,8 +285,8 @@ static void knob_counts(Bench *bench, bool display)
     BenchSetting       point[settings] = {0};
     const int        count = display ? 2 : settings;
     make_plane(in, display ? 280 : 5, 30);
-    /* A converter comes behind a detector: steps far finer than its noise bring nothing. 20 mK is a good cooled
-     * camera's. */
+    /* A converter follows a detector: steps far finer than its noise bring nothing. 20 mK is that of a good cooled
+     * camera. */
     for (int i = 0; i < blur_px; i++)
         noisy[i] = in[i] + (float)(display ? 0 : 0.02 * random_normal(8, 0, 0, (uint64_t)i));
     for (int k = 0; k < count; k++) {
@@ -312,7 +312,7 @@ static void knob_counts(Bench *bench, bool display)
 
 /* ---- the display's curve ------------------------------------------------------------------------ */
 
-enum { curve_px = 720 * 486 }; /* the display makes its table anew for each picture */
+enum { curve_px = 720 * 486 }; /* the display computes its table anew for each image */
 
 typedef struct CurveSet {
     int          intervals;      /* 0: the display's own; -1: the formula */

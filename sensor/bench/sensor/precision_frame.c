@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/precision_frame.c: how many rays a frame is made of: over pixels, edges, small targets, to the
+/* sensor/bench/sensor/precision_frame.c: the number of rays of a frame: over pixels, edges, small targets, to the
  * sky, and between mirrors. */
 #include "sensor/bench/sensor/precision.h"
 
@@ -130,16 +130,16 @@ typedef struct TargetShot {
 
 static PrecisionShot target_shot(int size) { return size == 0 ? SHOT_NEAR : SHOT_SMALL; }
 
-/* The truck in the middle from one side or another, so many pixels long. */
+/* The central truck from one side or another, so many pixels long. */
 static RenderRequest target_request(const Precision *p, int size, int turn, double px, int side_px)
 {
     RenderRequest request = precision_request(p, target_shot(size), side_px, side_px);
     request.view.focal_px = px * precision_go_round(&request.view, p, turn) / 7.4;
-    request.sky_visibility = false; /* its grid follows the size on the picture; its error has a row of its own */
+    request.sky_visibility = false; /* its grid follows the size on the image; its error has a row of its own */
     return request;
 }
 
-/* Its radiance times solid angle, a band; false: it is not seen. */
+/* Its radiance times solid angle, per band; false: it is not visible. */
 static bool target_shines(double out[picture_plane_count], Precision *p, int size, const RenderRequest *request)
 {
     Picture picture;
@@ -169,8 +169,8 @@ static void render_targets(void *user)
     }
 }
 
-/* Against the same truck through a lens so long that it fills the picture, 2 x 2 rays a pixel or more: 400 across it.
- * The worst band of each picture; the root of the mean square over sides and sizes. */
+/* Against the same truck through a lens of so long a focal length that it fills the image, 2 x 2 rays a pixel or
+ * more: 400 across it. The worst band of each image; the root of the mean square over sides and sizes. */
 static void target_errors(Precision *p, double error[target_settings])
 {
     const int turns = bench_quick(p->bench) ? 2 : target_turns;
@@ -230,7 +230,7 @@ typedef struct SkyRendering {
     bool       visibility;
 } SkyRendering;
 
-/* One ray a pixel, so that nothing else is sampled. */
+/* One ray a pixel, so that no other quantity is sampled. */
 static RenderRequest sky_request(const SkyRendering *r, PrecisionShot shot)
 {
     RenderRequest request = precision_request(r->p, shot, r->width, r->height);

@@ -183,12 +183,12 @@ static Status knob_facets(Bench *bench)
 
 enum { most_more = 6, radar_eyes = 8 };
 
-/* Power of a picture comes from a few glints, so it takes several pictures to know an error. */
+/* The power of an image comes from a few glints, so its error is known only over several images. */
 typedef struct Mirrors {
     Precision *p;
     int        more, samples, eyes;
     bool       plain;             /* no more rays at edges */
-    double     total[radar_eyes]; /* of each picture */
+    double     total[radar_eyes]; /* of each image */
 } Mirrors;
 
 static void render_mirrors(void *user)
@@ -216,7 +216,7 @@ static void render_mirrors(void *user)
     bench_keep(m);
 }
 
-/* Root of the mean square over the eyes, %. */
+/* Root of the mean square over the sensor positions, %. */
 static double mirrors_error(const Mirrors *got, const Mirrors *want)
 {
     double sum = 0;
@@ -247,7 +247,7 @@ static Status knob_bounces(Precision *p)
     return p->status;
 }
 
-/* The keys are those of all bands and pictures, so what is timed is what `rays a pixel` times, with the radar. */
+/* The keys are those of all bands and planes, so the timed work is that of `rays a pixel`, with the radar. */
 static void render_shots(void *user)
 {
     const Mirrors *m = user;

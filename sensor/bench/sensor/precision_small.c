@@ -1,4 +1,5 @@
-/* sensor/bench/sensor/precision_small.c: where a target of less than a pixel seems to be behind a detector's optics. */
+/* sensor/bench/sensor/precision_small.c: the apparent position of a target of less than a pixel behind a detector's
+ * optics. */
 #include "sensor/bench/sensor/precision.h"
 
 #include "render/materials/planck.h"
@@ -16,11 +17,11 @@ typedef struct SmallWay {
     const PhotonTable *photons;
     const MtfChain    *chain;
     float              hot, ground;
-    double             at[2];       /* of the target's middle, px */
+    double             at[2];       /* of the target's centre, px */
     float              out[size_px * size_px];
 } SmallWay;
 
-/* Columns of the ideal picture at x from the target, rows summed: frequencies of the row (f, 0). */
+/* Columns of the ideal image at x from the target, rows summed: frequencies of the row (f, 0). */
 static double ideal_column(const MtfChain *chain, double x)
 {
     enum { period_px = 128 };
@@ -76,7 +77,7 @@ static void look(void *user)
     bench_keep(w->out);
 }
 
-/* Rms over places within a pixel of the centroid's distance from the ideal's, along rows. */
+/* Rms over positions within a pixel of the centroid's distance from the ideal's, along rows. */
 static double centroid_error(SmallWay *w)
 {
     double square = 0;

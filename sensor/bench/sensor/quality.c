@@ -1,6 +1,6 @@
 /* sensor/bench/sensor/quality.c: `pitviper bench quality`: each row of settings in each scene against 16 x 16 rays
- * in every pixel. A row's error is that of its worst scene. Its time is of two of the scenes in larger pictures, on
- * one thread, rows in turn, the best of the rounds. */
+ * in every pixel. A row's error is that of its worst scene. Its time is of two of the scenes in larger images, on
+ * one thread, rows interleaved, the best of the rounds. */
 #include "sensor/bench/sensor/quality.h"
 
 #include "sensor/quality/lab.h"
@@ -10,13 +10,13 @@ enum { rounds_most = 2 };
 
 static const QualitySettings reference = {16, 0, 0};
 
-/* the first is the quickest, by which machines are compared */
+/* the first is the fastest, by which machines are compared */
 static const QualitySettings grid[] = {
     {1, 0, 0}, {1, 2, 8},  {1, 2, 24}, {1, 4, 24}, {1, 4, 48},  {1, 8, 64},   {2, 0, 0}, {2, 4, 48},
     {2, 8, 64}, {3, 6, 64}, {3, 9, 96}, {4, 8, 96}, {5, 10, 96}, {6, 12, 128}, {8, 0, 0}, {8, 16, 128}};
 enum { grid_count = sizeof grid / sizeof *grid };
 
-/* Of one picture, percent and kelvin a band. */
+/* Of one image, percent and kelvin per band. */
 static void errors_of(double percent[quality_bands], double kelvin[quality_bands], const Picture *p,
                       const Picture *true_one, const World *world)
 {
@@ -69,7 +69,7 @@ static Status measure_errors(QualityTable *table, QualityLab *lab, Bench *bench)
     return STATUS_OK;
 }
 
-/* Those that some target picks are marked, as a front is. */
+/* Rows that some target selects are marked, like a front. */
 static void list_row(Bench *bench, const QualityTable *table, int k, const BenchTime *time)
 {
     const QualityRow *r = &table->row[k], *first = &table->row[0];

@@ -1,5 +1,5 @@
-/* sensor/bench/sensor/quality.h: settings together, time against error over several scenes: what quality.* picks
- * from. */
+/* sensor/bench/sensor/quality.h: settings jointly, time against error over several scenes: the table from which
+ * quality.* selects. */
 #ifndef SENSOR_BENCH_SENSOR_QUALITY_H
 #define SENSOR_BENCH_SENSOR_QUALITY_H
 

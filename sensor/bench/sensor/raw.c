@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/raw.c: the rays of a picture traced and nothing else. */
+/* sensor/bench/sensor/raw.c: traces the rays of an image and nothing else. */
 #include "sensor/bench/sensor/raw.h"
 
 #include "sensor/bench/bench.h"
@@ -9,7 +9,7 @@
 
 enum { side_px = 32, square_px = 4 }; /* of a frame's tiles at one sample a pixel; of rays that its tracers take together */
 
-/* Rays of a block that come near one vehicle, in the order in which a frame hands them to its tracer. */
+/* Rays of a block that pass near one vehicle, in the order in which a frame passes them to its tracer. */
 typedef struct Near {
     int entity, first, count; /* of near_ray */
 } Near;
@@ -23,7 +23,7 @@ struct RawRays {
     int              blocks, count, block_of_tile;
     int             *first;      /* [blocks + 1] */
     double          *o[3], *d[3], *far_m, *range_m; /* [count] */
-    uint8_t         *dark;       /* [count] rays that a vehicle stops: range_m is not the ground's */
+    uint8_t         *dark;       /* [count] rays that a vehicle blocks: range_m is not the ground's */
     PosedEntity     *entity;     /* in the frame's arena */
     int              entities;
     Near            *near;       /* by block */
@@ -67,7 +67,7 @@ static void add_ray(RawRays *raw, const double o[3], const double d[3])
     raw->far_m[i] = INFINITY;
 }
 
-/* A tile's places in squares of 4 x 4, as visibility.c takes them. */
+/* A tile's positions in squares of 4 x 4, as in visibility.c. */
 static void in_squares(int order[side_px * side_px], int columns, int rows)
 {
     int at = 0;
@@ -139,7 +139,7 @@ static bool comes_near(const RawRays *raw, int i, const PosedEntity *e)
     return e->model >= 0 && along > -e->radius_m && v3_dot(across, across) < e->radius_m * e->radius_m;
 }
 
-/* Counts in a first pass, notes in a second. */
+/* Counts in a first pass, stores in a second. */
 static Status pair_up(RawRays *raw, const View *view)
 {
     int order[side_px * side_px], listed = 0;
@@ -225,7 +225,7 @@ void raw_rays_destroy(RawRays *raw)
 int  raw_rays_count(const RawRays *raw) { return raw->count; }
 void raw_use_pool(RawRays *raw, Pool *pool) { raw->pool = pool; }
 
-/* Where block b lies in the arrays. */
+/* Position of block b in the arrays. */
 typedef struct Part {
     const double *o[3], *d[3], *far_m;
     double       *range_m;
@@ -241,7 +241,7 @@ static Part part_of(const RawRays *raw, int b)
                   .count = raw->first[b + 1] - first};
 }
 
-/* The vehicles, then the ground before them. */
+/* The vehicles, then the ground in front of them. */
 static void trace_eyes(RawRays *raw, int b)
 {
     const Part p = part_of(raw, b);
@@ -260,7 +260,7 @@ static void trace_eyes(RawRays *raw, int b)
     bench_keep(limit_m);
 }
 
-/* The vehicles, then the ground for what they leave lit. */
+/* The vehicles, then the ground for the rays that they do not block. */
 static void trace_sun(RawRays *raw, int b)
 {
     const Part p = part_of(raw, b);
@@ -300,9 +300,9 @@ void raw_trace(void *user)
     bench_keep(raw->range_m);
 }
 
-/* ---- the plain tracer ------------------------------------------------------------------------- */
+/* ---- the reference tracer ------------------------------------------------------------------------- */
 
-/* Next place where a + t b is a whole number, after t. */
+/* Next crossing where a + t b is a whole number, after t. */
 static double next_line(double a, double b, double t)
 {
     if (b == 0) return INFINITY;
@@ -345,7 +345,7 @@ double raw_worst_m(const RawRays *raw, int every)
         if (raw->dark[i]) continue;
         const double plain = walk(raw->elevation, o, d);
         if (isinf(plain) != isinf(raw->range_m[i])) return INFINITY;
-        if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* NaN shows */
+        if (!isinf(plain) && !(fabs(plain - raw->range_m[i]) <= worst)) worst = fabs(plain - raw->range_m[i]); /* NaN */
     }
     return worst;
 }

@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/rows.h: what `pitviper bench` can measure of this room. */
+/* sensor/bench/sensor/rows.h: the suites of whole frames, detectors and the live node. */
 #ifndef SENSOR_BENCH_SENSOR_ROWS_H
 #define SENSOR_BENCH_SENSOR_ROWS_H
 

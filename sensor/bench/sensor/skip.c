@@ -1,6 +1,6 @@
-/* sensor/bench/sensor/skip.c: frames with every skip, with all but one, and with none, in turn; over scenes that
- * differ in what there is to leave out. A row is the frame with its skip in the scene in which that saves most, and
- * the ratio says what it would take without; the planes must be the same. */
+/* sensor/bench/sensor/skip.c: frames with every skip, with all but one, and with none, interleaved; over scenes with
+ * different work to skip. A row is the frame with its skip in the scene in which that saves most, and the ratio is
+ * its time without the skip; the planes must be the same. */
 #include "sensor/bench/sensor/skip.h"
 
 #include "sensor/quality/trial.h"
@@ -28,7 +28,7 @@ static const struct SkipScene {
 };
 
 typedef struct Saving {
-    double   ratio;           /* time without the skip over time with it; of the rounds, that which a quarter stays below */
+    double   ratio;           /* time without the skip over time with it; of the rounds, the lower quartile */
     double   with_s;
     uint64_t skipped;
     int      scene;
@@ -94,7 +94,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* A quarter of the rounds' ratios is below it: noise alone does not make a scene the best. */
+/* The lower quartile of the rounds' ratios: noise alone does not make a scene the best. */
 static double sure_ratio(const BenchTime *a, const BenchTime *b)
 {
     double ratio[bench_rounds_max];
@@ -133,7 +133,7 @@ static Status time_scene(SkipBench *s, int at)
         if (k == whole) memcpy(skipped, frame[k].picture.counters.visibility.skipped, sizeof skipped);
         else if (status == STATUS_OK) s->differs[k] |= strcmp(hash, other) != 0;
     }
-    /* without any it takes too long but in the usual scene */
+    /* without any skip it takes too long except in the default scene */
     const int timed = at == usual ? variants : none_left;
     if (status == STATUS_OK) bench_time(time, s->bench, work, timed);
     for (int k = 0; k < timed && status == STATUS_OK; k++) {
@@ -145,7 +145,7 @@ static Status time_scene(SkipBench *s, int at)
     return status;
 }
 
-/* What nobody asks for is not computed, and what is asked for does not change. */
+/* Planes that are not requested are not computed, and those requested do not change. */
 static Status time_asked(SkipBench *s)
 {
     static const struct { const char *what; unsigned bands; bool truth; } asked[] = {

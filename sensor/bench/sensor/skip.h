@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/skip.h: `pitviper bench skip`: what each exact skip saves, and in which scene most. */
+/* sensor/bench/sensor/skip.h: `pitviper bench skip`: the time that each exact skip saves, and in which scene most. */
 #ifndef SENSOR_BENCH_SENSOR_SKIP_H
 #define SENSOR_BENCH_SENSOR_SKIP_H
 

@@ -1,8 +1,7 @@
 /* sensor/bench/sensor/speed.c: the rows, from the ground up to files.
  *
- * A ratio is of runs in turn: frame, frame of one ray a pixel and the rays alone go round and round. Stages are of one
- * thread, where they add up. Every frame that is timed has its planes compared with those of one thread that skips
- * nothing. */
+ * A ratio is of interleaved runs: frame, frame of one ray per pixel and the rays alone alternate. Stages are of one
+ * thread, where they add up. Every timed frame has its planes compared with those of one thread without skips. */
 #include "sensor/bench/sensor/speed.h"
 
 #include "sensor/bench/sensor/raw.h"
@@ -33,7 +32,7 @@ RenderRequest speed_request(const View *view, unsigned bands, bool truth)
                            .hidden_entity = -1};
 }
 
-/* Without antialiasing: no edges, and small targets like any. */
+/* Without antialiasing: no edges, and small targets are sampled like any. */
 static RenderRequest one_ray(const RenderRequest *request)
 {
     RenderRequest plain = *request;
@@ -47,7 +46,7 @@ TrialFrame speed_frame(const Speed *s, const TrialScene *scene, const RenderRequ
         .scene = scene, .request = *request, .pool = many ? s->many : s->one, .arena = s->arena[many ? 0 : 1]};
 }
 
-/* 0 when these planes are those of one thread that skips nothing, else 1; NaN: it could not be found out. */
+/* 0 when these planes are those of one thread without skips, else 1; NaN: the comparison failed. */
 static double differs(const Speed *s, const TrialFrame *frame)
 {
     TrialFrame plain = *frame;
@@ -139,7 +138,7 @@ static double rms_of(const Picture *a, const Picture *b)
     return sqrt(sum / planes);
 }
 
-/* A piece of the middle, 96 x 64 px or less: adaptive and plain against 16 x 16 rays in every pixel. */
+/* A central piece, 96 x 64 px or less: adaptive and plain against 16 x 16 rays in every pixel. */
 static double antialias_error(const Speed *s, const RenderRequest *request, double *plain)
 {
     TrialFrame fine = {.scene = &s->scene, .request = *request, .pool = s->many, .arena = s->arena[2]};
@@ -185,7 +184,7 @@ static Status time_view(Speed *s, int v)
                                    {trial_frame, &simple_one, 1}, {raw_trace, raw, 1}, {raw_trace, raw_one, 1}};
     bench_time(time, s->bench, work, WORKS);
 
-    /* frames share arenas, so each is made once more before its planes are compared */
+    /* frames share arenas, so each is rendered once more before its planes are compared */
     snprintf(what, sizeof what, "%s: frame, 3 bands and truth, %s", places[v].name, all_threads);
     row       = bench_row_of(what, &time[MANY], "frames/s", 1);
     row.ratio = bench_ratio(&time[MANY], &time[RAW]);
@@ -257,7 +256,7 @@ static const struct {
                    {STAGE_BASE, "of all this: pass over every pixel"},
                    {STAGE_EDGES, "of all this: pass over edges"}};
 
-/* The stages of these frames, in turn, on one thread; a frame's mean. */
+/* The stages of these frames, interleaved, on one thread; a frame's mean. */
 static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int count)
 {
     BenchTime      time[TRIAL_STAGE_COUNT] = {0}, hash_time = {0};
@@ -301,7 +300,7 @@ static Status time_stages(Speed *s, const char *name, TrialFrame *frame, int cou
     return STATUS_OK;
 }
 
-/* ---- single pictures -------------------------------------------------------------------------- */
+/* ---- single images -------------------------------------------------------------------------- */
 
 static Status time_picture(Speed *s, const char *name, const TrialScene *scene, const RenderRequest *request)
 {
@@ -388,7 +387,7 @@ static Status time_close(Speed *s)
     first.request = request;
     trial_frame(&first);
     if (first.status != STATUS_OK) return first.status;
-    /* its own area to the picture's, but for corners that it leaves */
+    /* its own area relative to the image, except for corners that it leaves */
     request.view.focal_px *= sqrt(1.5 * s->width * s->height / first.picture.target[0].visible);
     first.request = request;
     trial_frame(&first);
@@ -411,7 +410,7 @@ static Status time_close(Speed *s)
     return status == STATUS_OK ? time_stages(s, "close target, 1 thread", &one, 1) : status;
 }
 
-/* ---- the whole -------------------------------------------------------------------------------- */
+/* ---- the suite -------------------------------------------------------------------------------- */
 
 /* `12x16`, `720x486`. */
 static bool pair_of(double out[2], const Bench *bench, const char *name, double low, double high)

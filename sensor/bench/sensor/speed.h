@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/speed.h: `pitviper bench speed`: what a frame costs, and what its rays alone cost. */
+/* sensor/bench/sensor/speed.h: `pitviper bench speed`: the time of a frame, and of its rays alone. */
 #ifndef SENSOR_BENCH_SENSOR_SPEED_H
 #define SENSOR_BENCH_SENSOR_SPEED_H
 

@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/speed_files.c: what comes behind a frame: its files; and the memory that it all took. */
+/* sensor/bench/sensor/speed_files.c: the work after a frame: its files; and the memory of the process. */
 #include "sensor/bench/sensor/speed_private.h"
 
 #include "sensor/publish/frame_files.h"
@@ -21,7 +21,7 @@ static void encode(void *user)
     e->status = frame_files_write(e->hash, &e->files, e->pool);
 }
 
-/* Values of the file's planes that are not those of the picture. */
+/* Values of the file's planes that differ from those of the picture. */
 static double differing(const char *out, const Picture *p)
 {
     const size_t count = (size_t)p->width * (size_t)p->height;

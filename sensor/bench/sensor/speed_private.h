@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/speed_private.h: what the files of `bench speed` share. */
+/* sensor/bench/sensor/speed_private.h: shared by the files of `bench speed`. */
 #ifndef SENSOR_BENCH_SENSOR_SPEED_PRIVATE_H
 #define SENSOR_BENCH_SENSOR_SPEED_PRIVATE_H
 
@@ -9,7 +9,7 @@
 enum { what_size = 160 };
 
 static const unsigned    three_bands = 1u << BAND_OPTICAL | 1u << BAND_MWIR | 1u << BAND_LWIR;
-static const char *const all_threads = "all threads"; /* how many stands at the top of the table */
+static const char *const all_threads = "all threads"; /* their number is printed above the table */
 
 typedef struct Speed {
     Bench     *bench;
@@ -20,7 +20,7 @@ typedef struct Speed {
     TrialScene scene, close;   /* twenty vehicles; one */
     Pool      *one, *many;
     Arena     *arena[3];       /* of frames on many threads, on one, and others */
-    char       target[96];     /* what fills the picture, and where from */
+    char       target[96];     /* what fills the image, and the sensor position */
 } Speed;
 
 RenderRequest speed_request(const View *view, unsigned bands, bool truth);

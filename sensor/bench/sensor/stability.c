@@ -1,5 +1,5 @@
-/* sensor/bench/sensor/stability.c: detectors of 1 to 16 bits in the dark, in the sun and among values that are none;
- * displays of pictures without contrast; and whether every thread treats the smallest numbers alike. */
+/* sensor/bench/sensor/stability.c: detectors of 1 to 16 bits in the dark, in the sun and with values that are not
+ * numbers; displays of images without contrast; and whether every thread treats denormal numbers alike. */
 #include "sensor/bench/sensor/stability.h"
 
 #include "sensor/bench/render/stability.h"
@@ -21,7 +21,7 @@ static bool read_preset(SensorPreset *out, int which)
     return etc_path(path, sizeof path, "sensors.csv") && preset_read(out, path, preset_name[which]) == STATUS_OK;
 }
 
-/* Planes that no scene has: pitch dark, far beyond the well, below 0, no numbers, the smallest and the largest. */
+/* Planes beyond any scene: dark, far beyond the well, below 0, NaN, the smallest and the largest numbers. */
 enum { plane_kinds = 9 };
 static void fill_plane(float *plane, int kind, Dice *dice)
 {
@@ -70,7 +70,7 @@ static double counts_in_scale(void *user, bool quick)
     return wrong;
 }
 
-/* No noise, an even plane: the converter's own formula, (electrons + dark) / step, rounded, held at full scale.
+/* No noise, a uniform plane: the converter's own formula, (electrons + dark) / step, rounded, held at full scale.
  * Electrons by Planck's photons; from the dark to well beyond the well. Without lines, whose start is charged to the
  * mean. */
 static double even_planes(void *user, bool quick)
@@ -104,8 +104,7 @@ static double even_planes(void *user, bool quick)
     return worst;
 }
 
-/* One pixel that is no number: what else changes, against the same picture with a 0 there. Still, no noise, no
- * patches. */
+/* One NaN pixel: the other pixels that change, against the same image with a 0 there. Static, no noise, no patches. */
 static double one_bad_pixel(void *user, bool quick)
 {
     static float    plane[pixels];
@@ -129,7 +128,7 @@ static double one_bad_pixel(void *user, bool quick)
             chain_run(chain, in, NULL, 0, still);
             if (o < 0) memcpy(kept, chain_counts(chain, 0), sizeof kept);
             for (int i = 0; i < pixels; i++) changed += i != at && chain_counts(chain, 0)[i] != kept[i];
-            /* no number is 0 counts, without end full scale, less than nothing dark */
+            /* NaN gives 0 counts, infinity full scale, negative values dark */
             const unsigned want[3] = {0, (1u << (int)preset.bits) - 1, kept[at]};
             if (o >= 0) changed += chain_counts(chain, 0)[at] != want[o];
         }
@@ -140,7 +139,7 @@ static double one_bad_pixel(void *user, bool quick)
 
 /* ---- displays -------------------------------------------------------------------------------------- */
 
-/* A picture of one value, from nothing to the most a float holds, is the middle of the scale: never black by a
+/* An image of one value, from zero to the largest float, is displayed at the middle of the scale: never black by a
  * division. */
 static double no_contrast(void *user, bool quick)
 {
@@ -164,8 +163,8 @@ static double no_contrast(void *user, bool quick)
 
 static double clamped(double x) { return fmin(fmax(x, 0), 1); }
 
-/* Gains of 1e-6 to 1e6, values of all sizes and none: levels in order, the code its own formula's within a step; NaN
- * and -infinity are black, infinity white. */
+/* Gains of 1e-6 to 1e6, values of all magnitudes and NaN: levels in order, the code within a step of the formula;
+ * NaN and -infinity are black, infinity white. */
 static double display_ends(void *user, bool quick)
 {
     static float    plane[pixels];
@@ -225,7 +224,7 @@ typedef struct Denormals {
     unsigned        modes[threads];
 } Denormals;
 
-/* Waits for the others, so that each thread does one. */
+/* Waits for the others, so that each thread runs one. */
 static void multiply(void *user, int worker, int task)
 {
     Denormals *d = user;
@@ -234,11 +233,11 @@ static void multiply(void *user, int worker, int task)
     while (__atomic_load_n(&d->arrived, __ATOMIC_SEQ_CST) < threads) _mm_pause();
     d->product[task]   = d->tiny * 0.5;
     d->product_f[task] = d->tiny_f * 0.5f;
-    d->modes[task]     = _mm_getcsr() & 0xffc0; /* all but what has happened */
+    d->modes[task]     = _mm_getcsr() & 0xffc0; /* all flags except those already raised */
 }
 
-/* The smallest normal numbers, halved, by the main thread and the pool's: threads that find another number, or keep
- * what is too small, or round otherwise. */
+/* The smallest normal numbers, halved, by the main thread and the pool's: threads that get another number, or flush
+ * denormals differently, or round differently. */
 static double threads_agree(void *user, bool quick)
 {
     Denormals d = {.tiny = 2.2250738585072014e-308, .tiny_f = 1.17549435e-38f};

@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/stability.h: `pitviper bench stability`: detectors and displays at their ends, and threads
+/* sensor/bench/sensor/stability.h: `pitviper bench stability`: detectors and displays at extreme inputs, and threads
  * that agree. */
 #ifndef SENSOR_BENCH_SENSOR_STABILITY_H
 #define SENSOR_BENCH_SENSOR_STABILITY_H

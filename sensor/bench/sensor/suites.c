@@ -1,4 +1,4 @@
-/* sensor/bench/sensor/suites.c: all suites of `pitviper bench`, in the order of the rooms. */
+/* sensor/bench/sensor/suites.c: all suites of `pitviper bench`, in the order of the libraries. */
 #include "sensor/bench/sensor/suites.h"
 
 #include "sensor/bench/dis/rows.h"
