@@ -27,7 +27,7 @@ typedef enum Status {
     STATUS_TRUNCATED,   /* the bytes ended before the record did */
     STATUS_BAD_VALUE,   /* a field is outside its documented range */
     STATUS_UNSUPPORTED, /* well-formed, but not something this node handles */
-    STATUS_IO,          /* the operating system said no */
+    STATUS_IO,          /* a call of the operating system failed */
     STATUS_NO_MEMORY,
 } Status;
 
@@ -40,12 +40,12 @@ typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
  * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below; at first below LOG_INFO.
- * log_suppress: what the calling thread says, and it alone, until told otherwise. */
+ * log_suppress: suppresses messages of the calling thread only, until it is undone. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
 void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
- * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
+ * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
 /* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and what was asked for
  * stay. */
@@ -129,9 +129,9 @@ bool text_to_long(long long *out, const char *text);
 bool text_to_unix_s(double *unix_s, const char *text);
 /* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
-/* What a terminal can be given of a text from outside, such as a file's name: well-formed UTF-8 as it is, but control
- * characters, those that turn the direction of writing, and octets that are no UTF-8 as \xNN. lines: newlines and tabs
- * stay. Cut where there is no room. */
+/* A text from outside, such as a file's name, made safe for a terminal: valid UTF-8 unchanged; control characters,
+ * bidirectional controls and octets that are not UTF-8 as \xNN. lines: newlines and tabs stay. Truncated to the size of
+ * the output. */
 void text_show(char *out, size_t out_size, const char *text, bool lines);
 /* printf to a terminal, file or pipe for what holds text from outside: through text_show, with the format's own lines. */
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
@@ -141,7 +141,7 @@ void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__(
  * module's. */
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
 
-/* An empty folder, or file whose name ends so, of our own in $TMPDIR or /tmp; the caller takes it away. False: logged,
+/* A new empty folder, or file with this suffix, in $TMPDIR or /tmp; the caller removes it. False: logged,
  * and an empty name. */
 enum { temp_path_size = 512, temp_name_size = temp_path_size + 128 }; /* temp_name_size: for a file in such a folder */
 bool temp_folder(char out[temp_path_size]);
@@ -206,7 +206,7 @@ typedef struct SettingList {
 } SettingList;
 
 struct SettingTable {
-    const char        *module; /* whose messages these are: `config` */
+    const char        *module; /* prefix of the messages: `config` */
     const Setting     *row;
     int                count;
     const SettingList *list;   /* NULL: none */
@@ -259,12 +259,12 @@ enum { probe_max_columns = 24, probe_text_size = 96 };
 typedef struct ProbeValue {
     double      number;                /* of an input: its cell as a number. Of an output: written when text is NULL */
     const char *text;                  /* of an input: its cell. Of an output: written when not NULL */
-    char        buffer[probe_text_size]; /* room for an output's text */
+    char        buffer[probe_text_size]; /* buffer size of an output's text */
 } ProbeValue;
 
-/* A row of CSV in, the same row and its results out. Each room lists its own in <room>/probe.h; `pitviper probe NAME`
- * finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text, all
- * others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
+/* A row of CSV in, the same row and its results out. Each module lists its own in <module>/probe.h; `pitviper probe
+ * NAME` finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text,
+ * all others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
 typedef struct Probe {
     const char *name, *help;           /* help: one line, what it computes and from what source */
     const char *arguments;             /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */

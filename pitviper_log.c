@@ -59,7 +59,7 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
     char raw[1024], line[4 * sizeof raw];
     if (suppressed_here) return;
     vsnprintf(raw, sizeof raw, format, arguments);
-    text_show(line, sizeof line, raw, false); /* names in files and what libraries say may hold anything */
+    text_show(line, sizeof line, raw, false); /* names in files and messages of libraries may contain any octets */
     pthread_mutex_lock(&log_lock);
     if (level >= log_lowest) {
         if (log_sink)

@@ -1,4 +1,4 @@
-/* pitviper_settings.c: one value by its row of a table: ranges, units, choices, and what is said when it is wrong. */
+/* pitviper_settings.c: one value by its row of a table: ranges, units, choices, and the messages for invalid values. */
 #include "pitviper_settings_private.h"
 
 int settings_find(const SettingTable *table, const char *name)

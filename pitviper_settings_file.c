@@ -1,4 +1,4 @@
-/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, whose documents know their lines. */
+/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, which keeps line numbers for messages. */
 #include "pitviper_settings_private.h"
 
 #include <errno.h>
@@ -6,7 +6,7 @@
 #include <yaml.h>
 
 typedef struct Reading {
-    const char      *path, *file; /* file: whose folder paths are relative to */
+    const char      *path, *file; /* file: paths are relative to its folder */
     yaml_document_t *document;
 } Reading;
 
@@ -21,7 +21,7 @@ static bool holds_nul(const yaml_node_t *node)
 
 static const char *text_of(const yaml_node_t *node)
 {
-    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: no value of ours */
+    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: not a valid value */
 }
 
 /* What stands there, as a message shows it. */
@@ -139,7 +139,7 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
     return settings_store(out, table, row, text_of(value), source, r->file);
 }
 
-/* Ends: an item's table holds only lists that are written in the program, whatever aliases a file has. */
+/* Ends: an item's table holds only lists that are written in the program, independent of the aliases of a file. */
 static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
                            const char *section, const yaml_node_t *mapping);
 

@@ -95,7 +95,7 @@ void text_show(char *out, size_t out_size, const char *text, bool lines)
     if (out_size) out[n] = 0;
 }
 
-/* Without allocating, but for texts of more than 16 KiB: what is told must not be lost when memory is out. */
+/* Without allocating, but for texts of more than 16 KiB: messages must not be lost when memory is exhausted. */
 void text_vprint(FILE *to, const char *format, va_list arguments)
 {
     enum { usual = 16384 };

@@ -1,4 +1,5 @@
-/* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on who ran what. */
+/* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on which thread ran which
+ * task. */
 #include "pitviper.h"
 
 #include <pthread.h>

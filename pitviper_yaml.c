@@ -1,4 +1,4 @@
-/* pitviper_yaml.c: what of YAML a file of ours may use; its reader need not look again. libyaml takes time in
+/* pitviper_yaml.c: the subset of YAML that input files may use, checked before parsing. libyaml takes time in
  * proportion to the square of how deep brackets nest, of how many anchors there are, and of how many directives:
  * seconds, or hours, for a megabyte. */
 #include "pitviper.h"

@@ -1,9 +1,9 @@
 /* dis/exercise_clock.c: a clock per sender, all on one exercise time.
  *
- * The capture clock is the ruler: capture time shifted so that the first PDU has its own stamp's seconds. A
- * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the ruler chooses the hour
- * a stamp belongs to and is what the stamps are judged by. So neither network jitter nor a half hour of silence enters
- * the times of a sender whose stamps are a clock. */
+ * The capture clock is the reference: capture time shifted so that the first PDU has its own stamp's seconds. A
+ * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the reference selects the
+ * hour of a stamp and is what stamps are checked against. So neither network jitter nor half an hour without PDUs
+ * affects the times of a sender with valid stamps. */
 #include "dis/exercise_clock.h"
 
 #include "dis/datagram.h"
@@ -14,9 +14,9 @@
 enum {
     sender_limit = 4096,  /* beyond that capture time is used */
     slot_count   = 8192,  /* a power of two, at most half full */
-    memory_slots = 16384, /* entities remembered for the judgement; a later one takes the place of an earlier one */
+    memory_slots = 16384, /* entities remembered for the check; a later one replaces an earlier one */
     odd_limit    = 2,     /* reports in a row against a proven sender */
-    votes_needed = 2,     /* in a row, for a sender in doubt */
+    votes_needed = 2,     /* consecutive, for a rejected sender */
     most_failures = 5,    /* the time to prove itself is doubled so many times: 2 minutes */
 };
 
@@ -29,7 +29,7 @@ static const double jitter_s = 0.15, drift = 1e-4; /* and of clocks: s a second 
 /* A stamp that far behind its sender's latest is of a datagram that was overtaken: nothing that counts goes back so. */
 static const double overtaken_s = 0.1;
 static const double settled_s = 1.0;       /* a proven sender may drift so far before its stamps are placed anew */
-static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is judged */
+static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
 /* Two reports of one entity that far apart, and stamps that went less than a twentieth of it: they stand still. */
 static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05;
 
@@ -44,14 +44,14 @@ typedef struct Sender {
     uint32_t key; /* site, application */
     bool     used;
     uint8_t  standing;
-    uint8_t  failures; /* how often it was doubted, most_failures at most */
+    uint8_t  failures; /* number of rejections, most_failures at most */
     uint8_t  odd;      /* reports in a row that leave the ruler or stand still */
-    uint8_t  agree;    /* votes in a row, votes_needed at most */
-    bool     disagrees; /* the last vote */
-    int      doubt;    /* index into the clock's doubts; -1: never doubted, or too many before it */
+    uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
+    bool     disagrees; /* the last check */
+    int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
     uint32_t tied_stamp, latest_stamp;
     double   tied_s;   /* exercise time of the tied one */
-    Moment   mark;     /* where the span of the next vote begins */
+    Moment   mark;     /* start of the span of the next check */
     double   next_vote_s; /* capture time from which on there is one */
     Moment   first;
     uint64_t pdus;
@@ -184,8 +184,8 @@ static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler
     tie(sender, now, ruler_s);
 }
 
-/* A vote over the span since the mark: have stamps and arrivals gone equally far? After one that says no, the first PDU
- * that says yes takes it back; none for two seconds: that is the answer. */
+/* Rate check over the span since the mark: are the elapsed times of stamps and arrivals equal? After a failure the
+ * first PDU that passes revokes it; without one for two seconds the failure is final. */
 static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s, double ruler_s)
 {
     if (now.capture_s < sender->mark.capture_s) { /* the capture's clock went back */
@@ -249,7 +249,7 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     clock->doubts.stamped++;
 
     Sender *sender = find_sender(&is_new, clock, key);
-    if (!sender) { /* more senders than are judged: counted with those that are doubted */
+    if (!sender) { /* more senders than are checked: counted as rejected */
         clock->doubts.by_arrival++;
         return ruler_s;
     }
@@ -288,7 +288,7 @@ double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, co
                                       capture_s);
 }
 
-/* ---- saying --------------------------------------------------------------------------------------- */
+/* ---- reporting ------------------------------------------------------------------------------------- */
 
 /* Whether something counted at about a rate; whole counts at both ends. */
 static bool near_rate(double hz, double of_hz, double passed_s)

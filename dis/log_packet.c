@@ -48,7 +48,7 @@ typedef struct Span {
     size_t         octets;
 } Span;
 
-/* One IP datagram whose fragments are still coming. */
+/* One IP datagram in reassembly. */
 typedef struct Assembly {
     bool     used;
     uint8_t  key[40]; /* version, protocol, identification, source, destination; zero padded */

@@ -14,7 +14,7 @@ void   dis_packet_reader_destroy(DisPacketReader *reader);
 bool   dis_packet_reads(int link); /* LINKTYPE_; whether this link layer is read */
 /* One packet of a link layer that is read; the log's counters.packets is its number. STATUS_NO_MEMORY. */
 Status dis_packet_read(DisPacketReader *reader, int link, double capture_s, const uint8_t *bytes, size_t octets);
-/* There are no more: datagrams in assembly are given up. */
+/* There are no more: datagrams in reassembly are dropped. */
 void   dis_packet_reader_end(DisPacketReader *reader);
 
 #endif

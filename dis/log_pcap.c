@@ -1,7 +1,7 @@
 /* dis/log_pcap.c: pcap and pcapng, record by record.
  *
- * Sources: pcap-savefile(5) of libpcap; PCAP Next Generation (draft-ietf-opsawg-pcapng). A record is as long as it says
- * and no longer than a limit; what contradicts itself ends the reading, and what came before it stands. */
+ * Sources: pcap-savefile(5) of libpcap; PCAP Next Generation (draft-ietf-opsawg-pcapng). The length of a record is its
+ * length field, up to a limit; an inconsistent record ends the reading, and the records before it are kept. */
 #include "dis/log_pcap.h"
 
 #include "dis/log_stream.h"
@@ -249,7 +249,7 @@ static bool begin_pcap(DisCapture *c, const uint8_t magic[4])
         if (dis_stream_read(c->stream, head, sizeof head) < sizeof head) return stop(c, "it ends inside its header");
         if (load_u16(c, head) != 2) return stop(c, "version %u of pcap", load_u16(c, head));
         c->record_octets = form[i].record_octets;
-        /* the upper bits of the link say how a frame's checksum was kept */
+        /* the upper bits of the link type give the frame check sequence length */
         return add_interface(c, (Interface){.link = load_u16(c, head + (c->big ? 18 : 16)), .per_s = form[i].per_s});
     }
     return stop(c, "its first octets are those of neither");

@@ -1,4 +1,4 @@
-/* dis/log_stream.c: a file's octets in order, through the decoder that its first octets ask for.
+/* dis/log_stream.c: a file's octets in order, through the decoder selected by its first octets.
  *
  * Sources: RFC 1952 (gzip), RFC 8878 (zstd), the xz file format 1.1.0, and the manuals of zlib, libzstd, libbz2 and
  * liblzma, whose decoders check the sums that the formats carry. */

@@ -1,9 +1,9 @@
 /* dis/log_time.c: when the packet times of a capture are not those of the exercise.
  *
  * A capture made out of a text log, or of a playback at another speed, has packet times that are equal,
- * compressed or stretched; the stamps inside are then the better clock. They are believed only when they
- * behave like one, and when what the reports say of motion does not contradict them: an entity goes its speed times
- * the seconds that passed by the right clock. */
+ * compressed or stretched; the stamps inside are then the better clock. They are used only when they advance like a
+ * clock and are consistent with the reported motion: the distance an entity moves is its speed times the elapsed
+ * seconds of the right clock. */
 #include "dis/datagram.h"
 #include "dis/log.h"
 
@@ -14,7 +14,7 @@
 
 enum { sender_limit = 256, least_pdus = 10, entity_slots = 4096 };
 
-static const double least_span_s = 5;      /* shorter logs say nothing about their clock */
+static const double least_span_s = 5;      /* shorter logs are too short to check the clock */
 static const double pace_low = 0.8, pace_high = 1.25; /* capture time over stamp time that is left alone */
 static const double counter_pace = 20;     /* stamps this much slower than packets count something else */
 static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */

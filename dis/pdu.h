@@ -79,8 +79,9 @@ typedef struct DisCounters {
 
 /* ---- arrival times ------------------------------------------------------------------------------- */
 
-/* Unix time, whole nanoseconds >= 0 -> seconds: the one conversion, so that a node that heard a datagram and one that
- * reads it from a recording have the same double. Never decreasing; neighbours within 0.24 us may come out equal. */
+/* Unix time, whole nanoseconds >= 0 -> seconds: the only conversion, so that a node that receives a datagram live and
+ * one that reads it from a recording get the same double. Never decreasing; neighbours within 0.24 us may come out
+ * equal. */
 static inline double dis_unix_s(int64_t unix_ns)
 {
     return (double)(unix_ns / 1000000000) + 1e-9 * (double)(unix_ns % 1000000000);

@@ -164,7 +164,7 @@ DisUdpCounters dis_udp_counters(const DisUdp *udp)
 
 /* ---- the socket: all under the receive lock ---------------------------------------------------------- */
 
-/* What the kernel says beside a datagram: when it came, and how many did not. */
+/* Control messages of a datagram: arrival time, and number of drops. */
 static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, struct msghdr *header)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(header); c; c = CMSG_NXTHDR(header, c)) {
@@ -180,7 +180,7 @@ static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, str
     }
 }
 
-/* By how much the system's clock, the kernel's stamps with it, was set; said of more than a second. */
+/* Step of the system clock, and so of the kernel's time stamps; reported above one second. */
 static ClockReading look_at_clock(DisUdp *u)
 {
     const ClockReading now   = clock_reading();
@@ -242,7 +242,7 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     return came;
 }
 
-/* A network that went away is said once; one that came back is heard again. */
+/* A lost network is reported once; after its return receiving resumes. */
 static void complain(DisUdp *u)
 {
     const int error = errno;
@@ -252,7 +252,7 @@ static void complain(DisUdp *u)
 
 /* ---- a network that goes and comes: under the receive lock, in a sender under sending ------------------------ */
 
-/* In the place of the old one, whose number stays: no other code has to know. False: not now. */
+/* Replaces the old socket under the same descriptor, so no other code changes. False: not now. */
 static bool remake_socket(DisUdp *u)
 {
     int              made;

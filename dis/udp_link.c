@@ -35,7 +35,7 @@ int dis_link_watch(void)
 }
 
 /* Of the named interface: by its index. Of a group that the system chose the interface for: it was joined on the
- * deleted one if it can be left there; that also makes room for the next, of 20 that a socket may have. */
+ * deleted one if it can be left there; that also frees one of the 20 memberships of a socket. */
 static void note_deleted(DisLink *link, unsigned index, int socket, const DisSocketAddress *to, const DisTie *tie)
 {
     if (tie->narrow) {
@@ -109,7 +109,7 @@ void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddr
     if (!*remake && state == DIS_LINK_UP) link->lost = false;
 }
 
-/* ---- saying ------------------------------------------------------------------------------------------ */
+/* ---- reporting --------------------------------------------------------------------------------------- */
 
 void dis_link_text(char out[dis_link_text_size], DisLinkState state, const DisUdpConfig *config)
 {
@@ -146,7 +146,7 @@ static void say(const char *where, DisLinkState state, const DisUdpConfig *confi
 
 void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config)
 {
-    if (link->lost && link->said == DIS_LINK_UP) /* whatever is there now */
+    if (link->lost && link->said == DIS_LINK_UP) /* the present state */
         say(where, link->said = DIS_LINK_GONE, config);
     if (link->lost || link->state == link->said) return;
     if (link->state == DIS_LINK_UP)

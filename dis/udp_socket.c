@@ -16,9 +16,9 @@ enum { receive_buffer_octets = 64 << 20, send_buffer_octets = 4 << 20, least_que
 /* What an address is to this machine decides how to listen for it. */
 typedef enum Reach {
     REACH_OWN,       /* one of this machine's: bound to, alone */
-    REACH_PEER,      /* another machine's: anything that comes to the port is heard, alone */
-    REACH_BROADCAST, /* anything that comes to the port is heard, by as many as like */
-    REACH_GROUP,     /* joined and bound to: nothing but the group is heard, by as many as like */
+    REACH_PEER,      /* another machine's: all datagrams to the port, exclusive */
+    REACH_BROADCAST, /* all datagrams to the port, shared with other programs */
+    REACH_GROUP,     /* joined and bound to: only the group is received, shared with other programs */
 } Reach;
 
 typedef struct Plan {
@@ -162,7 +162,7 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
 
 /* ---- from the plan to a socket -------------------------------------------------------------------- */
 
-/* Status, after one line that says what was tried, on what, why it failed and what may help. */
+/* Status, after one log line with the operation, its object, the error and a remedy. */
 static Status refused(const Plan *plan, const char *what)
 {
     const int   error = errno;
@@ -206,7 +206,7 @@ static void set_buffer(int socket, int forced, int plain, int octets)
     if (!set_flag(socket, SOL_SOCKET, forced, octets)) set_flag(socket, SOL_SOCKET, plain, octets);
 }
 
-/* Where multicast leaves, how far it goes, and that programs of this machine hear it too. */
+/* Where multicast leaves, how far it goes, and that programs of this machine receive it too. */
 static bool aim(const Plan *plan, int socket)
 {
     const int ttl = plan->config->ttl;
@@ -254,7 +254,7 @@ bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface
     return membership(socket, group, interface, IP_DROP_MEMBERSHIP, IPV6_DROP_MEMBERSHIP);
 }
 
-/* Whether another socket hears all addresses on the port: of what is sent to one address, only one of them gets any. */
+/* Whether another socket receives all addresses on the port: unicast datagrams then go to only one of them. */
 static bool port_shared(int port)
 {
     static const char *const tables[2] = {"/proc/net/udp", "/proc/net/udp6"};

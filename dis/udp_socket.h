@@ -29,10 +29,10 @@ typedef struct DisTie {
     bool     group, own; /* a group was joined; bound to an address of this machine */
 } DisTie;
 
-/* A socket that sends to *to; listen: bound and joined too. Failures as dis_udp_open says. */
+/* A socket that sends to *to; listen: bound and joined too. Failures as of dis_udp_open. */
 Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpConfig *config, bool listen);
 
-/* IGMP and MLD membership. interface: index; 0: the system's choice. False: errno says why. */
+/* IGMP and MLD membership. interface: index; 0: the system's choice. False: errno is set. */
 bool dis_udp_join(int socket, const DisSocketAddress *group, unsigned interface);
 bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface);
 bool dis_udp_is_own(const DisSocketAddress *address); /* an address of this machine now */
