@@ -12,7 +12,7 @@ typedef struct ModelFit {
     char   advice[320]; /* what to write into the sidecar */
 } ModelFit;
 
-/* want: 0 where it is not known. tolerance: largest factor between two lengths that agree, above 1. */
+/* want: the requested size, 0 where unknown. tolerance: largest factor between two lengths that agree, above 1. */
 void model_fit(ModelFit *out, const Model *model, const ModelImport *import, const ModelSize *want, double tolerance);
 
 #endif

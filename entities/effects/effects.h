@@ -1,8 +1,8 @@
-/* entities/effects/effects.h: flames, smoke, dust and bursts as puffs: what each is made of and how it lives.
+/* entities/effects/effects.h: flames, smoke, dust and bursts as puffs: composition and development over time.
  *
- * A puff is let go at one place and time and from there on is a closed form of its age: nothing is integrated from
- * frame to frame, so any instant can be asked for in any order. etc/effects.csv has the figures, and says how far
- * they can be trusted. Who lets puffs go, and when: effects_history.h. How they look: render/effects.h. */
+ * A puff is emitted at one position and time; its state is a closed form of its age. Nothing is integrated from frame
+ * to frame, so times can be evaluated in any order. etc/effects.csv has the parameters and their accuracy. Sources and
+ * times of puffs: effects_history.h. Rendering: render/scene/effects.h. */
 #ifndef ENTITIES_EFFECTS_EFFECTS_H
 #define ENTITIES_EFFECTS_EFFECTS_H
 
@@ -46,7 +46,7 @@ Status effect_table_open(EffectTable *out, const char *path);
 /* One puff at one instant, as a Snapshot holds it: still without wind, which is the weather's. */
 typedef struct EffectPuff {
     EffectKind kind;
-    uint64_t   owner;        /* whose smoke it is: snapshot_owns_puff; 0: nobody's */
+    uint64_t   owner;        /* owning entity: snapshot_owns_puff; 0: none */
     uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
     uint32_t   seed;         /* of its pattern */
     double     age_s;        /* >= 0; what an entity carries with it stays at 0 */

@@ -1,8 +1,8 @@
-/* entities/effects/effects_history.h: who let puffs go, and when: shots and bursts of the last minute, and what
- * entities have been giving off. Bounded: the oldest is dropped, and counted, when room runs out.
+/* entities/effects/effects_history.h: sources and times of puffs: shots and bursts of the last minute, and emissions of
+ * entities. Bounded: when full, the oldest is dropped and counted.
  *
- * An entity gives off a puff at every multiple of its kind's interval of exercise time, from where its report in
- * force then put it. What puffs there are at t is therefore a function of what was heard and of t alone. */
+ * An entity emits a puff at every multiple of its kind's interval of exercise time, at its dead-reckoned position at
+ * that time. The set of puffs at t is therefore a function of the received PDUs and of t alone. */
 #ifndef ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 #define ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 
@@ -30,7 +30,7 @@ typedef struct EffectSource {
 typedef struct EffectCounters {
     uint64_t refused;        /* Fire or Detonation with no place near the Earth, or no finite one */
     uint64_t repeated;       /* the same event once more */
-    uint64_t events_dropped; /* still to be seen when a newer one took their room */
+    uint64_t events_dropped; /* still visible when replaced by a newer one */
     uint64_t sources_dropped;
 } EffectCounters;
 

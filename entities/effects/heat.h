@@ -46,7 +46,7 @@ typedef struct HeatState {
     bool      moving, destroyed;
 } HeatState;
 
-/* What one report says. */
+/* The state of one report. */
 typedef struct HeatEvidence {
     DisEntityType type;
     uint32_t      appearance;
@@ -67,8 +67,8 @@ void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTa
 /* Roles that a model's parts have and something drives. */
 uint32_t heat_roles(const Model *model, const HeatTable *table);
 
-/* Until when engine and rotors turn if nothing else is heard: power-plant bit, moving or moved lately, or an air
- * platform; never a destroyed one. -INFINITY: they stand; INFINITY: for as long as this is all we know. */
+/* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air
+ * platform; never a destroyed one. -INFINITY: they do not turn; INFINITY: until the next report. */
 double heat_runs_until(const HeatState *state);
 
 #endif

@@ -56,7 +56,7 @@ typedef struct ImportScene {
     float (*normal)[3];      /* zero where the mesh has none */
     uint32_t (*triangle)[3]; /* from the mesh's first vertex */
     ImportDof *dof;
-    double forward[3], up[3]; /* what the format says */
+    double forward[3], up[3]; /* from the format */
     int lost[IMPORT_LOST_COUNT];
 } ImportScene;
 
@@ -121,7 +121,7 @@ void import_count_names(int *unnamed, int *shared, const ImportScene *scene);
 
 /* ---- model_import_surface.c ------------------------------------------------------------------ */
 
-/* Which material and heat role a part gets when the sidecar does not say. */
+/* Material and heat role of a part without an entry in the sidecar. */
 typedef struct ImportPaints {
     int count;
     char (*name)[32];
@@ -131,7 +131,7 @@ typedef struct ImportPaints {
 Status import_paints_open(ImportPaints *out);
 void import_paints_close(ImportPaints *paints);
 bool import_paints_have(const ImportPaints *paints, const char *name);
-/* By words in the material's name, else by colour, else paint_olive; *source says which. */
+/* By words in the material's name, else by colour, else paint_olive; *source: which of these. */
 const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
                                const ImportMaterial *material);
 /* By words in the path, the last word wins; HEAT_PASSIVE without any. */

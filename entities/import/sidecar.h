@@ -1,12 +1,12 @@
-/* entities/import/sidecar.h: what a model file does not say of itself: NAME.yaml beside it.
+/* entities/import/sidecar.h: properties that a model file lacks: NAME.yaml beside it.
  *
  *     file: tank.glb                  # when it has another name; relative to the sidecar
- *     name: T-54                      # as truth says it; else the file's name
+ *     name: T-54                      # in the truth records; else the file's name
  *     scale: 0.01                     # metres a unit of the file
  *     axes: +z +y                     # of the file: which way is forward, which up
  *     origin: auto                    # centre of the base, or x y z
  *     crease_deg: 30                  # sharper edges stay sharp, where the file has no normals
- *     drop: [crew_*, air*]            # parts that are not there
+ *     drop: [crew_*, air*]            # parts to remove
  *     joints:
  *       - {nodes: Joint_Turret, class: primary_turret_1, metric: azimuth}
  *       - {name: gun, nodes: Joint_MainGun, class: primary_gun_1, metric: elevation, limits_deg: -5 18, rest_deg: 15}
@@ -18,8 +18,8 @@
  *
  * A pattern is matched (`*` and `?`, slashes too, case counts) against a node's own name and against its
  * path from the root, names joined by slashes. What hangs below a matched node is matched with it. Where several
- * patterns agree with the same node the last one in the file wins: say the general first, then the exceptions.
- * Places and vectors are in the file's own axes and units. */
+ * patterns agree with the same node the last one in the file wins: write the general pattern first, then the
+ * exceptions. Places and vectors are in the file's own axes and units. */
 #ifndef ENTITIES_IMPORT_SIDECAR_H
 #define ENTITIES_IMPORT_SIDECAR_H
 

@@ -1,4 +1,4 @@
-/* entities/models/articulation.h: where an entity's own parts were said to be, and where they are now.
+/* entities/models/articulation.h: articulated parts: reported values, extrapolated to the present time.
  *
  * A record is known by its class and metric, never by its place in the PDU: senders put the rate before the
  * angle or after it. Signs, as the standard has them: azimuth is positive clockwise seen from above, that is
@@ -44,7 +44,7 @@ typedef struct JointDrive {
     double speed_mps;  /* landing gear */
 } JointDrive;
 
-/* Below it landing gear that nobody reports is taken to be down. Fighters approach at 70 .. 80 m/s and may keep
+/* Below this speed landing gear without a report is assumed down. Fighters approach at 70 .. 80 m/s and may keep
  * their gear out to 150 (flight manuals); estimate. */
 static const double articulation_slow_mps = 100;
 

@@ -9,7 +9,7 @@
 
 enum {
     model_name_size = 96,    /* of nodes, parts and models: other people name a part by its whole path */
-    model_damage_states = 4, /* as DIS says it: 0 none, 1 slight, 2 moderate, 3 destroyed */
+    model_damage_states = 4, /* DIS damage: 0 none, 1 slight, 2 moderate, 3 destroyed */
 };
 
 /* What makes a part warm. One driver each; etc/heat.csv gives the figures. */
@@ -66,14 +66,14 @@ typedef struct ModelPart {
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
     int      first_triangle, triangle_count;
-    /* How damage shows, by the damage the entity's appearance states ([0] is not used): not there at all (bit
-     * 1 << state), or of another material (empty: the same). Parametric models say nothing; a sidecar may. */
+    /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
+     * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
     uint8_t  damage_hidden;
     char     damage_material[model_damage_states][32];
 } ModelPart;
 
 typedef struct Model {
-    char       name[model_name_size]; /* as truth says it: tank, truck, helicopter, missile ... */
+    char       name[model_name_size]; /* the name in the truth records: tank, truck, helicopter, missile ... */
     double     length_m, width_m, height_m; /* bounding box at rest */
     double     box_low[3], box_high[3];     /* at rest, body axes */
     double     radius_m;        /* of a sphere about the body origin that holds every pose */
@@ -127,7 +127,7 @@ typedef struct ModelEdges {
     int       open_parts, inside_out_parts; /* with open edges; closed, and of negative volume */
 } ModelEdges;
 
-/* STATUS_NO_MEMORY is the only failure. model: as model_check wants it. */
+/* STATUS_NO_MEMORY is the only failure. model: one that passes model_check. */
 Status model_edges(ModelEdges *out, const Model *model);
 
 #endif

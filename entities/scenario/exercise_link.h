@@ -6,7 +6,7 @@
 
 #include "entities/scenario/scenario.h"
 
-/* One datagram at exercise time t_s; times do not decrease. False: stop, nobody takes more. */
+/* One datagram at exercise time t_s; times do not decrease. False: stop. */
 typedef bool ExerciseSink(void *user, double t_s, const uint8_t *bytes, size_t octets);
 
 typedef struct ExerciseCounts {
@@ -33,7 +33,7 @@ DisHeader link_header(const ExerciseLink *link, uint8_t type, uint8_t family, do
 /* Alone, or with others of the same time. */
 void link_pdu(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t octets);
 void link_flush(ExerciseLink *link);
-/* These octets by themselves, whatever they are. */
+/* These octets as a datagram, without validation. */
 void link_datagram(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t octets);
 /* What is still held back. */
 void link_finish(ExerciseLink *link, double t_s);

@@ -1,8 +1,7 @@
-/* entities/scenario/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who
- * shoots, and how it is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key,
- * etc/scenarios/README.md all.
+/* entities/scenario/scenario.h: a scenario file: place, entities, routes, shots, and how they are reported on the
+ * network. A small YAML file; etc/scenarios/demo.yaml shows every common key, etc/scenarios/README.md all.
  *
- * A plain struct: what is absent has its default. exercise_cast.h makes entities of it, exercise.h sends them. */
+ * A plain struct: absent keys have their defaults. exercise_cast.h makes entities of it, exercise.h sends them. */
 #ifndef ENTITIES_SCENARIO_SCENARIO_H
 #define ENTITIES_SCENARIO_SCENARIO_H
 

@@ -13,16 +13,17 @@
 
 typedef struct EntityTable EntityTable;
 
-/* Stale handles are caught: entity_table_alive says false. {0} is never valid. */
+/* Stale handles are caught: entity_table_alive returns false. {0} is never valid. */
 typedef struct EntityHandle {
     uint32_t slot, generation;
 } EntityHandle;
 
 typedef struct EntityTableConfig {
-    int    capacity;              /* most entities at once; one more, and entity_ranks.h says which goes */
-    int    shown;                 /* most entities in a snapshot: those whose reports lie nearest the focus */
+    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_ranks.h */
+    int    shown;                 /* most entities in a snapshot: those with reported positions nearest the focus */
     double timeout_s;             /* versions 5 and 6: 12 */
-    double timeout_land_v7_s;     /* version 7, whatever has the long heartbeat: land, sea, life forms, standing; 132 */
+    double timeout_land_v7_s;     /* version 7, entities with the long heartbeat: land, sea, life forms, standing;
+                                   * 132 */
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
@@ -40,10 +41,10 @@ typedef struct EntityCounters {
                               * its Detonation */
     uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
-    uint64_t evicted;        /* given up for others when the table was full */
-    uint64_t refused;        /* not taken in, being those that a full table would have given up */
+    uint64_t evicted;        /* evicted for others when the table was full */
+    uint64_t refused;        /* refused by a full table, as they would be evicted at once */
     uint64_t over_rate;      /* reports of new ones, not taken in because their sender added more than new_per_s */
-    uint64_t tombstones_dropped; /* ends forgotten for want of room while a late report could still come */
+    uint64_t tombstones_dropped; /* tombstones dropped for lack of space while a late report was still possible */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -52,9 +53,9 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
                            const char *heat_path);
 void   entity_table_destroy(EntityTable *table);
 
-/* What a full table keeps: the host, `also` (its aim), and those whose last reports lie near the host's last report. 0:0:0:
- * none. A host that is not there, or no more: the place of before. A snapshot of more than config.shown takes the nearest
- * to that place. Extrapolated positions do not enter, so it does not matter at which instants snapshots are made. */
+/* What a full table keeps: the host, `also` (its aim), and entities with last reports near the host's last report.
+ * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
+ * nearest to that place. Extrapolated positions are not used, so the result does not depend on snapshot times. */
 void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
 /* Which sender has most entities here, and how many. O(senders). */
 int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);

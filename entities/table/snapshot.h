@@ -1,5 +1,5 @@
-/* entities/table/snapshot.h: everybody at one instant, immutable and dense. What the renderer sees of the world's
- * inhabitants; it never sees a PDU or the table. */
+/* entities/table/snapshot.h: all entities at one instant, immutable and dense. The renderer's only view of entities; it
+ * uses neither PDUs nor the table. */
 #ifndef ENTITIES_TABLE_SNAPSHOT_H
 #define ENTITIES_TABLE_SNAPSHOT_H
 
@@ -14,7 +14,7 @@ typedef struct SnapshotEntity {
     char          marking[12];     /* terminated, raw bytes */
     uint32_t      appearance;
     int           model;           /* of the catalog */
-    double        p_ecef[3];       /* of the model's origin (base centre), whatever the sender's origin is */
+    double        p_ecef[3];       /* of the model's origin (base centre), independent of the sender's origin */
     double        v_ecef_mps[3];
     double        w_body_rps[3];   /* of the attitude shown: 0 where the algorithm holds it, and when frozen */
     double        r_ecef_from_body[9];
@@ -50,7 +50,7 @@ typedef struct Snapshot {
 
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
-/* What its sender says of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
+/* Reported damage of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
 int  snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
@@ -69,8 +69,8 @@ double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s
 void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
                     double otherwise_m, double heartbeat_s);
 
-/* Nodes of entity `index`, whose model this is, into pose[model->node_count]; joint_value: room for as many. Most entities
- * of a world are never looked at: a snapshot keeps what turns their joints, and the renderer poses those that it draws. */
+/* Nodes of entity `index`, with this model, into pose[model->node_count]; joint_value: same size. Most entities are
+ * never rendered: a snapshot keeps the joint state, and the renderer poses only what it draws. */
 void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot, int index, const Model *model);
 
 /* Index of an id, or -1. */
