@@ -142,7 +142,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
 
     if (!(age_s >= 0 && lived < 1 && puff->mass_kg > 0)) return false;
 
-    /* rise and throw in the place's own axes; the wind in the frame's, whose north is the place's within a degree */
+    /* rise and throw in the place's own axes; the wind in the frame's axes, with north equal within a degree */
     v3_add_scaled(p_ecef, puff->p_ecef, puff->scale * dying_way(law->rise_mps, law->rise_s, age_s), puff->up_ecef);
     for (int i = 0; i < 3; i++) way[i] = dying_way(puff->throw_mps[i], puff->throw_s, age_s);
     v3_add(p_ecef, p_ecef, way);

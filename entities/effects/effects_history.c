@@ -287,9 +287,9 @@ static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 
 enum { most_halvings = 6 };
 
-/* A trail's old puffs are wide and need not be many. From full_s on, with every doubling of age, every other puff
- * hands its mass to its neighbours: a puff whose number divides by 2^level is there to the end of stage `level`. The
- * mass a second of trail is the same at every age. 0: gone. together: how many puffs it stands for. */
+/* Old puffs of a trail are wide, so fewer are needed. From full_s on, with every doubling of age, every other puff
+ * hands its mass to its neighbours: a puff with a number divisible by 2^level exists to the end of stage `level`. The
+ * mass per second of trail is the same at every age. 0: removed. together: the number of puffs it represents. */
 static double share_of(int64_t number, double age_s, double full_s, double *together)
 {
     int level = 0;

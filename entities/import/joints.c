@@ -1,4 +1,4 @@
-/* entities/import/joints.c: which nodes move, about what, and with whom. */
+/* entities/import/joints.c: which nodes move, about which axes, and together with which nodes. */
 #include "entities/import/model_import_private.h"
 
 #include <stdlib.h>
@@ -141,7 +141,7 @@ static void turn_to_dis_sign(ImportJoint *joint)
     }
 }
 
-/* What a degree of freedom in the file says by itself. A class is nowhere in OpenFlight; a name may be telling. */
+/* Properties of a degree of freedom in the file. OpenFlight has no articulation class; it may follow from the name. */
 static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof *dof)
 {
     const int parent = b->scene->node[dof->node].parent;
@@ -211,7 +211,7 @@ static void grow_radius(void *user, const double p_file[3])
     radius->most = fmax(radius->most, v3_length(off));
 }
 
-/* What the sidecar says, over what the file said. */
+/* The sidecar's values override those of the file. */
 static Status fill_from_spec(ImportJoint *joint, const Builder *b, const SidecarJoint *spec, int index)
 {
     const char *node = b->scene->node[joint->source].name;

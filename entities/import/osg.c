@@ -16,7 +16,7 @@ typedef struct Walk {
     int visits;
 } Walk;
 
-/* Room for `more` in a growing array; false: no memory. */
+/* Capacity for `more` in a growing array; false: no memory. */
 static bool grow(void *array, int *room, int count, int more, size_t size)
 {
     void *old;

@@ -1,4 +1,4 @@
-/* entities/import/surface.c: what a part's surface is when nobody says: material, heat, normals. */
+/* entities/import/surface.c: default surface of a part: material, heat, normals. */
 #include "entities/import/model_import_private.h"
 
 #include <ctype.h>
@@ -66,7 +66,7 @@ bool import_paints_have(const ImportPaints *paints, const char *name)
     return false;
 }
 
-/* Where a word ends in the text, case aside; 0: not in it. The rightmost counts: the last word says the most. */
+/* Where a word ends in the text, case aside; 0: not in it. The rightmost counts: the last word is the most specific. */
 static size_t word_end(const char *text, const char *word)
 {
     size_t end = 0;

@@ -21,7 +21,7 @@ static void scale_in_node(double out[9], const double r_body_from_node[9], const
         }
 }
 
-/* Round about `axis`: `across` in its plane, what `m` says along it. */
+/* Round about `axis`: `across` in its plane, `m` along it. */
 static void make_round(double m[9], const double axis[3], double across)
 {
     double moved[3];

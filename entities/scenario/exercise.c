@@ -152,7 +152,7 @@ static void send_state(Exercise *x, int entity, const Kinematics *k, uint32_t ap
     said->appearance = appearance;
 }
 
-/* ---- when to say it ----------------------------------------------------------------------------- */
+/* ---- when to report ----------------------------------------------------------------------------- */
 
 /* How long until e + r t + b t^2 / 2 comes to the limit; a fifth less, since b is a guess that holds. */
 static double safe_s(double limit, double error, double rate, double bend)
@@ -162,7 +162,7 @@ static double safe_s(double limit, double error, double rate, double bend)
     return 0.8 * 2 * left / (rate + sqrt(rate * rate + 2 * bend * left));
 }
 
-/* Whether what was said has become wrong, and when to look again if not. */
+/* Whether the last report exceeds a threshold by now, and when to check again if not. */
 static bool wrong(double *again_s, const Exercise *x, const Said *said, const Kinematics *truth,
                   const JointReport *joint, int joints, double age_s)
 {

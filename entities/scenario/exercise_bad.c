@@ -23,7 +23,7 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
     case 2: memset(es->p_ecef, 0, sizeof es->p_ecef); break;
     case 3: es->velocity_mps[2] = INFINITY; break;
     case 4: es->psi_rad = NAN; break;
-    case 5: /* nobody's type, and a marking that means harm */
+    case 5: /* an unassigned type, and a hostile marking */
         es->type = (DisEntityType){9, 9, 999, 99, 9, 9, 9};
         memcpy(es->marking, "\x01\xff\x80<b>\n\r\t\"'", 11);
         break;
@@ -43,8 +43,8 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
     case 0: bytes[8] = bytes[9] = 0; break;            /* length field 0 */
     case 6: bytes[0] = 42; break;
     case 9: count = 100; break;                        /* cut short on the way */
-    case 10: bytes[19] = 255; break;                   /* more parts than there is room for */
-    case 11: bytes[2] = 200; break;                    /* a type that nobody knows */
+    case 10: bytes[19] = 255; break;                   /* more parts than the table holds */
+    case 11: bytes[2] = 200; break;                    /* an unknown type */
     case 12:                                           /* noise */
         for (size_t i = 0; i < count; i++) bytes[i] = random_octet(cast, t_s, i);
         break;

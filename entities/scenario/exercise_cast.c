@@ -1,15 +1,16 @@
-/* entities/scenario/exercise_cast.c: where everybody is. Making the cast: exercise_casting.c; missiles:
+/* entities/scenario/exercise_cast.c: poses of all entities. Their creation: exercise_casting.c; missiles:
  * exercise_shots.c. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"
 
 static const double g_mps2 = 9.80665;
-static const double roll_out_s = 2;   /* of who is hit on the ground */
+static const double roll_out_s = 2;   /* of an entity hit on the ground */
 
 /* ---- how far along ---------------------------------------------------------------------------- */
 
-/* Way made by the whole group since 0, m, and its speed. Unsteadiness bends time, so that who stands, stands. */
+/* Distance of the whole group since time 0, m, and its speed. Unsteadiness warps time, so stationary entities stay
+ * stationary. */
 static double travelled(double *speed_mps, const Cast *cast, int group, double t_s)
 {
     static const double swing_rps = 0.25;
@@ -87,7 +88,7 @@ static void hover(CastPose *out, double forward[3], const Cast *cast, int entity
     forward[2] += 0.02 * sin(0.5 * t_s + b);
 }
 
-/* Who was shot down falls; forward it goes on until it meets the ground. */
+/* An aircraft shot down falls, and continues forward until it hits the ground. */
 static void fall(CastPose *out, const CastEntity *e, double t_s)
 {
     const double after_s = fmin(t_s, e->rest_s) - e->hit_s;
@@ -172,7 +173,7 @@ void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s)
     ecef_from_enu(out->p_ecef, &cast->ground.frame, at.p_enu);
 }
 
-/* ---- what else is said ------------------------------------------------------------------------ */
+/* ---- appearance and more ---------------------------------------------------------------------- */
 
 bool cast_present(const Cast *cast, int entity, double t_s)
 {

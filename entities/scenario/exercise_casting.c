@@ -111,7 +111,7 @@ static Status make_route(Cast *cast, int group, bool flies)
     return route_create(&cast->route[group], (const double (*)[3])point, count, g->loop);
 }
 
-/* When a group begins to stop: as told, or so that its first comes to rest where the route ends. */
+/* When a group starts to stop: as given, or so that its first entity stops at the end of the route. */
 static double stop_time(const Cast *cast, int group, Carriage carriage)
 {
     const ScenarioGroup *g = &cast->scenario->group[group];
@@ -122,7 +122,7 @@ static double stop_time(const Cast *cast, int group, Carriage carriage)
     return g->start_s + fmax(way_m / g->speed_mps + 0.5 * cast_ramp_s, cast_ramp_s);
 }
 
-/* ---- everybody -------------------------------------------------------------------------------- */
+/* ---- all entities ----------------------------------------------------------------------------- */
 
 static Status cast_group(Cast *cast, int group, int first, int first_id, const Table *types, const Catalog *catalog)
 {

@@ -1,7 +1,7 @@
 /* entities/scenario/exercise_shots.c: when and where a shot ends, and how its munition flies.
  *
- * The way is the straight line from launch to impact, lofted and weaving, both dying out towards either end. Its
- * length along the line: thrown out, pushed by a motor whose thrust dies away, slowed by a constant drag. */
+ * The path is the straight line from launch to impact with loft and weave, both zero at either end. Motion along the
+ * line: launch speed, a motor with decaying thrust, and a constant drag. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/warfare.h"

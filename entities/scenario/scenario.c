@@ -143,7 +143,7 @@ static ScenarioShot default_shot(void)
                           .hit = "entity", .damage = "destroyed"};
 }
 
-/* Room for one more, twice as much at each power of two. NULL: too many, or no memory. */
+/* Capacity for one more, doubled at each power of two. NULL: too many, or no memory. */
 static void *grown(void **items, int count, int most, size_t size)
 {
     if (count >= most) return NULL;

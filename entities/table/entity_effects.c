@@ -1,5 +1,5 @@
-/* entities/table/entity_effects.c: what an entity's appearance and motion let it give off. Appearance bits are those of
- * dis/enumerations.h; a guided munition's motor burns for as long as heat.c says, whatever its bits. */
+/* entities/table/entity_effects.c: emissions by an entity's appearance and motion. Appearance bits are those of
+ * dis/enumerations.h; a guided munition's motor burns for the time given by heat.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
 static const double moving_mps = 0.3; /* as heat.c: no dust behind what stands */
@@ -150,7 +150,7 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
     return false;
 }
 
-/* Who is set onto the ground smokes there, and a burst on the ground is on this one. */
+/* A ground-clamped entity emits smoke there, and a burst on the ground is on the same ground. */
 static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
@@ -178,7 +178,7 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     return STATUS_OK;
 }
 
-/* The gun has sunk to its stop and the turret stands where the blow left it, unless the sender says where they are. */
+/* The gun is at its lower stop and the turret at an arbitrary azimuth, unless the sender reports them. */
 void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports)
 {
     if (entity->type.kind != dis_kind_platform || reports > 0 ||

@@ -1,4 +1,5 @@
-/* entities/table/entity_eviction.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
+/* entities/table/entity_eviction.c: which entities are kept when the table is full: updates of entity_ranks.h, and the
+ * focus position. */
 #include "entities/table/entity_table_private.h"
 
 static bool same_id(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }

@@ -17,7 +17,7 @@ static const uint32_t near_lists = (UINT32_C(1) << entity_rank_near_classes) - 1
 
 typedef struct Node {
     int     older, newer; /* in its list */
-    int     before, after; /* of all, in the order in which they were heard */
+    int     before, after; /* of all, in the order of their last reports */
     int     sender;       /* nothing: it is not there */
     uint8_t list;
 } Node;
@@ -26,11 +26,11 @@ typedef struct Sender {
     uint32_t key;                     /* site, application */
     uint32_t lists;                   /* bit l: list l holds any */
     int      count[tier_count], at[tier_count]; /* at: in the heap of the tier, where count > 0 */
-    int      oldest[list_count], newest[list_count]; /* where lists says so */
+    int      oldest[list_count], newest[list_count]; /* as given by lists */
 } Sender;
 
 struct EntityRanks {
-    int         room, first, last;    /* room: of a tier; first, last: heard the longest ago, and just now */
+    int         room, first, last;    /* room: of a tier; first, last: least and most recently reported */
     Node       *node;                 /* [slots] */
     Sender     *sender;               /* [slots]; used below sender_end */
     int        *free_sender;
@@ -189,7 +189,7 @@ static void change_list(EntityRanks *r, int slot, int list)
     add_to_count(r, before.sender, tier_of(list), 1);
 }
 
-/* ---- the order in which all were heard ------------------------------------------------------------- */
+/* ---- all entities in the order of their last report ---------------------------------------------------- */
 
 static void receive_last(EntityRanks *r, int slot)
 {

@@ -7,7 +7,7 @@ static const double after_detonation_s = 1;
 /* Faster than anything that leaves the Earth (11.2 km/s), and harder than a gun-launched round once it flies. */
 static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
 
-/* Heartbeats of IEEE 1278.1-2012: 55 or 60 s for land, sea, life forms, the environment and whatever stands; 5 s
+/* Heartbeats of IEEE 1278.1-2012: 55 or 60 s for land, sea, life forms, the environment and stationary entities; 5 s
  * for air, space and munitions. Timeout is 2.4 of them. Before version 7 practice is 5 s for all. */
 static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
 {

@@ -1,4 +1,4 @@
-/* entities/table/entity_snapshot.c: the table at one instant: everybody extrapolated, in the order of ids.
+/* entities/table/entity_snapshot.c: the table at one instant: all entities extrapolated, in the order of ids.
  *
  * Entities go through in chunks whose slots stay in cache; those of one algorithm in a chunk go through
  * dead_reckon_arrays together. */
@@ -63,7 +63,7 @@ typedef struct Ordered {
 } Ordered;
 
 /* Radix sort, an octet a pass, six octets of id; a pass whose octet is the same everywhere is left out. Returns
- * whichever of the two arrays holds the result. */
+ * the one of the two arrays that holds the result. */
 static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 {
     for (int shift = 0; shift < 48; shift += 8) {
@@ -244,7 +244,7 @@ static void place_origin(SnapshotEntity *e, const EntityTable *table, const Enti
     contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
-/* Of an entity whose place is still as it was reported. The way that it has gone is asked for by what rolls alone. */
+/* Of an entity still at its reported position. The travelled distance is needed by rolling parts only. */
 static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, double t_s)
 {
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
@@ -310,7 +310,7 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
     place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
 }
 
-/* Entities by chunks, each by whoever is free: they know nothing of each other. */
+/* Entities by chunks, distributed over the threads: chunks are independent. */
 typedef struct Chunks {
     Snapshot          *snapshot;
     const EntityTable *table;

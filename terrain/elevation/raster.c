@@ -1,5 +1,5 @@
-/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what
- * to do. */
+/* terrain/elevation/raster.c: the interface to GDAL. Its messages are captured, not printed: one log line has them,
+ * with a remedy. */
 #include "terrain/elevation/raster.h"
 
 #include <strings.h>
@@ -19,7 +19,7 @@ static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static void register_drivers(void) { GDALAllRegister(); }
 
-/* GDAL's reason for the last failure, or a word of ours. */
+/* GDAL's reason for the last failure, or a default text. */
 static const char *reason(const char *else_text)
 {
     const char *text = CPLGetLastErrorMsg();

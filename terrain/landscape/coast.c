@@ -1,9 +1,8 @@
-/* terrain/landscape/coast.c: where the sea is, and how the land comes down to it.
+/* terrain/landscape/coast.c: extent of the sea, and the transition from land to it.
  *
- * Sea is what lies nearer to a place of sea than to one of dry land; the line between wanders by a share of the
- * distance to either, so that it looks like a shore and still leaves every place on its own side. The land's own
- * heights are faded to the sea's level towards the shore, and kept above it away from places where the exercise says
- * otherwise. */
+ * A position is sea when it is nearer to a sea fix than to a fix of dry land; the line between is perturbed by a share
+ * of the distance to either, so that it resembles a shore and still leaves every fix on its own side. The land's own
+ * heights are faded to the sea's level towards the shore, and kept above it except near fixes that are lower. */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
@@ -13,7 +12,7 @@ static const double wander = 0.3;           /* of the distance to the nearest pl
 static const double most_wander_m = 400;
 static const double innermost_m = 1024;     /* half width of the finest grid of answers; each next is four times it */
 static const double shore_land_m = 400;     /* the land has its own height from here on */
-static const double own_land_m = 50;        /* of a place of land: its country may be lower than the sea */
+static const double own_land_m = 50;        /* of a land fix: the terrain there may be lower than the sea */
 static const double wild_m = 300;           /* from it: no longer */
 static const double beach_m = 12;
 static const double own_share = 0.8;        /* or so near to a place of land, of the way from the shore */
@@ -71,7 +70,7 @@ static double inland_m(const Coast *coast, double to_sea_m, double to_land_m, do
 {
     if (!coast->land_count) return -INFINITY;
     const double off_m = to_sea_m - to_land_m, room_m = most_wander_at(to_sea_m, to_land_m);
-    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m) return 0.5 * off_m; /* whatever the wandering */
+    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m) return 0.5 * off_m; /* for any perturbation of the line */
     return 0.5 * (off_m + room_m * wander_at(coast->seed, x_m, y_m));
 }
 
@@ -198,7 +197,7 @@ void coast_destroy(Coast *coast)
 
 /* ---- heights ------------------------------------------------------------------------------ */
 
-/* Away from where the exercise was the country does not lie below the sea. */
+/* Away from the fixes the terrain is not below the sea. */
 static double dry_m(double above_m)
 {
     static const double round_m = 2;

@@ -122,7 +122,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* Height of the country where nothing is known: the middle of the fixes; without any the sea's, else that of the
+/* Height of the terrain away from fixes: the median of the fixes; without any the sea's, else that of the
  * ellipsoid or as much lower as the lines need. */
 static Status choose_base(Work *work, const LocalFrame *frame)
 {
@@ -188,7 +188,7 @@ static Status gather_aims(Work *work, const LandscapeConfig *config, const Local
 /* ---- levels ------------------------------------------------------------------------------- */
 
 /* rms height of the hills of one octave. Above half a kilometre all wavelengths are equally high, below it height
- * goes with wavelength: equal slopes, like worn-down country. */
+ * goes with wavelength: equal slopes, like eroded terrain. */
 static double octave_rms_m(double spacing_m, double relief_m)
 {
     static const double knee_m = 512, largest_m = 8192;
@@ -311,8 +311,8 @@ static bool config_ok(const LandscapeConfig *config)
     return config->horizon_m >= config->half_width_m && config->horizon_m <= 1e6;
 }
 
-/* A fix that only shares a row is met through its neighbour; where that leaves it more than 5 cm off (at 4 m
- * posts) the neighbours have contradicted it. */
+/* A fix that only shares a row is fitted through its neighbour; with a residual above 5 cm (at 4 m posts) it is
+ * inconsistent. */
 static void count_fixes(Landscape *landscape, const Work *work, const GroundFix *fix, int fix_count)
 {
     for (int n = 0; n < fix_count; n++) {
@@ -329,7 +329,7 @@ static void count_fixes(Landscape *landscape, const Work *work, const GroundFix 
     }
 }
 
-/* Whatever stands on the water says nothing of the land. */
+/* Entities on the water give no height of the land. */
 static void drop_fixes_at_sea(Work *work)
 {
     for (int n = 0; work->coast.sea_count && n < work->fixes.count; n++) {

@@ -1,5 +1,5 @@
-/* terrain/landscape/landscape_eight_private.h: what cover and texture ask of eight places at once: smooth noise, and
- * the fields about them. A place's answer is the same in whatever company it is asked for. */
+/* terrain/landscape/landscape_eight_private.h: queries of cover and texture for eight positions at once: smooth noise,
+ * and the fields about them. The result of a position is independent of the other seven. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_EIGHT_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_EIGHT_PRIVATE_H
 

@@ -1,16 +1,16 @@
-/* terrain/landscape/landscape_private.h: what the files of the invented landscape share.
+/* terrain/landscape/landscape_private.h: shared by the files of the synthetic terrain.
  *
  * landscape.c        plan of the levels, and the order of the work
- * landscape_levels.c curvature, joining, quantisation: also for ground from files
- * landscape_field.c  smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
- * landscape_votes.c  which entities to sanitize_vector
- * landscape_coast.c  where the sea is, and how the land comes down to it
- * landscape_fit.c    which fixes to sanitize_vector, and the last centimetres on the posts themselves
- * landscape_clear.c  what clear lines allow
- * landscape_near.c   points by place
- * landscape_plots.c  invented fields
- * landscape_cover.c  what grows and lies on the ground: tracks, hedges, woods; what cover files say
- * landscape_texture.c how bright it is there; what photographs say */
+ * levels.c           curvature, joining, quantisation: also for terrain from files
+ * field.c            smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
+ * votes.c            which entities are consistent with the others
+ * coast.c            extent of the sea, and the transition from land to it
+ * fit.c              which fixes are consistent, and the last centimetres on the posts themselves
+ * clear_lines.c      height limits by clear lines
+ * nearest_fix.c      spatial index of points
+ * plots.c            synthetic fields
+ * cover.c            land cover: tracks, hedges, woods; land cover from files
+ * texture.c          brightness of the ground; brightness from photographs */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 
@@ -66,12 +66,12 @@ enum { lowest_ground_m = -1000 }; /* nothing on the ground or above it is lower;
 
 /* ---- fixes -------------------------------------------------------------------------------- */
 
-/* One believed place of the ground; fixes that say the same within 1 cm share a row. */
+/* One accepted fix of the ground; fixes equal within 1 cm share a row. */
 typedef struct FixRow {
     double x_m, y_m, z_m; /* ENU */
     double h_m;           /* above the ellipsoid */
     int    fix;           /* its number in the caller's array */
-    int    weight;        /* voters that share it */
+    int    weight;        /* source entities that share it */
     int    level;         /* level it lies on */
     bool   dropped;
 } FixRow;
@@ -95,7 +95,7 @@ typedef struct Field {
     float *v; /* [ny][nx] */
 } Field;
 
-/* How much of the invented relief is left near what is known, on its own coarse grid. */
+/* Share of the synthetic relief near fixes, on its own coarse grid. */
 typedef struct Calm {
     Field factor; /* v NULL: 1 everywhere */
 } Calm;
@@ -189,8 +189,8 @@ Status levels_store(Elevation *out, const WorkLevel *level, int count);
 
 enum { coast_grids = 6, coast_cells = 256 };
 
-/* Thinned places, and for quick answers nested grids about the origin that say of each cell whether it is all sea, all
- * land away from the beach, or must be asked place by place. */
+/* Thinned places, and for quick answers nested grids about the origin that give for each cell whether it is all sea,
+ * all land away from the beach, or must be evaluated position by position. */
 typedef struct Coast {
     int      sea_count, land_count; /* sea_count 0: no sea */
     double (*sea)[2], (*land)[2];

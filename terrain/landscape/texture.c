@@ -1,5 +1,5 @@
-/* terrain/landscape/texture.c: how bright the ground is against its class's mean: an invented pattern of several
- * wavelengths, and what a photograph shows. */
+/* terrain/landscape/texture.c: brightness of the ground relative to the mean of its class: a synthetic pattern of
+ * several wavelengths, and the photograph. */
 #include "terrain/landscape/landscape_eight_private.h"
 
 /* ---- pattern -------------------------------------------------------------------------------- */
@@ -7,8 +7,8 @@
 static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
 enum { octave_count = sizeof octave_m / sizeof octave_m[0] };
 
-/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The
- * rows are invented, to look right. */
+/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The rows are
+ * estimates, chosen by appearance. */
 static const float amplitude[SURFACE_COUNT][octave_count] = {
     [SURFACE_NONE] = {0},
     [SURFACE_GRASS] = {.07f, .06f, .05f, .05f, .05f, .05f, .05f},
@@ -62,7 +62,7 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     return f32x8_load(wave);
 }
 
-/* Finest features that the photograph leaves to be invented: those of two of its pixels are on it. */
+/* Largest wavelength of synthetic detail under a photograph: wavelengths from two of its pixels on are in it. */
 static F32x8 photo_fineness(const Photo *photo, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     float seen_m[8];
