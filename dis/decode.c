@@ -1,4 +1,4 @@
-/* dis/decode.c: the table of PDU types, and through it from octets to a tagged PDU and back. */
+/* dis/decode.c: the table of PDU types; decodes and encodes tagged PDUs by it. */
 #include "dis/decode_private.h"
 
 #include "dis/data_private.h"

@@ -1,4 +1,4 @@
-/* dis/decode.h: the one way from octets to a PDU, and back: a tagged union of the plain structs. */
+/* dis/decode.h: decodes and encodes PDUs: a tagged union of the plain structs. */
 #ifndef DIS_DECODE_H
 #define DIS_DECODE_H
 

@@ -1,4 +1,4 @@
-/* dis/log.c: a capture file into a log: which packets are read, which port, and what is reported of the rest. */
+/* dis/log.c: from a capture file to a log: which packets are read, which port, and what is reported of the rest. */
 #include "dis/log.h"
 
 #include "dis/log_packet.h"

@@ -1,4 +1,4 @@
-/* dis/log.h: a recorded exercise, whole, in memory: datagrams out of a pcap or pcapng file,
+/* dis/log.h: a recorded exercise in memory: datagrams of a pcap or pcapng file,
  * compressed or not (dis/log_stream.h), with one link layer or one for each interface (dis/log_pcap.h).
  *
  * Link layers: Ethernet (with any VLAN tags), Linux cooked v1 and v2, BSD loopback, raw IP. IPv4 with

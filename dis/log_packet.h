@@ -1,4 +1,4 @@
-/* dis/log_packet.h: the packets of a capture into the datagrams of a log; for log.c only. */
+/* dis/log_packet.h: from the packets of a capture to the datagrams of a log; for log.c only. */
 #ifndef DIS_LOG_PACKET_H
 #define DIS_LOG_PACKET_H
 

@@ -1,4 +1,4 @@
-/* dis/pdu.h: what every PDU shares: identifiers, types, the header, counters.
+/* dis/pdu.h: common to all PDUs: identifiers, types, the header, counters.
  *
  * Wire facts: IEEE 1278.1-1995 (version 5), 1278.1A-1998 (6), 1278.1-2012 (7). Structs are plain and keep
  * every octet, padding too, so that decode and encode are exact inverses. */

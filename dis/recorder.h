@@ -1,5 +1,5 @@
-/* dis/recorder.h: datagrams into a capture file: pcapng (or pcap where the name ends so), nanoseconds, raw IP headers
- * made up from what is known of the sender. What dis_log_open reads again has the same octets and times. */
+/* dis/recorder.h: writes datagrams to a capture file: pcapng (or pcap where the name ends so), nanoseconds, raw IP
+ * headers generated from the known addresses. dis_log_open reads back the same octets and times. */
 #ifndef DIS_RECORDER_H
 #define DIS_RECORDER_H
 

@@ -1,4 +1,4 @@
-/* dis/steady_clock.c: Unix time by the monotonic clock, and what the system's clock was set by since. */
+/* dis/steady_clock.c: Unix time by the monotonic clock, and the steps of the system clock since. */
 #include "dis/steady_clock.h"
 
 #include <pthread.h>

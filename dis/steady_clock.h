@@ -1,5 +1,5 @@
-/* dis/steady_clock.h: Unix time that does not step: the system's clock as it was when the program began, carried on by
- * the monotonic clock. A clock that is set back, or forward, neither stops a live node nor makes it skip.
+/* dis/steady_clock.h: Unix time without steps: the system clock at the start of the program, continued by the monotonic
+ * clock. A clock that is set back, or forward, neither stops a live node nor makes it skip.
  *
  * The kernel stamps datagrams by the system's clock; by how much that was set since is taken off again. Where it was
  * not set the stamps stay as they are, to the nanosecond: slewing (adjtime, NTP) moves both clocks alike. */

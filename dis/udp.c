@@ -1,4 +1,4 @@
-/* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
+/* dis/udp.c: the receiving thread, its queue, and the rule that closes a tick.
  *
  * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or
  * for a moment the one that closes a tick). sending: the socket itself, which a network that went and came back

@@ -1,4 +1,4 @@
-/* dis/udp_link.c: announcements of the kernel, and a look at the interface itself.
+/* dis/udp_link.c: notifications of the kernel, and polling of the interface.
  *
  * Sources: rtnetlink(7), netdevice(7), ip(7), ipv6(7). */
 #include "dis/udp_link.h"

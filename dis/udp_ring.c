@@ -1,4 +1,4 @@
-/* dis/udp_ring.c: records of whole units, one behind the other, round and round. */
+/* dis/udp_ring.c: ring buffer of records, each a whole number of units. */
 #include "dis/udp_ring.h"
 
 #include <stdlib.h>

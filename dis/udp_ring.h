@@ -1,4 +1,4 @@
-/* dis/udp_ring.h: datagrams that wait, in a ring of octets; for udp.c only, under its lock.
+/* dis/udp_ring.h: queue of datagrams in a ring buffer; for udp.c only, under its lock.
  *
  * Each lies in one piece behind its record. What was taken stays until the next take. Memory is taken once. */
 #ifndef DIS_UDP_RING_H

@@ -1,4 +1,4 @@
-/* dis/udp_socket.c: which socket options an exercise needs, and one line for each thing that can be wrong with them.
+/* dis/udp_socket.c: socket options of an exercise, and one log line for each failure.
  *
  * Sources: ip(7), ipv6(7), udp(7), socket(7). */
 #include "dis/udp_socket.h"

@@ -1,4 +1,4 @@
-/* dis/udp_socket.h: from names to a socket; for udp.c only. */
+/* dis/udp_socket.h: opens a socket from address and interface names; for udp.c only. */
 #ifndef DIS_UDP_SOCKET_H
 #define DIS_UDP_SOCKET_H
 

@@ -1,4 +1,4 @@
-/* entities/catalog/catalog.h: which model an entity type gets, from etc/catalog.csv by the longest match, and the
+/* entities/catalog/catalog.h: maps an entity type to its model, from etc/catalog.csv by the longest match, and the
  * models themselves, one of each shape and size. Built-in ones get their facets when a type of theirs is first
  * looked for. */
 #ifndef ENTITIES_CATALOG_CATALOG_H

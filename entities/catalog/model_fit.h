@@ -1,4 +1,4 @@
-/* entities/catalog/model_fit.h: whether a model from a file has the size that it should have; if not, which axes or
+/* entities/catalog/model_fit.h: whether a model from a file has its expected size; if not, which axes or
  * which unit of the file would give it. */
 #ifndef ENTITIES_CATALOG_MODEL_FIT_H
 #define ENTITIES_CATALOG_MODEL_FIT_H

@@ -1,4 +1,4 @@
-/* entities/effects/effects_history.c: two rings, and the puffs that follow from them. */
+/* entities/effects/effects_history.c: two ring buffers, and the puffs computed from them. */
 #include "entities/effects/effects_history.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* entities/effects/heat.h: how warm an entity's parts are because of what it has been doing.
+/* entities/effects/heat.h: temperatures of an entity's parts from its activity.
  *
  * Each heat role has one driver, a steady rise at full drive, and a time constant each way (etc/heat.csv). Between
  * reports every drive is constant (or ends at a known time), so a level follows in closed form and does not depend

@@ -1,7 +1,8 @@
-/* entities/import/model_import_private.h: what a file holds, flat, before any_sender knows which way is up.
+/* entities/import/model_import_private.h: the content of a model file as a flat scene, before axes and scale are
+ * applied.
  *
  * A reader fills it from a format; model_import.c makes a Model of it. The readers check indices and counts, so that
- * everything here is in range; coordinates may still be anything (NaN too). */
+ * everything here is in range; coordinates may still have any value (NaN too). */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 
@@ -9,7 +10,7 @@
 #include "entities/import/sidecar.h"
 
 enum {
-    import_max_octets = 1 << 28, /* of a file, unpacked */
+    import_max_octets = 1 << 28, /* of a file, decompressed */
     import_max_nodes = 65536,
     import_max_meshes = 16384, /* and so of parts */
     import_max_vertices = 1 << 23,

@@ -1,4 +1,4 @@
-/* entities/import/names.c: names of a file's nodes, where a sidecar cannot find them or finds too many. */
+/* entities/import/names.c: suggests names of a file's nodes for patterns without a match or with too many. */
 #include "entities/import/model_import_private.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* entities/import/osg_private.h: OpenSceneGraph's text form as a tree: one element a line, `{` opens what belongs to it. */
+/* entities/import/osg_private.h: OpenSceneGraph's text form as a tree: one element per line, `{` opens its children. */
 #ifndef ENTITIES_IMPORT_OSG_PRIVATE_H
 #define ENTITIES_IMPORT_OSG_PRIVATE_H
 

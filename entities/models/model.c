@@ -1,4 +1,4 @@
-/* entities/models/model.c: making, poses and destruction of models. */
+/* entities/models/model.c: creation, poses and destruction of models. */
 #include "entities/models/model.h"
 
 #include <stdio.h>

@@ -1,4 +1,4 @@
-/* entities/models/model.h: what an entity is made of: nodes that move, parts that are seen.
+/* entities/models/model.h: the 3D model of an entity: nodes that move, parts that are rendered.
  *
  * Model axes are the entity's body axes: x forward, y right, z down, metres, origin at the centre of the
  * base (the ground contact, z = 0; everything above has z < 0). A model is immutable once built. */

@@ -1,4 +1,4 @@
-/* entities/models/model_resize.c: a model brought to a given length, width and height, its moving parts with it.
+/* entities/models/model_resize.c: scales a model to a given length, width and height, with its moving parts.
  *
  * The rest pose is scaled along the body axes. A node keeps its rest attitude R, so in its own axes its points go
  * through R^T S R; what rolls or spins must stay round, and takes one factor across its axis instead (wheels that of

@@ -1,4 +1,4 @@
-/* entities/motion/dead_reckoning.c: where a body is, dt after its report, by the nine algorithms.
+/* entities/motion/dead_reckoning.c: pose of a body dt after its report, by the nine algorithms.
  *
  * Source: IEEE 1278.1 Annex E. With w the body rates, x = |w| t, W v = w x v and R0 the world -> body rotation:
  *

@@ -1,4 +1,4 @@
-/* entities/parametric/mesh_builder_private.h: the builder from inside, for the files that make its shapes. */
+/* entities/parametric/mesh_builder_private.h: internals of the builder, for the files of its shapes. */
 #ifndef ENTITIES_PARAMETRIC_MESH_BUILDER_PRIVATE_H
 #define ENTITIES_PARAMETRIC_MESH_BUILDER_PRIVATE_H
 

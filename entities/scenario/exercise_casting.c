@@ -1,4 +1,5 @@
-/* entities/scenario/exercise_casting.c: a scenario into a cast: types, routes, formations, joints, then the shots. */
+/* entities/scenario/exercise_casting.c: from a scenario to its entities (Cast): types, routes, formations, joints, then
+ * the shots. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"

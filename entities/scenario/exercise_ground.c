@@ -1,4 +1,4 @@
-/* entities/scenario/exercise_ground.c: the ground that an exercise moves over, from files or made up. */
+/* entities/scenario/exercise_ground.c: the ground of an exercise, from files or synthetic. */
 #include "entities/scenario/exercise_ground.h"
 
 #include "terrain/landscape/elevation_import.h"

@@ -1,4 +1,4 @@
-/* entities/scenario/exercise_link.c: PDUs stamped and bundled into datagrams, lost, delayed and doubled as
+/* entities/scenario/exercise_link.c: PDUs stamped and bundled into datagrams, dropped, delayed and duplicated as
  * configured. */
 #include "entities/scenario/exercise_link.h"
 

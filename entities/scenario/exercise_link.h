@@ -1,4 +1,4 @@
-/* entities/scenario/exercise_link.h: from PDUs to datagrams: stamps, bundles, and what networks do to them.
+/* entities/scenario/exercise_link.h: from PDUs to datagrams: time stamps, bundles, and simulated network faults.
  *
  * Loss, repetition and overtaking are decided by the datagram's number alone: the same scenario, the same octets. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_LINK_H

@@ -1,4 +1,4 @@
-/* entities/scenario/route.h: a smooth way through points: position and its derivatives by the distance along it.
+/* entities/scenario/route.h: a smooth path through points: position and its derivatives by the distance along it.
  *
  * A cubic spline through the points (chord length its parameter, natural at the ends or closed), then sampled evenly
  * by arc length and held as a uniform cubic B-spline: twice differentiable, and as quick far along as at the

@@ -1,4 +1,4 @@
-/* entities/scenario/scenario.c: YAML -> Scenario, by tables; then what no table can check. */
+/* entities/scenario/scenario.c: YAML -> Scenario, by tables; then checks across keys. */
 #include "entities/scenario/scenario.h"
 
 #include <stdlib.h>

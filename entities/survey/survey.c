@@ -1,4 +1,4 @@
-/* entities/survey/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
+/* entities/survey/survey.c: one pass over all PDUs of a log: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
 #include "dis/datagram.h"
 #include "dis/enumerations.h"

@@ -1,4 +1,4 @@
-/* entities/survey/track.c: where a recorded entity was between two of its reports. */
+/* entities/survey/track.c: interpolates a recorded entity between its reports. */
 #include "entities/survey/survey.h"
 
 /* ---- attitude: the shortest turn at an even rate ------------------------------------------ */

@@ -1,4 +1,4 @@
-/* entities/table/contact.c: entities set onto the ground or the water along the local vertical. */
+/* entities/table/contact.c: clamps entities to the ground or the water along the local vertical. */
 #include "entities/table/contact.h"
 
 #include "dis/enumerations.h"

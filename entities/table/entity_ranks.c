@@ -1,5 +1,5 @@
-/* entities/table/entity_ranks.c: of each sender a list of entities a distance class, stalest first; of each tier a heap of
- * senders by how many they have in it. */
+/* entities/table/entity_ranks.c: per sender a list of entities for each distance class, oldest report first; of each
+ * tier a heap of senders by how many they have in it. */
 #include "entities/table/entity_ranks.h"
 #include "entities/table/entity_index.h"
 

@@ -1,4 +1,4 @@
-/* entities/table/entity_report.c: what an Entity State or its Update means for the entity's slot. */
+/* entities/table/entity_report.c: applies an Entity State or its Update to the entity's slot. */
 #include "entities/table/entity_table_private.h"
 
 /* No launcher uses an id again so soon. */

@@ -1,4 +1,5 @@
-/* entities/table/entity_table.c: slots, and what PDUs but reports do to them. Reports: entity_report.c; how a slot becomes a pose: snapshot.c. */
+/* entities/table/entity_table.c: slots, and the effects of PDUs other than Entity State. Reports: entity_report.c; from
+ * a slot to a pose: entity_snapshot.c. */
 #include "entities/table/entity_table_private.h"
 
 #include <stdlib.h>

@@ -1,7 +1,7 @@
-/* entities/table/entity_table.h: what entities there are: one slot an entity, handles with a generation, the last report
- * of each, and what its history implies (heat, distance travelled, smoke left behind).
+/* entities/table/entity_table.h: the entity table: one slot per entity, handles with a generation, the last report of
+ * each, and state from its history (heat, distance travelled, smoke trails).
  *
- * Fed PDUs in the order of exercise time; asked for a Snapshot at any t at or after the last of them. */
+ * Takes PDUs in the order of exercise time; gives a Snapshot at any t at or after the last of them. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_H
 

@@ -1,4 +1,4 @@
-/* entities/table/entity_table_private.h: what the table keeps of an entity, and snapshot.c reads. */
+/* entities/table/entity_table_private.h: state of an entity in the table, read by entity_snapshot.c. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 

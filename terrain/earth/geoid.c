@@ -1,4 +1,5 @@
-/* terrain/earth/geoid.c: the .gtx grid, read whole and held with a margin, so that a look-up never asks where it is. */
+/* terrain/earth/geoid.c: the .gtx grid, read completely and stored with a margin, so that look-ups need no bounds
+ * checks. */
 #include "terrain/earth/geoid.h"
 
 #include <errno.h>

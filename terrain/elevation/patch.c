@@ -1,4 +1,4 @@
-/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and halved into levels. */
+/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
 #include "terrain/elevation/patch.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* terrain/landscape/elevation_correct.c: imported elevation bent to fixes of the ground. */
+/* terrain/landscape/elevation_correct.c: corrects imported elevation by fixes of the ground. */
 #include "terrain/landscape/elevation_import_private.h"
 
 #include <stdlib.h>

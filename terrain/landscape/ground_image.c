@@ -1,4 +1,4 @@
-/* terrain/landscape/ground_image.c: rasters of cover classes and of a photograph, resampled into ENU, and read at
+/* terrain/landscape/ground_image.c: rasters of land cover classes and of a photograph, resampled into ENU, and read at
  * points. */
 #include "terrain/landscape/ground_image.h"
 

@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape.c: plan of the levels, and the order of the work.
+/* terrain/landscape/landscape.c: layout of the levels, and the sequence of steps.
  *
  * From the horizon inwards, in heights above the ellipsoid: refine the smooth field, add the hills of that
  * wavelength, pull in the fixes, push down under the lines. Where its control points are as fine as a level's

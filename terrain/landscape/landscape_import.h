@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape_import.h: real ground: elevation, cover and a photograph from files. */
+/* terrain/landscape/landscape_import.h: real ground: elevation, land cover and a photograph from files. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_IMPORT_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_IMPORT_H
 

@@ -1,6 +1,6 @@
 /* terrain/landscape/landscape_private.h: shared by the files of the synthetic terrain.
  *
- * landscape.c        plan of the levels, and the order of the work
+ * landscape.c        layout of the levels, and the sequence of steps
  * levels.c           curvature, joining, quantisation: also for terrain from files
  * field.c            smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
  * votes.c            which entities are consistent with the others

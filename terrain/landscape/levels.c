@@ -1,4 +1,4 @@
-/* terrain/landscape/levels.c: from heights above the ellipsoid to the stored levels: bent over the curved Earth into
+/* terrain/landscape/levels.c: from heights above the ellipsoid to the stored levels: with Earth curvature into
  * ENU, joined to the level around, and quantised, coarse before fine, so that edge posts fall exactly on the level
  * around them. */
 #include "terrain/landscape/landscape_private.h"

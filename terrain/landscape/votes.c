@@ -14,13 +14,13 @@
 #include <stdlib.h>
 
 enum { most_neighbours = 6, most_kept = 64, most_judged = 8, most_a_cell = 128 };
-static const double reach_m = 300;      /* farther apart, ground may do as it likes */
-static const double apart_m = 8;        /* of the places that are kept of one entity */
-static const double alike_m = 40;       /* neighbours nearer than this weigh much alike: the closest may be wrong */
+static const double reach_m = 300;      /* farther apart, entities do not constrain each other */
+static const double apart_m = 8;        /* between the positions kept of one entity */
+static const double alike_m = 40;       /* neighbours nearer than this weigh about the same: the closest may be wrong */
 static const double steepest = 0.7;     /* tan 35 degrees */
-static const double trust_m = 1.5;      /* of two senders' ground, suspension, where an origin is */
-static const double free_slope = 0.15;  /* ground between entities may leave a plane by this */
-static const double agree_slope = 0.15; /* a neighbour may leave the plane it supports by this */
+static const double trust_m = 1.5;      /* tolerance for two senders' terrain, suspension, model origin */
+static const double free_slope = 0.15;  /* terrain between entities may deviate from a plane by this slope */
+static const double agree_slope = 0.15; /* an inlier may deviate from its plane by this slope */
 
 typedef struct ConsensusPoint {
     double p[3];

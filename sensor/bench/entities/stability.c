@@ -1,6 +1,6 @@
-/* sensor/bench/entities/stability.c: motion and attitude at their edges: dead reckoning from hardly turning to
- * spinning, from microseconds to hours; Euler angles straight up and down. The judge of motion is the exponential of
- * the turn's matrix by doubling, in 113 bits where the compiler has them: it knows none of the closed forms. */
+/* sensor/bench/entities/stability.c: motion and attitude at their edge cases: dead reckoning from tiny to large angular
+ * rates, from microseconds to hours; Euler angles straight up and down. The reference for motion is the exponential of
+ * the rotation's matrix by doubling, in 113 bits where the compiler has them, independent of the closed forms. */
 #include "sensor/bench/entities/stability.h"
 
 #include "entities/models/articulation.h"
@@ -18,7 +18,7 @@ static double uniform(uint32_t stream, uint64_t index, double low, double high)
     return low + (high - low) * random_uniform(0xDEAD, stream, 0, index);
 }
 
-/* ---- the judge ------------------------------------------------------------------------------ */
+/* ---- reference ----------------------------------------------------------------------------- */
 
 /* Over a time t, with W u = w x u: e^(Wt), its integral, and that of s e^(Ws). */
 typedef struct Exponential {

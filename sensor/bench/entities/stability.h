@@ -1,4 +1,4 @@
-/* sensor/bench/entities/stability.h: this room's part of `pitviper bench stability`. */
+/* sensor/bench/entities/stability.h: the entries of `pitviper bench stability` for entities. */
 #ifndef SENSOR_BENCH_ENTITIES_STABILITY_H
 #define SENSOR_BENCH_ENTITIES_STABILITY_H
 

@@ -1,6 +1,5 @@
-/* sensor/bench/terrain/stability.c: the Earth at its awkward places: poles, date line, trenches and orbits, each
- * with its neighbours in floating point. The judges are WGS 84 written out in long double, ERFA by another of its
- * ways, and symmetry. */
+/* sensor/bench/terrain/stability.c: geodesy at its edge cases: poles, date line, trenches and orbits, each with its
+ * neighbours in floating point. References: WGS 84 in long double, ERFA by another method, and symmetry. */
 #include "sensor/bench/terrain/stability.h"
 
 #include "terrain/earth/geoid.h"
@@ -206,8 +205,8 @@ static void any_origin(Bench *bench)
 
 /* ---- sun ------------------------------------------------------------------------------------ */
 
-/* ERFA by its other way: the CIO-based matrix, light time to the Sun's own barycentric place, and the aberration of an
- * observer who turns with the Earth. Unit vector at the place, ENU, no air. */
+/* ERFA by its other method: the CIO-based matrix, light time to the Sun's barycentric position, and the aberration of
+ * an observer rotating with the Earth. Unit vector at the position, ENU, no refraction. */
 static void sun_another_way(double d_enu[3], double unix_s, const Geodetic *place, double delta_t_s)
 {
     const double au_m = 149597870700.0, c_au_day = 173.144632674, day = floor(unix_s / 86400), jd = 2440587.5 + day;
