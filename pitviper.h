@@ -1,7 +1,7 @@
-/* pitviper.h: the few words everyone shares.
+/* pitviper.h: shared basics.
  *
- * Status and log, memory that lives one frame, one pool of threads, counter-based random numbers,
- * text tables, settings, and small vectors. Knows nothing of DIS, Earth or light. */
+ * Status and log, per-frame memory, one thread pool, counter-based random numbers,
+ * text tables, settings, and small vectors. Independent of DIS, Earth and light. */
 #ifndef PITVIPER_H
 #define PITVIPER_H
 
@@ -35,7 +35,7 @@ const char *status_name(Status status);
 
 /* ---- log ---------------------------------------------------------------------------------- */
 
-typedef enum LogLevel { LOG_DETAIL /* hidden unless asked for */, LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
+typedef enum LogLevel { LOG_DETAIL /* hidden by default */, LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
 typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
@@ -47,18 +47,18 @@ void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
  * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and what was asked for
+/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output
  * stay. */
 bool log_is_quiet(void);
 bool log_is_verbose(void);
-/* To standard output, what was not asked for: choices, a summary at the end. Nothing when quiet. */
+/* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
 void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* ---- arena: memory that lives one frame --------------------------------------------------- */
+/* ---- arena: memory of one frame -------------------------------------------------------- */
 
 /* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at
  * first. arena_alloc may be called by several threads at once; nothing else may be called meanwhile. */
@@ -150,7 +150,7 @@ bool temp_file(char out[temp_path_size], const char *ending);
 /* Path of a file under etc/: $PITVIPER_ETC, else share/pitviper beside the program, the source folder or the installed
  * one. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
-/* Whether what every run reads is there; else logs what is missing, where it was looked for, and what to do. */
+/* Whether the files read by every run exist; else logs what is missing, the folders searched, and a remedy. */
 bool etc_is_complete(void);
 /* A table of the user's own beside catalog.csv, materials.csv or sensors.csv of etc/: its rows go before those. path
  * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL: none. */
@@ -166,7 +166,7 @@ typedef enum SettingType {
      * the current one: once read, *out has them as the system takes them. */
     SETTING_PATH,
     SETTING_PATHS,        /* several, separated by commas */
-    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is left alone */
+    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
     SETTING_OWN,          /* one text; a list is its words with blanks between */
     SETTING_EACH,         /* one text, or a list of them: one call each */
@@ -211,7 +211,7 @@ struct SettingTable {
     int                count;
     const SettingList *list;   /* NULL: none */
     int                list_count;
-    size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
+    size_t             line_at; /* of an item: offset of an int for the line of its start; 0: none */
     const char        *all_keys; /* what prints them: `pitviper check --default`; NULL: nothing */
     const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
     SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
@@ -223,9 +223,9 @@ enum { settings_file_octets = 1 << 20 };
  * to end. Time in proportion to octets; logs what is wrong, with its line. */
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
-/* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
+/* Overwrites *out. Absent keys keep their values; what is unknown, given twice, of the wrong kind or out of range
  * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
- * is set for each key met at the top. On failure *out is half filled: read into a copy. */
+ * is set for each key at the top level. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
 /* The same from memory; path is for the messages. */
 Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
@@ -235,7 +235,7 @@ Status settings_read_as(void *out, bool *given, const SettingTable *table, const
 /* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                     const char *source);
-/* The same as if it stood in that file, for what it names relative to the file's folder. file NULL: as settings_set. */
+/* The same as if it were in that file, for paths relative to the file's folder. file NULL: as settings_set. */
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
 bool   settings_is_path(const Setting *row);
@@ -252,7 +252,7 @@ void   settings_write(FILE *to, const SettingTable *table, const void *from, con
 /* Every key with what it accepts and its help. */
 void   settings_write_keys(FILE *to, const SettingTable *table);
 
-/* ---- probes: one model at a time, held against any_sender else's numbers --------------------------- */
+/* ---- probes: one model at a time, for comparison with other programs --------------------------- */
 
 enum { probe_max_columns = 24, probe_text_size = 96 };
 

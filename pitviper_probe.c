@@ -75,7 +75,7 @@ static void write_number(FILE *out, double number)
     fputs(text, out);
 }
 
-/* Why the row cannot be asked about, or NULL with `in` filled. */
+/* Why the row cannot be evaluated, or NULL with `in` filled. */
 static const char *read_row(ProbeValue *in, const Column *column, int columns, char **cell, char reason[static 128])
 {
     for (int i = 0; i < columns; i++) {

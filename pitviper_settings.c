@@ -128,7 +128,7 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
 
 /* ---- one value, stored ----------------------------------------------------------------------- */
 
-/* file: where it stands; NULL: on a command line. */
+/* file: its source; NULL: the command line. */
 Status settings_store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
                     const char *file)
 {

@@ -66,7 +66,7 @@ static void readable(char *out, size_t out_size, const Setting *row, const void 
     }
 }
 
-/* Words that YAML takes as they stand. */
+/* Words that YAML needs no quotes for. */
 static bool is_plain(const char *text)
 {
     if (!*text || strchr("-?:,[]{}#&*!|>'\"%@` ", text[0])) return false;

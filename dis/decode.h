@@ -11,7 +11,7 @@
 typedef struct DisPdu {
     uint8_t type; /* which of these: dis_pdu_entity_state, ...; as in the header */
     union {
-        DisHeader            header; /* every struct begins with it */
+        DisHeader            header; /* first member of every struct */
         DisEntityState       entity_state;
         DisEntityStateUpdate update;
         DisFire              fire;
@@ -24,7 +24,7 @@ typedef struct DisPdu {
 } DisPdu;
 
 /* pdu: header.length octets from dis_next_pdu. On failure `out` is untouched; when it succeeds, variable records and
- * datums beyond the counted ones are left alone. Values are not validated here: see dis_entity_is_usable.
+ * datums beyond the counted ones are unchanged. Values are not validated here: see dis_entity_is_usable.
  * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field gives.
  * STATUS_BAD_VALUE: a count that the length cannot hold.
  * STATUS_UNSUPPORTED: a type that is not decoded, or more datums than the output holds. */

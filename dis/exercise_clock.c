@@ -26,11 +26,11 @@ static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double
 
 /* What is expected of a network: datagrams bundled or delayed by some 100 ms, both ways about the first one's delay. */
 static const double jitter_s = 0.15, drift = 1e-4; /* and of clocks: s a second */
-/* A stamp that far behind its sender's latest is of a datagram that was overtaken: nothing that counts goes back so. */
+/* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
-static const double settled_s = 1.0;       /* a proven sender may drift so far before its stamps are placed anew */
+static const double settled_s = 1.0;       /* drift of a validated sender at which its offset is renewed */
 static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
-/* Two reports of one entity that far apart, and stamps that went less than a twentieth of it: they stand still. */
+/* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant. */
 static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05;
 
 typedef struct Moment {
@@ -45,7 +45,7 @@ typedef struct Sender {
     bool     used;
     uint8_t  standing;
     uint8_t  failures; /* number of rejections, most_failures at most */
-    uint8_t  odd;      /* reports in a row that leave the ruler or stand still */
+    uint8_t  odd;      /* consecutive reports that deviate from the reference or are constant */
     uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
     bool     disagrees; /* the last check */
     int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
@@ -152,7 +152,7 @@ static bool keeps_pace(Moment since, Moment now)
     return fabs(gained_s(since, now)) <= jitter_s + drift * fabs(now.capture_s - since.capture_s);
 }
 
-/* Whether an entity's stamps stand still between two of its reports; remembers this one. */
+/* Whether an entity's stamps are constant between two of its reports; remembers this one. */
 static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
 {
     Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];

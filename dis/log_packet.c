@@ -23,7 +23,7 @@ enum {
     ethertype_vlan = 0x8100,          /* 802.1Q */
     ethertype_service_vlan = 0x88A8,  /* 802.1ad */
     ethertype_old_service_vlan = 0x9100,
-    assemblies = 64,                  /* datagrams in assembly at a time; the oldest goes */
+    assemblies = 64,                  /* datagrams in reassembly at a time; the oldest is dropped */
     ip_payload_limit = 65535,
     fragment_unit = 8,                /* octets; every fragment but the last is whole units */
     fragment_units = 8192,
@@ -57,7 +57,7 @@ typedef struct Assembly {
     uint32_t packets;
     uint8_t  next;    /* IPv6: header after the fragment header of the first fragment */
     bool     first_seen;
-    size_t   total;   /* octets, 0: the last fragment has not come */
+    size_t   total;   /* octets, 0: the last fragment is missing so far */
     size_t   furthest;
     size_t   units;   /* received */
     uint64_t have[fragment_units / 64];
@@ -370,7 +370,7 @@ static bool is_ip_family(uint32_t family)
     return family == 2 || family == 10 || family == 23 || family == 24 || family == 28 || family == 30;
 }
 
-/* Where the network layer begins; 0: a link layer this node does not read. */
+/* Offset of the network layer; 0: an unsupported link layer. */
 static size_t link_header_octets(int link)
 {
     switch (link) {

@@ -6,8 +6,8 @@
 
 typedef struct DisPacketReader DisPacketReader;
 
-/* Datagrams to `port` (0: to any, payloads that begin as a DIS header) are appended to the log, their octets in the
- * arena; what gives none is counted there. */
+/* Datagrams to `port` (0: to any, payloads that start with a DIS header) are appended to the log, their octets in the
+ * arena; packets without one are counted there. */
 Status dis_packet_reader_create(DisPacketReader **out, DisLog *log, Arena *arena, uint16_t port);
 void   dis_packet_reader_destroy(DisPacketReader *reader);
 

@@ -21,7 +21,7 @@ enum {
     option_tsresol = 9,
     option_tsoffset = 14,
     packet_most = 262144,            /* octets of a packet: libpcap's limit */
-    body_most = packet_most + 32,    /* octets of a block that are looked at */
+    body_most = packet_most + 32,    /* octets of a block that are read */
     interfaces_most = 65536,
 };
 
@@ -81,7 +81,7 @@ static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 
 static double stamp_s(const Interface *face, uint64_t ticks)
 {
-    static const int64_t most_s = 9000000000; /* no clock shows more, or less than 0: they stand at the nearer end */
+    static const int64_t most_s = 9000000000; /* times beyond it, or below 0, are clamped */
     uint64_t per_s = face->per_s, part = ticks % per_s, ns;
     const uint64_t whole_s = ticks / per_s;
     if (ns_per_s % per_s == 0) {

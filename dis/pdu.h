@@ -80,7 +80,7 @@ typedef struct DisCounters {
 /* ---- arrival times ------------------------------------------------------------------------------- */
 
 /* Unix time, whole nanoseconds >= 0 -> seconds: the only conversion, so that a node that receives a datagram live and
- * one that reads it from a recording get the same double. Never decreasing; neighbours within 0.24 us may come out
+ * one that reads it from a recording get the same double. Never decreasing; neighbours within 0.24 us may become
  * equal. */
 static inline double dis_unix_s(int64_t unix_ns)
 {

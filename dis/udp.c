@@ -34,7 +34,7 @@ struct DisUdp {
     DisTie           tie;
     DisLink          link;         /* of the receiving thread; in a sender under sending */
     pthread_mutex_t  sending;      /* socket and to are replaced under it, and under receive */
-    int64_t          checked_ns;    /* sender: when the link was looked at last */
+    int64_t          checked_ns;    /* sender: time of the last link check */
 
     /* under receive */
     pthread_mutex_t  receive;
@@ -104,7 +104,7 @@ static void put_arrival(DisUdp *u, const DisRingRecord *head, const uint8_t *byt
     if (!dis_ring_put(&u->ring, head, bytes)) u->counters.lost_queue++;
 }
 
-/* The kernel's count comes with datagrams and by asking, so an older one may come after a newer. */
+/* The kernel's count comes with datagrams and by query, so an older one may follow a newer. */
 static void note_drops(DisUdp *u, uint32_t drops)
 {
     const uint32_t more = drops - u->kernel_drops;
@@ -250,7 +250,7 @@ static void complain(DisUdp *u)
     u->complained = true;
 }
 
-/* ---- a network that goes and comes: under the receive lock, in a sender under sending ------------------------ */
+/* ---- loss and return of the network: under the receive lock, in a sender under sending ------------------------ */
 
 /* Replaces the old socket under the same descriptor, so no other code changes. False: not now. */
 static bool remake_socket(DisUdp *u)
@@ -333,7 +333,7 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
     assert(until_ns < INT64_MAX);
     atomic_store(&u->closing, true);
     pthread_mutex_lock(&u->receive);
-    /* until the socket is empty, or what comes out of it came after the call: a flood never ends by itself */
+    /* until the socket is empty, or its datagrams arrived after the call: a flood would never end */
     while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {}
     if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
     atomic_store(&u->closing, false);
@@ -364,7 +364,7 @@ static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
     return sent >= 0;
 }
 
-/* A listener has a thread that looks after the link; a sender looks when it fails, and whether it is back. */
+/* A listener has a thread that checks the link; a sender checks after a failure, and for its return. */
 static bool sender_may_go_on(DisUdp *u)
 {
     const int64_t now_ns = dis_udp_now_ns();

@@ -13,8 +13,8 @@ typedef struct DisUdpConfig {
                                          * an address of this machine: datagrams to it, and no other program may listen
                                          * a broadcast, or empty for 255.255.255.255: all IPv4 datagrams
                                          * another machine's: all datagrams, and no other program may listen */
-    char interface[32];                 /* name, `eth0`: nothing comes or leaves elsewhere (an address of this machine
-                                         * is that already); empty: all, and the system chooses where to send */
+    char interface[32];                 /* name, `eth0`: the only interface used (implied by an address of this
+                                         * machine); empty: receives on all, and the system chooses where to send */
     int  port;                          /* 1 .. 65535 */
     int  ttl;                           /* hops of multicast, 0 .. 255; 0: this machine alone */
     int  queue_octets;                  /* most that waits to be taken, headers of 32 octets included, 131072 .. 2^30;

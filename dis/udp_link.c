@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* One that is deleted is set down first, one that is made anew is down for a moment, too: the reason is what lasts. */
+/* An interface is set down before it is deleted, and is down briefly after it is created: a reason must persist. */
 static const int64_t settle_ns = 200000000, other_ns = 2000000000;
 
 static int64_t monotonic_ns(void)
@@ -51,7 +51,8 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     if (link->watch < 0) return;
     for (;;) {
         const ssize_t octets = recv(link->watch, buffer, sizeof buffer, MSG_DONTWAIT);
-        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the look finds out */
+        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the next poll finds the
+                                                                           * state */
         if (octets <= 0) return;
         unsigned left = (unsigned)octets;
         for (const struct nlmsghdr *m = (const void *)buffer; NLMSG_OK(m, left); m = NLMSG_NEXT(m, left)) {
@@ -64,7 +65,7 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     }
 }
 
-/* ---- a look ----------------------------------------------------------------------------------------- */
+/* ---- polling --------------------------------------------------------------------------------------- */
 
 static DisLinkState interface_state(int socket, const char *name)
 {
@@ -86,12 +87,12 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
         *remake = index != tie->interface || (link->lost && tie->group);
         return interface_state(socket, config->interface);
     }
-    if (tie->group && tie->interface) { /* `ff02::1%eth0`: what the name now stands for is found when it is made anew */
+    if (tie->group && tie->interface) { /* `ff02::1%eth0`: the name is resolved again when the socket is recreated */
         char name[IF_NAMESIZE];
         *remake = link->lost || !if_indextoname(tie->interface, name);
         return *remake ? DIS_LINK_GONE : DIS_LINK_UP;
     }
-    if (tie->group) { /* joined already: the usual answer */
+    if (tie->group) { /* joined already: the usual result */
         if (dis_udp_join(socket, to, 0) || errno == EADDRINUSE) return DIS_LINK_UP;
         *remake = errno == ENOBUFS;
         return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* joined still, though no route leads there */

@@ -1,6 +1,6 @@
 /* dis/udp_link.h: monitors whether the interface, address and group of a socket still exist; for udp.c only.
  *
- * An interface that is deleted and made anew has another index: the socket that was bound to it, and the group that was
+ * An interface that is deleted and recreated has another index: the socket that was bound to it, and the group that was
  * joined on it, never receive again, without an error. So the kernel's notifications (rtnetlink(7)) are read, and the
  * state is also polled once a second for cases without one. */
 #ifndef DIS_UDP_LINK_H
@@ -29,11 +29,11 @@ typedef struct DisLink {
 int  dis_link_watch(void);
 /* Reads all announcements; notes whether an interface that the socket depends on was deleted. */
 void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const DisTie *tie);
-/* Looks, and joins the group anew where no interface was named. remake: the socket must be made anew; lost is cleared
- * by the caller then. Once a second and after announcements. */
+/* Polls the state, and joins the group again where no interface was named. remake: the socket must be recreated; the
+ * caller then clears lost. Once a second and after notifications. */
 void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
                    const DisUdpConfig *config);
-/* Of the last read or look: one line when it is no longer up, one when it is again; one more when the reason is another
+/* Of the last read or poll: one line when it is no longer up, one when it is again; one more when the reason is another
  * for two seconds. where: of dis_udp_where. dis_link_unreported: to be checked again in a tenth of a second. */
 static inline bool dis_link_unreported(const DisLink *link) { return link->state != link->said; }
 void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);

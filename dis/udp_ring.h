@@ -1,6 +1,6 @@
 /* dis/udp_ring.h: queue of datagrams in a ring buffer; for udp.c only, under its lock.
  *
- * Each lies in one piece behind its record. What was taken stays until the next take. Memory is taken once. */
+ * Each is contiguous after its record. A datagram taken is valid until the next take. Memory is allocated once. */
 #ifndef DIS_UDP_RING_H
 #define DIS_UDP_RING_H
 

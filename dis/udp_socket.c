@@ -206,7 +206,7 @@ static void set_buffer(int socket, int forced, int plain, int octets)
     if (!set_flag(socket, SOL_SOCKET, forced, octets)) set_flag(socket, SOL_SOCKET, plain, octets);
 }
 
-/* Where multicast leaves, how far it goes, and that programs of this machine receive it too. */
+/* Multicast interface, hop limit, and loopback, so that programs of this machine receive it too. */
 static bool aim(const Plan *plan, int socket)
 {
     const int ttl = plan->config->ttl;
@@ -301,7 +301,7 @@ Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpC
     const int made = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (made < 0) return refused(&plan, "make a socket for");
     set_buffer(made, SO_SNDBUFFORCE, SO_SNDBUF, send_buffer_octets);
-    /* what this machine sends to its own address comes in by loopback, so no interface then */
+    /* datagrams to an own address arrive by loopback, so no interface then */
     const bool narrow = config->interface[0] && plan.reach != REACH_OWN;
     if (family == AF_INET6 && !set_flag(made, IPPROTO_IPV6, IPV6_V6ONLY, 1))
         status = refused(&plan, "set up");

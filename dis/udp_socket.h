@@ -22,7 +22,7 @@ static inline socklen_t dis_socket_address_octets(const DisSocketAddress *addres
 /* As in DisArrival: IPv4 as ::ffff:a.b.c.d. */
 void dis_socket_address_octets16(uint8_t out[16], const DisSocketAddress *address);
 
-/* What a socket stands and falls with. */
+/* What a socket depends on. */
 typedef struct DisTie {
     unsigned interface;  /* index when it was made; 0: none named */
     bool     narrow;     /* bound to that interface */

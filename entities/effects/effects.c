@@ -130,7 +130,7 @@ double effect_life_s(const EffectTable *table, EffectKind kind, double scale)
     return law->life_s * time_scale(law, scale);
 }
 
-/* Way of what begins at `first` per second and dies out with tau: exact, and never ahead of first * t. */
+/* Distance at an initial speed `first`, decaying with tau: exact, and never ahead of first * t. */
 static double dying_way(double first, double tau_s, double t_s) { return first * tau_s * -expm1(-t_s / tau_s); }
 
 bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,

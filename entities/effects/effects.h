@@ -52,7 +52,7 @@ typedef struct EffectPuff {
     double     age_s;        /* >= 0; what an entity carries with it stays at 0 */
     double     p_ecef[3];    /* where it was let go */
     double     up_ecef[3];   /* unit */
-    double     throw_mps[3]; /* ECEF, what it is let go with; dies out with throw_s */
+    double     throw_mps[3]; /* ECEF, initial velocity; decays with throw_s */
     double     throw_s;
     double     scale;        /* W^(1/3); lengths */
     double     mass_kg;      /* all of it, before thinning */
@@ -70,7 +70,7 @@ typedef struct EffectVolume {
     double extinction_per_m[effect_band_count]; /* at the centre */
 } EffectVolume;
 
-/* How long a puff of this kind and scale is seen. */
+/* Time for which a puff of this kind and scale is visible. */
 double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
 /* False when there is nothing left of it. The wind carries a free puff at its full speed from the first moment:
  * drift = wind age, exactly. */

@@ -343,7 +343,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
             puff.above_m = v3_dot(over, puff.up_ecef);
         }
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
-        /* never ahead of where it came out: a missile would look into its own smoke */
+        /* never ahead of its source: a missile would see its own smoke */
         puff.along_m = source->speed_mps * fmin(interval_s * together, puff.age_s);
         if (source->kind == EFFECT_FLAME) { /* tongues */
             memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);

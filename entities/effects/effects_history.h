@@ -12,7 +12,7 @@
 
 enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff_capacity = 16384 };
 
-/* One stretch of giving off: the entity's motion and what comes out of where. */
+/* One interval of emission: the entity's motion, and its sources. */
 typedef struct EffectSource {
     EffectKind kind;
     uint64_t   key;              /* of the entity; the puffs' owner */
@@ -20,7 +20,7 @@ typedef struct EffectSource {
     Kinematics motion;           /* at motion_s */
     double     motion_s;
     double     hold_s;           /* longest extrapolation of it */
-    double     at_body[3], spread_body[3]; /* where it comes out, from the reported position, and how far about */
+    double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
     double     speed_mps;        /* along the way: puffs are stretched to meet */
     bool       grounded;         /* it is set onto the ground, its base below_m under the reported position */
     double     below_m;
@@ -34,7 +34,7 @@ typedef struct EffectCounters {
     uint64_t sources_dropped;
 } EffectCounters;
 
-/* Instants beyond show nothing: intervals are counted in 64 bits. */
+/* No puffs beyond: intervals are counted in 64 bits. */
 static const double effect_latest_s = 1e12;
 
 typedef struct EffectHistory EffectHistory;
@@ -52,11 +52,11 @@ void effect_history_detonation(EffectHistory *history, const DisDetonation *pdu,
 uint64_t effect_history_open(EffectHistory *history, const EffectSource *source);
 void     effect_history_close(EffectHistory *history, uint64_t handle, double t_s);
 
-/* Charge that a shot or burst goes by: kg of propellant (fire) or of explosive, from munition type and warhead.
+/* Charge that scales a shot or burst: kg of propellant (fire) or of explosive, from munition type and warhead.
  * Estimates, by class of munition only: within a factor of three. */
 double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
 
-/* Everything to be seen at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
+/* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
  * they do not all fit). out may be NULL with capacity 0. */
 size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *history, double t_s);
 

@@ -195,7 +195,7 @@ void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *e
     advance(state, table, t_s);
     const bool was_destroyed = state->destroyed;
     set_drives(state, evidence, t_s);
-    /* destroyed before our eyes: hot at once; repaired: cold */
+    /* destroyed while observed: hot at once; repaired: cold */
     if (state->destroyed != was_destroyed) state->level[HEAT_WRECK] = state->destroyed;
 }
 

@@ -2,7 +2,7 @@
  *
  * Each heat role has one driver, a steady rise at full drive, and a time constant each way (etc/heat.csv). Between
  * reports every drive is constant (or ends at a known time), so a level follows in closed form and does not depend
- * on when frames are asked for. Evidence is the appearance word *and* what the entity was seen to do: VR-Forces
+ * on frame times. Evidence is the appearance word *and* the observed motion: VR-Forces
  * flies helicopters and drives tanks without ever setting the power-plant bit. */
 #ifndef ENTITIES_EFFECTS_HEAT_H
 #define ENTITIES_EFFECTS_HEAT_H
@@ -18,7 +18,7 @@ typedef enum HeatDriver {
     HEAT_DRIVER_FLIGHT, /* 1 for an air platform */
     HEAT_DRIVER_BURN,   /* 1 for a munition's first two seconds */
     HEAT_DRIVER_SPEED,  /* recovery rise r v^2 / (2 cp) over the role's rise_k, at most 1 */
-    HEAT_DRIVER_LIFE,   /* 1 for a life form that lives and a building that stands */
+    HEAT_DRIVER_LIFE,   /* 1 for a life form alive and a building not destroyed */
     HEAT_DRIVER_PYROTECHNIC, /* 1 for an expendable's first four seconds */
     HEAT_DRIVER_BURNING,/* 1 while flaming */
     HEAT_DRIVER_COUNT
@@ -53,8 +53,8 @@ typedef struct HeatEvidence {
     double        speed_mps; /* as reported; 0 when frozen */
 } HeatEvidence;
 
-/* First report: taken to have been in that state for ambient_s: a wreck that does not flame is a cold one. Munitions
- * and expendables begin cold, and with their motor or grain lit. */
+/* First report: assumed to have been in that state for ambient_s, so a wreck without flames is cold. Munitions and
+ * expendables start cold, with their motor or grain burning. */
 void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s, double ambient_s);
 void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s);
 /* It fired; or it is the munition that was fired. */

@@ -80,7 +80,7 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
             affine_mul(place[i].m, place[node->parent].m, node->m);
             snprintf(path, sizeof path, "%s/%s", place[node->parent].path, node->name);
         }
-        /* a deeper path than any_sender writes a pattern for: the name alone, so that memory does not grow with depth */
+        /* a path deeper than patterns need: the name alone, so that memory does not grow with depth */
         place[i].path = strdup(strlen(path) < path_max ? path : node->name);
         if (!place[i].path) return STATUS_NO_MEMORY;
         place[i].joint = -1;

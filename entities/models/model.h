@@ -108,11 +108,11 @@ typedef struct ModelSize {
     double length_m, width_m, height_m;
 } ModelSize;
 
-/* Brings a model to a size, its joints with it; wheels and rotors stay round, and wheels on the ground. Figures are met
+/* Scales a model to a size, with its joints; wheels and rotors stay round, and wheels on the ground. Sizes are reached
  * to 1e-3 where wheels and rotors allow it. STATUS_BAD_VALUE: a factor outside 0.02 .. 50; then, and without memory,
- * the model is as it was or half way, and good for model_destroy alone. */
+ * the model is in an undefined state, valid for model_destroy only. */
 Status model_resize(Model *model, const ModelSize *size);
-/* Factors along the body axes that the size asks for; false: outside 0.02 .. 50. */
+/* Scale factors along the body axes for the given size; false: outside 0.02 .. 50. */
 bool   model_scale_to(double factor[3], const Model *model, const ModelSize *size);
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */

@@ -32,7 +32,7 @@ struct Exercise {
     long long      bad; /* sent so far */
     int            event_count, next_event, heard;
     Event         *event;
-    long long     *look; /* tick at which each is looked at next [entity_count] */
+    long long     *look; /* tick of the next check of each [entity_count] */
     Said          *said;
     DisEntityState       es;
     DisEntityStateUpdate esu;
@@ -58,7 +58,7 @@ static DisEntityId id_of(const Exercise *x, int entity)
 /* ---- an entity's state -------------------------------------------------------------------------- */
 
 /* World axes into those of the algorithm: 6 .. 9 have body axes, and their acceleration is the derivative of the
- * velocity there, a - w x v. 1 stands. */
+ * velocity there, a - w x v. 1 is static. */
 static void into_axes(Kinematics *k, int algorithm)
 {
     k->algorithm = algorithm;
@@ -154,7 +154,7 @@ static void send_state(Exercise *x, int entity, const Kinematics *k, uint32_t ap
 
 /* ---- when to report ----------------------------------------------------------------------------- */
 
-/* How long until e + r t + b t^2 / 2 comes to the limit; a fifth less, since b is a guess that holds. */
+/* Time until e + r t + b t^2 / 2 reaches the limit; a fifth less, since b is an estimate. */
 static double safe_s(double limit, double error, double rate, double bend)
 {
     const double left = limit - error;
@@ -246,7 +246,7 @@ static bool outdated(const Said *said, const Cast *cast, int entity, const Kinem
 
 static void look_at(Exercise *x, int entity, double t_s)
 {
-    static const double longest_look_s = 1; /* a bend that was guessed too small is met within it */
+    static const double longest_look_s = 1; /* bounds the delay when the bend was underestimated */
     const Scenario *s = x->cast->scenario;
     Said           *said = &x->said[entity];
     const double    change_s = cast_next_change(x->cast, entity, t_s + 0.5 * x->tick_s), age_s = t_s - said->t_s;
@@ -344,7 +344,7 @@ static void send_detonation(Exercise *x, const CastRound *round)
         v3_sub(off, k.p_ecef, target.p_ecef);
         m3_tmul_v3(off_body, target.r_ecef_from_body, off);
         for (int i = 0; i < 3; i++) pdu->p_target_m[i] = (float)off_body[i];
-        x->look[round->target] = 0; /* its damage is seen at this tick */
+        x->look[round->target] = 0; /* its damage appears at this tick */
     }
     link_pdu(&x->link, t_s, x->bytes, dis_encode_detonation(x->bytes, sizeof x->bytes, pdu));
     if (round->munition >= 0 && !(cast->scenario->shot[round->shot].silent_s > 0) && x->said[round->munition].known) {

@@ -1,5 +1,5 @@
 /* entities/scenario/exercise_bad.c: one malformed datagram of each kind, in turn. Every one must be dropped and
- * counted, or taken for what it is worth; none may disturb the others. */
+ * counted, or accepted where valid; none may affect the others. */
 #include "entities/scenario/exercise.h"
 
 static uint8_t random_octet(const Cast *cast, double t_s, size_t at)
@@ -13,7 +13,7 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
     Kinematics k;
     if (cast->entity_count == 0) return;
     cast_kinematics(&k, cast, 0, t_s);
-    /* those that stand up to scrutiny drive beside the first entity, not inside it */
+    /* those that are valid drive beside the first entity, not inside it */
     const double right[3] = {k.r_ecef_from_body[1], k.r_ecef_from_body[4], k.r_ecef_from_body[7]};
     v3_add_scaled(k.p_ecef, k.p_ecef, kind == 5 ? 25 : -25, right);
     exercise_fill_state(es, link, cast, 0, &k, 0, t_s);

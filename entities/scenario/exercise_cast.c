@@ -242,7 +242,7 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
 
 bool cast_still(const Cast *cast, int entity, double t_s)
 {
-    static const double over_s = 0.02; /* differences look so far */
+    static const double over_s = 0.02; /* step of the differences */
     const CastEntity *e = &cast->entity[entity];
     if (e->group < 0) return false;
     const ScenarioGroup *g = &cast->scenario->group[e->group];

@@ -12,7 +12,7 @@
 #include "entities/scenario/route.h"
 
 enum { cast_max_joints = 4 };
-static const double cast_ramp_s = 3; /* from a stand to full speed and back */
+static const double cast_ramp_s = 3; /* from standstill to full speed and back */
 
 typedef enum Carriage { /* how it moves */
     CARRIAGE_LAND, CARRIAGE_LIFE, CARRIAGE_SEA, CARRIAGE_ROTARY, CARRIAGE_FIXED_WING, CARRIAGE_MUNITION
@@ -53,8 +53,8 @@ typedef struct Cast {
     CastEntity     *entity;
     CastRound      *round;
     CastJoint      *joint;      /* cast_max_joints for each kind of entity that has them; class 0 ends */
-    Route          *route;      /* of each group; without knots: stands */
-    double         *stop_s;     /* of each group: begins to stop; INFINITY: does not */
+    Route          *route;      /* of each group; without knots: stationary */
+    double         *stop_s;     /* of each group: starts to stop; INFINITY: does not */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -76,7 +76,7 @@ bool cast_present(const Cast *cast, int entity, double t_s);
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s);
 /* Angles and rates of turret and gun; returns how many. */
 int    cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity, double t_s);
-/* Whether it stands still until the next change; the next time at which something begins, ends or is hit. */
+/* Whether it is stationary until the next change; the next time of a start, an end or a hit. */
 bool   cast_still(const Cast *cast, int entity, double t_s);
 double cast_next_change(const Cast *cast, int entity, double t_s);
 /* `NAME NUMBER` as its marking; 11 octets, not terminated. */

@@ -102,7 +102,7 @@ static Status make_route(Cast *cast, int group, bool flies)
         turned(point[i], s, &g->route_m.number[2 * i]);
         point[i][2] = flies ? exercise_ground_at(NULL, &cast->ground, point[i][0], point[i][1]) + g->height_m : 0;
     }
-    if (count == 1) { /* a stand: a metre of route gives its heading */
+    if (count == 1) { /* stationary: a metre of route gives its heading */
         const double heading_rad = (g->heading_deg + s->place.turn_deg) * rad_per_deg;
         memcpy(point[1], point[0], sizeof point[1]);
         point[1][0] += sin(heading_rad);
@@ -188,7 +188,7 @@ static bool needs_models(const Scenario *s)
 
 static Status fill(Cast *cast, int *ids, int *first)
 {
-    static const double coarse_chord_error_m = 0.1; /* joints are asked for, not shapes */
+    static const double coarse_chord_error_m = 0.1; /* only joints are needed, not shapes */
     const Scenario *s = cast->scenario;
     char     path[4096];
     Table    types;

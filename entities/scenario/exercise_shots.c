@@ -15,7 +15,7 @@ static double flown_m(const ScenarioShot *shot, double flight_s)
            0.5 * shot->drag_mps2 * flight_s * flight_s;
 }
 
-/* Until it would come back. */
+/* Until its speed is zero. */
 static double longest_s(const ScenarioShot *shot)
 {
     if (shot->drag_mps2 <= 0) return longest_flight_s;
@@ -65,7 +65,7 @@ void cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round,
     cast_axes(out->r_enu_from_body, nose, up);
 }
 
-/* ---- where it begins and ends ------------------------------------------------------------------- */
+/* ---- start and end of a shot -------------------------------------------------------------------- */
 
 static void launch_place(CastRound *round, const Cast *cast)
 {
@@ -133,7 +133,7 @@ static bool solve(CastRound *round, const Cast *cast)
     return false;
 }
 
-/* A gun's round is first seen at the muzzle. */
+/* A gun's round starts at the muzzle. */
 static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
 {
     static const double barrel_m = 6;
@@ -155,7 +155,7 @@ static void damage(Cast *cast, const CastRound *round)
     e->damage = *name == 's' ? 1 : *name == 'm' ? 2 : 3;
     if (e->damage > 1 && e->carriage != CARRIAGE_ROTARY && e->carriage != CARRIAGE_FIXED_WING) {
         e->rest_s = round->impact_s + stops_s;
-    } else if (e->damage == 3) { /* it falls: until it meets the ground */
+    } else if (e->damage == 3) { /* it falls: until it hits the ground */
         for (double fall_s = 0; fall_s < 120; fall_s += 0.05) {
             CastPose pose;
             cast_pose(&pose, cast, round->target, round->impact_s + fall_s);

@@ -278,7 +278,7 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
 static bool type_fits(const Scenario *s, int line, const char *key, const char *type)
 {
     DisEntityType parsed;
-    /* a name is looked up when the cast is made; digits alone are a slip of the pen */
+    /* a name is looked up by cast_create; digits alone are a typing error */
     if (*type && !(type[0] >= '0' && type[0] <= '9')) return true;
     if (scenario_type_parse(&parsed, type)) return true;
     char shown[128];

@@ -21,7 +21,7 @@ typedef struct ScenarioGroup {
     char       type[scenario_type_size]; /* seven numbers with dots, or a model of etc/catalog.csv */
     int        id, count, columns, force, dead_reckoning; /* id 0: the next free one; dead_reckoning 0: that of dis */
     double     spacing_m, column_m, spread_m, behind_m;
-    NumberList route_m;                  /* x, y, x, y ... smooth through them; a single point: stands there */
+    NumberList route_m;                  /* x, y, x, y ... smooth through them; a single point: stationary */
     bool       loop, engine, parked;
     double     speed_mps, unsteady_m, heading_deg, height_m;
     double     start_s, stop_s, appears_s, leaves_s; /* NaN: moving from the beginning, to the end of the route, ... */

@@ -51,7 +51,7 @@ const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never 
 const Shot  *survey_shot(const Survey *survey, DisEntityId munition);
 
 /* Where a track was at t_s, between its reports (cubic in position, shortest turn in attitude); held at the
- * ends. For a replay's own host only: a live node cannot know the next report. */
+ * ends. For a replay's own host only: a live node does not have the next report. */
 typedef struct TrackPose {
     double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
 } TrackPose;

@@ -6,7 +6,7 @@
 
 static const double same_s = 0.5;        /* a repeated PDU */
 static const double clock_slack_s = 1;   /* a Detonation may be stamped by another sender's clock than the Fire */
-enum { most_tries = 64 };                /* candidates looked at: bounds what a hostile log can cost */
+enum { most_tries = 64 };                /* candidates checked: bounds the cost of a hostile log */
 
 /* Fires by one of their keys, then by time. */
 typedef struct FireKey {

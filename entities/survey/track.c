@@ -106,7 +106,7 @@ void track_at(TrackPose *out, const Track *track, double t_s)
         return;
     }
     const TrackPoint *a = track->point + at, *b = a + 1;
-    if (a->frozen || a->deactivated) { /* what comes next is another life, or starts from here */
+    if (a->frozen || a->deactivated) { /* the next report is of a new entity, or starts from here */
         hold(out, a, false);
         return;
     }

@@ -40,8 +40,8 @@ static bool vertical(double up_ecef[3], const double p_ecef[3])
     return true;
 }
 
-/* Way up from p to the ground. The vertical leans against ENU, so the ground is asked again where the last answer
- * leads; each step is smaller by lean times slope, below a hundredth. */
+/* Distance up from p to the ground. The vertical is inclined against ENU, so the query is iterated at the last result;
+ * each step is smaller by lean times slope, below a hundredth. */
 static double way_up_m(const ContactGround *ground, const double p_enu[3], const double up_enu[3])
 {
     double way_m = 0;

@@ -2,7 +2,7 @@
  * dis/enumerations.h; a guided munition's motor burns for the time given by heat.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
-static const double moving_mps = 0.3; /* as heat.c: no dust behind what stands */
+static const double moving_mps = 0.3; /* as heat.c: no dust from stationary entities */
 
 /* Lengths of flames and smoke go with the size of what burns: 1 for 40 m3 of vehicle. */
 static double size_of(const Model *model)

@@ -1,5 +1,5 @@
-/* entities/table/entity_index.h: entity id -> slot number, by open addressing. Memory is fixed when it is made; what it
- * answers does not depend on the order of insertions. */
+/* entities/table/entity_index.h: entity id -> slot number, by open addressing. Memory is fixed when it is made; results
+ * do not depend on the order of insertions. */
 #ifndef ENTITIES_TABLE_ENTITY_INDEX_H
 #define ENTITIES_TABLE_ENTITY_INDEX_H
 

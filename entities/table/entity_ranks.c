@@ -210,7 +210,7 @@ static void forget(EntityRanks *r, int slot)
     else r->last = n->before;
 }
 
-/* ---- what the table asks --------------------------------------------------------------------------- */
+/* ---- queries of the table -------------------------------------------------------------------------- */
 
 void entity_ranks_put(EntityRanks *r, int slot, DisEntityId id, bool known, int class)
 {

@@ -27,7 +27,7 @@ int    entity_rank_class(const double p_ecef[3], const double from_ecef[3]);
 
 /* A report of it was received: inserts it, or marks it the most recent. */
 void   entity_ranks_put(EntityRanks *ranks, int slot, DisEntityId id, bool known, int distance_class);
-/* The distance of all anew; times of reports stay. O(slots). */
+/* Updates the distances of all; times of reports are unchanged. O(slots). */
 void   entity_ranks_again(EntityRanks *ranks, int (*distance_class)(const void *user, int slot), const void *user);
 void   entity_ranks_remove(EntityRanks *ranks, int slot); /* not there: nothing happens */
 int    entity_ranks_worst(const EntityRanks *ranks);      /* -1: none is there */

@@ -14,7 +14,7 @@ typedef struct EntityRate EntityRate;
 /* new_per_s: at least 1. Memory is fixed when it is made. */
 Status entity_rate_create(EntityRate **out, double new_per_s);
 void   entity_rate_destroy(EntityRate *rate);
-/* One more of this sender at t_s: whether it may come in, and then it is counted. Time that goes back gives nothing. */
+/* One more of this sender at t_s: whether it is admitted, and then counted. Decreasing times add no tokens. */
 bool   entity_rate_take(EntityRate *rate, DisEntityId id, double t_s);
 
 #endif

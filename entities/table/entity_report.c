@@ -27,7 +27,7 @@ static bool sanitize(double out[3], const float in[3], double longest)
     return good;
 }
 
-/* A report that no longer counts: older than the one we have. */
+/* A stale report: older than the latest. */
 static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
 {
     if (!(t_s < slot->report_s)) return false;
@@ -35,16 +35,16 @@ static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
     return true;
 }
 
-/* Whether a report is of an entity that is gone: it is older than the end; or the end was a Detonation, and it comes
- * right after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates).
- * Only asked when an entity would be created. */
+/* Whether a report is of a removed entity: it is older than the end; or the end was a Detonation, and it follows right
+ * after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates). Only
+ * checked when an entity would be created. */
 static bool has_ended(const EntityTable *table, const DisEntityState *pdu, double t_s)
 {
     const bool destroyed = (pdu->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
     return tombstones_ended(table->tombstones, pdu->id, t_s, destroyed ? table->config.timeout_s : after_detonation_s);
 }
 
-/* The focus' own come in at any rate. */
+/* Entities of the focus are exempt from the rate. */
 static bool exceeds_rate(EntityTable *table, DisEntityId id, double t_s)
 {
     if (dis_entity_id_compare(id, table->focus.host) == 0 || dis_entity_id_compare(id, table->focus.also) == 0)

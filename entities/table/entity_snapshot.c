@@ -83,7 +83,7 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
     return from;
 }
 
-/* ---- no more than are asked for -------------------------------------------------------------- */
+/* ---- limit of rendered entities -------------------------------------------------------------- */
 
 /* Squared distance from the place that matters, as a number that sorts as it does: of what was reported, not of what it
  * is extrapolated to. */
@@ -210,7 +210,7 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
     }
 }
 
-/* Slots lie far apart, in no order of ids: a chunk's come into the cache together, not one after the other. */
+/* Slots lie far apart, in no order of ids: those of a chunk are prefetched together. */
 static void fetch_slots(const EntityTable *table, const Ordered *order, int first, int end)
 {
     for (int e = first; e < end; e++) {
@@ -307,7 +307,7 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
 
     keep_joints(joints, report, slot, e, t_s);
 
-    place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
+    place_origin(e, table, slot); /* last: distance travelled is measured between reported positions */
 }
 
 /* Entities by chunks, distributed over the threads: chunks are independent. */
@@ -364,7 +364,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
-        if (s + ahead < table->slot_end) { /* what is read of a slot lies within its first two lines */
+        if (s + ahead < table->slot_end) { /* the members read are within the first two cache lines of a slot */
             __builtin_prefetch(slot + ahead);
             __builtin_prefetch((const char *)(slot + ahead) + 64);
         }

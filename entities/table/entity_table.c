@@ -217,7 +217,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
     }
 }
 
-/* Goes on from where it stood: the pause does not count as motion. */
+/* Continues from its position: the pause does not count as motion. */
 void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s)
 {
     if (table->stopped_count == 0) return;

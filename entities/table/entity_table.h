@@ -28,16 +28,16 @@ typedef struct EntityTableConfig {
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
     double new_per_s;             /* entities that a sender may add a second, and at once; 65536: all its ids can name */
-    double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
+    double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
     Pool  *pool;                  /* helps with snapshots; NULL: the caller alone. The same bits either way */
-    ContactGround ground;         /* what stands on it is set onto it in every pose handed out; none: it is not */
+    ContactGround ground;         /* ground entities are clamped to it in every pose; none: not clamped */
 } EntityTableConfig;
 
 /* Why entities came and went, and what was refused, how many. */
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
     uint64_t detonated;      /* munitions ended by their Detonation */
-    uint64_t late;           /* reports older than the one we have or than the entity's end, or of a munition after
+    uint64_t late;           /* reports older than the latest or than the entity's end, or of a munition after
                               * its Detonation */
     uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
@@ -55,16 +55,16 @@ void   entity_table_destroy(EntityTable *table);
 
 /* What a full table keeps: the host, `also` (its aim), and entities with last reports near the host's last report.
  * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
- * nearest to that place. Extrapolated positions are not used, so the result does not depend on snapshot times. */
+ * nearest to that position. Extrapolated positions are not used, so the result does not depend on snapshot times. */
 void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
 /* Which sender has most entities here, and how many. O(senders). */
 int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
 
-/* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) stands still, and so does one that
- * Stop/Freeze names (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
+/* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) is stationary, and so is one named by
+ * Stop/Freeze (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
  *
  * One decoded PDU, usable (dis_entity_is_usable) and at exercise time t_s. STATUS_NO_MEMORY or
- * STATUS_UNSUPPORTED (refused: the table is full of others that come first) leave the table as it was. */
+ * STATUS_UNSUPPORTED (refused: the table is full of entities of higher rank) leave the table unchanged. */
 Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s);
 Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s);
 void   entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s);

@@ -33,7 +33,7 @@ typedef struct EntitySlot {
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
-    double        distance_m; /* gone forward, at the report */
+    double        distance_m; /* distance travelled forward, at the report */
     double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
                                * right, and after how long; missed_s 0: there was none */
     Kinematics    reported;   /* as sanitized: entity_report.c */
@@ -99,7 +99,7 @@ void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64
 
 /* entity_eviction.c: for a report received now. */
 void entity_eviction_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
-/* A newcomer that is ranked comes in, if need be for another. False: it is the one to go, and is gone. */
+/* Admits a ranked new entity, evicting another if required. False: it is the one evicted. */
 bool entity_table_evict(EntityTable *table, EntitySlot *newcomer, double t_s);
 
 /* The running clock of rotors at t_s. */

@@ -61,7 +61,7 @@ void   elevation_build_pyramids(Elevation *elevation);
 void   elevation_destroy(Elevation *elevation); /* accepts a half-built one */
 
 /* Height of the surface and (if not NULL) its upward unit normal at an ENU place, on the triangle the
- * tracer would hit. NaN beyond the outermost level (the normal is then left alone). */
+ * tracer would hit. NaN beyond the outermost level (the normal is then unchanged). */
 double elevation_height(const Elevation *elevation, double x_m, double y_m, double normal_enu[3]);
 
 #endif

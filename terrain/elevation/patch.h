@@ -9,7 +9,7 @@ enum { patch_most_mips = 20 };
 
 typedef struct Patch {
     int      factor;            /* pixels of the raster per side of a patch pixel, a power of two */
-    int      x0, y0;            /* pixel of the raster where our first begins */
+    int      x0, y0;            /* first raster pixel of the patch */
     int      mips;              /* 0: nothing is valid here */
     int      nx[patch_most_mips], ny[patch_most_mips];
     float   *v[patch_most_mips];/* [0] finest; each next one the mean of 2 x 2 */

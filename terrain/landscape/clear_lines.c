@@ -13,7 +13,7 @@
 static const double full_clearance_m = 2, least_clearance_m = 0.15;
 static const double taper_slope = 0.05, valley_slope = 0.5;
 static const float  no_cap_m = 1e30f; /* finite, so that a share of nothing of it is nothing */
-static const double touch_m = 8; /* an end this near a fix has come down to it: half a big vehicle and its height */
+static const double touch_m = 8; /* an end this near a fix counts as at the fix: half a big vehicle and its height */
 
 /* ---- the usable lines --------------------------------------------------------------------- */
 
@@ -404,7 +404,7 @@ Status line_cut(WorkLevel *level, int index, const LineSet *lines, FixSet *fixes
     for (size_t n = 0; n < posts; n++)
         if (!level->water || !level->water[n]) z->v[n] = z->v[n] < level->cap[n] ? z->v[n] : level->cap[n];
 
-    /* rows that would have to stand above what the lines allow */
+    /* rows that would be above the limit of the lines */
     const Field cap = {z->spacing_m, z->i0, z->j0, z->nx, z->ny, level->cap};
     for (int n = 0; n < fixes->count; n++) {
         FixRow *row = &fixes->row[n];

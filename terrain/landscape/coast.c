@@ -10,7 +10,7 @@
 enum { most_places = 512, block_posts = 16 };
 static const double wander = 0.3;           /* of the distance to the nearest place of either kind */
 static const double most_wander_m = 400;
-static const double innermost_m = 1024;     /* half width of the finest grid of answers; each next is four times it */
+static const double innermost_m = 1024;     /* half width of the finest grid of the cache; each next is four times it */
 static const double shore_land_m = 400;     /* the land has its own height from here on */
 static const double own_land_m = 50;        /* of a land fix: the terrain there may be lower than the sea */
 static const double wild_m = 300;           /* from it: no longer */
@@ -135,7 +135,7 @@ static int keep_contradicted(double (*out)[2], int count, const double (*other)[
     return count;
 }
 
-/* From coarse to fine: a cell inside one that is certain need not be asked. */
+/* From coarse to fine: a cell inside one that is certain need not be evaluated. */
 static Status make_grids(Coast *coast)
 {
     for (int g = coast_grids - 1; g >= 0; g--) {

@@ -39,7 +39,7 @@ static Lattice moved(Lattice at, F32x8 by)
     return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
 }
 
-/* Heights in the level's own steps, of lanes that lie in one of its cells. Two posts of a row come with one look. */
+/* Heights in the level's own steps, of lanes within its cells. Two posts of a row take one load. */
 static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes)
 {
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
@@ -111,7 +111,7 @@ static F32x8 slopes_of_terrain(const Elevation *elevation, const double x_m[8], 
 
 static const double track_half_m = 2, hedge_half_m = 1.5;
 
-/* What stands on the border of two fields, at a place near one; SURFACE_NONE: nothing. */
+/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing. */
 static SurfaceClass border_surface(const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m, bool scrubby)
 {
     double       near[plot_sites], border_m = INFINITY;

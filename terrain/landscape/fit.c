@@ -157,8 +157,8 @@ static Status drop_contradicted(FixRow *rows, int count, double reach_m)
     return STATUS_OK;
 }
 
-/* The same between squares of 64 m, each spoken for by its middle row, so that a whole column of reports far
- * off the ground is seen from half a kilometre. */
+/* The same between squares of 64 m, each represented by its median row, so that a column of reports far off the ground
+ * is detected from half a kilometre. */
 static Status drop_contradicted_squares(FixSet *set)
 {
     static const double square_m = 64, reach_m = 512;
@@ -267,7 +267,7 @@ static bool on_outline(const Field *z, int at)
     return i == 0 || j == 0 || i == z->nx - 1 || j == z->ny - 1;
 }
 
-/* One projection: the row is met by the least change of its three posts, or a share of the way. Returns how far
+/* One projection: the row is fitted by the least change of its three posts, or a share of it. Returns how far
  * off it was. */
 static double meet_row(WorkLevel *level, const FixRow *row, double share)
 {
@@ -294,7 +294,7 @@ static double meet_row(WorkLevel *level, const FixRow *row, double share)
 }
 
 /* Kaczmarz's projections, row after row. The smooth field is already within centimetres, so little moves; rows
- * that cannot all be met share the error, because the last sweeps take ever smaller steps. Returns the worst
+ * that cannot all be fitted share the error, because the last sweeps take ever smaller steps. Returns the worst
  * that is left. */
 static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
 {

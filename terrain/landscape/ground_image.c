@@ -10,7 +10,7 @@ static const char cover_key[] = "terrain.cover", photo_key[] = "terrain.orthopho
 
 /* ---- cover ---------------------------------------------------------------------------------- */
 
-/* Elevation given in the wrong place is the usual mistake, and comes in float. */
+/* Elevation given for the wrong key is the usual error; its pixels are float. */
 static Status open_whole(RasterSet *set, const char *paths, const char *key, const char *what)
 {
     const Status status = raster_set_open(set, paths, key);
@@ -74,7 +74,7 @@ Status cover_table_check(const char *path)
 
 static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
 
-/* The table that knows most of the pixels; of equals the first. */
+/* The table with most of the pixels' codes; of equals the first. */
 static Status choose_table(CoverTable *out, const char **name, const char *asked, const long histogram[most_codes])
 {
     char path[4096], file[64];

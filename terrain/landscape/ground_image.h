@@ -25,8 +25,8 @@ typedef struct CoverReport {
 } CoverReport;
 
 /* table: a CSV (code, surface, note), a name such as worldcover, nlcd or fbfm40 for etc/cover_NAME.csv, or empty: the
- * one of these three that knows the most of the codes met. band 0: the only one, or FBFM's fourth where there are eight
- * or more, as in landscape files. Failures are logged. */
+ * one of these three with the most of the codes found. band 0: the only one, or FBFM's fourth where there are eight or
+ * more, as in landscape files. Failures are logged. */
 Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
                        int band, const Elevation *elevation, const LocalFrame *frame);
 /* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */

@@ -13,7 +13,7 @@ enum { ratio = level_ratio };
 
 LandscapeConfig landscape_default_config(void)
 {
-    /* 420 km: the horizon of an eye 10 km up is at 357, and hills stand behind it */
+    /* 420 km: the horizon from 10 km height is at 357, and hills are beyond it */
     return (LandscapeConfig){.seed = 1, .relief_m = 15, .spacing_m = 4, .half_width_m = 6000, .horizon_m = 420000};
 }
 
@@ -48,7 +48,7 @@ static int round_out(double posts)
     return (int)(posts < 0 ? floor(posts / ratio) : ceil(posts / ratio)) * ratio;
 }
 
-/* Level 0 is asked for about the origin; it grows to hold the fixes while that stays affordable. */
+/* Level 0 is centred on the origin; it grows to hold the fixes while that stays affordable. */
 static Window innermost(const LandscapeConfig *config, const FixSet *fixes)
 {
     static const double margin_m = 400, most_posts = 16e6;

@@ -27,10 +27,10 @@ typedef struct CoastPlace {
 } CoastPlace;
 
 /* A straight line that the ground must leave clear, from a to b, by 2 m where possible and 0.15 m at least. An end
- * within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at 4 m posts; in proportion on
- * the coarser levels) the line sets no limit, so a shot may end on the ground it hits. Elsewhere lines take precedence:
- * a fix above one is dropped. Give the places of gun, seeker and burst, not the point between a vehicle's tracks: a
- * line from base to base along flat ground drops every fix beside it. */
+ * within 8 m of a fix counts as at the fix: within landscape_taper_m of such an end (14 m at 4 m posts; in proportion
+ * on the coarser levels) the line sets no limit, so a shot may end on the ground it hits. Elsewhere lines take
+ * precedence: a fix above one is dropped. Give the places of gun, seeker and burst, not the point between a vehicle's
+ * tracks: a line from base to base along flat ground drops every fix beside it. */
 typedef struct ClearLine {
     double a_enu[3], b_enu[3];
 } ClearLine;
@@ -65,7 +65,7 @@ typedef struct Landscape {
 
 LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
- * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
+ * to hold the fixes as long as it stays below 16 M posts; fixes further out are fitted on coarser levels. Of two fixes
  * that no slope of 35 degrees joins the higher is dropped, unless its support exceeds that of the lower four to one;
  * before that, source entities that are outliers against their neighbours are dropped as a whole (ground_inconsistent).
  * With neither fixes nor low lines the terrain is at ellipsoid height 0. fix, line may be NULL when their count is
@@ -87,11 +87,11 @@ Status ground_consensus_height(double *above_m, double *nearest_m, const double 
                        int fix_count);
 void   landscape_destroy(Landscape *landscape);
 
-/* How far a line leaves the ground alone about an end that has come down to a fix. */
+/* Radius about an end at a fix within which a line sets no limit. */
 double landscape_taper_m(const LandscapeConfig *config);
 
-/* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. Of many
- * places at once a tenth of the time each, and the same answers. */
+/* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. For
+ * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
 /* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of

@@ -65,7 +65,7 @@ typedef struct PlotCell {
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
 } PlotCell;
 
-/* Those that one call met last; starts zeroed. */
+/* Those of the previous call; starts zeroed. */
 typedef struct PlotCells {
     PlotCell cell[plot_cells_kept];
 } PlotCells;

@@ -9,7 +9,7 @@ typedef struct LandscapeFiles {
     ElevationFiles elevation;
     const char    *cover, *cover_table, *photo; /* empty: none */
     int            cover_band;                  /* 0: chosen */
-    uint64_t       seed;                        /* of texture, and of surfaces that no file knows */
+    uint64_t       seed;                        /* of texture, and of surfaces not in the files */
 } LandscapeFiles;
 
 typedef struct LandscapeReport {

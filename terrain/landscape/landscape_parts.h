@@ -14,7 +14,7 @@ typedef struct LandscapeParts {
     LandscapeConfig   config;
     bool              invented;
     LandscapeEvidence said;                /* synthetic: the evidence it was fitted to */
-    Elevation         elevation;           /* of files: levels and posts; the pyramids are not looked at */
+    Elevation         elevation;           /* of files: levels and posts; the pyramids are not used */
     CoverGrid         cover[cover_windows];
     Photo             photo;
     uint64_t          cover_seed;

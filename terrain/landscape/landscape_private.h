@@ -122,7 +122,7 @@ Status calm_create(Calm *out, const FixSet *fixes, double cell_m);
 
 typedef struct WorkLevel {
     Field z;    /* ENU z of the surface; starts as height above the ellipsoid */
-    float *cap; /* highest z that clear lines allow, NULL: no line comes near */
+    float *cap; /* highest z allowed by clear lines, NULL: no line is near */
     /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
     int hole_i0, hole_i1, hole_j0, hole_j1;
     bool outermost;
@@ -133,14 +133,14 @@ typedef struct WorkLevel {
  * three posts and their shares. */
 double posts_at(const Field *posts, double x_m, double y_m, int corner[3], double weight[3]);
 
-/* Moves posts until every row of this level is met, below cap, the outline untouched; drops rows that the posts
- * cannot follow together with their neighbours. */
+/* Moves posts until every row of this level is fitted, below cap, the outline unchanged; drops rows that the posts
+ * cannot fit together with their neighbours. */
 void fit_posts(WorkLevel *level, int index, FixSet *fixes);
 
 /* ---- clear lines -------------------------------------------------------------------------- */
 
-/* Within this of an end that has come down to a fix the line claims nothing. Two diagonals of a cell and a little:
- * closer, the posts that carry the fix would be those the line holds down. */
+/* Within this distance of an end at a fix the line sets no limit. Two diagonals of a cell and a little: closer, the
+ * line would limit the posts of the fix. */
 static inline double taper_of_spacing_m(double spacing_m)
 {
     return 3.5 * spacing_m;
@@ -149,7 +149,7 @@ static inline double taper_of_spacing_m(double spacing_m)
 typedef struct LineSet {
     int       count;
     ClearLine *line;       /* the usable ones */
-    int       touch_count; /* places where a line comes down to a fix */
+    int       touch_count; /* positions where a line ends at a fix */
     double   *touch;       /* [touch_count][3] */
     NearGrid  near_touch;
 } LineSet;
@@ -180,7 +180,7 @@ enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
 
 /* Turns heights above the ellipsoid into ENU z, in place. */
 Status levels_bend(Field *posts, const Curve *curve);
-/* Leads the posts within `band` of the outline over to the surface of the level around, on which the outline lies. */
+/* Blends the posts within `band` of the outline into the surface of the enclosing level, on which the outline lies. */
 void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
 /* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation/elevation.h on seams. */
 Status levels_store(Elevation *out, const WorkLevel *level, int count);
@@ -212,7 +212,7 @@ Status    coast_shape(WorkLevel *level, const Coast *coast);
 typedef struct Cover {
     uint64_t  seed;
     bool      real;              /* elevation from files: no fields on steep slopes, woods instead */
-    Curve     curve;             /* real: heights above the sea are asked for */
+    Curve     curve;             /* real: heights above the sea are needed */
     double    geoid_m, treeline_m;
     CoverGrid grid[cover_windows];
     Photo     photo;

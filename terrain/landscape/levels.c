@@ -73,7 +73,7 @@ Status levels_bend(Field *posts, const Curve *curve)
 
 /* ---- joining --------------------------------------------------------------------------------- */
 
-/* Leads the posts near the outline over to the surface of the level around, on which the outline itself lies. */
+/* Blends the posts near the outline into the surface of the enclosing level, on which the outline itself lies. */
 void levels_join(WorkLevel *level, const WorkLevel *outer, int band)
 {
     Field *z = &level->z;

@@ -91,7 +91,7 @@ static void dismiss(Assembly *a)
 /* ---- neighbours --------------------------------------------------------------------------- */
 
 typedef struct Neighbour {
-    double d[3], away_m, weight; /* from the place asked about */
+    double d[3], away_m, weight; /* from the query position */
     int    voter;
 } Neighbour;
 
@@ -132,7 +132,7 @@ static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const Co
 /* ---- planes ------------------------------------------------------------------------------- */
 
 typedef struct Plane {
-    double z_m, slope[2]; /* at the place asked about */
+    double z_m, slope[2]; /* at the query position */
     double cost;          /* share of the weight that does not support it, and something for its slope */
     double support_m;     /* distance of its nearest supporter */
 } Plane;
