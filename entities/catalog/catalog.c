@@ -19,7 +19,7 @@ typedef struct CatalogRow {
     int    order;              /* in the file */
     int    model;
     Origin origin;
-    bool   own;                /* of the user's catalog, which goes first */
+    bool   own;                /* of the user's catalog, which takes precedence */
     int    line;
     ModelSize size;            /* from the row; of a file: its expected size */
     char  *note;            /* may be NULL */
@@ -27,7 +27,7 @@ typedef struct CatalogRow {
 
 /* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
  * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
- * it is built when a type that has it is first asked for: of two hundred models an exercise has ten. */
+ * it is built at the first look-up of one of its types: an exercise uses some ten of two hundred models. */
 typedef struct CatalogModel {
     char *source;          /* its built-in name, or its file */
     ModelSize size;        /* zeroes: its own */

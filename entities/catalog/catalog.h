@@ -1,6 +1,5 @@
 /* entities/catalog/catalog.h: maps an entity type to its model, from etc/catalog.csv by the longest match, and the
- * models themselves, one of each shape and size. Built-in ones get their facets when a type of theirs is first
- * looked for. */
+ * models themselves, one of each shape and size. Built-in ones are built at the first look-up of one of their types. */
 #ifndef ENTITIES_CATALOG_CATALOG_H
 #define ENTITIES_CATALOG_CATALOG_H
 
@@ -13,13 +12,13 @@ typedef enum Origin { ORIGIN_BASE, ORIGIN_CENTRE } Origin;
 typedef struct Catalog Catalog;
 
 /* path: a CSV with the columns type, model, origin, and perhaps length_m, width_m, height_m (ModelSize; empty: in
- * proportion, all empty: the shape's own size; of a file: the size it should have, and a warning when it has another)
+ * proportion, all empty: the shape's own size; of a file: its expected size, with a warning when it differs)
  * and note; type is dotted with `*` as wildcard, e.g.
  * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
  * wins (`1.1.*.1` before `1.1.225`: the category determines more of the shape than the country), then the one with
  * fewer stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
  * folder), see entities/import/model_import.h; `none`: entities of the type are not rendered.
- * Rows of the user's own catalog (etc_own of catalog.csv) go before all of these: where one agrees, it is taken. Its
+ * Rows of the user's own catalog (etc_own of catalog.csv) take precedence over all of these. Its
  * files are relative to its own folder.
  * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
  * parametric_build. */

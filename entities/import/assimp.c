@@ -21,7 +21,7 @@
 
 /* ---- in the child: assimp's files ---------------------------------------------------------------- */
 
-/* The model `tank.obj.gz` is `tank.obj` to assimp; what it names (materials, buffers) lies in the same folder. */
+/* The model `tank.obj.gz` is `tank.obj` to assimp; files it names (materials, buffers) are in the same folder. */
 typedef struct Files {
     const char *path; /* as it is on disk */
     char shown[1024]; /* without .gz */
@@ -297,7 +297,7 @@ static void child_reads(int fd, const char *path)
     _exit(written ? 0 : 3); /* no clean-up: the process is the clean-up */
 }
 
-/* Time and memory, no core file, nothing on the terminal, and gone with its parent. */
+/* Limits time and memory; no core file, no terminal output, ends with its parent. */
 static void child_limits(void)
 {
     const struct rlimit no_core = {0, 0}, cpu = {import_max_seconds, import_max_seconds + 1};

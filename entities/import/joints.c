@@ -67,7 +67,7 @@ static void affine_vector(double out[3], const double m[12], const double d[3])
     for (int i = 0; i < 3; i++) out[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
 }
 
-/* Where each node stands, what it is called from the root on, and whether it is there at all. */
+/* Position of each node, its path from the root, and whether it exists. */
 static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Sidecar *sidecar)
 {
     for (int i = 0; i < scene->node_count; i++) {
@@ -215,7 +215,7 @@ static void grow_radius(void *user, const double p_file[3])
 static Status fill_from_spec(ImportJoint *joint, const Builder *b, const SidecarJoint *spec, int index)
 {
     const char *node = b->scene->node[joint->source].name;
-    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign is what was asked for */
+    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* only the sign is needed */
     if (spec->slides)
         joint->kind = JOINT_TRANSLATION;
     else if (!joint->from_file || spec->dis_metric >= 11)

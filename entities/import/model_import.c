@@ -109,7 +109,7 @@ static Status set_origin(Build *b)
     return STATUS_OK;
 }
 
-/* Printable, without what separates names in our products (`,;:"\`), and never empty. */
+/* Printable, without the separators of names in output files (`,;:"\`), and never empty. */
 static void clean_name(char out[model_name_size], const char *name, const char *instead)
 {
     size_t n = 0;

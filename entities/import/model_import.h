@@ -4,7 +4,7 @@
  * osgconv of Debian's openscenegraph. Nodes and materials become parts, named after their nodes; joints come from the
  * file (OpenFlight's degrees of freedom) or the sidecar, see entities/import/sidecar.h. All other nodes are merged into
  * the moving node above them. Facets keep their own plane; shading normals are the file's, else by crease angle. The
- * reader runs in a process of its own with limits on time and memory: a hostile file costs an error line. */
+ * reader runs in a separate process with limits on time and memory: a hostile file causes an error line only. */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_H
 
@@ -37,7 +37,7 @@ typedef enum ImportMaterialSource {
     MATERIAL_SOURCE_COUNT
 } ImportMaterialSource;
 
-/* What happened on the way. */
+/* Statistics of an import. */
 typedef struct ModelImport {
     char   file[1024];                 /* the model's own */
     char   sidecar[1024];              /* empty: none */

@@ -115,7 +115,7 @@ const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *sce
 
 /* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
 void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
-/* Warns of names that a sidecar goes by and that several nodes share, and of nodes without one. */
+/* Warns of names used by a sidecar that several nodes share, and of nodes without a name. */
 void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
 /* How many nodes have no name, and how many share theirs. */
 void import_count_names(int *unnamed, int *shared, const ImportScene *scene);

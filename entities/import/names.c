@@ -18,7 +18,7 @@ static int times_named(const ImportScene *scene, const char *name)
     return count;
 }
 
-/* The node with the name most similar to the words of a pattern, case aside; -1: none has them. */
+/* The node with the name most similar to the words of a pattern, ignoring case; -1: none has them. */
 static int nearest(const ImportScene *scene, const char *pattern)
 {
     char word[model_name_size];

@@ -1,4 +1,4 @@
-/* entities/import/osg.c: OpenFlight by way of osgconv's text, the tree of which becomes a scene.
+/* entities/import/osg.c: OpenFlight through osgconv's text, converted to a scene.
  *
  * OpenSceneGraph's own reader turns the records into nodes, metres and polygons; its text form keeps names, degrees of
  * freedom and geometry. */

@@ -18,7 +18,7 @@ typedef struct Text {
     int id_count;
 } OsgText;
 
-/* The tree of a text, which it cuts into words in place and which must outlive it. STATUS_BAD_VALUE, not logged: it is
+/* The tree of a text, which is split in place and must outlive it. STATUS_BAD_VALUE, not logged: it is
  * incomplete. Close it whatever open returns. */
 Status osg_text_open(OsgText *out, const char *path, char *text, size_t octets);
 void   osg_text_close(OsgText *text);

@@ -25,7 +25,7 @@ static const int64_t still_ns = 200000000; /* nothing for so long after the last
 
 typedef struct Flow {
     DisUdp    *sender;
-    int        octets, rate;   /* a second; 0: as fast as it goes */
+    int        octets, rate;   /* per second; 0: as fast as possible */
     uint64_t   count;          /* at most; the time ends it, too */
     double     for_s;
     double     took_s;
@@ -34,7 +34,7 @@ typedef struct Flow {
     /* receiver */
     uint8_t   *seen;           /* [count] */
     uint64_t   received, wrong, twice, disordered;
-    double    *late_s;         /* [count], in order of arrival; NULL: not asked for */
+    double    *late_s;         /* [count], in order of arrival; NULL: not needed */
 } Flow;
 
 /* Its number, and words that follow from it. */

@@ -274,7 +274,7 @@ static void stress_pdu(World *w, uint8_t type, const Field *field, int left, int
     DisRemoveEntity gone = {.receiving = {1, 1, w->entity}};
     entity_table_remove(w->table, &gone, w->t_s);
     w->entity = (uint16_t)(w->entity % 60000 + 1);
-    w->t_s += 200; /* smoke and bursts are gone */
+    w->t_s += 200; /* smoke and bursts have ended */
 }
 
 Status entities_bench_stability_inputs(Bench *bench)

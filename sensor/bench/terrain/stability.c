@@ -277,7 +277,7 @@ static void sun(Bench *bench)
         bench_worse(&off_rad, angle_between(bare.d_enu, want));
         bench_worse(&unit, v3_length(bare.d_enu) - 1);
         bench_worse(&unit, v3_length(air.d_enu) - 1);
-        /* NREL SPA, equation 42, from the other way's elevation */
+        /* NREL SPA, equation 42, from the other method's elevation */
         const long double e_deg = atan2l(want[2], hypotl(want[0], want[1])) / rad_per_deg;
         if (fabsl(e_deg + 0.83337L) < 2e-3L) continue; /* where the formula itself breaks off */
         const long double bend = e_deg < -0.83337L ? 0
@@ -292,7 +292,7 @@ static void sun(Bench *bench)
     bench_stress(bench, "the same: refraction", bent_rad / arcsec_rad, 0.01, "arcsec", "NREL SPA (42), long double");
 }
 
-/* Over the steps of the clocks, where TT - UT1 is chosen anew: leap seconds, year ends, the table's end. */
+/* Over the steps of the clocks, where TT - UT1 changes its source: leap seconds, year ends, the table's end. */
 static void sun_over_steps(Bench *bench)
 {
     const Geodetic place = {0.6, -2.1, 0};
@@ -312,7 +312,8 @@ static void sun_over_steps(Bench *bench)
         }
         bench_worse(&jump_rad, angle_between(before.d_enu, after.d_enu));
     }
-    /* 0.015 arcsec of the sky's turn in 1 ms, and 0.04 of the sun's way in the second by which TT - UT1 may step */
+    /* 0.015 arcsec of the Earth's rotation in 1 ms, and 0.04 of the sun's motion in the second by which TT - UT1 may
+     * step */
     bench_stress(bench, "sun over leap seconds, leap days, new years: step in 1 ms", jump_rad / arcsec_rad, 0.06,
                  "arcsec", "continuity");
 }
