@@ -24,7 +24,7 @@ extern "C" {
 
 typedef enum Status {
     STATUS_OK = 0,
-    STATUS_TRUNCATED,   /* the bytes ended before the record did */
+    STATUS_TRUNCATED,   /* the input ends before the record does */
     STATUS_BAD_VALUE,   /* a field is outside its documented range */
     STATUS_UNSUPPORTED, /* well-formed, but not something this node handles */
     STATUS_IO,          /* a call of the operating system failed */
@@ -89,7 +89,7 @@ void   thread_flush_denormals(void);
 /* Processors that this process may run on, at least 1. */
 int    thread_processors(void);
 
-/* Monotonic wall clock, s: for pacing and reports, never for anything that shows in a product. */
+/* Monotonic wall clock, s: for pacing and reports, never for results. */
 double wall_clock_s(void);
 
 /* ---- random: a pure function of counters -------------------------------------------------- */
@@ -127,13 +127,13 @@ bool text_to_double(double *out, const char *text);
 bool text_to_long(long long *out, const char *text);
 /* UTC as 2026-06-21T10:00:00Z, seconds with or without a fraction, 1900 .. 2100, to Unix time. */
 bool text_to_unix_s(double *unix_s, const char *text);
-/* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
+/* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other untrusted bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
 /* A text from outside, such as a file's name, made safe for a terminal: valid UTF-8 unchanged; control characters,
  * bidirectional controls and octets that are not UTF-8 as \xNN. lines: newlines and tabs stay. Truncated to the size of
  * the output. */
 void text_show(char *out, size_t out_size, const char *text, bool lines);
-/* printf to a terminal, file or pipe for what holds text from outside: through text_show, with the format's own lines. */
+/* printf to a terminal, file or pipe with text from outside: through text_show, keeping the format's newlines. */
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
@@ -157,13 +157,13 @@ bool etc_is_complete(void);
 bool etc_own_set(const char *name, const char *path);
 const char *etc_own(const char *name);
 
-/* ---- settings: what people write in YAML files ------------------------------------------------ */
+/* ---- settings: YAML files with validated keys ------------------------------------------------- */
 
 typedef enum SettingType {
     SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
     SETTING_NUMBERS, /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
     /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
-     * the current one: once read, *out has them as the system takes them. */
+     * the current one: after reading, *out has usable paths. */
     SETTING_PATH,
     SETTING_PATHS,        /* several, separated by commas */
     SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
@@ -191,7 +191,7 @@ typedef struct Setting {
 typedef struct SettingValue {
     const char *key, *text;    /* key: of a map; else NULL */
     int         line;
-    bool        wrong_key;     /* set by the reader: it is the key that is wrong, not the text */
+    bool        wrong_key;     /* set by the reader: the key is wrong, not the text */
 } SettingValue;
 /* STATUS_BAD_VALUE: logged as "'text' is not <choices>", or with a complaint as "'text' is <complaint>". */
 typedef Status SettingOwn(const char **complaint, void *out, const Setting *row, SettingValue *value);
@@ -212,15 +212,15 @@ struct SettingTable {
     const SettingList *list;   /* NULL: none */
     int                list_count;
     size_t             line_at; /* of an item: offset of an int for the line of its start; 0: none */
-    const char        *all_keys; /* what prints them: `pitviper check --default`; NULL: nothing */
+    const char        *all_keys; /* the command that prints them: `pitviper check --default`; NULL: none */
     const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
     SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
 };
 
 enum { settings_file_octets = 1 << 20 };
 
-/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from end
- * to end. Time in proportion to octets; logs what is wrong, with its line. */
+/* Whether a text is safe to parse with libyaml: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from
+ * end to end. Time in proportion to octets; logs what is wrong, with its line. */
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
 /* Overwrites *out. Absent keys keep their values; what is unknown, given twice, of the wrong kind or out of range
@@ -230,26 +230,26 @@ Status settings_read(void *out, bool *given, const SettingTable *table, const ch
 /* The same from memory; path is for the messages. */
 Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
                       size_t octets);
-/* As settings_read; what is named in it is relative to the folder of another file, which need not be there. */
+/* As settings_read; paths in it are relative to the folder of another file, which need not exist. */
 Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file);
-/* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
+/* One key from a command line; source: its option, `--size`. On failure *out is unchanged. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                     const char *source);
 /* The same as if it were in that file, for paths relative to the file's folder. file NULL: as settings_set. */
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
 bool   settings_is_path(const Setting *row);
-/* Paths become absolute, as far as they fit: what a file in another folder, or a hash, can hold. */
+/* Paths become absolute, as far as they fit: for files in other folders, and for hashes. */
 void   settings_absolute(void *out, const SettingTable *table);
-/* The line on which a file that has been read gives a key; 0: it does not. */
+/* Line of a key in a file that was read; 0: absent. */
 int    settings_line(const SettingTable *table, const char *name, const char *path);
 int    settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
-/* Every key and value, in table order, one a line: what is hashed. */
+/* Every key and value, in table order, one per line: the input of the hash. */
 void   settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);
 /* A file that reads back as *from: sections, each key with its help, unit and range as a comment. Keys for which
  * shown (may be NULL) is false, and those that are unset (NaN), are commented out. */
 void   settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
-/* Every key with what it accepts and its help. */
+/* Every key with its accepted values and its help. */
 void   settings_write_keys(FILE *to, const SettingTable *table);
 
 /* ---- probes: one model at a time, for comparison with other programs --------------------------- */
@@ -271,7 +271,7 @@ typedef struct Probe {
     const char *in, *out;              /* result columns that could not be computed are NaN, and written empty */
     /* May be NULL. On failure logs why; *state is then not closed. argv[0] is the probe's name. */
     Status    (*open)(void **state, int argc, char **argv);
-    /* NULL: done; else why not, for the row's error column (in static storage, or in out[0].buffer). */
+    /* NULL: success; else the reason, for the row's error column (in static storage, or in out[0].buffer). */
     const char *(*row)(void *state, const ProbeValue *in, ProbeValue *out);
     void      (*close)(void *state);   /* may be NULL */
 } Probe;

@@ -24,7 +24,7 @@ static const char *text_of(const yaml_node_t *node)
     return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: not a valid value */
 }
 
-/* What stands there, as a message shows it. */
+/* The node's text, for messages. */
 static const char *shown(const yaml_node_t *node)
 {
     return node->type == YAML_MAPPING_NODE ? "{...}" : node->type == YAML_SEQUENCE_NODE ? "[...]" : text_of(node);
@@ -57,7 +57,7 @@ static Status fill_numbers(void *out, const Reading *r, const SettingTable *tabl
     return STATUS_OK;
 }
 
-/* ---- what a table reads by itself --------------------------------------------------------------- */
+/* ---- keys read by the table itself -------------------------------------------------------------- */
 
 static Status say_own(const Reading *r, const SettingTable *table, const Setting *row, const yaml_node_t *node,
                       const char *complaint)
@@ -199,7 +199,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
     snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(name));
     if (is_section(table, full)) {
         if (value->type == YAML_MAPPING_NODE) return fill_mapping(out, given, seen, r, table, full, value);
-        /* `section:` with nothing below it */
+        /* `section:` without keys */
         if (value->type == YAML_SCALAR_NODE && !*text_of(value)) return STATUS_OK;
     }
     const int list = find_list(table, full), row = settings_find(table, full);

@@ -20,7 +20,7 @@ struct Pool {
     pthread_mutex_t lock;
     pthread_cond_t  work, done;
     uint64_t        round;     /* counts pool_run calls */
-    int             busy;      /* workers still in the round */
+    int             busy;      /* workers still running */
     bool            stop;
     PoolTask       *task;
     void           *user;

@@ -117,7 +117,7 @@ Status effect_table_open(EffectTable *out, const char *path)
     return status;
 }
 
-/* ---- a puff's life ------------------------------------------------------------------------ */
+/* ---- puff over time ----------------------------------------------------------------------- */
 
 static double time_scale(const EffectModel *law, double scale)
 {
@@ -158,7 +158,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
     out->along_m = fmax(out->across_m, puff->along_m);
     out->temp_k = weather->air_temp_k + law->temp_rise_k * exp(-age_s / (law->cool_s * times));
 
-    /* thins out towards its end, where slope and value are zero: nothing blinks away */
+    /* thins out towards its end, where slope and value are zero: no abrupt end */
     const double thin = (1 - lived * lived) * (1 - lived * lived);
     const double volume_m3 = 4.0 / 3 * pi_rad * out->across_m * out->across_m * out->along_m;
     const double peak_kg_m3 = puff->mass_kg * thin / (volume_m3 * effect_mean_density);

@@ -27,7 +27,7 @@ enum { effect_band_b = SPECTRAL_B, effect_band_g = SPECTRAL_G, effect_band_r = S
 typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
-    double mass_kg;                     /* of a puff; per second for what an entity gives off */
+    double mass_kg;                     /* of a puff; per second for emissions of an entity */
     double radius_start_m, radius_end_m, grow_s, spread_mps;
     double rise_mps, rise_s;
     double temp_rise_k, cool_s;
@@ -49,8 +49,8 @@ typedef struct EffectPuff {
     uint64_t   owner;        /* owning entity: snapshot_owns_puff; 0: none */
     uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
     uint32_t   seed;         /* of its pattern */
-    double     age_s;        /* >= 0; what an entity carries with it stays at 0 */
-    double     p_ecef[3];    /* where it was let go */
+    double     age_s;        /* >= 0; 0 for puffs attached to an entity */
+    double     p_ecef[3];    /* position of emission */
     double     up_ecef[3];   /* unit */
     double     throw_mps[3]; /* ECEF, initial velocity; decays with throw_s */
     double     throw_s;
@@ -58,7 +58,7 @@ typedef struct EffectPuff {
     double     mass_kg;      /* all of it, before thinning */
     double     axis_ecef[3]; /* unit; the spheroid's own axis */
     double     along_m;      /* least half length along the axis; 0: a sphere */
-    bool       grounded;     /* let go above_m above the ground, wherever the snapshot's ground is there */
+    bool       grounded;     /* emitted above_m above the snapshot's ground there */
     double     above_m;
 } EffectPuff;
 
@@ -72,7 +72,7 @@ typedef struct EffectVolume {
 
 /* Time for which a puff of this kind and scale is visible. */
 double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
-/* False when there is nothing left of it. The wind carries a free puff at its full speed from the first moment:
+/* False when it has ended. The wind carries a free puff at its full speed from the first moment:
  * drift = wind age, exactly. */
 bool   effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
                      const LocalFrame *frame);

@@ -128,7 +128,7 @@ void effect_history_detonation(EffectHistory *h, const DisDetonation *pdu, doubl
     add_event(h, &e, pdu->velocity_mps);
 }
 
-/* ---- what entities give off --------------------------------------------------------------- */
+/* ---- emissions of entities ---------------------------------------------------------------- */
 
 uint64_t effect_history_open(EffectHistory *h, const EffectSource *source)
 {
@@ -275,7 +275,7 @@ static void put_shot(PuffList *list, const EffectEvent *e, double t_s)
     for (int c = 0; c < 3; c++) put_cloud(list, e, c, cloud + c, t_s);
 }
 
-/* How often a kind is let go, and from what age on its puffs are thinned out. */
+/* Interval of emission of a kind, and the age from which its puffs are thinned out. */
 static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 {
     *interval_s = 0.25, *full_s = 2;

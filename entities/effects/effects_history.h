@@ -16,13 +16,13 @@ enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff
 typedef struct EffectSource {
     EffectKind kind;
     uint64_t   key;              /* of the entity; the puffs' owner */
-    double     from_s, to_s;     /* puffs are let go in from_s <= t < to_s */
+    double     from_s, to_s;     /* puffs are emitted in from_s <= t < to_s */
     Kinematics motion;           /* at motion_s */
     double     motion_s;
     double     hold_s;           /* longest extrapolation of it */
     double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
-    double     speed_mps;        /* along the way: puffs are stretched to meet */
-    bool       grounded;         /* it is set onto the ground, its base below_m under the reported position */
+    double     speed_mps;        /* along the path: puffs are stretched to join */
+    bool       grounded;         /* clamped to the ground, its base below_m under the reported position */
     double     below_m;
     double     scale, rate;      /* lengths; share of the row's mass a second */
 } EffectSource;
@@ -47,8 +47,8 @@ const EffectCounters *effect_history_counters(const EffectHistory *history);
 
 void effect_history_fire(EffectHistory *history, const DisFire *pdu, double t_s);
 void effect_history_detonation(EffectHistory *history, const DisDetonation *pdu, double t_s);
-/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing what was dropped, or
- * 0, does nothing. */
+/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing a dropped one, or 0,
+ * has no effect. */
 uint64_t effect_history_open(EffectHistory *history, const EffectSource *source);
 void     effect_history_close(EffectHistory *history, uint64_t handle, double t_s);
 

@@ -3,7 +3,7 @@
 
 #include "dis/enumerations.h"
 
-static const double moving_mps = 0.3;       /* above the jitter of a standing vehicle's reports */
+static const double moving_mps = 0.3;       /* above the jitter of reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
 static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
 static const double idle_engine = 0.6;      /* estimate */

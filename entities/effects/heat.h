@@ -62,9 +62,9 @@ void heat_fire(HeatState *state, const HeatTable *table, double t_s);
 void heat_launch(HeatState *state, const HeatTable *table, double t_s);
 
 /* Temperature above a passive part at t_s (at or after the last report; earlier counts as that), K. Only roles of
- * the mask (1 << role) are computed; others are 0. What a wreck has of HEAT_WRECK is added to every role. */
+ * the mask (1 << role) are computed; others are 0. HEAT_WRECK of a wreck is added to every role. */
 void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTable *table, uint32_t roles, double t_s);
-/* Roles that a model's parts have and something drives. */
+/* Roles of a model's parts that have a driver. */
 uint32_t heat_roles(const Model *model, const HeatTable *table);
 
 /* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air

@@ -215,7 +215,7 @@ static void grow_radius(void *user, const double p_file[3])
 static Status fill_from_spec(ImportJoint *joint, const Builder *b, const SidecarJoint *spec, int index)
 {
     const char *node = b->scene->node[joint->source].name;
-    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* only the sign is needed */
+    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign of the axis is set explicitly */
     if (spec->slides)
         joint->kind = JOINT_TRANSLATION;
     else if (!joint->from_file || spec->dis_metric >= 11)

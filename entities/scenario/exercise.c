@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/* What others know of an entity: as rounded on the wire. */
+/* The last report of an entity, as rounded in the PDU. */
 typedef struct Said {
     bool        known, gone;
     double      t_s;
@@ -180,7 +180,7 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
 
-    /* both can bend by their accelerations, and by a little that neither has yet */
+    /* both can change by their accelerations, with a margin */
     const double turned_mps2 = dead_reckoning_in_body_axes(said->k.algorithm)
                                    ? v3_length(said->k.w_body_rps) * v3_length(said->k.v_mps) : 0;
     const double bend_mps2 = v3_length(truth->a_mps2) + v3_length(said->k.a_mps2) + turned_mps2 + 0.3;
@@ -232,7 +232,7 @@ static bool said_still(const Kinematics *k)
     return k->algorithm == 1 || v3_length(k->v_mps) + v3_length(k->a_mps2) + v3_length(k->w_body_rps) < 1e-6;
 }
 
-/* Whether acceleration and rates of the last Entity State, which an update keeps, would lead it away at once. */
+/* Whether acceleration and rates of the last Entity State, which an update keeps, would exceed a threshold at once. */
 static bool outdated(const Said *said, const Cast *cast, int entity, const Kinematics *k)
 {
     static const double unfelt_mps2 = 1, unfelt_rps = 0.1;
@@ -362,7 +362,7 @@ static void send_events(Exercise *x, double until_s)
     }
 }
 
-/* ---- the run ------------------------------------------------------------------------------------- */
+/* ---- time steps ---------------------------------------------------------------------------------- */
 
 static void send_start(Exercise *x)
 {

@@ -21,9 +21,9 @@ Status exercise_create(Exercise **out, const Cast *cast, double epoch_unix_s, Ex
 void   exercise_destroy(Exercise *exercise);
 /* Exercise time of the next step, s: whole ticks from 0. */
 double exercise_time(const Exercise *exercise);
-/* One tick. False when it is over: the duration has passed, or the sink wanted no more. */
+/* One tick. False when it is over: the duration has passed, or the sink returned false. */
 bool   exercise_step(Exercise *exercise);
-/* Hands out what the network still held back; exercise_step does it at the end. */
+/* Sends the datagrams still delayed; exercise_step calls it at the end. */
 void   exercise_finish(Exercise *exercise);
 const ExerciseCounts *exercise_counts(const Exercise *exercise);
 int    exercise_most_received(const Exercise *exercise); /* entities that were sent */

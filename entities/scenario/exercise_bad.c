@@ -28,7 +28,7 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
         memcpy(es->marking, "\x01\xff\x80<b>\n\r\t\"'", 11);
         break;
     case 7: es->id = (DisEntityId){65535, 65535, 65535}; break;
-    case 8: { /* joints that are nowhere */
+    case 8: { /* joints with extreme and non-finite values */
         static const float value[4] = {NAN, INFINITY, -1e30f, 0};
         es->variable_count = 4;
         for (int i = 0; i < 4; i++)
@@ -42,7 +42,7 @@ void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es,
     switch (kind) {
     case 0: bytes[8] = bytes[9] = 0; break;            /* length field 0 */
     case 6: bytes[0] = 42; break;
-    case 9: count = 100; break;                        /* cut short on the way */
+    case 9: count = 100; break;                        /* truncated */
     case 10: bytes[19] = 255; break;                   /* more parts than the table holds */
     case 11: bytes[2] = 200; break;                    /* an unknown type */
     case 12:                                           /* noise */

@@ -9,7 +9,7 @@
 
 /* ---- types ------------------------------------------------------------------------------------ */
 
-/* The first row of the catalog with this model; what it leaves open is 0. */
+/* The first row of the catalog with this model; its wildcards become 0. */
 static bool type_of_model(DisEntityType *out, const Table *catalog, const char *model)
 {
     const int type = table_column(catalog, "type"), name = table_column(catalog, "model");

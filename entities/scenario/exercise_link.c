@@ -103,7 +103,7 @@ static void append(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t 
     if (!link->scenario->dis.bundle) link_flush(link);
 }
 
-/* A PDU that a receiver of pictures only walks over: Attribute (72) in version 7, else Data (20). */
+/* A PDU that a receiver skips: Attribute (72) in version 7, else Data (20). */
 static size_t filler(uint8_t *out, const ExerciseLink *link, double t_s)
 {
     enum { attribute = 72, data = 20, information = 1, management = 5 };

@@ -81,7 +81,7 @@ static void launch_place(CastRound *round, const Cast *cast)
     v3_add(round->launch_enu, pose.p_enu, off_enu);
 }
 
-/* What is aimed at, where it is at t_s. */
+/* Position of the aim point at t_s. */
 static void impact_place(double p_enu[3], const Cast *cast, const CastRound *round, double t_s)
 {
     static const double above_base_m = 1.2, beside_m = 8, past_m = 60, over_m = 6;
@@ -112,8 +112,8 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
     }
 }
 
-/* When it gets there depends on where the target is by then: a missile of 300 m/s at a target of 8 gets 40 times
- * nearer a round; one that is hardly faster than its target takes many. */
+/* The time of flight depends on the position of the target at its end; fixed-point iteration: a missile of 300 m/s
+ * against a target of 8 m/s gains a factor of 40 per iteration; one hardly faster than its target takes many. */
 static bool solve(CastRound *round, const Cast *cast)
 {
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];

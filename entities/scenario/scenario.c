@@ -198,7 +198,7 @@ static Scenario default_scenario(void)
                               .threshold_m = 1, .threshold_deg = 3, .rate_hz = 60, .announce_per_s = 4000}};
 }
 
-/* ---- what belongs together ---------------------------------------------------------------------- */
+/* ---- checks across keys ------------------------------------------------------------------------- */
 
 bool scenario_type_parse(DisEntityType *out, const char *text)
 {

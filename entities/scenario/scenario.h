@@ -34,7 +34,7 @@ typedef struct ScenarioShot {
     char       name[scenario_name_size], type[scenario_type_size];
     int        line;
     char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID`; at empty: at_m */
-    NumberList at_m, launch_m;           /* x, y of a place; forward, right, down of the shooter */
+    NumberList at_m, launch_m;           /* x, y of a place; forward, right, down of the firing entity */
     int        id, force, rounds, dead_reckoning;
     double     time_s, every_s, launch_mps, boost_mps, boost_s, drag_mps2, loft_m, weave_m, silent_s;
     char       hit[8], damage[12];
@@ -67,11 +67,11 @@ typedef struct Scenario {
 } Scenario;
 
 /* Reads and checks a file: ranges, types, routes, names in shots. No side effects beyond the log. On failure one line
- * is logged with file, line, key, value, range; *out is then empty. The file itself is all that is opened. */
+ * is logged with file, line, key, value, range; *out is then empty. No other file is opened. */
 Status scenario_read(Scenario *out, const char *path);
-/* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is as it was. */
+/* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is unchanged. */
 Status scenario_set(Scenario *scenario, const char *key, const char *value, const char *source);
-/* Once more what belongs together, after scenario_set. */
+/* Repeats the checks across keys, after scenario_set. */
 Status scenario_check(const Scenario *scenario);
 void   scenario_destroy(Scenario *scenario); /* accepts zeroes */
 /* Every key, with range and default, as text for people. */

@@ -4,7 +4,7 @@
 
 static const double moving_mps = 0.3; /* as heat.c: no dust from stationary entities */
 
-/* Lengths of flames and smoke go with the size of what burns: 1 for 40 m3 of vehicle. */
+/* Scale of flames and smoke by the size of the burning entity: 1 for 40 m3 of vehicle. */
 static double size_of(const Model *model)
 {
     return clamp(cbrt(model->length_m * model->width_m * model->height_m / 40), 0.25, 4);
@@ -107,7 +107,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     }
 }
 
-/* One body of gas behind the tail, that breathes: its length is drawn at every fiftieth of a second, and straight in
+/* One volume of gas behind the tail with fluctuating length: random at every fiftieth of a second, linear in
  * between. */
 static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
                          const EffectTable *table, double length_m, double across_scale, double t_s)
@@ -155,7 +155,7 @@ static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
     double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
-    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* as far as its entity went */
+    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* clamped by the same distance as its entity */
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 enum {
-    tier_count = 4, /* known * 2 + near: the first pays first */
+    tier_count = 4, /* known * 2 + near: evicted from in this order */
     list_count = 2 * entity_rank_classes, /* known * entity_rank_classes + class */
     nothing    = -1,
 };
@@ -18,7 +18,7 @@ static const uint32_t near_lists = (UINT32_C(1) << entity_rank_near_classes) - 1
 typedef struct Node {
     int     older, newer; /* in its list */
     int     before, after; /* of all, in the order of their last reports */
-    int     sender;       /* nothing: it is not there */
+    int     sender;       /* none: not present */
     uint8_t list;
 } Node;
 
@@ -95,7 +95,7 @@ static void set_place(EntityRanks *r, int tier, int place, int sender)
     r->sender[sender].at[tier] = place;
 }
 
-/* To where it belongs, from a place at which there was or will be another. */
+/* Sifts it to its position in the heap, from a free position. */
 static void sift(EntityRanks *r, int tier, int place, int sender)
 {
     const int *heap = r->heap[tier], count = r->heap_count[tier];

@@ -1,6 +1,6 @@
 /* entities/table/entity_snapshot.c: the table at one instant: all entities extrapolated, in the order of ids.
  *
- * Entities go through in chunks whose slots stay in cache; those of one algorithm in a chunk go through
+ * Entities are processed in chunks with slots that stay in cache; those of one algorithm in a chunk go through
  * dead_reckon_arrays together. */
 #include "entities/table/entity_table_private.h"
 
@@ -62,7 +62,7 @@ typedef struct Ordered {
     int      slot;
 } Ordered;
 
-/* Radix sort, an octet a pass, six octets of id; a pass whose octet is the same everywhere is left out. Returns
+/* Radix sort, one octet per pass, six octets of id; a pass with equal octets is skipped. Returns
  * the one of the two arrays that holds the result. */
 static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 {
@@ -85,8 +85,8 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 
 /* ---- limit of rendered entities -------------------------------------------------------------- */
 
-/* Squared distance from the place that matters, as a number that sorts as it does: of what was reported, not of what it
- * is extrapolated to. */
+/* Squared distance from the focus, as an integer of the same order: of the reported position, not of the extrapolated
+ * one. */
 static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
 {
     const EntityFocus *focus = &table->focus;
@@ -101,8 +101,8 @@ static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
     return bits;
 }
 
-/* The value of which `wanted` are not above it, and fewer below; *at_it: how many of those that equal it are wanted. An
- * octet a pass, from the highest. */
+/* The `wanted`-th smallest value; *at_it: how many of the values equal to it are within the first `wanted`. Radix
+ * select, one octet per pass, from the highest. */
 static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wanted)
 {
     uint64_t prefix = 0;
@@ -165,7 +165,7 @@ static void block_arrays(KinematicsArrays *k, MotionArrays *m, MotionBlock *bloc
     for (int i = 0; i < 9; i++) m->r_ecef_from_body[i] = block->out[a++];
 }
 
-/* The reach of geodesy and of every sender's arithmetic: what leaves it was no motion but a wrong report. */
+/* Range of valid positions: an extrapolation beyond it follows from an invalid report. */
 static bool is_near_earth(const double p_ecef[3])
 {
     const double r_m = v3_length(p_ecef);
@@ -235,7 +235,7 @@ static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const
 
 /* ---- the rest of an entity ---------------------------------------------------------------- */
 
-/* From here on p is the model's origin, the centre of the base, on the ground where it is set onto it; z points down. */
+/* From here on p is the model's origin, the centre of the base, on the ground where it is clamped; z points down. */
 static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
 {
     const double height_m = catalog_model(table->catalog, slot->model)->height_m;
@@ -331,7 +331,7 @@ static void finish_chunk(void *user, int worker, int chunk)
                       all->table->slot + all->order[e].slot, snapshot->t_s);
 }
 
-/* What entities carry first, then what they and the shots have let go. */
+/* First the puffs attached to entities, then those emitted by them and by shots. */
 static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
 {
     EffectPuff *carried = NULL, one;
@@ -353,7 +353,7 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
 
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
 {
-    enum { ahead = 12 }; /* slots that are fetched before they are read */
+    enum { ahead = 12 }; /* slots prefetched ahead */
     Snapshot snapshot = {.t_s = t_s};
 
     if (!isfinite(t_s)) return STATUS_BAD_VALUE;

@@ -29,7 +29,7 @@ static const float amplitude[SURFACE_COUNT][octave_count] = {
     [SURFACE_WETLAND] = {.08f, .08f, .07f, .07f, .08f, .07f, .05f},
 };
 
-/* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
+/* 1 for wavelengths of four texture footprints, 0 for two: below that a pixel averages to the mean, which is 1. */
 static F32x8 fade(double wavelength_m, F32x8 footprint_m)
 {
     const F32x8 t = f32x8_clamp((footprint_m * f32x8_set(1 / wavelength_m) - f32x8_set(0.25)) * f32x8_set(4), 0, 1);
