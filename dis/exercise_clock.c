@@ -15,9 +15,9 @@ enum {
     sender_limit = 4096,  /* beyond that capture time is used */
     slot_count   = 8192,  /* a power of two, at most half full */
     memory_slots = 16384, /* entities remembered for the check; a later one replaces an earlier one */
-    odd_limit    = 2,     /* reports in a row against a proven sender */
+    odd_limit    = 2,     /* consecutive reports against a validated sender */
     votes_needed = 2,     /* consecutive, for a rejected sender */
-    most_failures = 5,    /* the time to prove itself is doubled so many times: 2 minutes */
+    most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
 };
 
 static const double hour_s = 3600.0;
@@ -107,7 +107,8 @@ static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
 
 /* ---- placing -------------------------------------------------------------------------------------- */
 
-/* Time of a stamp by the sender's own tie: the short way round the hour, then whole hours towards the ruler. */
+/* Time of a stamp by the sender's own offset: the shorter way round the hour, then whole hours towards the
+ * reference. */
 static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
 {
     const double t_s = sender->tied_s + dis_timestamp_step_s(sender->tied_stamp, stamp);
@@ -131,22 +132,22 @@ static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
     sender->first        = now;
     sender->latest_stamp = now.stamp;
     if (!absolute) return;
-    /* UTC on both sides: the stamp itself, in the hour of the ruler */
+    /* UTC on both sides: the stamp itself, in the hour of the reference */
     const double past_s = dis_timestamp_seconds(now.stamp);
     const double t_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
     if (fabs(t_s - ruler_s) <= leave_s) sender->tied_s = t_s;
 }
 
-/* ---- judging -------------------------------------------------------------------------------------- */
+/* ---- checking ------------------------------------------------------------------------------------- */
 
-/* Seconds that the stamps went further than the arrivals since a moment; whole hours do not count. */
+/* Elapsed time of stamps less that of arrivals since a moment, s; modulo whole hours. */
 static double gained_s(Moment since, Moment now)
 {
     const double gain_s = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
     return gain_s - hour_s * round(gain_s / hour_s);
 }
 
-/* Whether stamps and arrivals went equally far since a moment. */
+/* Whether the elapsed times of stamps and arrivals since a moment agree. */
 static bool keeps_pace(Moment since, Moment now)
 {
     return fabs(gained_s(since, now)) <= jitter_s + drift * fabs(now.capture_s - since.capture_s);
@@ -188,7 +189,7 @@ static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler
  * first PDU that passes revokes it; without one for two seconds the failure is final. */
 static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s, double ruler_s)
 {
-    if (now.capture_s < sender->mark.capture_s) { /* the capture's clock went back */
+    if (now.capture_s < sender->mark.capture_s) { /* the capture clock stepped back */
         sender->mark        = now;
         sender->next_vote_s = now.capture_s + vote_s;
     }

@@ -1,6 +1,6 @@
 /* dis/log_packet.c: packets of a capture -> UDP payloads, layer by layer.
  *
- * Each layer hands the next a Span and never more than was captured; what does not fit is counted and left.
+ * Each layer passes the next a Span of captured octets only; inconsistent packets are counted and skipped.
  * Sources: the link-layer header types of libpcap (pcap-linktype(7)), RFC 791 and 815 (IPv4), RFC 8200 (IPv6),
  * RFC 768 (UDP), IEEE 802.1Q. */
 #include "dis/log_packet.h"
@@ -29,7 +29,7 @@ enum {
     fragment_units = 8192,
     link_null = 0, /* LINKTYPE_ */
     link_ethernet = 1,
-    link_raw_bsd = 12, /* DLT_RAW of the BSDs, which some wrote */
+    link_raw_bsd = 12, /* DLT_RAW of the BSDs, written by some programs */
     link_raw_openbsd = 14,
     link_raw = 101,
     link_loop = 108,
@@ -173,8 +173,8 @@ static Assembly *find_assembly(DisPacketReader *reader, const uint8_t key[40])
     return free_one;
 }
 
-/* Puts one fragment where it belongs. Octets that came first stay, so an overlap has one outcome. Returns the
- * assembly when it is whole, to be released by the caller; NULL otherwise. */
+/* Inserts one fragment. Octets received first are kept, so overlaps are deterministic. Returns the assembly when
+ * complete, to be released by the caller; NULL otherwise. */
 static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], size_t offset, bool more, uint8_t next,
                               Span part)
 {
@@ -221,7 +221,7 @@ static void read_ipv4(DisPacketReader *reader, Span packet)
     const uint8_t *p = packet.at;
     const size_t   header = 4 * (size_t)(p[0] & 15);
     size_t         total = dis_load_u16(p + 2);
-    if (total == 0) total = packet.octets; /* left to the network card, and captured before it filled it in */
+    if (total == 0) total = packet.octets; /* checksum offload: captured before the network card computed it */
     if (p[0] >> 4 != 4 || header < 20) {
         counters->other_protocol++;
         return;

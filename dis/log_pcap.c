@@ -51,7 +51,7 @@ __attribute__((format(printf, 2, 3))) static bool stop(DisCapture *c, const char
     const char *below = dis_stream_problem(c->stream);
     va_list     arguments;
     va_start(arguments, format);
-    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* the file's own trouble is the cause */
+    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* caused by an error of the file stream */
     else vsnprintf(c->problem, sizeof c->problem, format, arguments);
     va_end(arguments);
     c->status = dis_stream_status(c->stream);
@@ -69,7 +69,7 @@ static uint32_t load_u32(const DisCapture *c, const uint8_t *p)
                   : (uint32_t)load_u16(c, p + 2) << 16 | load_u16(c, p);
 }
 
-/* In the other order than a little-endian reader would have it? */
+/* Whether the octets are the magic number; *big: in big-endian order. */
 static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 {
     const uint32_t little = (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];

@@ -19,7 +19,7 @@ static const double pace_low = 0.8, pace_high = 1.25; /* ratio of capture time t
 static const double counter_pace = 20;     /* stamps this much slower than packets count something else */
 static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */
 static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2, longest_step_s = 60; /* of what moves */
-static const double gap_s = 1500;          /* a silence that the hour of a stamp cannot bridge */
+static const double gap_s = 1500;          /* a gap too long for the hour of a stamp */
 
 typedef struct Voice {
     uint16_t sender[2];

@@ -1,8 +1,8 @@
 /* dis/udp.c: the receiving thread, its queue, and the rule that closes a tick.
  *
  * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or
- * for a moment the one that closes a tick). sending: the socket itself, which a network that went and came back
- * replaces. queue: the ring and the counters, held for as long as some copies take. */
+ * for a moment the one that closes a tick). sending: the socket itself, which is replaced after a loss of the network.
+ * queue: the ring and the counters, held for a few copies only. */
 #include "dis/udp.h"
 #include "dis/steady_clock.h"
 #include "dis/udp_link.h"
@@ -38,7 +38,7 @@ struct DisUdp {
 
     /* under receive */
     pthread_mutex_t  receive;
-    pthread_cond_t   turn;         /* the tick is closed, the thread may go on */
+    pthread_cond_t   turn;         /* the tick is closed, the thread may continue */
     int64_t          last_ns;      /* no arrival time is below this */
     SteadyClock      clock;
     bool             complained;
@@ -191,7 +191,7 @@ static ClockReading look_at_clock(DisUdp *u)
     return now;
 }
 
-/* Takes what is there, up to a batch, and never waits. Returns how many came, -1 after a failure; *newest_ns: latest
+/* Receives up to a batch without blocking. Returns the number of datagrams, -1 after a failure; *newest_ns: latest
  * time of the kernel's among them. */
 static int receive_batch(DisUdp *u, int64_t *newest_ns)
 {
@@ -259,7 +259,7 @@ static bool remake_socket(DisUdp *u)
     DisSocketAddress to;
     DisTie           tie;
     const bool       listens = u->link.listens;
-    log_suppress(true); /* it is tried again each second */
+    log_suppress(true); /* retried each second */
     const Status status = dis_udp_socket(&made, &to, &tie, &u->config, listens);
     log_suppress(false);
     if (status != STATUS_OK) return false;
@@ -316,7 +316,7 @@ static void *receive_loop(void *user)
         }
         if (ready <= 0 || !what[0].revents) continue;
         pthread_mutex_lock(&u->receive);
-        /* a flood must not delay the one that closes a tick */
+        /* a flood must not delay the thread that closes a tick */
         while (atomic_load(&u->closing)) pthread_cond_wait(&u->turn, &u->receive);
         const bool failed = receive_batch(u, &newest_ns) < 0;
         if (failed) complain(u);
@@ -391,9 +391,10 @@ Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
     return STATUS_OK;
 }
 
-/* ---- life ------------------------------------------------------------------------------------------------- */
+/* ---- open and close
+ * ------------------------------------------------------------------------------------------------- */
 
-/* A thread takes no signals: they are for the program's own. */
+/* The thread blocks signals: the main thread handles them. */
 static bool start_thread(DisUdp *u)
 {
     sigset_t all, before;
@@ -443,7 +444,7 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
     u->link.listens = true;
-    u->link.watch   = dis_link_watch(); /* first: what happens while the socket is made is announced */
+    u->link.watch   = dis_link_watch(); /* first: changes during socket creation are then notified */
     Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
     check_link(u);

@@ -22,7 +22,7 @@ static int64_t monotonic_ns(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-/* ---- announcements ----------------------------------------------------------------------------------- */
+/* ---- notifications ----------------------------------------------------------------------------------- */
 
 int dis_link_watch(void)
 {
@@ -51,13 +51,12 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     if (link->watch < 0) return;
     for (;;) {
         const ssize_t octets = recv(link->watch, buffer, sizeof buffer, MSG_DONTWAIT);
-        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the next poll finds the
-                                                                           * state */
+        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the next poll follows */
         if (octets <= 0) return;
         unsigned left = (unsigned)octets;
         for (const struct nlmsghdr *m = (const void *)buffer; NLMSG_OK(m, left); m = NLMSG_NEXT(m, left)) {
             const struct ifinfomsg *about = NLMSG_DATA(m);
-            /* a bridge announces its ports in a family of its own: those are not deleted */
+            /* a bridge notifies of its ports in a separate family: those are not deleted */
             if (m->nlmsg_type == RTM_DELLINK && m->nlmsg_len >= NLMSG_LENGTH(sizeof *about) &&
                 about->ifi_family == AF_UNSPEC)
                 note_deleted(link, (unsigned)about->ifi_index, socket, to, tie);
@@ -95,7 +94,7 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
     if (tie->group) { /* joined already: the usual result */
         if (dis_udp_join(socket, to, 0) || errno == EADDRINUSE) return DIS_LINK_UP;
         *remake = errno == ENOBUFS;
-        return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* joined still, though no route leads there */
+        return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* still joined, though without a route */
     }
     return tie->own && !dis_udp_is_own(to) ? DIS_LINK_NO_ADDRESS : DIS_LINK_UP;
 }

@@ -13,9 +13,9 @@
 enum { receive_buffer_octets = 64 << 20, send_buffer_octets = 4 << 20, least_queue_octets = 128 << 10,
        most_queue_octets = 1 << 30, text_size = 256 };
 
-/* What an address is to this machine decides how to listen for it. */
+/* The kind of address determines how to listen for it. */
 typedef enum Reach {
-    REACH_OWN,       /* one of this machine's: bound to, alone */
+    REACH_OWN,       /* one of this machine's: bound to, exclusive */
     REACH_PEER,      /* another machine's: all datagrams to the port, exclusive */
     REACH_BROADCAST, /* all datagrams to the port, shared with other programs */
     REACH_GROUP,     /* joined and bound to: only the group is received, shared with other programs */
@@ -40,7 +40,7 @@ void dis_socket_address_octets16(uint8_t out[16], const DisSocketAddress *addres
     }
 }
 
-/* ---- from names to a plan ------------------------------------------------------------------------- */
+/* ---- address resolution -------------------------------------------------------------------------- */
 
 static void list_interfaces(char out[text_size])
 {
@@ -160,7 +160,7 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     return STATUS_OK;
 }
 
-/* ---- from the plan to a socket -------------------------------------------------------------------- */
+/* ---- socket set-up ------------------------------------------------------------------------------ */
 
 /* Status, after one log line with the operation, its object, the error and a remedy. */
 static Status refused(const Plan *plan, const char *what)
@@ -200,7 +200,7 @@ static bool set_flag(int socket, int level, int name, int value)
     return setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/* As much as is allowed: beyond the limit only for the administrator. */
+/* The largest allowed buffer: beyond the limit needs CAP_NET_ADMIN. */
 static void set_buffer(int socket, int forced, int plain, int octets)
 {
     if (!set_flag(socket, SOL_SOCKET, forced, octets)) set_flag(socket, SOL_SOCKET, plain, octets);

@@ -37,7 +37,7 @@ int articulation_report(Articulation *articulation, const DisVariableParameter *
 bool articulation_value(double *value, const Articulation *articulation, uint32_t dis_class, uint32_t dis_metric,
                         double t_s, double hold_s);
 
-/* What else turns a model's joints: by itself, or over the ground. */
+/* Further inputs of a model's joints: running time, and motion over the ground. */
 typedef struct JointDrive {
     double spin_s;     /* time while the engine runs: rotors */
     double distance_m; /* distance travelled forward: wheels */

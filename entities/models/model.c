@@ -52,7 +52,7 @@ static void turn_about(double r[9], const double a[3], double angle_rad)
     memcpy(r, m, sizeof m);
 }
 
-/* Where a node is in its parent at one (already limited) joint value. */
+/* Pose of a node in its parent at one (already limited) joint value. */
 static void node_in_parent(double p[3], double r[9], const ModelNode *node, double value)
 {
     memcpy(p, node->p_parent, 3 * sizeof *p);
@@ -185,7 +185,7 @@ Status model_measure(Model *model)
                     box[mp->node][0][i] = fmin(box[mp->node][0][i], v[i]);
                     box[mp->node][1][i] = fmax(box[mp->node][1][i], v[i]);
                 }
-                /* what hangs on fixed nodes only: its vertices themselves */
+                /* parts on fixed nodes only: their vertices themselves */
                 bool fixed = true;
                 for (int n = mp->node; n >= 0 && fixed; n = model->node[n].parent)
                     fixed = model->node[n].joint == JOINT_FIXED;

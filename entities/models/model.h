@@ -8,11 +8,11 @@
 #include "pitviper.h"
 
 enum {
-    model_name_size = 96,    /* of nodes, parts and models: other people name a part by its whole path */
+    model_name_size = 96,    /* of nodes, parts and models: external models name a part by its whole path */
     model_damage_states = 4, /* DIS damage: 0 none, 1 slight, 2 moderate, 3 destroyed */
 };
 
-/* What makes a part warm. One driver each; etc/heat.csv gives the figures. */
+/* Heat roles of parts. One driver each; etc/heat.csv gives the figures. */
 typedef enum HeatRole {
     HEAT_PASSIVE = 0,  /* follows air and sun only */
     HEAT_HULL,         /* engine, weakly */

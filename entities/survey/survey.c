@@ -18,7 +18,7 @@ enum {
 static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
 static const double year_1990_s = 631152000, year_2100_s = 4102444800;
 static const double absolute_agree_s = 10; /* clocks of one exercise, and what a network delays */
-static const double invented_epoch_s = 1e9; /* captures made out of logs without dates start here */
+static const double invented_epoch_s = 1e9; /* captures converted from logs without dates start here */
 
 typedef struct TrackBuild {
     int     capacity;
@@ -28,7 +28,7 @@ typedef struct TrackBuild {
 typedef struct Building {
     Survey        *survey;
     ExerciseClock *clock;
-    DisPdu         pdu;   /* the one that is read */
+    DisPdu         pdu;   /* the log that is read */
     EntityIndex    index;
     int            track_capacity;
     TrackBuild    *build; /* beside survey->track */
@@ -155,7 +155,7 @@ static Status add_warfare(Building *b, const WarfareEvent *event)
     return status;
 }
 
-/* A burst must be somewhere: the ground is fitted through it. */
+/* A burst must have a valid position: the ground is fitted through it. */
 static Status receive_detonation(Building *b, const DisDetonation *pdu, double t_s)
 {
     const DisEntityId any_id = {1, 1, 1}; /* only the position is checked */

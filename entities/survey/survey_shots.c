@@ -91,7 +91,8 @@ static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int de
     return -1;
 }
 
-/* The surest first: both ids, then the munition's, each before the detonation; then by a clock that is behind. */
+/* The most certain match first: both ids, then the munition's, each before the detonation; then by a clock that is
+ * behind. */
 static void join_detonation(Joining *j, int detonation)
 {
     const WarfareEvent *d = j->event + detonation;

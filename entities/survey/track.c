@@ -56,7 +56,7 @@ static void interpolate_rotation(double out[9], const double r0[9], const double
 }
 
 /* Under any even acceleration the chord is no faster than the faster end; a third above that, and above a vehicle's
- * start from rest, it is no motion. */
+ * start from rest, it is a discontinuity. */
 static const double step_speeds = 1.3, step_floor_mps = 5;
 
 /* ---- position ----------------------------------------------------------------------------- */

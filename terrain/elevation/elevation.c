@@ -13,7 +13,7 @@ static void *heights_create(size_t count, size_t size)
     if (bytes < 2 * page) return calloc(count, size);
     void *heights = aligned_alloc(page, (bytes + page - 1) / page * page);
     if (!heights) return NULL;
-    madvise(heights, bytes, MADV_HUGEPAGE); /* a wish: where it is not granted nothing changes but the time */
+    madvise(heights, bytes, MADV_HUGEPAGE); /* advisory: without huge pages only the run time changes */
     return memset(heights, 0, bytes);
 }
 

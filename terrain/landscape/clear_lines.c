@@ -72,7 +72,7 @@ Status line_set_create(LineSet *out, const ClearLine *line, int count, const Loc
     for (int n = 0; n < count; n++) {
         const double *a = line[n].a_enu, *b = line[n].b_enu;
         if (!v3_is_finite(a) || !v3_is_finite(b)) continue;
-        /* wholly beyond one side of the world, or too long for a path */
+        /* entirely beyond one side of the terrain, or too long for a path */
         if (fmin(a[0], b[0]) > horizon_m || fmax(a[0], b[0]) < -horizon_m || fmin(a[1], b[1]) > horizon_m ||
             fmax(a[1], b[1]) < -horizon_m || !(squared_distance(a, b) < 16 * horizon_m * horizon_m))
             continue;
@@ -318,7 +318,7 @@ static void seed_line(Cutter *cutter, const ClearLine *line)
         double a[3], b[3], mid[3];
         v3_add_scaled(a, line->a_enu, length_m > 0 ? s_m / length_m : 0, d);
 
-        /* how far nothing can happen: high above the whole level */
+        /* distance without effect: high above the whole level */
         const double above_m = a[2] - full_clearance_m - cutter->top_m;
         if (above_m > 0) {
             const double skip_m = slope > 0 ? above_m / slope : INFINITY;

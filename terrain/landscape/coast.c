@@ -65,7 +65,7 @@ static double most_wander_at(double to_sea_m, double to_land_m)
     return fmin(wander * fmin(to_sea_m, to_land_m), most_wander_m);
 }
 
-/* How far inland, m, about: half of what the sea is farther than the land. Negative on the water. */
+/* Approximate distance inland, m: half the difference of the distances to sea and land. Negative on the water. */
 static double inland_m(const Coast *coast, double to_sea_m, double to_land_m, double x_m, double y_m)
 {
     if (!coast->land_count) return -INFINITY;
@@ -103,7 +103,7 @@ CoastKind coast_at(const Coast *coast, double x_m, double y_m)
     return ask(coast, x_m, y_m);
 }
 
-/* ---- making it ---------------------------------------------------------------------------- */
+/* ---- construction ------------------------------------------------------------------------- */
 
 /* Places of one kind no nearer to one another than a distance that leaves most_places of them; and again those that the
  * thinned ones would give to the other kind. */
@@ -204,7 +204,7 @@ static double dry_m(double above_m)
     return 0.5 * (above_m + sqrt(above_m * above_m + 4 * round_m * round_m));
 }
 
-/* The land's height above the sea as the coast leaves it. */
+/* The land's height above the sea after fading to the shore. */
 static double led_down_m(double above_m, double inland, double to_sea_m, double to_land_m)
 {
     const double wild = smooth_step(own_land_m, wild_m, to_land_m);
@@ -212,8 +212,8 @@ static double led_down_m(double above_m, double inland, double to_sea_m, double 
     return smooth_step(0, 1, own) * (above_m + wild * (dry_m(above_m) - above_m));
 }
 
-/* A block's posts about (x, y): all of them on the water, or inland where the shore is not felt, and there all near a
- * place of land or all far from any. */
+/* A block's posts about (x, y): all of them on the water, or inland beyond the influence of the shore, and there all
+ * near a place of land or all far from any. */
 typedef enum BlockKind { BLOCK_MIXED, BLOCK_WATER, BLOCK_UNTOUCHED, BLOCK_WILD } BlockKind;
 
 static BlockKind kind_of_block(const Coast *coast, double x_m, double y_m, double reach_m)

@@ -1,5 +1,5 @@
 /* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every
- * grid, find its posts, bend and join; at the end measure what came of it against the files. */
+ * grid, find its posts, apply curvature and blend; at the end measure the error against the files. */
 #include "terrain/landscape/elevation_import_private.h"
 
 #include <stdlib.h>

@@ -148,7 +148,7 @@ double landscape_texture(const Landscape *landscape, SurfaceClass surface, doubl
 
 void cover_measure_photo(Landscape *landscape)
 {
-    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would blow up the others */
+    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would amplify the others */
     static const double enough = 200, most = 400e3;
     Cover *cover = landscape->cover;
     Photo *p = &cover->photo;

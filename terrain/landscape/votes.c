@@ -162,7 +162,7 @@ static bool plane_through(Plane *out, const Neighbour *a, const Neighbour *b, co
         slope[0] = uz * ux / square, slope[1] = uz * uy / square;
     } else {
         const double vx = c->d[0] - a->d[0], vy = c->d[1] - a->d[1], vz = c->d[2] - a->d[2], det = ux * vy - uy * vx;
-        /* nearly in line, a metre becomes a cliff */
+        /* nearly collinear: errors of a metre would be amplified */
         if (!(fabs(det) > 0.2 * hypot(ux, uy) * hypot(vx, vy)) || !(fabs(det) > 1)) return false;
         slope[0] = (uz * vy - uy * vz) / det, slope[1] = (ux * vz - uz * vx) / det;
     }
