@@ -152,8 +152,9 @@ bool temp_file(char out[temp_path_size], const char *ending);
 bool etc_path(char *out, size_t out_size, const char *name);
 /* Whether the files read by every run exist; else logs what is missing, the folders searched, and a remedy. */
 bool etc_is_complete(void);
-/* A table of the user's own beside catalog.csv, materials.csv or sensors.csv of etc/: its rows go before those. path
- * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL: none. */
+/* A user's table beside catalog.csv, materials.csv or sensors.csv of etc/: its rows take precedence. path
+ * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL:
+ * none. */
 bool etc_own_set(const char *name, const char *path);
 const char *etc_own(const char *name);
 

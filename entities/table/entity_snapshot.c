@@ -118,7 +118,7 @@ static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wa
     return prefix;
 }
 
-/* Of count in the order of ids, the nearest config.shown in that order; among equally near ones those with the lower ids. */
+/* Of count entities in the order of ids the nearest config.shown, in that order; at equal distance the lower ids. */
 static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
 {
     const int wanted = table->config.shown;

@@ -27,7 +27,7 @@ typedef struct EntityTableConfig {
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
-    double new_per_s;             /* entities that a sender may add a second, and at once; 65536: all its ids can name */
+    double new_per_s;             /* new entities of a sender per second, and at once; 65536: all its ids */
     double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
     Pool  *pool;                  /* helps with snapshots; NULL: the caller alone. The same bits either way */
     ContactGround ground;         /* ground entities are clamped to it in every pose; none: not clamped */
@@ -75,14 +75,14 @@ void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_
 /* Removes those silent for too long at t_s. */
 void   entity_table_expire(EntityTable *table, double t_s);
 
-/* Any decoded PDU: checked, and handed to the right one of the above; types that the table does not need are ignored, and
- * an instant that is not finite. Every drop is counted. This is what replay and the node call. */
+/* Any decoded PDU: checked, and passed to the function above of its type; types that the table does not need are
+ * ignored, and an instant that is not finite. Every drop is counted. This is what replay and the node call. */
 void   entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
 
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
 bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
-bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: not there */
+bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: absent */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 

@@ -38,7 +38,7 @@ typedef struct Snapshot {
     double          t_s;
     int             count, node_count;
     SnapshotEntity *entity; /* sorted by id */
-    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
+    NodePose       *node;   /* of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
     SnapshotJoints *joints; /* [count]; NULL where node is not */
     JointReport    *joint_report;
     int             puff_count;
