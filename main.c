@@ -39,7 +39,7 @@ static const RoomList probe_lists[] = {
     ROOM_LIST(sensor_probes, sensor_probe_count),
 };
 
-/* state: list, place in it; from zeroes. NULL: no more. */
+/* state: list, index in it; starts zeroed. NULL: end. */
 static const void *next_of(const RoomList *list, size_t lists, size_t state[2])
 {
     for (; state[0] < lists; state[0]++, state[1] = 0) {
@@ -192,7 +192,7 @@ static int run_named(int argc, char **argv)
         const bool help = asks_for_help(argc, argv);
         if (!help && !environment_good(&commands[i], argc, argv)) return 1;
         snprintf(called, sizeof called, "pitviper %s", argv[0]);
-        argv[0] = called; /* the name in getopt's messages */
+        argv[0] = called; /* program name in getopt's messages */
         const int code = commands[i].run(argc, argv);
         if (help && code == 0) printf("\n%s", common_help);
         return code;
@@ -223,7 +223,7 @@ static int help_command(int argc, char **argv)
 int main(int argc, char **argv)
 {
     fill_closed();
-    thread_flush_denormals(); /* so that a probe computes what a frame computes */
+    thread_flush_denormals(); /* so that a probe computes as a frame does */
     if (!take_verbosity(&argc, argv)) return 2;
     if (argc < 2) {
         usage(stderr);

@@ -1,7 +1,7 @@
-/* pitviper.h: the few words everyone shares.
+/* pitviper.h: shared basics.
  *
- * Status and log, memory that lives one frame, one pool of threads, counter-based random numbers,
- * text tables, settings, and small vectors. Knows nothing of DIS, Earth or light. */
+ * Status and log, per-frame memory, one thread pool, counter-based random numbers,
+ * text tables, settings, and small vectors. Independent of DIS, Earth and light. */
 #ifndef PITVIPER_H
 #define PITVIPER_H
 
@@ -24,10 +24,10 @@ extern "C" {
 
 typedef enum Status {
     STATUS_OK = 0,
-    STATUS_TRUNCATED,   /* the bytes ended before the record did */
+    STATUS_TRUNCATED,   /* the input ends before the record does */
     STATUS_BAD_VALUE,   /* a field is outside its documented range */
     STATUS_UNSUPPORTED, /* well-formed, but not something this node handles */
-    STATUS_IO,          /* the operating system said no */
+    STATUS_IO,          /* a call of the operating system failed */
     STATUS_NO_MEMORY,
 } Status;
 
@@ -35,30 +35,30 @@ const char *status_name(Status status);
 
 /* ---- log ---------------------------------------------------------------------------------- */
 
-typedef enum LogLevel { LOG_DETAIL /* hidden unless asked for */, LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
+typedef enum LogLevel { LOG_DETAIL /* hidden by default */, LOG_INFO, LOG_WARN, LOG_ERROR } LogLevel;
 typedef void LogSink(void *user, LogLevel level, const char *line);
 
 /* One line, `module: what happened: key=value`, without a newline. Default sink: stderr. Thread-safe.
  * log_set_sink(NULL, NULL) restores the default. log_set_level hides everything below; at first below LOG_INFO.
- * log_suppress: what the calling thread says, and it alone, until told otherwise. */
+ * log_suppress: suppresses messages of the calling thread only, until it is undone. */
 void log_set_sink(LogSink *sink, void *user);
 void log_set_level(LogLevel lowest);
 void log_suppress(bool hushed);
 /* A line at the end of a terminal, rewritten in place and out of the way of what is logged; NULL: none. Nothing where
- * stderr is no terminal, where information is hidden, and with a sink. Standard output: say NULL before. */
+ * stderr is no terminal, where information is hidden, and with a sink. Standard output: set it to NULL before. */
 void log_status(const char *text);
-/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and what was asked for
+/* What --quiet and --verbose have set. Quiet: no choices, progress or notices; warnings, errors and requested output
  * stay. */
 bool log_is_quiet(void);
 bool log_is_verbose(void);
-/* To standard output, what was not asked for: choices, a summary at the end. Nothing when quiet. */
+/* To standard output, output not requested: choices, a summary at the end. Nothing when quiet. */
 void log_print(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_detail(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_info(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_warn(const char *format, ...) __attribute__((format(printf, 1, 2)));
 void log_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
-/* ---- arena: memory that lives one frame --------------------------------------------------- */
+/* ---- arena: memory of one frame -------------------------------------------------------- */
 
 /* Blocks are kept over a reset, so a loop that needs the same amount each time calls malloc only at
  * first. arena_alloc may be called by several threads at once; nothing else may be called meanwhile. */
@@ -89,7 +89,7 @@ void   thread_flush_denormals(void);
 /* Processors that this process may run on, at least 1. */
 int    thread_processors(void);
 
-/* Monotonic wall clock, s: for pacing and reports, never for anything that shows in a product. */
+/* Monotonic wall clock, s: for pacing and reports, never for results. */
 double wall_clock_s(void);
 
 /* ---- random: a pure function of counters -------------------------------------------------- */
@@ -127,13 +127,13 @@ bool text_to_double(double *out, const char *text);
 bool text_to_long(long long *out, const char *text);
 /* UTC as 2026-06-21T10:00:00Z, seconds with or without a fraction, 1900 .. 2100, to Unix time. */
 bool text_to_unix_s(double *unix_s, const char *text);
-/* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other foreign bytes. */
+/* Printable ASCII kept, anything else as \xNN; always terminated. For markings and other untrusted bytes. */
 void text_escape(char *out, size_t out_size, const char *bytes, size_t count);
-/* What a terminal can be given of a text from outside, such as a file's name: well-formed UTF-8 as it is, but control
- * characters, those that turn the direction of writing, and octets that are no UTF-8 as \xNN. lines: newlines and tabs
- * stay. Cut where there is no room. */
+/* A text from outside, such as a file's name, made safe for a terminal: valid UTF-8 unchanged; control characters,
+ * bidirectional controls and octets that are not UTF-8 as \xNN. lines: newlines and tabs stay. Truncated to the size of
+ * the output. */
 void text_show(char *out, size_t out_size, const char *text, bool lines);
-/* printf to a terminal, file or pipe for what holds text from outside: through text_show, with the format's own lines. */
+/* printf to a terminal, file or pipe with text from outside: through text_show, keeping the format's newlines. */
 void text_print(FILE *to, const char *format, ...) __attribute__((format(printf, 2, 3)));
 void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__((format(printf, 2, 0)));
 
@@ -141,7 +141,7 @@ void text_vprint(FILE *to, const char *format, va_list arguments) __attribute__(
  * module's. */
 Status text_read_file(char **out, size_t *octets, const char *module, const char *path, size_t most);
 
-/* An empty folder, or file whose name ends so, of our own in $TMPDIR or /tmp; the caller takes it away. False: logged,
+/* A new empty folder, or file with this suffix, in $TMPDIR or /tmp; the caller removes it. False: logged,
  * and an empty name. */
 enum { temp_path_size = 512, temp_name_size = temp_path_size + 128 }; /* temp_name_size: for a file in such a folder */
 bool temp_folder(char out[temp_path_size]);
@@ -150,23 +150,24 @@ bool temp_file(char out[temp_path_size], const char *ending);
 /* Path of a file under etc/: $PITVIPER_ETC, else share/pitviper beside the program, the source folder or the installed
  * one. False when too long. */
 bool etc_path(char *out, size_t out_size, const char *name);
-/* Whether what every run reads is there; else logs what is missing, where it was looked for, and what to do. */
+/* Whether the files read by every run exist; else logs what is missing, the folders searched, and a remedy. */
 bool etc_is_complete(void);
-/* A table of the user's own beside catalog.csv, materials.csv or sensors.csv of etc/: its rows go before those. path
- * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL: none. */
+/* A user's table beside catalog.csv, materials.csv or sensors.csv of etc/: its rows take precedence. path
+ * NULL or empty: none. False: too long, or no such table. Set before work begins, by one thread. etc_own: NULL:
+ * none. */
 bool etc_own_set(const char *name, const char *path);
 const char *etc_own(const char *name);
 
-/* ---- settings: what people write in YAML files ------------------------------------------------ */
+/* ---- settings: YAML files with validated keys ------------------------------------------------- */
 
 typedef enum SettingType {
     SETTING_DOUBLE, SETTING_INT, SETTING_LONG /* long long */, SETTING_BOOL, SETTING_TEXT /* char[] */,
     SETTING_NUMBERS, /* NumberList; in YAML a list of numbers, or of lists of numbers, which become one row */
     /* char[], the names of files. In a file of settings they are relative to that file's folder, on a command line to
-     * the current one: once read, *out has them as the system takes them. */
+     * the current one: after reading, *out has usable paths. */
     SETTING_PATH,
     SETTING_PATHS,        /* several, separated by commas */
-    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is left alone */
+    SETTING_NAME_OR_PATH, /* a path has a dot or a slash in it; a name is kept unchanged */
     /* Read by the table's own function, in files alone; choices: what is accepted, for messages */
     SETTING_OWN,          /* one text; a list is its words with blanks between */
     SETTING_EACH,         /* one text, or a list of them: one call each */
@@ -191,7 +192,7 @@ typedef struct Setting {
 typedef struct SettingValue {
     const char *key, *text;    /* key: of a map; else NULL */
     int         line;
-    bool        wrong_key;     /* set by the reader: it is the key that is wrong, not the text */
+    bool        wrong_key;     /* set by the reader: the key is wrong, not the text */
 } SettingValue;
 /* STATUS_BAD_VALUE: logged as "'text' is not <choices>", or with a complaint as "'text' is <complaint>". */
 typedef Status SettingOwn(const char **complaint, void *out, const Setting *row, SettingValue *value);
@@ -206,72 +207,72 @@ typedef struct SettingList {
 } SettingList;
 
 struct SettingTable {
-    const char        *module; /* whose messages these are: `config` */
+    const char        *module; /* prefix of the messages: `config` */
     const Setting     *row;
     int                count;
     const SettingList *list;   /* NULL: none */
     int                list_count;
-    size_t             line_at; /* of an item: offset of an int that takes the line where it begins; 0: none */
-    const char        *all_keys; /* what prints them: `pitviper check --default`; NULL: nothing */
+    size_t             line_at; /* of an item: offset of an int for the line of its start; 0: none */
+    const char        *all_keys; /* the command that prints them: `pitviper check --default`; NULL: none */
     const char        *prefix;   /* before its keys in messages, `joints.`; NULL: none */
     SettingOwn        *own;      /* of rows of SETTING_OWN, _EACH and _MAP */
 };
 
 enum { settings_file_octets = 1 << 20 };
 
-/* Whether libyaml can be trusted with a text: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from end
- * to end. Time in proportion to octets; logs what is wrong, with its line. */
+/* Whether a text is safe to parse with libyaml: 32 levels, 256 anchors, 8 directives, no NUL, one document, YAML from
+ * end to end. Time in proportion to octets; logs what is wrong, with its line. */
 Status yaml_check(const char *module, const char *path, const char *text, size_t octets);
 
-/* Fills over what stands in *out. What is absent stays; what is unknown, given twice, of the wrong kind or out of range
+/* Overwrites *out. Absent keys keep their values; what is unknown, given twice, of the wrong kind or out of range
  * is STATUS_BAD_VALUE with file, line, key, value and the accepted range in one logged line. given[row], may be NULL,
- * is set for each key met at the top. On failure *out is half filled: read into a copy. */
+ * is set for each key at the top level. On failure *out is half filled: read into a copy. */
 Status settings_read(void *out, bool *given, const SettingTable *table, const char *path);
 /* The same from memory; path is for the messages. */
 Status settings_parse(void *out, bool *given, const SettingTable *table, const char *path, const char *text,
                       size_t octets);
-/* As settings_read; what is named in it is relative to the folder of another file, which need not be there. */
+/* As settings_read; paths in it are relative to the folder of another file, which need not exist. */
 Status settings_read_as(void *out, bool *given, const SettingTable *table, const char *path, const char *file);
-/* One key as a command line gives it; source names where it came from, `--size`. On failure *out is as it was. */
+/* One key from a command line; source: its option, `--size`. On failure *out is unchanged. */
 Status settings_set(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                     const char *source);
-/* The same as if it stood in that file, for what it names relative to the file's folder. file NULL: as settings_set. */
+/* The same as if it were in that file, for paths relative to the file's folder. file NULL: as settings_set. */
 Status settings_set_from(void *out, bool *given, const SettingTable *table, const char *name, const char *value,
                          const char *source, const char *file);
 bool   settings_is_path(const Setting *row);
-/* Paths become absolute, as far as they fit: what a file in another folder, or a hash, can hold. */
+/* Paths become absolute, as far as they fit: for files in other folders, and for hashes. */
 void   settings_absolute(void *out, const SettingTable *table);
-/* The line on which a file that has been read gives a key; 0: it does not. */
+/* Line of a key in a file that was read; 0: absent. */
 int    settings_line(const SettingTable *table, const char *name, const char *path);
 int    settings_find(const SettingTable *table, const char *name); /* row; -1: no such key */
-/* Every key and value, in table order, one a line: what is hashed. */
+/* Every key and value, in table order, one per line: the input of the hash. */
 void   settings_text(char *out, size_t out_size, const SettingTable *table, const void *from);
 /* A file that reads back as *from: sections, each key with its help, unit and range as a comment. Keys for which
  * shown (may be NULL) is false, and those that are unset (NaN), are commented out. */
 void   settings_write(FILE *to, const SettingTable *table, const void *from, const bool *shown);
-/* Every key with what it accepts and its help. */
+/* Every key with its accepted values and its help. */
 void   settings_write_keys(FILE *to, const SettingTable *table);
 
-/* ---- probes: one model at a time, held against any_sender else's numbers --------------------------- */
+/* ---- probes: one model at a time, for comparison with other programs --------------------------- */
 
 enum { probe_max_columns = 24, probe_text_size = 96 };
 
 typedef struct ProbeValue {
     double      number;                /* of an input: its cell as a number. Of an output: written when text is NULL */
     const char *text;                  /* of an input: its cell. Of an output: written when not NULL */
-    char        buffer[probe_text_size]; /* room for an output's text */
+    char        buffer[probe_text_size]; /* buffer size of an output's text */
 } ProbeValue;
 
-/* A row of CSV in, the same row and its results out. Each room lists its own in <room>/probe.h; `pitviper probe NAME`
- * finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text, all
- * others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
+/* A row of CSV in, the same row and its results out. Each module lists its own in <module>/probe.h; `pitviper probe
+ * NAME` finds them. Column names carry units and are separated by commas. An input with a `$` behind its name is text,
+ * all others must be finite numbers; with a `?` it may be missing, or empty, and is then NaN (or "" for text). */
 typedef struct Probe {
     const char *name, *help;           /* help: one line, what it computes and from what source */
     const char *arguments;             /* of the command line after NAME, as usage shows them: "MODEL"; NULL: none */
     const char *in, *out;              /* result columns that could not be computed are NaN, and written empty */
     /* May be NULL. On failure logs why; *state is then not closed. argv[0] is the probe's name. */
     Status    (*open)(void **state, int argc, char **argv);
-    /* NULL: done; else why not, for the row's error column (in static storage, or in out[0].buffer). */
+    /* NULL: success; else the reason, for the row's error column (in static storage, or in out[0].buffer). */
     const char *(*row)(void *state, const ProbeValue *in, ProbeValue *out);
     void      (*close)(void *state);   /* may be NULL */
 } Probe;

@@ -1,4 +1,4 @@
-/* pitviper_arena.c: memory that lives one frame, in blocks that outlive it. */
+/* pitviper_arena.c: per-frame memory, in blocks that are reused. */
 #include "pitviper.h"
 
 #include <pthread.h>
@@ -54,7 +54,7 @@ static ArenaBlock *add_block(Arena *arena, size_t octets)
         free(block);
         return NULL;
     }
-    /* after the current one: what lies behind it is still empty and will be reached in turn */
+    /* after the current one: the blocks after it are still empty and are used next */
     if (arena->current) {
         block->next          = arena->current->next;
         arena->current->next = block;

@@ -1,4 +1,4 @@
-/* pitviper_channels.c: reads etc/channels.csv once, and says which channel is in which place. */
+/* pitviper_channels.c: reads etc/channels.csv once; maps channels to array indices. */
 #include "pitviper_channels.h"
 
 #include <pthread.h>

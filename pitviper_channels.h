@@ -1,8 +1,8 @@
-/* pitviper_channels.h: the one table of channels, etc/channels.csv: what is seen, in which light.
+/* pitviper_channels.h: the table of channels, etc/channels.csv: each sensor band and its quantity.
  *
  * Arrays by channel have a place for each of the standard ones and loops over them a bound that the compiler knows. A
- * further channel takes one of these places (place) for a run: channel_choose, before tables are read. So
- * whatever follows a place (light, air, materials, smoke, pictures, truth, detectors, files) follows the channel. */
+ * further channel takes one of these places (place) for a run: channel_choose, before tables are read. So everything
+ * indexed by place (light, air, materials, smoke, images, truth, detectors, files) follows the channel. */
 #ifndef PITVIPER_CHANNELS_H
 #define PITVIPER_CHANNELS_H
 
@@ -26,7 +26,8 @@ typedef struct SpectralChannel {
     bool         standard;                /* it is in its place where no other is chosen */
 } SpectralChannel;
 
-/* Reads the table, once: whoever comes first. The status is the same ever after; failures are logged with file and line. */
+/* Reads the table once, at the first call. Later calls return the same status; failures are logged with file and
+ * line. */
 Status channels_load(void);
 /* The same of any file, which then counts for nothing. */
 Status channels_check(const char *path);

@@ -1,4 +1,4 @@
-/* pitviper_etc.c: where the tables are, those that come with the program and the user's own before them. */
+/* pitviper_etc.c: paths of the tables: the user's own first, then those of the program. */
 #include "pitviper.h"
 
 #include <stdio.h>

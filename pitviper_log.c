@@ -11,7 +11,7 @@ static LogSink        *log_sink;
 static void           *log_user;
 static LogLevel        log_lowest = LOG_INFO;
 static _Thread_local bool suppressed_here;
-static char            status_line[256]; /* what the terminal shows below what is logged */
+static char            status_line[256]; /* progress line of the terminal, below the log */
 
 const char *status_name(Status status)
 {
@@ -59,7 +59,7 @@ static void log_line(LogLevel level, const char *format, va_list arguments)
     char raw[1024], line[4 * sizeof raw];
     if (suppressed_here) return;
     vsnprintf(raw, sizeof raw, format, arguments);
-    text_show(line, sizeof line, raw, false); /* names in files and what libraries say may hold anything */
+    text_show(line, sizeof line, raw, false); /* names in files and messages of libraries may contain any octets */
     pthread_mutex_lock(&log_lock);
     if (level >= log_lowest) {
         if (log_sink)

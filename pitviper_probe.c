@@ -11,7 +11,7 @@ typedef struct Column {
     int  cell; /* of the row; -1: not there */
 } Column;
 
-/* "a,b$,c?" into columns; the table is ours, so too many is a bug. */
+/* "a,b$,c?" into columns; the table is part of the program, so too many is a bug. */
 static int read_columns(Column *column, const char *list)
 {
     int count = 0;
@@ -31,8 +31,8 @@ static int read_columns(Column *column, const char *list)
     return count;
 }
 
-/* False at the end of the file. A line longer than the limit, or with a NUL in it, is read to its end, and why it
- * cannot be used is said. */
+/* False at the end of the file. A line longer than the limit, or with a NUL in it, is read to its end, and the reason
+ * for its rejection is reported. */
 static bool read_line(char *line, FILE *in, const char **error)
 {
     size_t length = 0;
@@ -75,7 +75,7 @@ static void write_number(FILE *out, double number)
     fputs(text, out);
 }
 
-/* Why the row cannot be asked about, or NULL with `in` filled. */
+/* Why the row cannot be evaluated, or NULL with `in` filled. */
 static const char *read_row(ProbeValue *in, const Column *column, int columns, char **cell, char reason[static 128])
 {
     for (int i = 0; i < columns; i++) {

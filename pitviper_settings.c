@@ -1,4 +1,4 @@
-/* pitviper_settings.c: one value by its row of a table: ranges, units, choices, and what is said when it is wrong. */
+/* pitviper_settings.c: one value by its row of a table: ranges, units, choices, and the messages for invalid values. */
 #include "pitviper_settings_private.h"
 
 int settings_find(const SettingTable *table, const char *name)
@@ -8,7 +8,7 @@ int settings_find(const SettingTable *table, const char *name)
     return -1;
 }
 
-/* Slips of the finger between two words: a letter more, less, other, or two changed about. Words of 63 letters at most. */
+/* Edit distance of two words: insertions, deletions, substitutions and transpositions. At most 63 letters. */
 enum { word_size = 64 };
 static int slips(const char *a, const char *b)
 {
@@ -31,7 +31,8 @@ static int slips(const char *a, const char *b)
     return row[m % 3][n];
 }
 
-/* The key that was meant: the nearest of two slips at most, one in short words; or the same key of another section. */
+/* Suggestion for a mistyped key: the nearest at edit distance 2 at most, 1 in short words; or the same key of another
+ * section. */
 static const char *meant(const SettingTable *table, const char *name)
 {
     const char *best = NULL, *point = strrchr(name, '.'), *last = point ? point + 1 : name;
@@ -128,7 +129,7 @@ static bool numbers_of(NumberList *out, const Setting *row, const char *value)
 
 /* ---- one value, stored ----------------------------------------------------------------------- */
 
-/* file: where it stands; NULL: on a command line. */
+/* file: its source; NULL: the command line. */
 Status settings_store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
                     const char *file)
 {

@@ -1,4 +1,4 @@
-/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, whose documents know their lines. */
+/* pitviper_settings_file.c: a YAML file into a struct by its table: libyaml, which keeps line numbers for messages. */
 #include "pitviper_settings_private.h"
 
 #include <errno.h>
@@ -6,7 +6,7 @@
 #include <yaml.h>
 
 typedef struct Reading {
-    const char      *path, *file; /* file: whose folder paths are relative to */
+    const char      *path, *file; /* file: paths are relative to its folder */
     yaml_document_t *document;
 } Reading;
 
@@ -21,10 +21,10 @@ static bool holds_nul(const yaml_node_t *node)
 
 static const char *text_of(const yaml_node_t *node)
 {
-    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: no value of ours */
+    return holds_nul(node) ? "\\0" : (const char *)node->data.scalar.value; /* a NUL inside: not a valid value */
 }
 
-/* What stands there, as a message shows it. */
+/* The node's text, for messages. */
 static const char *shown(const yaml_node_t *node)
 {
     return node->type == YAML_MAPPING_NODE ? "{...}" : node->type == YAML_SEQUENCE_NODE ? "[...]" : text_of(node);
@@ -57,7 +57,7 @@ static Status fill_numbers(void *out, const Reading *r, const SettingTable *tabl
     return STATUS_OK;
 }
 
-/* ---- what a table reads by itself --------------------------------------------------------------- */
+/* ---- keys read by the table itself -------------------------------------------------------------- */
 
 static Status say_own(const Reading *r, const SettingTable *table, const Setting *row, const yaml_node_t *node,
                       const char *complaint)
@@ -139,7 +139,7 @@ static Status fill_value(void *out, const Reading *r, const SettingTable *table,
     return settings_store(out, table, row, text_of(value), source, r->file);
 }
 
-/* Ends: an item's table holds only lists that are written in the program, whatever aliases a file has. */
+/* Ends: an item's table holds only lists that are written in the program, independent of the aliases of a file. */
 static Status fill_mapping(void *out, bool *given, bool *seen, const Reading *r, const SettingTable *table,
                            const char *section, const yaml_node_t *mapping);
 
@@ -199,7 +199,7 @@ static Status fill_key(void *out, bool *given, bool *seen, const Reading *r, con
     snprintf(full, sizeof full, "%s%s%s", section, *section ? "." : "", text_of(name));
     if (is_section(table, full)) {
         if (value->type == YAML_MAPPING_NODE) return fill_mapping(out, given, seen, r, table, full, value);
-        /* `section:` with nothing below it */
+        /* `section:` without keys */
         if (value->type == YAML_SCALAR_NODE && !*text_of(value)) return STATUS_OK;
     }
     const int list = find_list(table, full), row = settings_find(table, full);

@@ -10,8 +10,8 @@ bool settings_is_path(const Setting *row)
     return row->type == SETTING_PATH || row->type == SETTING_PATHS || row->type == SETTING_NAME_OR_PATH;
 }
 
-/* Characters of the folder that paths in this file are relative to, with its slash. A file that is none of a folder's
- * (a pipe, /dev/stdin) has none: they are relative to the current folder. */
+/* Characters of the folder that paths in this file are relative to, with its slash. A file without a folder (a pipe,
+ * /dev/stdin) has none: they are relative to the current folder. */
 static size_t folder_of(const char *file)
 {
     struct stat about;
@@ -45,7 +45,7 @@ bool settings_place_paths(char *out, size_t out_size, SettingType type, const ch
     return fits;
 }
 
-/* Of a path that is there its real one; else with the current folder before it. */
+/* The real path of an existing one; else with the current folder prepended. */
 static bool absolute(char *out, size_t out_size, const char *path)
 {
     char       *real = realpath(path, NULL), here[4096];

@@ -8,7 +8,7 @@
 bool settings_place_paths(char *out, size_t out_size, SettingType type, const char *value, const char *file);
 /* A value within its row's range. */
 bool settings_number(double *out, const Setting *row, const char *value);
-/* One value into its place. file: whose folder paths are relative to; NULL: the current one. */
+/* One value into its place. file: paths are relative to its folder; NULL: to the current one. */
 Status settings_store(void *out, const SettingTable *table, const Setting *row, const char *value, const char *source,
                       const char *file);
 /* Logged with the key that was perhaps meant. */

@@ -1,7 +1,7 @@
 /* pitviper_settings_write.c: settings as text: for hashes, as a file that reads back, and as a list of keys. */
 #include "pitviper_settings_private.h"
 
-/* As it reads back; returns what snprintf does. */
+/* In the form that reads back; returns as snprintf. */
 static int value_text(char *out, size_t out_size, const Setting *row, const void *from, const char *number_format)
 {
     const char *at = (const char *)from + row->offset;
@@ -66,7 +66,7 @@ static void readable(char *out, size_t out_size, const Setting *row, const void 
     }
 }
 
-/* Words that YAML takes as they stand. */
+/* Words that YAML needs no quotes for. */
 static bool is_plain(const char *text)
 {
     if (!*text || strchr("-?:,[]{}#&*!|>'\"%@` ", text[0])) return false;

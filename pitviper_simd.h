@@ -1,6 +1,6 @@
 /* pitviper_simd.h: eight floats, eight integers or four doubles at a time (AVX2 and FMA), for loops over blocks of
- * samples. + - * / work on them as on one number. What a lane gets never depends on its neighbours, so a block gives
- * the bits of its samples one by one. Masks, of comparisons, have all bits set in the lanes where they are true. */
+ * samples. + - * / work as on scalars. A lane never depends on the other lanes, so results of a block equal those of
+ * single samples bit by bit. Masks, of comparisons, have all bits set in the lanes where they are true. */
 #ifndef PITVIPER_SIMD_H
 #define PITVIPER_SIMD_H
 

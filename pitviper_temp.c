@@ -1,4 +1,4 @@
-/* pitviper_temp.c: files and folders for a moment, in $TMPDIR or /tmp. */
+/* pitviper_temp.c: temporary files and folders in $TMPDIR or /tmp. */
 #include "pitviper.h"
 
 #include <errno.h>

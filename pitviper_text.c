@@ -1,4 +1,4 @@
-/* pitviper_text.c: tables of text, numbers out of text, foreign bytes made harmless. */
+/* pitviper_text.c: tables of text, numbers from text, sanitizing of untrusted bytes. */
 #include "pitviper.h"
 
 #include <errno.h>
@@ -67,7 +67,7 @@ static size_t utf8_octets(uint32_t *code, const unsigned char *at)
     return octets;
 }
 
-/* C0, DEL and C1; line and paragraph separators; what turns or hides writing. */
+/* C0, DEL and C1; line and paragraph separators; bidirectional and invisible characters. */
 static bool steers_terminals(uint32_t c)
 {
     return c < 0x20 || (c >= 0x7F && c < 0xA0) || c == 0x061C || (c >= 0x200B && c <= 0x200F) ||
@@ -95,7 +95,7 @@ void text_show(char *out, size_t out_size, const char *text, bool lines)
     if (out_size) out[n] = 0;
 }
 
-/* Without allocating, but for texts of more than 16 KiB: what is told must not be lost when memory is out. */
+/* Without allocating, but for texts of more than 16 KiB: messages must not be lost when memory is exhausted. */
 void text_vprint(FILE *to, const char *format, va_list arguments)
 {
     enum { usual = 16384 };
@@ -234,7 +234,7 @@ Status table_open(Table *out, const char *path)
         if (table.rows < 0) {
             int columns = 1;
             for (const char *c = line; *c; c++) columns += *c == ',';
-            /* a row has an octet a column at least: a wide header over many blank lines asks for no more than that */
+            /* a row has at least one octet per column: bounds the memory for a wide header over many blank lines */
             size_t cells_most = (size_t)columns * (size_t)lines;
             if (cells_most > octets + (size_t)columns) cells_most = octets + (size_t)columns;
             table.cell = calloc(cells_most, sizeof *table.cell);

@@ -1,4 +1,5 @@
-/* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on who ran what. */
+/* pitviper_threads.c: one pool. Tasks are handed out by a counter; results must not depend on which thread ran which
+ * task. */
 #include "pitviper.h"
 
 #include <pthread.h>
@@ -19,7 +20,7 @@ struct Pool {
     pthread_mutex_t lock;
     pthread_cond_t  work, done;
     uint64_t        round;     /* counts pool_run calls */
-    int             busy;      /* workers still in the round */
+    int             busy;      /* workers still running */
     bool            stop;
     PoolTask       *task;
     void           *user;

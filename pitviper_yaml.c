@@ -1,6 +1,6 @@
-/* pitviper_yaml.c: what of YAML a file of ours may use; its reader need not look again. libyaml takes time in
- * proportion to the square of how deep brackets nest, of how many anchors there are, and of how many directives:
- * seconds, or hours, for a megabyte. */
+/* pitviper_yaml.c: the subset of YAML that input files may use, checked before parsing. The time of libyaml is
+ * quadratic in the depth of nesting, the number of anchors and the number of directives: seconds, or hours, for a
+ * megabyte. */
 #include "pitviper.h"
 
 #include <yaml.h>

@@ -1,4 +1,4 @@
-/* dis/data_private.h: from octets to Data and Set Data, for decode.c; contract: dis_decode. */
+/* dis/data_private.h: decodes Data and Set Data, for decode.c; contract: dis_decode. */
 #ifndef DIS_DATA_PRIVATE_H
 #define DIS_DATA_PRIVATE_H
 

@@ -1,4 +1,4 @@
-/* dis/datagram.c: from PDU to PDU of a datagram, and whose a PDU is. */
+/* dis/datagram.c: iterates over the PDUs of a datagram; the sender of a PDU. */
 #include "dis/datagram.h"
 
 #include "dis/decode_private.h"
@@ -14,8 +14,8 @@ bool dis_next_pdu(DisHeader *header, const uint8_t **pdu, const uint8_t **at, co
         why = DIS_DROP_SHORT_HEADER;
     } else {
         const DisHeader next = dis_load_header(*at);
-        /* A length too short for its type is a misfit of the bundle as well: a sender that wrote 496 for 508
-         * has its next PDU somewhere else than it says. */
+        /* A length too short for its type ends the bundle as well: a sender that wrote 496 for 508 has its next PDU at
+         * another offset than the length gives. */
         if (next.version < 5 || next.version > 7) {
             why = DIS_DROP_BAD_VERSION;
         } else if (next.length < dis_least_octets(next.type)) {

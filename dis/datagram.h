@@ -1,11 +1,11 @@
-/* dis/datagram.h: the PDUs of a datagram, one behind the other, and whose a PDU is. */
+/* dis/datagram.h: iterates over the PDUs of a datagram; the sender of a PDU. */
 #ifndef DIS_DATAGRAM_H
 #define DIS_DATAGRAM_H
 
 #include "dis/pdu.h"
 
 /* Next PDU of a datagram: *at advances by the length field. True and header/pdu set when there is one;
- * false at the end or at the first misfit, which is counted. PDUs returned are counted by type.
+ * false at the end or at the first inconsistent length, which is counted. PDUs returned are counted by type.
  *
  *     for (const uint8_t *at = bytes; dis_next_pdu(&header, &pdu, &at, bytes + count, counters);) ...
  *

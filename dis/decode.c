@@ -1,4 +1,4 @@
-/* dis/decode.c: the table of PDU types, and through it from octets to a tagged PDU and back. */
+/* dis/decode.c: the table of PDU types; decodes and encodes tagged PDUs by it. */
 #include "dis/decode_private.h"
 
 #include "dis/data_private.h"
@@ -88,9 +88,9 @@ static size_t encode_data(uint8_t *out, size_t capacity, const DisPdu *pdu)
     return dis_encode_data(out, capacity, &pdu->data);
 }
 
-/* Types of IEEE 1278.1-2012, table of PDU types. Those with functions are decoded; of these, one that is acted upon has
- * its length judged by the walk through a datagram, and a PDU that cannot be decoded is counted as dropped. Of the
- * others the length is not judged. */
+/* Types of IEEE 1278.1-2012, table of PDU types. Those with functions are decoded; of these, the lengths of those that
+ * are acted upon are validated while iterating over a datagram, and a PDU that cannot be decoded is counted as dropped.
+ * The lengths of the others are not validated. */
 typedef struct PduType {
     const char *name;
     unsigned    least_octets; /* before variable records; 0: not acted upon */

@@ -1,4 +1,4 @@
-/* dis/decode.h: the one way from octets to a PDU, and back: a tagged union of the plain structs. */
+/* dis/decode.h: decodes and encodes PDUs: a tagged union of the plain structs. */
 #ifndef DIS_DECODE_H
 #define DIS_DECODE_H
 
@@ -7,11 +7,11 @@
 #include "dis/simulation_management.h"
 #include "dis/warfare.h"
 
-/* 11 KiB, most of it room for 255 variable records: one to a loop, not one to a PDU. */
+/* 11 KiB, most of it for 255 variable records: allocate one per loop, not one per PDU. */
 typedef struct DisPdu {
     uint8_t type; /* which of these: dis_pdu_entity_state, ...; as in the header */
     union {
-        DisHeader            header; /* every struct begins with it */
+        DisHeader            header; /* first member of every struct */
         DisEntityState       entity_state;
         DisEntityStateUpdate update;
         DisFire              fire;
@@ -24,10 +24,10 @@ typedef struct DisPdu {
 } DisPdu;
 
 /* pdu: header.length octets from dis_next_pdu. On failure `out` is untouched; when it succeeds, variable records and
- * datums beyond the counted ones are left alone. Values are not judged here: see dis_entity_is_usable.
- * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field says.
+ * datums beyond the counted ones are unchanged. Values are not validated here: see dis_entity_is_usable.
+ * STATUS_TRUNCATED: fewer octets than the header or the type needs, or than the length field gives.
  * STATUS_BAD_VALUE: a count that the length cannot hold.
- * STATUS_UNSUPPORTED: a type that is not decoded, or more datums than there is room for. */
+ * STATUS_UNSUPPORTED: a type that is not decoded, or more datums than the output holds. */
 Status dis_decode(DisPdu *out, const uint8_t *pdu, size_t octets);
 /* Writes header.length as computed. Returns the octets written; 0: capacity is too small, or no such type. */
 size_t dis_encode(uint8_t *out, size_t capacity, const DisPdu *pdu);

@@ -1,4 +1,4 @@
-/* dis/decode_private.h: what the walk through a datagram asks the table of PDU types. */
+/* dis/decode_private.h: the table of PDU types, for datagram.c. */
 #ifndef DIS_DECODE_PRIVATE_H
 #define DIS_DECODE_PRIVATE_H
 

@@ -152,7 +152,7 @@ size_t dis_encode_entity_state_update(uint8_t *out, size_t capacity, const DisEn
 /* ---- fit for geodesy ----------------------------------------------------------------------------- */
 
 /* 0, 0xFFFE and 0xFFFF in the entity number mean none, assign me one, all. Site and application may be 0:
- * senders nobody configured say so, and their entities are real. */
+ * unconfigured senders use it, and their entities are valid. */
 static bool names_one_entity(DisEntityId id)
 {
     return id.entity != 0 && id.entity < 0xFFFE && id.site != 0xFFFF && id.application != 0xFFFF;

@@ -1,4 +1,4 @@
-/* dis/entity_state_private.h: from octets to Entity State and its Update, for decode.c; contract: dis_decode. The
+/* dis/entity_state_private.h: decodes Entity State and its Update, for decode.c; contract: dis_decode. The
  * variable parameter records of these and of Detonation. */
 #ifndef DIS_ENTITY_STATE_PRIVATE_H
 #define DIS_ENTITY_STATE_PRIVATE_H

@@ -1,4 +1,4 @@
-/* dis/enumerations.h: the few numbers of SISO-REF-010 that Pitviper acts on. */
+/* dis/enumerations.h: the values of SISO-REF-010 used by Pitviper. */
 #ifndef DIS_ENUMERATIONS_H
 #define DIS_ENUMERATIONS_H
 

@@ -1,9 +1,9 @@
 /* dis/exercise_clock.c: a clock per sender, all on one exercise time.
  *
- * The capture clock is the ruler: capture time shifted so that the first PDU has its own stamp's seconds. A
- * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the ruler chooses the hour
- * a stamp belongs to and is what the stamps are judged by. So neither network jitter nor a half hour of silence enters
- * the times of a sender whose stamps are a clock. */
+ * The capture clock is the reference: capture time shifted so that the first PDU has its own stamp's seconds. A
+ * sender's stamps are placed on it once, at its first PDU, and from then on give the time; the reference selects the
+ * hour of a stamp and is what stamps are checked against. So neither network jitter nor half an hour without PDUs
+ * affects the times of a sender with valid stamps. */
 #include "dis/exercise_clock.h"
 
 #include "dis/datagram.h"
@@ -14,10 +14,10 @@
 enum {
     sender_limit = 4096,  /* beyond that capture time is used */
     slot_count   = 8192,  /* a power of two, at most half full */
-    memory_slots = 16384, /* entities remembered for the judgement; a later one takes the place of an earlier one */
-    odd_limit    = 2,     /* reports in a row against a proven sender */
-    votes_needed = 2,     /* in a row, for a sender in doubt */
-    most_failures = 5,    /* the time to prove itself is doubled so many times: 2 minutes */
+    memory_slots = 16384, /* entities remembered for the check; a later one replaces an earlier one */
+    odd_limit    = 2,     /* consecutive reports against a validated sender */
+    votes_needed = 2,     /* consecutive, for a rejected sender */
+    most_failures = 5,    /* the validation time is doubled at most this often: 2 minutes */
 };
 
 static const double hour_s = 3600.0;
@@ -26,11 +26,11 @@ static const double capture_limit_s = 1e11; /* the year 5138: beyond it a double
 
 /* What is expected of a network: datagrams bundled or delayed by some 100 ms, both ways about the first one's delay. */
 static const double jitter_s = 0.15, drift = 1e-4; /* and of clocks: s a second */
-/* A stamp that far behind its sender's latest is of a datagram that was overtaken: nothing that counts goes back so. */
+/* A stamp that far behind its sender's latest is of a reordered datagram, not of a counter. */
 static const double overtaken_s = 0.1;
-static const double settled_s = 1.0;       /* a proven sender may drift so far before its stamps are placed anew */
-static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is judged */
-/* Two reports of one entity that far apart, and stamps that went less than a twentieth of it: they stand still. */
+static const double settled_s = 1.0;       /* drift of a validated sender at which its offset is renewed */
+static const double vote_s = 2.0, longest_vote_s = 32.0; /* spans over which the rate of stamps is checked */
+/* Two reports of one entity that far apart, with stamps that advance less than a twentieth of it: they are constant. */
 static const double still_least_s = 0.1, still_most_s = 1800, still_rate = 0.05;
 
 typedef struct Moment {
@@ -44,14 +44,14 @@ typedef struct Sender {
     uint32_t key; /* site, application */
     bool     used;
     uint8_t  standing;
-    uint8_t  failures; /* how often it was doubted, most_failures at most */
-    uint8_t  odd;      /* reports in a row that leave the ruler or stand still */
-    uint8_t  agree;    /* votes in a row, votes_needed at most */
-    bool     disagrees; /* the last vote */
-    int      doubt;    /* index into the clock's doubts; -1: never doubted, or too many before it */
+    uint8_t  failures; /* number of rejections, most_failures at most */
+    uint8_t  odd;      /* consecutive reports that deviate from the reference or are constant */
+    uint8_t  agree;    /* consecutive passed checks, votes_needed at most */
+    bool     disagrees; /* the last check */
+    int      doubt;    /* index into the clock's anomalies; -1: never rejected, or list full */
     uint32_t tied_stamp, latest_stamp;
     double   tied_s;   /* exercise time of the tied one */
-    Moment   mark;     /* where the span of the next vote begins */
+    Moment   mark;     /* start of the span of the next check */
     double   next_vote_s; /* capture time from which on there is one */
     Moment   first;
     uint64_t pdus;
@@ -107,7 +107,8 @@ static Sender *find_sender(bool *is_new, ExerciseClock *clock, uint32_t key)
 
 /* ---- placing -------------------------------------------------------------------------------------- */
 
-/* Time of a stamp by the sender's own tie: the short way round the hour, then whole hours towards the ruler. */
+/* Time of a stamp by the sender's own offset: the shorter way round the hour, then whole hours towards the
+ * reference. */
 static double stamped_time(const Sender *sender, uint32_t stamp, double ruler_s)
 {
     const double t_s = sender->tied_s + dis_timestamp_step_s(sender->tied_stamp, stamp);
@@ -131,28 +132,28 @@ static void tie_first(Sender *sender, Moment now, double ruler_s, bool absolute)
     sender->first        = now;
     sender->latest_stamp = now.stamp;
     if (!absolute) return;
-    /* UTC on both sides: the stamp itself, in the hour of the ruler */
+    /* UTC on both sides: the stamp itself, in the hour of the reference */
     const double past_s = dis_timestamp_seconds(now.stamp);
     const double t_s = past_s + hour_s * round((ruler_s - past_s) / hour_s);
     if (fabs(t_s - ruler_s) <= leave_s) sender->tied_s = t_s;
 }
 
-/* ---- judging -------------------------------------------------------------------------------------- */
+/* ---- checking ------------------------------------------------------------------------------------- */
 
-/* Seconds that the stamps went further than the arrivals since a moment; whole hours do not count. */
+/* Elapsed time of stamps less that of arrivals since a moment, s; modulo whole hours. */
 static double gained_s(Moment since, Moment now)
 {
     const double gain_s = dis_timestamp_step_s(since.stamp, now.stamp) - (now.capture_s - since.capture_s);
     return gain_s - hour_s * round(gain_s / hour_s);
 }
 
-/* Whether stamps and arrivals went equally far since a moment. */
+/* Whether the elapsed times of stamps and arrivals since a moment agree. */
 static bool keeps_pace(Moment since, Moment now)
 {
     return fabs(gained_s(since, now)) <= jitter_s + drift * fabs(now.capture_s - since.capture_s);
 }
 
-/* Whether an entity's stamps stand still between two of its reports; remembers this one. */
+/* Whether an entity's stamps are constant between two of its reports; remembers this one. */
 static bool stands_still(ExerciseClock *clock, uint64_t entity_key, Moment now)
 {
     Memory      *memory = &clock->memory[(entity_key * 0x9E3779B97F4A7C15u) >> 50];
@@ -184,11 +185,11 @@ static void doubt(ExerciseClock *clock, Sender *sender, Moment now, double ruler
     tie(sender, now, ruler_s);
 }
 
-/* A vote over the span since the mark: have stamps and arrivals gone equally far? After one that says no, the first PDU
- * that says yes takes it back; none for two seconds: that is the answer. */
+/* Rate check over the span since the mark: are the elapsed times of stamps and arrivals equal? After a failure the
+ * first PDU that passes revokes it; without one for two seconds the failure is final. */
 static void vote(ExerciseClock *clock, Sender *sender, Moment now, double off_s, double ruler_s)
 {
-    if (now.capture_s < sender->mark.capture_s) { /* the capture's clock went back */
+    if (now.capture_s < sender->mark.capture_s) { /* the capture clock stepped back */
         sender->mark        = now;
         sender->next_vote_s = now.capture_s + vote_s;
     }
@@ -249,7 +250,7 @@ double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t 
     clock->doubts.stamped++;
 
     Sender *sender = find_sender(&is_new, clock, key);
-    if (!sender) { /* more senders than are judged: counted with those that are doubted */
+    if (!sender) { /* more senders than are checked: counted as rejected */
         clock->doubts.by_arrival++;
         return ruler_s;
     }
@@ -288,7 +289,7 @@ double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, co
                                       capture_s);
 }
 
-/* ---- saying --------------------------------------------------------------------------------------- */
+/* ---- reporting ------------------------------------------------------------------------------------- */
 
 /* Whether something counted at about a rate; whole counts at both ends. */
 static bool near_rate(double hz, double of_hz, double passed_s)

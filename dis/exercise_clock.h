@@ -1,21 +1,22 @@
 /* dis/exercise_clock.h: DIS time stamps and capture times -> one exercise time, a clock per sender.
  *
  * A sender is (site, application). A stamp counts 3600 s / 2^31 past the hour, in the upper 31 bits; the
- * lowest bit says absolute (UTC). The first sender heard with a stamp sets the exercise epoch: exercise
+ * lowest bit marks absolute time (UTC). The first sender received with a stamp sets the exercise epoch: exercise
  * time = its seconds past the hour, unwrapped. Absolute senders share that scale when the first is
  * absolute too; every other sender is tied to it by capture time at its first PDU. Depends on the order of PDUs only.
  *
  * Not every sender writes the time into the stamp: some leave a constant there, count milliseconds, microseconds,
- * Unix seconds or PDUs. Stamps are judged by arrival times from a sender's second PDU on. They are doubted, and the
- * arrival time is used instead, when
- *   - an entity's stamps stand still between two reports at least 0.1 s apart;
- *   - a sender not yet proven has left arrivals by more than 0.15 s since it was placed: what a network bundles and
- *     delays is expected to be less. Until then stamps count: so large is the error of stamps that run at another rate;
- *   - a proven sender leaves them by 5 s in two PDUs in a row (restart), or over two seconds in every PDU by
- *     0.15 s since the mark of a vote, or by 1 s altogether.
- * Votes compare how far stamps and arrivals went over 2 s, 4 s, .. 32 s; two in a row that agree prove a sender, new
- * or doubted; its stamps then count again from a new tie. A proven sender's datagram that is seconds late keeps its
- * stamp. Clocks may drift by 1e-4. */
+ * Unix seconds or PDUs. Stamps are compared with arrival times from a sender's second PDU on. They are rejected, and
+ * the arrival time is used instead, when
+ *   - an entity's stamps are constant between two reports at least 0.1 s apart;
+ *   - a sender not yet validated deviates from arrival times by more than 0.15 s since its first PDU: network bundling
+ *     and delay are expected to be less. Until then stamps are used, so this is the largest error of stamps that run
+ *     at another rate;
+ *   - a validated sender deviates from them by 5 s in two consecutive PDUs (restart), or for two seconds in every PDU
+ *     by 0.15 s since the start of a rate check, or by 1 s in total.
+ * Rate checks compare the elapsed times of stamps and arrivals over 2 s, 4 s, .. 32 s; two consecutive checks that
+ * agree validate a sender, new or rejected; its stamps are then used again with a new offset. A validated sender's
+ * datagram that is seconds late keeps its stamp. Clocks may drift by 1e-4. */
 #ifndef DIS_EXERCISE_CLOCK_H
 #define DIS_EXERCISE_CLOCK_H
 
@@ -29,7 +30,7 @@ void   exercise_clock_destroy(ExerciseClock *clock);
  * the sender's entities it is a report; -1: of none. */
 double exercise_clock_report_time(ExerciseClock *clock, uint16_t site, uint16_t application, int entity,
                                   uint32_t timestamp, double capture_s);
-/* The same for a sender that speaks of one entity only. */
+/* The same for a sender with a single entity. */
 static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, uint16_t application, uint32_t timestamp,
                                          double capture_s)
 {
@@ -39,14 +40,14 @@ static inline double exercise_clock_time(ExerciseClock *clock, uint16_t site, ui
 /* The same by the PDU itself; NaN, and the clock unmoved, for one that names no sender. */
 double exercise_clock_pdu_time(ExerciseClock *clock, const DisHeader *header, const uint8_t *pdu, double capture_s);
 
-/* ---- senders whose stamps were doubted ------------------------------------------------------------- */
+/* ---- senders with rejected stamps ------------------------------------------------------------- */
 
 typedef enum ExerciseClockReason { EXERCISE_CLOCK_STILL, EXERCISE_CLOCK_RATE, EXERCISE_CLOCK_JUMP } ExerciseClockReason;
 
 typedef struct ExerciseClockAnomaly {
     uint16_t            site, application;
-    ExerciseClockReason reason;           /* of the first doubt */
-    uint64_t            pdus, by_arrival; /* stamped ones heard; of them, how many count from their arrival */
+    ExerciseClockReason reason;           /* of the first anomaly */
+    uint64_t            pdus, by_arrival; /* stamped PDUs received; of them, those timed by arrival */
     double              passed_s;         /* since its first PDU */
     double              rate, raw_hz;     /* over it: seconds of stamp, and units of the field, per second */
     double              counted;          /* units of the field a PDU */
@@ -55,10 +56,10 @@ typedef struct ExerciseClockAnomaly {
 enum { exercise_clock_anomalies_listed_max = 16, exercise_clock_anomaly_text_size = 160 };
 
 typedef struct ExerciseClockAnomalies {
-    uint64_t           by_arrival; /* PDUs of all senders that count from their arrival, though stamped; also those of
-                                    * senders beyond the 4096 that are judged */
+    uint64_t           by_arrival; /* stamped PDUs of all senders that are timed by arrival; also those of senders
+                                    * beyond the 4096 that are checked */
     uint64_t           stamped, unstamped; /* PDUs; unstamped: all bits zero, which count from their arrival too */
-    int                count;      /* senders below, in the order of their first doubt; later ones are not listed */
+    int                count;      /* senders below, in the order of their first anomaly; later ones are not listed */
     ExerciseClockAnomaly sender[exercise_clock_anomalies_listed_max];
 } ExerciseClockAnomalies;
 

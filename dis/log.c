@@ -1,4 +1,4 @@
-/* dis/log.c: a capture file into a log: which packets are read, which port, what is said of the rest. */
+/* dis/log.c: from a capture file to a log: which packets are read, which port, and what is reported of the rest. */
 #include "dis/log.h"
 
 #include "dis/log_packet.h"
@@ -26,7 +26,7 @@ static void name_link(char out[32], int link)
     snprintf(out, 32, "%s (%d)", name ? name : "unknown", link);
 }
 
-/* One that is not read: remembered by its link layer, to be told of once. */
+/* One that is not read: remembered by its link layer, to be reported once. */
 static void skip_packet(Scan *scan, int link)
 {
     scan->log->counters.other_link++;
@@ -47,7 +47,7 @@ static void report_skipped(const Scan *scan, const char *path)
     }
 }
 
-/* A file of which not one interface can be read is refused by name; a file without packets by what it tells of them. */
+/* A file without a readable interface is rejected by link layer; a file without packets by its interface records. */
 static bool nothing_readable(int *link, const Scan *scan, const DisCapture *capture)
 {
     const DisLogCounters *counters = &scan->log->counters;

@@ -1,4 +1,4 @@
-/* dis/log.h: a recorded exercise, whole, in memory: datagrams out of a pcap or pcapng file,
+/* dis/log.h: a recorded exercise in memory: datagrams of a pcap or pcapng file,
  * compressed or not (dis/log_stream.h), with one link layer or one for each interface (dis/log_pcap.h).
  *
  * Link layers: Ethernet (with any VLAN tags), Linux cooked v1 and v2, BSD loopback, raw IP. IPv4 with
@@ -11,15 +11,15 @@
 
 enum { dis_port_any = 0, dis_port_default = -1 };
 
-/* port: of the UDP destination. dis_port_any: every port, payloads that begin as a DIS header.
- * dis_port_default: 3000, and when nothing at all went there, any port (any_port says so). A file that is not
+/* port: of the UDP destination. dis_port_any: every port, payloads that start with a DIS header.
+ * dis_port_default: 3000, and when no datagram went there, any port (sets any_port). A file that is not
  * a capture, or cannot be read: a logged reason and the status. A truncated file: STATUS_OK, `truncated` set, a
  * warning. */
 Status dis_log_open(DisLog *out, const char *path, int port);
 void   dis_log_close(DisLog *log);
 
-/* dis_log_open does this. Packet times that run at another pace than the stamps of the sender heard most are
- * replaced by these, from the first packet on, in file order; true when they were. Stamps are believed when
+/* dis_log_open does this. Packet times that run at another rate than the stamps of the sender with the most PDUs are
+ * replaced by these, from the first packet on, in file order; true when they were. Stamps are used when
  * they step like a clock (-1 .. 120 s), span 5 s or more, and are not 20 times slower than the packets. */
 bool   dis_log_retime(DisLog *log);
 

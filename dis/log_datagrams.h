@@ -1,4 +1,4 @@
-/* dis/log_datagrams.h: what is kept of a capture: its datagrams, and how many packets gave none. */
+/* dis/log_datagrams.h: the datagrams of a capture, and the number of packets without one. */
 #ifndef DIS_LOG_DATAGRAMS_H
 #define DIS_LOG_DATAGRAMS_H
 

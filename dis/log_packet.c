@@ -1,6 +1,6 @@
 /* dis/log_packet.c: packets of a capture -> UDP payloads, layer by layer.
  *
- * Each layer hands the next a Span and never more than was captured; what does not fit is counted and left.
+ * Each layer passes the next a Span of captured octets only; inconsistent packets are counted and skipped.
  * Sources: the link-layer header types of libpcap (pcap-linktype(7)), RFC 791 and 815 (IPv4), RFC 8200 (IPv6),
  * RFC 768 (UDP), IEEE 802.1Q. */
 #include "dis/log_packet.h"
@@ -23,13 +23,13 @@ enum {
     ethertype_vlan = 0x8100,          /* 802.1Q */
     ethertype_service_vlan = 0x88A8,  /* 802.1ad */
     ethertype_old_service_vlan = 0x9100,
-    assemblies = 64,                  /* datagrams in assembly at a time; the oldest goes */
+    assemblies = 64,                  /* datagrams in reassembly at a time; the oldest is dropped */
     ip_payload_limit = 65535,
     fragment_unit = 8,                /* octets; every fragment but the last is whole units */
     fragment_units = 8192,
     link_null = 0, /* LINKTYPE_ */
     link_ethernet = 1,
-    link_raw_bsd = 12, /* DLT_RAW of the BSDs, which some wrote */
+    link_raw_bsd = 12, /* DLT_RAW of the BSDs, written by some programs */
     link_raw_openbsd = 14,
     link_raw = 101,
     link_loop = 108,
@@ -48,7 +48,7 @@ typedef struct Span {
     size_t         octets;
 } Span;
 
-/* One IP datagram whose fragments are still coming. */
+/* One IP datagram in reassembly. */
 typedef struct Assembly {
     bool     used;
     uint8_t  key[40]; /* version, protocol, identification, source, destination; zero padded */
@@ -57,7 +57,7 @@ typedef struct Assembly {
     uint32_t packets;
     uint8_t  next;    /* IPv6: header after the fragment header of the first fragment */
     bool     first_seen;
-    size_t   total;   /* octets, 0: the last fragment has not come */
+    size_t   total;   /* octets, 0: the last fragment is missing so far */
     size_t   furthest;
     size_t   units;   /* received */
     uint64_t have[fragment_units / 64];
@@ -173,8 +173,8 @@ static Assembly *find_assembly(DisPacketReader *reader, const uint8_t key[40])
     return free_one;
 }
 
-/* Puts one fragment where it belongs. Octets that came first stay, so an overlap has one outcome. Returns the
- * assembly when it is whole, to be released by the caller; NULL otherwise. */
+/* Inserts one fragment. Octets received first are kept, so overlaps are deterministic. Returns the assembly when
+ * complete, to be released by the caller; NULL otherwise. */
 static Assembly *add_fragment(DisPacketReader *reader, const uint8_t key[40], size_t offset, bool more, uint8_t next,
                               Span part)
 {
@@ -221,7 +221,7 @@ static void read_ipv4(DisPacketReader *reader, Span packet)
     const uint8_t *p = packet.at;
     const size_t   header = 4 * (size_t)(p[0] & 15);
     size_t         total = dis_load_u16(p + 2);
-    if (total == 0) total = packet.octets; /* left to the network card, and captured before it filled it in */
+    if (total == 0) total = packet.octets; /* checksum offload: captured before the network card computed it */
     if (p[0] >> 4 != 4 || header < 20) {
         counters->other_protocol++;
         return;
@@ -370,7 +370,7 @@ static bool is_ip_family(uint32_t family)
     return family == 2 || family == 10 || family == 23 || family == 24 || family == 28 || family == 30;
 }
 
-/* Where the network layer begins; 0: a link layer this node does not read. */
+/* Offset of the network layer; 0: an unsupported link layer. */
 static size_t link_header_octets(int link)
 {
     switch (link) {

@@ -1,7 +1,7 @@
 /* dis/log_pcap.c: pcap and pcapng, record by record.
  *
- * Sources: pcap-savefile(5) of libpcap; PCAP Next Generation (draft-ietf-opsawg-pcapng). A record is as long as it says
- * and no longer than a limit; what contradicts itself ends the reading, and what came before it stands. */
+ * Sources: pcap-savefile(5) of libpcap; PCAP Next Generation (draft-ietf-opsawg-pcapng). The length of a record is its
+ * length field, up to a limit; an inconsistent record ends the reading, and the records before it are kept. */
 #include "dis/log_pcap.h"
 
 #include "dis/log_stream.h"
@@ -21,7 +21,7 @@ enum {
     option_tsresol = 9,
     option_tsoffset = 14,
     packet_most = 262144,            /* octets of a packet: libpcap's limit */
-    body_most = packet_most + 32,    /* octets of a block that are looked at */
+    body_most = packet_most + 32,    /* octets of a block that are read */
     interfaces_most = 65536,
 };
 
@@ -51,7 +51,7 @@ __attribute__((format(printf, 2, 3))) static bool stop(DisCapture *c, const char
     const char *below = dis_stream_problem(c->stream);
     va_list     arguments;
     va_start(arguments, format);
-    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* the file's own trouble is the cause */
+    if (below) snprintf(c->problem, sizeof c->problem, "%s", below); /* caused by an error of the file stream */
     else vsnprintf(c->problem, sizeof c->problem, format, arguments);
     va_end(arguments);
     c->status = dis_stream_status(c->stream);
@@ -69,7 +69,7 @@ static uint32_t load_u32(const DisCapture *c, const uint8_t *p)
                   : (uint32_t)load_u16(c, p + 2) << 16 | load_u16(c, p);
 }
 
-/* In the other order than a little-endian reader would have it? */
+/* Whether the octets are the magic number; *big: in big-endian order. */
 static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 {
     const uint32_t little = (uint32_t)p[3] << 24 | (uint32_t)p[2] << 16 | (uint32_t)p[1] << 8 | p[0];
@@ -81,7 +81,7 @@ static bool magic_is(bool *big, const uint8_t *p, uint32_t magic)
 
 static double stamp_s(const Interface *face, uint64_t ticks)
 {
-    static const int64_t most_s = 9000000000; /* no clock shows more, or less than 0: they stand at the nearer end */
+    static const int64_t most_s = 9000000000; /* times beyond it, or below 0, are clamped */
     uint64_t per_s = face->per_s, part = ticks % per_s, ns;
     const uint64_t whole_s = ticks / per_s;
     if (ns_per_s % per_s == 0) {
@@ -249,7 +249,7 @@ static bool begin_pcap(DisCapture *c, const uint8_t magic[4])
         if (dis_stream_read(c->stream, head, sizeof head) < sizeof head) return stop(c, "it ends inside its header");
         if (load_u16(c, head) != 2) return stop(c, "version %u of pcap", load_u16(c, head));
         c->record_octets = form[i].record_octets;
-        /* the upper bits of the link say how a frame's checksum was kept */
+        /* the upper bits of the link type give the frame check sequence length */
         return add_interface(c, (Interface){.link = load_u16(c, head + (c->big ? 18 : 16)), .per_s = form[i].per_s});
     }
     return stop(c, "its first octets are those of neither");

@@ -21,12 +21,12 @@ typedef struct DisCapturePacket {
 Status dis_capture_open(DisCapture **out, const char *path);
 void   dis_capture_close(DisCapture *capture);
 
-/* False: no more, because the file ends or because of what dis_capture_problem says. */
+/* False: no more, because the file ends or because of an error, see dis_capture_problem. */
 bool        dis_capture_next(DisCapturePacket *out, DisCapture *capture);
 const char *dis_capture_problem(const DisCapture *capture); /* NULL: the file ended as it should */
 /* STATUS_OK, also where the file is cut or damaged; else what was read must not be used. */
 Status      dis_capture_status(const DisCapture *capture);
-/* Of the interface i told of so far in the section at hand; -1: there is none. */
+/* Of interface i of the present section; -1: there is none. */
 int         dis_capture_link(const DisCapture *capture, int i);
 
 #endif

@@ -1,7 +1,7 @@
-/* dis/log_stream.c: a file's octets in order, through the decoder that its first octets ask for.
+/* dis/log_stream.c: a file's octets in order, through the decoder selected by its first octets.
  *
  * Sources: RFC 1952 (gzip), RFC 8878 (zstd), the xz file format 1.1.0, and the manuals of zlib, libzstd, libbz2 and
- * liblzma, whose decoders check the sums that the formats carry. */
+ * liblzma, with decoders that verify the checksums of the formats. */
 #include "dis/log_stream.h"
 
 #include <bzlib.h>
@@ -25,7 +25,7 @@ struct DisStream {
     FILE       *file;
     char       *path;
     Packing     packing;
-    bool        file_over;  /* nothing more comes from the file */
+    bool        file_over;  /* end of the file */
     bool        over;       /* nor from the decoder */
     Status      status;
     const char *problem;

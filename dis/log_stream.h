@@ -1,7 +1,7 @@
 /* dis/log_stream.h: the octets of a file from its beginning on, expanded where it is compressed.
  *
  * gzip, zstd, bzip2 and xz are known by their first octets; streams that follow one another are one, zeros behind them
- * are padding, and anything else behind them is left with a warning. Memory stays bounded whatever the file says: a
+ * are padding, and anything else behind them is left with a warning. Memory is bounded for any file: a
  * window of at most 128 MiB (zstd) or a decoder of 256 MiB (xz), and what is expanded may be 256 times what was read,
  * and 16 MiB beyond it. */
 #ifndef DIS_LOG_STREAM_H
@@ -17,7 +17,7 @@ enum { dis_stream_ratio_most = 256, dis_stream_free_octets = 1 << 24 };
 Status dis_stream_open(DisStream **out, const char *path);
 void   dis_stream_close(DisStream *stream);
 
-/* Fewer than asked for: the end, or what dis_stream_problem says. */
+/* Fewer than requested: end of file, or an error, see dis_stream_problem. */
 size_t dis_stream_read(DisStream *stream, void *out, size_t octets);
 /* Reads over them; whether they were all there. */
 bool   dis_stream_skip(DisStream *stream, uint64_t octets);

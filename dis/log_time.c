@@ -1,9 +1,9 @@
 /* dis/log_time.c: when the packet times of a capture are not those of the exercise.
  *
  * A capture made out of a text log, or of a playback at another speed, has packet times that are equal,
- * compressed or stretched; the stamps inside are then the better clock. They are believed only when they
- * behave like one, and when what the reports say of motion does not contradict them: an entity goes its speed times
- * the seconds that passed by the right clock. */
+ * compressed or stretched; the stamps inside are then the better clock. They are used only when they advance like a
+ * clock and are consistent with the reported motion: the distance an entity moves is its speed times the elapsed
+ * seconds of the right clock. */
 #include "dis/datagram.h"
 #include "dis/log.h"
 
@@ -14,12 +14,12 @@
 
 enum { sender_limit = 256, least_pdus = 10, entity_slots = 4096 };
 
-static const double least_span_s = 5;      /* shorter logs say nothing about their clock */
-static const double pace_low = 0.8, pace_high = 1.25; /* capture time over stamp time that is left alone */
+static const double least_span_s = 5;      /* shorter logs are too short to check the clock */
+static const double pace_low = 0.8, pace_high = 1.25; /* ratio of capture time to stamp time that is accepted */
 static const double counter_pace = 20;     /* stamps this much slower than packets count something else */
 static const double back_s = 1, ahead_s = 120; /* step of a clock: network order, and the longest heartbeat twice */
 static const double least_path_m = 30, least_speed_mps = 1, motion_pace = 0.2, longest_step_s = 60; /* of what moves */
-static const double gap_s = 1500;          /* a silence that the hour of a stamp cannot bridge */
+static const double gap_s = 1500;          /* a gap too long for the hour of a stamp */
 
 typedef struct Voice {
     uint16_t sender[2];
@@ -95,7 +95,7 @@ typedef struct Seen {
     double   capture_s, p_ecef[3], speed_mps;
 } Seen;
 
-/* Whether what moves has gone its speed times the time between packets, and not its speed times that between stamps. */
+/* Whether moving entities have moved by speed times packet time, rather than by speed times stamp time. */
 static bool motion_is_at_packet_pace(const DisLog *log, const uint16_t sender[2])
 {
     double path_m = 0, by_stamps_m = 0, by_packets_m = 0;

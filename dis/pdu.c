@@ -74,7 +74,7 @@ int64_t dis_unix_ns_until(double unix_s)
     static const double most_s = 9e9;
     if (!(unix_s > 0)) return unix_s == 0 ? 0 : -1;
     if (unix_s >= most_s) return (int64_t)most_s * 1000000000;
-    /* doubles are 2 us apart at most here: the answer is within this of the obvious guess */
+    /* doubles are 2 us apart at most here: the result is within this of the initial estimate */
     const int64_t around = 4096, whole_s = (int64_t)unix_s;
     const int64_t guess = whole_s * 1000000000 + (int64_t)((unix_s - (double)whole_s) * 1e9);
     int64_t       low = guess > around ? guess - around : 0, high = guess + around;

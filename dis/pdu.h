@@ -1,4 +1,4 @@
-/* dis/pdu.h: what every PDU shares: identifiers, types, the header, counters.
+/* dis/pdu.h: common to all PDUs: identifiers, types, the header, counters.
  *
  * Wire facts: IEEE 1278.1-1995 (version 5), 1278.1A-1998 (6), 1278.1-2012 (7). Structs are plain and keep
  * every octet, padding too, so that decode and encode are exact inverses. */
@@ -79,8 +79,9 @@ typedef struct DisCounters {
 
 /* ---- arrival times ------------------------------------------------------------------------------- */
 
-/* Unix time, whole nanoseconds >= 0 -> seconds: the one conversion, so that a node that heard a datagram and one that
- * reads it from a recording have the same double. Never decreasing; neighbours within 0.24 us may come out equal. */
+/* Unix time, whole nanoseconds >= 0 -> seconds: the only conversion, so that a node that receives a datagram live and
+ * one that reads it from a recording get the same double. Never decreasing; neighbours within 0.24 us may become
+ * equal. */
 static inline double dis_unix_s(int64_t unix_ns)
 {
     return (double)(unix_ns / 1000000000) + 1e-9 * (double)(unix_ns % 1000000000);

@@ -1,9 +1,8 @@
-/* dis/reader.h: big-endian octets in and out, for the files of this room only.
+/* dis/reader.h: big-endian octets in and out, for the files of this module only.
  *
- * The cursors cannot leave their octets and remember that they tried: read or write every field, then ask
- * once. A hot decoder takes one block, which is one check, and loads from it at the offsets of the standard.
- * Floats travel as bits: nothing here computes with them, and SSE moves do not quieten, so the payload of a NaN
- * survives. */
+ * The cursors are bounds-checked with a sticky error: read or write every field, then check once. A hot decoder takes
+ * one block, with a single check, and loads from it at the offsets of the standard. Floats travel as bits: nothing here
+ * computes with them, and SSE moves do not quieten, so the payload of a NaN survives. */
 #ifndef DIS_READER_H
 #define DIS_READER_H
 
@@ -197,7 +196,7 @@ static inline DisEntityType dis_read_entity_type(DisReader *r)
     return p ? dis_load_entity_type(p) : (DisEntityType){0};
 }
 
-/* A reader over one PDU: as far as its own length field says, and never further than the octets given. */
+/* A reader over one PDU: up to its own length field, and never beyond the octets given. */
 static inline DisReader dis_pdu_reader(const uint8_t *pdu, size_t octets)
 {
     const size_t length = octets < dis_header_octets ? 0 : dis_load_u16(pdu + 8);

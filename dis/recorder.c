@@ -49,7 +49,7 @@ static Status fail(DisRecorder *r)
     return STATUS_IO;
 }
 
-/* As the disk fills, every write fails: once is enough. */
+/* Once the disk is full every write fails: report it once. */
 static void put(DisRecorder *r, const void *bytes, size_t octets)
 {
     if (!r->failed && octets && fwrite(bytes, 1, octets, r->file) != octets) fail(r);
@@ -197,7 +197,7 @@ Status dis_recorder_add(DisRecorder *r, int64_t capture_ns, const uint8_t from[1
     return r->failed ? STATUS_IO : STATUS_OK;
 }
 
-/* ---- life --------------------------------------------------------------------------------------------- */
+/* ---- open and close --------------------------------------------------------------------------------------------- */
 
 static bool ends_with(const char *text, const char *end)
 {

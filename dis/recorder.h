@@ -1,5 +1,5 @@
-/* dis/recorder.h: datagrams into a capture file: pcapng (or pcap where the name ends so), nanoseconds, raw IP headers
- * made up from what is known of the sender. What dis_log_open reads again has the same octets and times. */
+/* dis/recorder.h: writes datagrams to a capture file: pcapng (or pcap where the name ends so), nanoseconds, raw IP
+ * headers generated from the known addresses. dis_log_open reads back the same octets and times. */
 #ifndef DIS_RECORDER_H
 #define DIS_RECORDER_H
 
@@ -13,8 +13,8 @@ enum { dis_recorder_ipv4_octets = 65507, dis_recorder_ipv6_octets = 65527 }; /* 
  * the beginning of the file is written by then, so a place that takes nothing is known at once. The folder must exist.
  * A file that is there already is replaced. */
 Status dis_recorder_open(DisRecorder **out, const char *path, const char *comment);
-/* Where the datagrams went: what a reader filters by. Until told: the broadcast of loopback, or ff02::1, port 3000.
- * to: IPv4 as ::ffff:a.b.c.d; NULL: as until told. A sender of the other family keeps the address of before. */
+/* Destination of the datagrams, by which a reader filters. Default: the broadcast of loopback, or ff02::1, port 3000.
+ * to: IPv4 as ::ffff:a.b.c.d; NULL: the default. A sender of the other family keeps its previous address. */
 void   dis_recorder_to(DisRecorder *recorder, const uint8_t to[16], uint16_t port);
 /* capture_ns: Unix time. from, port: of the sender; IPv4 as ::ffff:a.b.c.d, else IPv6; NULL: loopback.
  * STATUS_BAD_VALUE, and nothing is written: more octets than IP carries, a time before 1970 (pcap: after 2106).

@@ -11,7 +11,7 @@ typedef struct DisClockTime {
 
 typedef struct DisRemoveEntity {
     DisHeader   header;
-    DisEntityId originating, receiving; /* receiving: who is removed; 0xFFFF parts mean all */
+    DisEntityId originating, receiving; /* receiving: the entity removed; 0xFFFF is a wildcard */
     uint32_t    request;
 } DisRemoveEntity;
 

@@ -1,4 +1,4 @@
-/* dis/simulation_management_private.h: from octets to Remove Entity, Start/Resume and Stop/Freeze, for decode.c;
+/* dis/simulation_management_private.h: decodes Remove Entity, Start/Resume and Stop/Freeze, for decode.c;
  * contract: dis_decode. */
 #ifndef DIS_SIMULATION_MANAGEMENT_PRIVATE_H
 #define DIS_SIMULATION_MANAGEMENT_PRIVATE_H

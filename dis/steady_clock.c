@@ -1,4 +1,4 @@
-/* dis/steady_clock.c: Unix time by the monotonic clock, and what the system's clock was set by since. */
+/* dis/steady_clock.c: Unix time by the monotonic clock, and the steps of the system clock since. */
 #include "dis/steady_clock.h"
 
 #include <pthread.h>
@@ -15,7 +15,7 @@ static int64_t read_ns(clockid_t id)
     return (int64_t)t.tv_sec * ns_per_s + t.tv_nsec;
 }
 
-/* The system's clock between two readings of the other, as close together as they come. */
+/* The system clock between two readings of the other, as close together as possible. */
 ClockReading clock_reading(void)
 {
     enum { tries = 4 };

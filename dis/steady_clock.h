@@ -1,8 +1,8 @@
-/* dis/steady_clock.h: Unix time that does not step: the system's clock as it was when the program began, carried on by
- * the monotonic clock. A clock that is set back, or forward, neither stops a live node nor makes it skip.
+/* dis/steady_clock.h: Unix time without steps: the system clock at the start of the program, continued by the monotonic
+ * clock. Setting the clock back or forward neither stops a live node nor makes it skip.
  *
- * The kernel stamps datagrams by the system's clock; by how much that was set since is taken off again. Where it was
- * not set the stamps stay as they are, to the nanosecond: slewing (adjtime, NTP) moves both clocks alike. */
+ * The kernel stamps datagrams by the system's clock; its steps since are subtracted. Without steps the stamps are
+ * unchanged, to the nanosecond: slewing (adjtime, NTP) moves both clocks alike. */
 #ifndef DIS_STEADY_CLOCK_H
 #define DIS_STEADY_CLOCK_H
 
@@ -31,9 +31,9 @@ static inline int64_t steady_clock_ns(const SteadyClock *clock, ClockReading now
     return clock->base_ns + now.monotonic_ns;
 }
 
-/* Looks whether the system's clock was set; by how much since the last look, ns. */
+/* Checks for a step of the system clock; returns the step since the last check, ns. */
 int64_t steady_clock_look(SteadyClock *clock, ClockReading now);
-/* What the kernel stamped by the system's clock, as looked at; never after now: a stamp from before the clock was set
+/* A kernel time stamp, corrected by the steps found; never after now: a stamp from before the clock was set
  * may be read when it has been. */
 int64_t steady_clock_of_stamp(const SteadyClock *clock, int64_t stamp_ns, ClockReading now);
 

@@ -1,8 +1,8 @@
-/* dis/udp.c: a thread that empties the socket, the queue behind it, and the rule that closes a tick.
+/* dis/udp.c: the receiving thread, its queue, and the rule that closes a tick.
  *
  * Three locks, in this order. receive: which thread may take from the socket and give out arrival times (the thread, or
- * for a moment the one that closes a tick). sending: the socket itself, which a network that went and came back
- * replaces. queue: the ring and the counters, held for as long as some copies take. */
+ * for a moment the one that closes a tick). sending: the socket itself, which is replaced after a loss of the network.
+ * queue: the ring and the counters, held for a few copies only. */
 #include "dis/udp.h"
 #include "dis/steady_clock.h"
 #include "dis/udp_link.h"
@@ -34,11 +34,11 @@ struct DisUdp {
     DisTie           tie;
     DisLink          link;         /* of the receiving thread; in a sender under sending */
     pthread_mutex_t  sending;      /* socket and to are replaced under it, and under receive */
-    int64_t          checked_ns;    /* sender: when the link was looked at last */
+    int64_t          checked_ns;    /* sender: time of the last link check */
 
     /* under receive */
     pthread_mutex_t  receive;
-    pthread_cond_t   turn;         /* the tick is closed, the thread may go on */
+    pthread_cond_t   turn;         /* the tick is closed, the thread may continue */
     int64_t          last_ns;      /* no arrival time is below this */
     SteadyClock      clock;
     bool             complained;
@@ -104,7 +104,7 @@ static void put_arrival(DisUdp *u, const DisRingRecord *head, const uint8_t *byt
     if (!dis_ring_put(&u->ring, head, bytes)) u->counters.lost_queue++;
 }
 
-/* The kernel's count comes with datagrams and by asking, so an older one may come after a newer. */
+/* The kernel's count comes with datagrams and by query, so an older one may follow a newer. */
 static void note_drops(DisUdp *u, uint32_t drops)
 {
     const uint32_t more = drops - u->kernel_drops;
@@ -164,7 +164,7 @@ DisUdpCounters dis_udp_counters(const DisUdp *udp)
 
 /* ---- the socket: all under the receive lock ---------------------------------------------------------- */
 
-/* What the kernel says beside a datagram: when it came, and how many did not. */
+/* Control messages of a datagram: arrival time, and number of drops. */
 static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, struct msghdr *header)
 {
     for (struct cmsghdr *c = CMSG_FIRSTHDR(header); c; c = CMSG_NXTHDR(header, c)) {
@@ -180,7 +180,7 @@ static void read_control(int64_t *kernel_ns, uint32_t *drops, bool *dropped, str
     }
 }
 
-/* By how much the system's clock, the kernel's stamps with it, was set; said of more than a second. */
+/* Step of the system clock, and so of the kernel's time stamps; reported above one second. */
 static ClockReading look_at_clock(DisUdp *u)
 {
     const ClockReading now   = clock_reading();
@@ -191,7 +191,7 @@ static ClockReading look_at_clock(DisUdp *u)
     return now;
 }
 
-/* Takes what is there, up to a batch, and never waits. Returns how many came, -1 after a failure; *newest_ns: latest
+/* Receives up to a batch without blocking. Returns the number of datagrams, -1 after a failure; *newest_ns: latest
  * time of the kernel's among them. */
 static int receive_batch(DisUdp *u, int64_t *newest_ns)
 {
@@ -242,7 +242,7 @@ static int receive_batch(DisUdp *u, int64_t *newest_ns)
     return came;
 }
 
-/* A network that went away is said once; one that came back is heard again. */
+/* A lost network is reported once; after its return receiving resumes. */
 static void complain(DisUdp *u)
 {
     const int error = errno;
@@ -250,16 +250,16 @@ static void complain(DisUdp *u)
     u->complained = true;
 }
 
-/* ---- a network that goes and comes: under the receive lock, in a sender under sending ------------------------ */
+/* ---- loss and return of the network: under the receive lock, in a sender under sending ------------------------ */
 
-/* In the place of the old one, whose number stays: no other code has to know. False: not now. */
+/* Replaces the old socket under the same descriptor, so no other code changes. False: not now. */
 static bool remake_socket(DisUdp *u)
 {
     int              made;
     DisSocketAddress to;
     DisTie           tie;
     const bool       listens = u->link.listens;
-    log_suppress(true); /* it is tried again each second */
+    log_suppress(true); /* retried each second */
     const Status status = dis_udp_socket(&made, &to, &tie, &u->config, listens);
     log_suppress(false);
     if (status != STATUS_OK) return false;
@@ -316,7 +316,7 @@ static void *receive_loop(void *user)
         }
         if (ready <= 0 || !what[0].revents) continue;
         pthread_mutex_lock(&u->receive);
-        /* a flood must not delay the one that closes a tick */
+        /* a flood must not delay the thread that closes a tick */
         while (atomic_load(&u->closing)) pthread_cond_wait(&u->turn, &u->receive);
         const bool failed = receive_batch(u, &newest_ns) < 0;
         if (failed) complain(u);
@@ -333,7 +333,7 @@ void dis_udp_close_tick(DisUdp *u, int64_t until_ns)
     assert(until_ns < INT64_MAX);
     atomic_store(&u->closing, true);
     pthread_mutex_lock(&u->receive);
-    /* until the socket is empty, or what comes out of it came after the call: a flood never ends by itself */
+    /* until the socket is empty, or its datagrams arrived after the call: a flood would never end */
     while (receive_batch(u, &newest_ns) == batch && newest_ns <= called_ns) {}
     if (u->last_ns <= until_ns) u->last_ns = until_ns + 1;
     atomic_store(&u->closing, false);
@@ -364,7 +364,7 @@ static bool send_once(DisUdp *u, const uint8_t *bytes, size_t octets)
     return sent >= 0;
 }
 
-/* A listener has a thread that looks after the link; a sender looks when it fails, and whether it is back. */
+/* A listener has a thread that checks the link; a sender checks after a failure, and for its return. */
 static bool sender_may_go_on(DisUdp *u)
 {
     const int64_t now_ns = dis_udp_now_ns();
@@ -391,9 +391,10 @@ Status dis_udp_send(DisUdp *u, const uint8_t *bytes, size_t octets)
     return STATUS_OK;
 }
 
-/* ---- life ------------------------------------------------------------------------------------------------- */
+/* ---- open and close
+ * ------------------------------------------------------------------------------------------------- */
 
-/* A thread takes no signals: they are for the program's own. */
+/* The thread blocks signals: the main thread handles them. */
 static bool start_thread(DisUdp *u)
 {
     sigset_t all, before;
@@ -443,7 +444,7 @@ Status dis_udp_open(DisUdp **out, const DisUdpConfig *config)
     DisUdp *u = make(config);
     if (!u) return STATUS_NO_MEMORY;
     u->link.listens = true;
-    u->link.watch   = dis_link_watch(); /* first: what happens while the socket is made is announced */
+    u->link.watch   = dis_link_watch(); /* first: changes during socket creation are then notified */
     Status status = dis_udp_socket(&u->socket, &u->to, &u->tie, config, true);
     if (status != STATUS_OK) goto fail;
     check_link(u);

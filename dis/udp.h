@@ -1,12 +1,11 @@
 /* dis/udp.h: DIS datagrams over UDP: unicast, broadcast or multicast, IPv4 or IPv6, on a chosen interface.
  *
- * A thread of its own takes datagrams off the socket as they come, so that a busy caller loses none; what it took
- * waits in a bounded queue. Arrival times are the kernel's, never decreasing, whole nanoseconds; when the system's
- * clock is set they go on as if it had not been. Memory is taken at dis_udp_open and never grows, whatever the network
- * sends. Linux only.
+ * A separate thread reads datagrams from the socket into a bounded queue, so that none is lost while the caller is
+ * busy. Arrival times are the kernel's, never decreasing, whole nanoseconds; steps of the system clock are removed.
+ * Memory is allocated at dis_udp_open and never grows. Linux only.
  *
- * A network that goes away - its interface deleted or set down, its address taken, the way to the group lost - is said
- * once, and once when it is back; what must be bound or joined anew then is. */
+ * The loss of the network (interface deleted or down, address removed, no route to the group) is reported once, and
+ * once more when it is back; sockets are then bound and groups joined again. */
 #ifndef DIS_UDP_H
 #define DIS_UDP_H
 
@@ -28,14 +27,15 @@ typedef struct DisUdpCounters {
     uint64_t lost_queue;        /* not taken in time */
     uint64_t sent, send_failed;
     int      send_error;        /* errno of the latest that failed */
-    bool     away;              /* the interface, its address or the way to the group is not there, which was said */
+    bool     away;              /* the interface, its address or the way to the group is not available; already
+                                 * reported */
 } DisUdpCounters;
 
 typedef struct DisUdp DisUdp;
 
 /* One datagram as taken; bytes are the taker's until its next take. */
 typedef struct DisArrival {
-    int64_t        capture_ns;    /* Unix time; dis_unix_s makes it what a recording says */
+    int64_t        capture_ns;    /* Unix time; dis_unix_s converts it to the time of a recording */
     uint32_t       octets;        /* may be 0 */
     const uint8_t *bytes;
     uint8_t        from[16];      /* IPv4 as ::ffff:a.b.c.d */
@@ -48,19 +48,19 @@ Status dis_udp_open_sender(DisUdp **out, const DisUdpConfig *config); /* sends o
 /* NULL is fine. No thread may be inside another function by then. */
 void   dis_udp_close(DisUdp *udp);
 
-/* From now on each datagram off the socket is shown to tap as it comes, before it is queued, whether or not the queue
- * has room: by the receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is
- * not inside. It must not call anything here. */
+/* From now on tap is called for each datagram received, before it is queued, also when the queue is full: by the
+ * receiving thread or the one that closes a tick, one at a time. tap: NULL: none; after the call it is not inside. It
+ * must not call anything here. */
 typedef void (*DisUdpTap)(void *user, const DisArrival *arrival);
 void   dis_udp_tap(DisUdp *udp, DisUdpTap tap, void *user);
-/* What has arrived by now is in the queue, and after this has returned nothing more gets an arrival time at or before
- * until_ns: what the kernel stamped so early and arrives later is given until_ns + 1. Then dis_udp_take(.., until_ns)
- * until it says false. That is how a live node closes a frame's tick, and why its recording replays to the same bits:
- * dis_unix_ns_until says which until_ns a frame time stands for. One thread at a time. */
+/* Queues what has arrived so far; after it has returned no datagram gets an arrival time at or before until_ns: a later
+ * one with such a kernel time stamp gets until_ns + 1. Then call dis_udp_take(.., until_ns) until it returns false.
+ * A live node closes a frame's tick this way, so its recording replays bit-identically: dis_unix_ns_until
+ * gives the until_ns of a frame time. One thread at a time. */
 void   dis_udp_close_tick(DisUdp *udp, int64_t until_ns);
 /* The next in order of arrival, not after until_ns (INT64_MAX: any). False when none waits. One thread at a time. */
 bool   dis_udp_take(DisArrival *out, DisUdp *udp, int64_t until_ns);
-/* Waits until something waits to be taken or the Unix time until_ns has come; true for the former. */
+/* Waits until the queue is not empty (true) or until the Unix time until_ns (false). */
 bool   dis_udp_wait(DisUdp *udp, int64_t until_ns);
 /* A full or missing network is counted, never fatal: STATUS_IO then. Thread-safe. */
 Status dis_udp_send(DisUdp *udp, const uint8_t *bytes, size_t octets);
@@ -68,7 +68,7 @@ DisUdpCounters dis_udp_counters(const DisUdp *udp);
 /* Unix time in the nanoseconds that arrivals are stamped in: steady_clock.h, not moved when the system's clock is
  * set. */
 int64_t dis_udp_now_ns(void);
-/* Until it is that, or a signal comes. */
+/* Until then, or until a signal. */
 void    dis_udp_sleep_until(int64_t until_ns);
 /* Where dis_udp_send sends: as DisArrival's from. */
 void    dis_udp_destination(uint8_t to[16], const DisUdp *udp);

@@ -1,4 +1,4 @@
-/* dis/udp_link.c: announcements of the kernel, and a look at the interface itself.
+/* dis/udp_link.c: notifications of the kernel, and polling of the interface.
  *
  * Sources: rtnetlink(7), netdevice(7), ip(7), ipv6(7). */
 #include "dis/udp_link.h"
@@ -12,7 +12,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* One that is deleted is set down first, one that is made anew is down for a moment, too: the reason is what lasts. */
+/* An interface is set down before it is deleted, and is down briefly after it is created: a reason must persist. */
 static const int64_t settle_ns = 200000000, other_ns = 2000000000;
 
 static int64_t monotonic_ns(void)
@@ -22,7 +22,7 @@ static int64_t monotonic_ns(void)
     return (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
 }
 
-/* ---- announcements ----------------------------------------------------------------------------------- */
+/* ---- notifications ----------------------------------------------------------------------------------- */
 
 int dis_link_watch(void)
 {
@@ -35,7 +35,7 @@ int dis_link_watch(void)
 }
 
 /* Of the named interface: by its index. Of a group that the system chose the interface for: it was joined on the
- * deleted one if it can be left there; that also makes room for the next, of 20 that a socket may have. */
+ * deleted one if it can be left there; that also frees one of the 20 memberships of a socket. */
 static void note_deleted(DisLink *link, unsigned index, int socket, const DisSocketAddress *to, const DisTie *tie)
 {
     if (tie->narrow) {
@@ -51,12 +51,12 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     if (link->watch < 0) return;
     for (;;) {
         const ssize_t octets = recv(link->watch, buffer, sizeof buffer, MSG_DONTWAIT);
-        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the look finds out */
+        if (octets < 0 && (errno == ENOBUFS || errno == EINTR)) continue; /* some are lost: the next poll follows */
         if (octets <= 0) return;
         unsigned left = (unsigned)octets;
         for (const struct nlmsghdr *m = (const void *)buffer; NLMSG_OK(m, left); m = NLMSG_NEXT(m, left)) {
             const struct ifinfomsg *about = NLMSG_DATA(m);
-            /* a bridge announces its ports in a family of its own: those are not deleted */
+            /* a bridge notifies of its ports in a separate family: those are not deleted */
             if (m->nlmsg_type == RTM_DELLINK && m->nlmsg_len >= NLMSG_LENGTH(sizeof *about) &&
                 about->ifi_family == AF_UNSPEC)
                 note_deleted(link, (unsigned)about->ifi_index, socket, to, tie);
@@ -64,7 +64,7 @@ void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const 
     }
 }
 
-/* ---- a look ----------------------------------------------------------------------------------------- */
+/* ---- polling --------------------------------------------------------------------------------------- */
 
 static DisLinkState interface_state(int socket, const char *name)
 {
@@ -86,15 +86,15 @@ static DisLinkState look(bool *remake, const DisLink *link, int socket, const Di
         *remake = index != tie->interface || (link->lost && tie->group);
         return interface_state(socket, config->interface);
     }
-    if (tie->group && tie->interface) { /* `ff02::1%eth0`: what the name now stands for is found when it is made anew */
+    if (tie->group && tie->interface) { /* `ff02::1%eth0`: the name is resolved again when the socket is recreated */
         char name[IF_NAMESIZE];
         *remake = link->lost || !if_indextoname(tie->interface, name);
         return *remake ? DIS_LINK_GONE : DIS_LINK_UP;
     }
-    if (tie->group) { /* joined already: the usual answer */
+    if (tie->group) { /* joined already: the usual result */
         if (dis_udp_join(socket, to, 0) || errno == EADDRINUSE) return DIS_LINK_UP;
         *remake = errno == ENOBUFS;
-        return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* joined still, though no route leads there */
+        return *remake || !link->lost ? DIS_LINK_UP : DIS_LINK_NO_ROUTE; /* still joined, though without a route */
     }
     return tie->own && !dis_udp_is_own(to) ? DIS_LINK_NO_ADDRESS : DIS_LINK_UP;
 }
@@ -109,7 +109,7 @@ void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddr
     if (!*remake && state == DIS_LINK_UP) link->lost = false;
 }
 
-/* ---- saying ------------------------------------------------------------------------------------------ */
+/* ---- reporting --------------------------------------------------------------------------------------- */
 
 void dis_link_text(char out[dis_link_text_size], DisLinkState state, const DisUdpConfig *config)
 {
@@ -146,7 +146,7 @@ static void say(const char *where, DisLinkState state, const DisUdpConfig *confi
 
 void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config)
 {
-    if (link->lost && link->said == DIS_LINK_UP) /* whatever is there now */
+    if (link->lost && link->said == DIS_LINK_UP) /* the present state */
         say(where, link->said = DIS_LINK_GONE, config);
     if (link->lost || link->state == link->said) return;
     if (link->state == DIS_LINK_UP)

@@ -1,9 +1,8 @@
-/* dis/udp_link.h: whether what a socket hears and sends by is still there: its interface, its address, its group; for
- * udp.c only.
+/* dis/udp_link.h: monitors whether the interface, address and group of a socket still exist; for udp.c only.
  *
- * An interface that is deleted and made anew has another index: the socket that was bound to it, and the group that was
- * joined on it, are deaf for ever, without an error. So the kernel's own announcements (rtnetlink(7)) are read, and the
- * state is looked at once a second besides, where there are none. */
+ * An interface that is deleted and recreated has another index: the socket that was bound to it, and the group that was
+ * joined on it, never receive again, without an error. So the kernel's notifications (rtnetlink(7)) are read, and the
+ * state is also polled once a second for cases without one. */
 #ifndef DIS_UDP_LINK_H
 #define DIS_UDP_LINK_H
 
@@ -22,7 +21,7 @@ typedef struct DisLink {
     int          watch;        /* announcements; -1: none, or a sender */
     bool         listens;
     bool         lost;         /* its interface was deleted since the socket was made */
-    DisLinkState state, said;  /* said: what was last logged */
+    DisLinkState state, said;  /* reported: the state last logged */
     int64_t      since_ns;     /* of the state; monotonic */
 } DisLink;
 
@@ -30,12 +29,12 @@ typedef struct DisLink {
 int  dis_link_watch(void);
 /* Reads all announcements; notes whether an interface that the socket depends on was deleted. */
 void dis_link_read(DisLink *link, int socket, const DisSocketAddress *to, const DisTie *tie);
-/* Looks, and joins the group anew where no interface was named. remake: the socket must be made anew; lost is cleared
- * by the caller then. Once a second and after announcements. */
+/* Polls the state, and joins the group again where no interface was named. remake: the socket must be recreated; the
+ * caller then clears lost. Once a second and after notifications. */
 void dis_link_check(DisLink *link, bool *remake, int socket, const DisSocketAddress *to, const DisTie *tie,
                    const DisUdpConfig *config);
-/* Of the last read or look: one line when it is no longer up, one when it is again; one more when the reason is another
- * for two seconds. where: of dis_udp_where. dis_link_unreported: it wants to be asked again in a tenth of a second. */
+/* Of the last read or poll: one line when it is no longer up, one when it is again; one more when the reason is another
+ * for two seconds. where: of dis_udp_where. dis_link_unreported: to be checked again in a tenth of a second. */
 static inline bool dis_link_unreported(const DisLink *link) { return link->state != link->said; }
 void dis_link_report(DisLink *link, const char *where, const DisUdpConfig *config);
 /* `the interface eth0 is down`, for people. */

@@ -1,4 +1,4 @@
-/* dis/udp_ring.c: records of whole units, one behind the other, round and round. */
+/* dis/udp_ring.c: ring buffer of records, each a whole number of units. */
 #include "dis/udp_ring.h"
 
 #include <stdlib.h>
@@ -32,7 +32,7 @@ static uint64_t units(uint64_t octets) { return (octets + unit - 1) / unit * uni
 
 bool dis_ring_put(DisRing *r, const DisRingRecord *head, const uint8_t *bytes)
 {
-    /* empty: from the beginning again, so that of a large ring no more is touched than was ever needed */
+    /* empty: from the beginning again, so that a large ring touches no more memory than needed */
     if (r->held == r->end) r->held = r->next = r->end = (r->end + r->octets - 1) / r->octets * r->octets;
     const uint64_t octets = units(sizeof *head + head->octets), to_end = r->octets - r->end % r->octets;
     const uint64_t gap = octets > to_end ? to_end : 0;

@@ -1,6 +1,6 @@
-/* dis/udp_ring.h: datagrams that wait, in a ring of octets; for udp.c only, under its lock.
+/* dis/udp_ring.h: queue of datagrams in a ring buffer; for udp.c only, under its lock.
  *
- * Each lies in one piece behind its record. What was taken stays until the next take. Memory is taken once. */
+ * Each is contiguous after its record. A datagram taken is valid until the next take. Memory is allocated once. */
 #ifndef DIS_UDP_RING_H
 #define DIS_UDP_RING_H
 
@@ -22,9 +22,9 @@ typedef struct DisRing {
 
 Status dis_ring_create(DisRing *out, uint64_t octets);
 void   dis_ring_destroy(DisRing *ring); /* a zeroed one is fine */
-/* head: with its number of octets, which follow from bytes. False: there is no room, and the oldest stay. */
+/* head: with its number of octets, which follow from bytes. False: the ring is full, and the oldest are kept. */
 bool   dis_ring_put(DisRing *ring, const DisRingRecord *head, const uint8_t *bytes);
-/* The next, not after until_ns, its octets behind it; NULL: none. The one of before is given up. */
+/* The next, not after until_ns, its octets behind it; NULL: none. The previous one becomes invalid. */
 const DisRingRecord *dis_ring_take(DisRing *ring, int64_t until_ns);
 static inline bool dis_ring_waits(const DisRing *ring) { return ring->next != ring->end; }
 

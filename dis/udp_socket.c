@@ -1,4 +1,4 @@
-/* dis/udp_socket.c: which socket options an exercise needs, and one line for each thing that can be wrong with them.
+/* dis/udp_socket.c: socket options of an exercise, and one log line for each failure.
  *
  * Sources: ip(7), ipv6(7), udp(7), socket(7). */
 #include "dis/udp_socket.h"
@@ -13,12 +13,12 @@
 enum { receive_buffer_octets = 64 << 20, send_buffer_octets = 4 << 20, least_queue_octets = 128 << 10,
        most_queue_octets = 1 << 30, text_size = 256 };
 
-/* What an address is to this machine decides how to listen for it. */
+/* The kind of address determines how to listen for it. */
 typedef enum Reach {
-    REACH_OWN,       /* one of this machine's: bound to, alone */
-    REACH_PEER,      /* another machine's: anything that comes to the port is heard, alone */
-    REACH_BROADCAST, /* anything that comes to the port is heard, by as many as like */
-    REACH_GROUP,     /* joined and bound to: nothing but the group is heard, by as many as like */
+    REACH_OWN,       /* one of this machine's: bound to, exclusive */
+    REACH_PEER,      /* another machine's: all datagrams to the port, exclusive */
+    REACH_BROADCAST, /* all datagrams to the port, shared with other programs */
+    REACH_GROUP,     /* joined and bound to: only the group is received, shared with other programs */
 } Reach;
 
 typedef struct Plan {
@@ -40,7 +40,7 @@ void dis_socket_address_octets16(uint8_t out[16], const DisSocketAddress *addres
     }
 }
 
-/* ---- from names to a plan ------------------------------------------------------------------------- */
+/* ---- address resolution -------------------------------------------------------------------------- */
 
 static void list_interfaces(char out[text_size])
 {
@@ -160,9 +160,9 @@ static Status read_config(Plan *plan, const DisUdpConfig *config)
     return STATUS_OK;
 }
 
-/* ---- from the plan to a socket -------------------------------------------------------------------- */
+/* ---- socket set-up ------------------------------------------------------------------------------ */
 
-/* Status, after one line that says what was tried, on what, why it failed and what may help. */
+/* Status, after one log line with the operation, its object, the error and a remedy. */
 static Status refused(const Plan *plan, const char *what)
 {
     const int   error = errno;
@@ -200,13 +200,13 @@ static bool set_flag(int socket, int level, int name, int value)
     return setsockopt(socket, level, name, &value, sizeof value) == 0;
 }
 
-/* As much as is allowed: beyond the limit only for the administrator. */
+/* The largest allowed buffer: beyond the limit needs CAP_NET_ADMIN. */
 static void set_buffer(int socket, int forced, int plain, int octets)
 {
     if (!set_flag(socket, SOL_SOCKET, forced, octets)) set_flag(socket, SOL_SOCKET, plain, octets);
 }
 
-/* Where multicast leaves, how far it goes, and that programs of this machine hear it too. */
+/* Multicast interface, hop limit, and loopback, so that programs of this machine receive it too. */
 static bool aim(const Plan *plan, int socket)
 {
     const int ttl = plan->config->ttl;
@@ -254,7 +254,7 @@ bool dis_udp_leave(int socket, const DisSocketAddress *group, unsigned interface
     return membership(socket, group, interface, IP_DROP_MEMBERSHIP, IPV6_DROP_MEMBERSHIP);
 }
 
-/* Whether another socket hears all addresses on the port: of what is sent to one address, only one of them gets any. */
+/* Whether another socket receives all addresses on the port: unicast datagrams then go to only one of them. */
 static bool port_shared(int port)
 {
     static const char *const tables[2] = {"/proc/net/udp", "/proc/net/udp6"};
@@ -301,7 +301,7 @@ Status dis_udp_socket(int *out, DisSocketAddress *to, DisTie *tie, const DisUdpC
     const int made = socket(family, SOCK_DGRAM | SOCK_CLOEXEC, 0);
     if (made < 0) return refused(&plan, "make a socket for");
     set_buffer(made, SO_SNDBUFFORCE, SO_SNDBUF, send_buffer_octets);
-    /* what this machine sends to its own address comes in by loopback, so no interface then */
+    /* datagrams to an own address arrive by loopback, so no interface then */
     const bool narrow = config->interface[0] && plan.reach != REACH_OWN;
     if (family == AF_INET6 && !set_flag(made, IPPROTO_IPV6, IPV6_V6ONLY, 1))
         status = refused(&plan, "set up");

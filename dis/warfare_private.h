@@ -1,4 +1,4 @@
-/* dis/warfare_private.h: from octets to Fire and Detonation, for decode.c; contract: dis_decode. */
+/* dis/warfare_private.h: decodes Fire and Detonation, for decode.c; contract: dis_decode. */
 #ifndef DIS_WARFARE_PRIVATE_H
 #define DIS_WARFARE_PRIVATE_H
 

@@ -1,4 +1,4 @@
-/* entities/probe.h: what `pitviper probe` can ask of this room. */
+/* entities/probe.h: the entries of `pitviper probe` of this module. */
 #ifndef ENTITIES_PROBE_H
 #define ENTITIES_PROBE_H
 

@@ -1,4 +1,4 @@
-/* terrain/probe.h: what `pitviper probe` can ask of this room. */
+/* terrain/probe.h: the entries of `pitviper probe` of this module. */
 #ifndef TERRAIN_PROBE_H
 #define TERRAIN_PROBE_H
 

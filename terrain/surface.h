@@ -1,5 +1,4 @@
-/* terrain/surface.h: what covers the ground. One small class a place; etc/surfaces.csv says what each is
- * made of. */
+/* terrain/surface.h: land cover of the ground. One class per position; etc/surfaces.csv has the materials of each. */
 #ifndef TERRAIN_SURFACE_H
 #define TERRAIN_SURFACE_H
 

@@ -1,4 +1,4 @@
-/* terrain/weather.h: the weather as state: a few numbers that light and heat depend on. */
+/* terrain/weather.h: weather state: the parameters that light and heat depend on. */
 #ifndef TERRAIN_WEATHER_H
 #define TERRAIN_WEATHER_H
 

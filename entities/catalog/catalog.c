@@ -19,19 +19,19 @@ typedef struct CatalogRow {
     int    order;              /* in the file */
     int    model;
     Origin origin;
-    bool   own;                /* of the user's catalog, which goes first */
+    bool   own;                /* of the user's catalog, which takes precedence */
     int    line;
-    ModelSize size;            /* as the row says; of a file: what it should have */
+    ModelSize size;            /* from the row; of a file: its expected size */
     char  *note;            /* may be NULL */
 } CatalogRow;
 
 /* A model of the catalog. A built-in shape is built coarsely when the catalog is opened, once for all sizes of it:
  * nodes and parts, with their materials and heat, depend on neither size nor facets. With fine facets and in its size
- * it is built when a type that has it is first asked for: of two hundred models an exercise has ten. */
+ * it is built at the first look-up of one of its types: an exercise uses some ten of two hundred models. */
 typedef struct CatalogModel {
     char *source;          /* its built-in name, or its file */
     ModelSize size;        /* zeroes: its own */
-    int shape;             /* index of the one whose `first` this is a size of */
+    int shape;             /* index of the entry of which this is another size: `first` */
     int class;             /* index of the first of the same name */
     ModelImport *import;   /* of a file, else NULL */
     Model first;           /* of shape == own index alone: coarse, or of a file */
@@ -50,7 +50,7 @@ struct Catalog {
 
 static const double coarse_chord_error_m = 0.1;
 
-/* Dotted numbers and stars; what is left out at the end is a star. Fields are 8 bits, the country 16. */
+/* Dotted numbers and stars; omitted parts at the end are stars. Fields are 8 bits, the country 16. */
 static bool parse_type(int field[type_fields], const char *text)
 {
     for (int f = 0; f < type_fields; f++) field[f] = any;
@@ -233,8 +233,8 @@ void catalog_size(double size_m[3], const Catalog *catalog, int model)
     size_m[2] = factor[2] * (fmax(first->box_high[2], 0) - first->box_low[2]);
 }
 
-/* Says where a model from a file has another size than its row gives it, or, where it gives none, than the type has in
- * the program's own table. */
+/* Reports a model from a file with another size than in its row, or, without one there, than in the built-in table of
+ * types. */
 static void warn_sizes(const Catalog *catalog)
 {
     static const double said = 1.1, usual = 1.6;

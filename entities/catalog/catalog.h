@@ -1,6 +1,5 @@
-/* entities/catalog/catalog.h: which model an entity type gets, from etc/catalog.csv by the longest match, and the
- * models themselves, one of each shape and size. Built-in ones get their facets when a type of theirs is first
- * looked for. */
+/* entities/catalog/catalog.h: maps an entity type to its model, from etc/catalog.csv by the longest match, and the
+ * models themselves, one of each shape and size. Built-in ones are built at the first look-up of one of their types. */
 #ifndef ENTITIES_CATALOG_CATALOG_H
 #define ENTITIES_CATALOG_CATALOG_H
 
@@ -13,13 +12,13 @@ typedef enum Origin { ORIGIN_BASE, ORIGIN_CENTRE } Origin;
 typedef struct Catalog Catalog;
 
 /* path: a CSV with the columns type, model, origin, and perhaps length_m, width_m, height_m (ModelSize; empty: in
- * proportion, all empty: the shape's own size; of a file: the size it should have, and a warning when it has another)
- * and note; type is dotted with `*` for anything, e.g.
+ * proportion, all empty: the shape's own size; of a file: its expected size, with a warning when it differs)
+ * and note; type is dotted with `*` as wildcard, e.g.
  * `1.1.225.1.*.*.*`, and stars at the end may be left out. Of the rows that agree with a type the one named deepest
- * wins (`1.1.*.1` before `1.1.225`: the category says more of the shape than the country), then the one with fewer
- * stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
- * folder), see entities/import/model_import.h; `none`: nothing is seen of the type.
- * Rows of the user's own catalog (etc_own of catalog.csv) go before all of these: where one agrees, it is taken. Its
+ * wins (`1.1.*.1` before `1.1.225`: the category determines more of the shape than the country), then the one with
+ * fewer stars, then the earlier. model: a built-in name, or a file (a dot or a slash in it; relative to the catalog's
+ * folder), see entities/import/model_import.h; `none`: entities of the type are not rendered.
+ * Rows of the user's own catalog (etc_own of catalog.csv) take precedence over all of these. Its
  * files are relative to its own folder.
  * A malformed row: STATUS_BAD_VALUE, file and line logged. sag_m: as
  * parametric_build. */
@@ -27,9 +26,9 @@ Status catalog_open(Catalog **out, const char *path, double sag_m);
 void   catalog_close(Catalog *catalog);
 /* One model for each shape and size; those of one shape have one name. */
 int    catalog_model_count(const Catalog *catalog);
-/* False: entities of this model are heard and tracked, but there is nothing of them to be seen. */
+/* False: entities of this model are received and tracked, but not rendered. */
 bool   catalog_has_shape(const Catalog *catalog, int model);
-/* The first model of the same name: what a class of targets is called and counted by, whatever their sizes. */
+/* The first model of the same name: identifies a class of targets independent of size. */
 int    catalog_class(const Catalog *catalog, int model);
 /* Once catalog_find has named it: the model. Before: a coarse form of its shape, in the shape's own size, whose
  * nodes and parts are in number, name, material and heat the model's. Either lives as long as the catalog. */

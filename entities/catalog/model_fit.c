@@ -1,4 +1,4 @@
-/* entities/catalog/model_fit.c: a model's size against the size it should have, under other axes and other units. */
+/* entities/catalog/model_fit.c: a model's size compared with its expected size, under other axes and units. */
 #include "entities/catalog/model_fit.h"
 
 /* What files are drawn in, as metres, and the same the wrong way round. */

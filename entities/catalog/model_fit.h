@@ -1,4 +1,4 @@
-/* entities/catalog/model_fit.h: whether a model from a file has the size that it should have; if not, which axes or
+/* entities/catalog/model_fit.h: whether a model from a file has its expected size; if not, which axes or
  * which unit of the file would give it. */
 #ifndef ENTITIES_CATALOG_MODEL_FIT_H
 #define ENTITIES_CATALOG_MODEL_FIT_H
@@ -12,7 +12,7 @@ typedef struct ModelFit {
     char   advice[320]; /* what to write into the sidecar */
 } ModelFit;
 
-/* want: 0 where it is not known. tolerance: largest factor between two lengths that agree, above 1. */
+/* want: the requested size, 0 where unknown. tolerance: largest factor between two lengths that agree, above 1. */
 void model_fit(ModelFit *out, const Model *model, const ModelImport *import, const ModelSize *want, double tolerance);
 
 #endif

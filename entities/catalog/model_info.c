@@ -114,7 +114,7 @@ static int print_info(const char *name, const ModelSize *size, double sag_m)
     else
         status = model_open(&model, &report, &imported, name, sag_m);
     if (status == STATUS_NO_MEMORY) log_error("model: %s: %s", name, status_name(status));
-    if (status != STATUS_OK) return 1; /* all else was said where it happened */
+    if (status != STATUS_OK) return 1; /* all other errors were reported where they occurred */
     if (model_edges(&edges, &model) != STATUS_OK) {
         model_destroy(&model);
         log_error("model: no memory: %s", name);

@@ -1,4 +1,5 @@
-/* entities/catalog/model_info.h: `pitviper model info` and `model list`: what a model is made of; what there is. */
+/* entities/catalog/model_info.h: `pitviper model info` and `model list`: the contents of a model; the available
+ * models. */
 #ifndef ENTITIES_CATALOG_MODEL_INFO_H
 #define ENTITIES_CATALOG_MODEL_INFO_H
 

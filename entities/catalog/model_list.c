@@ -1,5 +1,5 @@
-/* entities/catalog/model_list.c: `pitviper model list`: built-in shapes, and what each entity type of the catalog is
- * seen as. */
+/* entities/catalog/model_list.c: `pitviper model list`: built-in shapes, and the model of each entity type of the
+ * catalog. */
 #include "entities/catalog/model_info.h"
 #include "entities/import/model_import.h"
 #include "entities/parametric/parametric.h"

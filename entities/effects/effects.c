@@ -117,7 +117,7 @@ Status effect_table_open(EffectTable *out, const char *path)
     return status;
 }
 
-/* ---- a puff's life ------------------------------------------------------------------------ */
+/* ---- puff over time ----------------------------------------------------------------------- */
 
 static double time_scale(const EffectModel *law, double scale)
 {
@@ -130,7 +130,7 @@ double effect_life_s(const EffectTable *table, EffectKind kind, double scale)
     return law->life_s * time_scale(law, scale);
 }
 
-/* Way of what begins at `first` per second and dies out with tau: exact, and never ahead of first * t. */
+/* Distance at an initial speed `first`, decaying with tau: exact, and never ahead of first * t. */
 static double dying_way(double first, double tau_s, double t_s) { return first * tau_s * -expm1(-t_s / tau_s); }
 
 bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
@@ -142,7 +142,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
 
     if (!(age_s >= 0 && lived < 1 && puff->mass_kg > 0)) return false;
 
-    /* rise and throw in the place's own axes; the wind in the frame's, whose north is the place's within a degree */
+    /* rise and throw in the place's own axes; the wind in the frame's axes, with north equal within a degree */
     v3_add_scaled(p_ecef, puff->p_ecef, puff->scale * dying_way(law->rise_mps, law->rise_s, age_s), puff->up_ecef);
     for (int i = 0; i < 3; i++) way[i] = dying_way(puff->throw_mps[i], puff->throw_s, age_s);
     v3_add(p_ecef, p_ecef, way);
@@ -158,7 +158,7 @@ bool effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff
     out->along_m = fmax(out->across_m, puff->along_m);
     out->temp_k = weather->air_temp_k + law->temp_rise_k * exp(-age_s / (law->cool_s * times));
 
-    /* thins out towards its end, where slope and value are zero: nothing blinks away */
+    /* thins out towards its end, where slope and value are zero: no abrupt end */
     const double thin = (1 - lived * lived) * (1 - lived * lived);
     const double volume_m3 = 4.0 / 3 * pi_rad * out->across_m * out->across_m * out->along_m;
     const double peak_kg_m3 = puff->mass_kg * thin / (volume_m3 * effect_mean_density);

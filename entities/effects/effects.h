@@ -1,8 +1,8 @@
-/* entities/effects/effects.h: flames, smoke, dust and bursts as puffs: what each is made of and how it lives.
+/* entities/effects/effects.h: flames, smoke, dust and bursts as puffs: composition and development over time.
  *
- * A puff is let go at one place and time and from there on is a closed form of its age: nothing is integrated from
- * frame to frame, so any instant can be asked for in any order. etc/effects.csv has the figures, and says how far
- * they can be trusted. Who lets puffs go, and when: effects_history.h. How they look: render/effects.h. */
+ * A puff is emitted at one position and time; its state is a closed form of its age. Nothing is integrated from frame
+ * to frame, so times can be evaluated in any order. etc/effects.csv has the parameters and their accuracy. Sources and
+ * times of puffs: effects_history.h. Rendering: render/scene/effects.h. */
 #ifndef ENTITIES_EFFECTS_EFFECTS_H
 #define ENTITIES_EFFECTS_EFFECTS_H
 
@@ -27,7 +27,7 @@ enum { effect_band_b = SPECTRAL_B, effect_band_g = SPECTRAL_G, effect_band_r = S
 typedef struct EffectModel {
     double extinction_m2_kg[effect_band_count], albedo[effect_band_count];
     double asymmetry;
-    double mass_kg;                     /* of a puff; per second for what an entity gives off */
+    double mass_kg;                     /* of a puff; per second for emissions of an entity */
     double radius_start_m, radius_end_m, grow_s, spread_mps;
     double rise_mps, rise_s;
     double temp_rise_k, cool_s;
@@ -46,19 +46,19 @@ Status effect_table_open(EffectTable *out, const char *path);
 /* One puff at one instant, as a Snapshot holds it: still without wind, which is the weather's. */
 typedef struct EffectPuff {
     EffectKind kind;
-    uint64_t   owner;        /* whose smoke it is: snapshot_owns_puff; 0: nobody's */
+    uint64_t   owner;        /* owning entity: snapshot_owns_puff; 0: none */
     uint32_t   group;        /* puffs of one cloud or trail have one, and shade each other */
     uint32_t   seed;         /* of its pattern */
-    double     age_s;        /* >= 0; what an entity carries with it stays at 0 */
-    double     p_ecef[3];    /* where it was let go */
+    double     age_s;        /* >= 0; 0 for puffs attached to an entity */
+    double     p_ecef[3];    /* position of emission */
     double     up_ecef[3];   /* unit */
-    double     throw_mps[3]; /* ECEF, what it is let go with; dies out with throw_s */
+    double     throw_mps[3]; /* ECEF, initial velocity; decays with throw_s */
     double     throw_s;
     double     scale;        /* W^(1/3); lengths */
     double     mass_kg;      /* all of it, before thinning */
     double     axis_ecef[3]; /* unit; the spheroid's own axis */
     double     along_m;      /* least half length along the axis; 0: a sphere */
-    bool       grounded;     /* let go above_m above the ground, wherever the snapshot's ground is there */
+    bool       grounded;     /* emitted above_m above the snapshot's ground there */
     double     above_m;
 } EffectPuff;
 
@@ -70,9 +70,9 @@ typedef struct EffectVolume {
     double extinction_per_m[effect_band_count]; /* at the centre */
 } EffectVolume;
 
-/* How long a puff of this kind and scale is seen. */
+/* Time for which a puff of this kind and scale is visible. */
 double effect_life_s(const EffectTable *table, EffectKind kind, double scale);
-/* False when there is nothing left of it. The wind carries a free puff at its full speed from the first moment:
+/* False when it has ended. The wind carries a free puff at its full speed from the first moment:
  * drift = wind age, exactly. */
 bool   effect_volume(EffectVolume *out, const EffectTable *table, const EffectPuff *puff, const Weather *weather,
                      const LocalFrame *frame);

@@ -1,4 +1,4 @@
-/* entities/effects/effects_history.c: two rings, and the puffs that follow from them. */
+/* entities/effects/effects_history.c: two ring buffers, and the puffs computed from them. */
 #include "entities/effects/effects_history.h"
 
 #include <stdlib.h>
@@ -128,7 +128,7 @@ void effect_history_detonation(EffectHistory *h, const DisDetonation *pdu, doubl
     add_event(h, &e, pdu->velocity_mps);
 }
 
-/* ---- what entities give off --------------------------------------------------------------- */
+/* ---- emissions of entities ---------------------------------------------------------------- */
 
 uint64_t effect_history_open(EffectHistory *h, const EffectSource *source)
 {
@@ -275,7 +275,7 @@ static void put_shot(PuffList *list, const EffectEvent *e, double t_s)
     for (int c = 0; c < 3; c++) put_cloud(list, e, c, cloud + c, t_s);
 }
 
-/* How often a kind is let go, and from what age on its puffs are thinned out. */
+/* Interval of emission of a kind, and the age from which its puffs are thinned out. */
 static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 {
     *interval_s = 0.25, *full_s = 2;
@@ -287,9 +287,9 @@ static void rhythm(double *interval_s, double *full_s, EffectKind kind)
 
 enum { most_halvings = 6 };
 
-/* A trail's old puffs are wide and need not be many. From full_s on, with every doubling of age, every other puff
- * hands its mass to its neighbours: a puff whose number divides by 2^level is there to the end of stage `level`. The
- * mass a second of trail is the same at every age. 0: gone. together: how many puffs it stands for. */
+/* Old puffs of a trail are wide, so fewer are needed. From full_s on, with every doubling of age, every other puff
+ * hands its mass to its neighbours: a puff with a number divisible by 2^level exists to the end of stage `level`. The
+ * mass per second of trail is the same at every age. 0: removed. together: the number of puffs it represents. */
 static double share_of(int64_t number, double age_s, double full_s, double *together)
 {
     int level = 0;
@@ -343,7 +343,7 @@ static void put_source(PuffList *list, const EffectSource *source, double t_s)
             puff.above_m = v3_dot(over, puff.up_ecef);
         }
         if (!v3_normalize(puff.axis_ecef, motion.v_ecef_mps)) memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.up_ecef);
-        /* never ahead of where it came out: a missile would look into its own smoke */
+        /* never ahead of its source: a missile would see its own smoke */
         puff.along_m = source->speed_mps * fmin(interval_s * together, puff.age_s);
         if (source->kind == EFFECT_FLAME) { /* tongues */
             memcpy(puff.axis_ecef, puff.up_ecef, sizeof puff.axis_ecef);

@@ -1,8 +1,8 @@
-/* entities/effects/effects_history.h: who let puffs go, and when: shots and bursts of the last minute, and what
- * entities have been giving off. Bounded: the oldest is dropped, and counted, when room runs out.
+/* entities/effects/effects_history.h: sources and times of puffs: shots and bursts of the last minute, and emissions of
+ * entities. Bounded: when full, the oldest is dropped and counted.
  *
- * An entity gives off a puff at every multiple of its kind's interval of exercise time, from where its report in
- * force then put it. What puffs there are at t is therefore a function of what was heard and of t alone. */
+ * An entity emits a puff at every multiple of its kind's interval of exercise time, at its dead-reckoned position at
+ * that time. The set of puffs at t is therefore a function of the received PDUs and of t alone. */
 #ifndef ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 #define ENTITIES_EFFECTS_EFFECTS_HISTORY_H
 
@@ -12,17 +12,17 @@
 
 enum { effect_event_capacity = 4096, effect_source_capacity = 16384, effect_puff_capacity = 16384 };
 
-/* One stretch of giving off: the entity's motion and what comes out of where. */
+/* One interval of emission: the entity's motion, and its sources. */
 typedef struct EffectSource {
     EffectKind kind;
     uint64_t   key;              /* of the entity; the puffs' owner */
-    double     from_s, to_s;     /* puffs are let go in from_s <= t < to_s */
+    double     from_s, to_s;     /* puffs are emitted in from_s <= t < to_s */
     Kinematics motion;           /* at motion_s */
     double     motion_s;
     double     hold_s;           /* longest extrapolation of it */
-    double     at_body[3], spread_body[3]; /* where it comes out, from the reported position, and how far about */
-    double     speed_mps;        /* along the way: puffs are stretched to meet */
-    bool       grounded;         /* it is set onto the ground, its base below_m under the reported position */
+    double     at_body[3], spread_body[3]; /* source, relative to the reported position, and its radius */
+    double     speed_mps;        /* along the path: puffs are stretched to join */
+    bool       grounded;         /* clamped to the ground, its base below_m under the reported position */
     double     below_m;
     double     scale, rate;      /* lengths; share of the row's mass a second */
 } EffectSource;
@@ -30,11 +30,11 @@ typedef struct EffectSource {
 typedef struct EffectCounters {
     uint64_t refused;        /* Fire or Detonation with no place near the Earth, or no finite one */
     uint64_t repeated;       /* the same event once more */
-    uint64_t events_dropped; /* still to be seen when a newer one took their room */
+    uint64_t events_dropped; /* still visible when replaced by a newer one */
     uint64_t sources_dropped;
 } EffectCounters;
 
-/* Instants beyond show nothing: intervals are counted in 64 bits. */
+/* No puffs beyond: intervals are counted in 64 bits. */
 static const double effect_latest_s = 1e12;
 
 typedef struct EffectHistory EffectHistory;
@@ -47,16 +47,16 @@ const EffectCounters *effect_history_counters(const EffectHistory *history);
 
 void effect_history_fire(EffectHistory *history, const DisFire *pdu, double t_s);
 void effect_history_detonation(EffectHistory *history, const DisDetonation *pdu, double t_s);
-/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing what was dropped, or
- * 0, does nothing. */
+/* Returns a handle for the close, never 0; to_s of the source is the latest it can last. Closing a dropped one, or 0,
+ * has no effect. */
 uint64_t effect_history_open(EffectHistory *history, const EffectSource *source);
 void     effect_history_close(EffectHistory *history, uint64_t handle, double t_s);
 
-/* Charge that a shot or burst goes by: kg of propellant (fire) or of explosive, from munition type and warhead.
+/* Charge that scales a shot or burst: kg of propellant (fire) or of explosive, from munition type and warhead.
  * Estimates, by class of munition only: within a factor of three. */
 double effect_charge_kg(const DisDescriptor *descriptor, bool fire);
 
-/* Everything to be seen at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
+/* All visible puffs at t_s, newest first, at most capacity. Returns how many there are (more than capacity when
  * they do not all fit). out may be NULL with capacity 0. */
 size_t effect_history_puffs(EffectPuff *out, size_t capacity, const EffectHistory *history, double t_s);
 

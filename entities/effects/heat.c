@@ -3,9 +3,9 @@
 
 #include "dis/enumerations.h"
 
-static const double moving_mps = 0.3;       /* above the jitter of a standing vehicle's reports */
+static const double moving_mps = 0.3;       /* above the jitter of reports of a stationary vehicle */
 static const double engine_after_stop_s = 120; /* crews halt with the engine on; estimate */
-static const double full_speed_mps = 10;    /* estimate: a vehicle's ordinary cross-country speed */
+static const double full_speed_mps = 10;    /* estimate: a vehicle's usual off-road speed */
 static const double idle_engine = 0.6;      /* estimate */
 static const double shot_s = 1;             /* heat.csv gives the gun's warm-up against this */
 static const double burn_s = 2;             /* a TOW's launch and flight motors together: under 2 s */
@@ -107,7 +107,7 @@ static bool is_destroyed(const HeatEvidence *evidence)
            (evidence->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
 }
 
-/* Sets every drive that a report speaks of; firing and burning go on by their own clocks. */
+/* Sets every drive given by a report; firing and burning continue by their own times. */
 static void set_drives(HeatState *state, const HeatEvidence *evidence, double t_s)
 {
     const bool platform = evidence->type.kind == dis_kind_platform,
@@ -195,7 +195,7 @@ void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *e
     advance(state, table, t_s);
     const bool was_destroyed = state->destroyed;
     set_drives(state, evidence, t_s);
-    /* destroyed before our eyes: hot at once; repaired: cold */
+    /* destroyed while observed: hot at once; repaired: cold */
     if (state->destroyed != was_destroyed) state->level[HEAT_WRECK] = state->destroyed;
 }
 

@@ -1,8 +1,8 @@
-/* entities/effects/heat.h: how warm an entity's parts are because of what it has been doing.
+/* entities/effects/heat.h: temperatures of an entity's parts from its activity.
  *
  * Each heat role has one driver, a steady rise at full drive, and a time constant each way (etc/heat.csv). Between
  * reports every drive is constant (or ends at a known time), so a level follows in closed form and does not depend
- * on when frames are asked for. Evidence is the appearance word *and* what the entity was seen to do: VR-Forces
+ * on frame times. Evidence is the appearance word *and* the observed motion: VR-Forces
  * flies helicopters and drives tanks without ever setting the power-plant bit. */
 #ifndef ENTITIES_EFFECTS_HEAT_H
 #define ENTITIES_EFFECTS_HEAT_H
@@ -18,7 +18,7 @@ typedef enum HeatDriver {
     HEAT_DRIVER_FLIGHT, /* 1 for an air platform */
     HEAT_DRIVER_BURN,   /* 1 for a munition's first two seconds */
     HEAT_DRIVER_SPEED,  /* recovery rise r v^2 / (2 cp) over the role's rise_k, at most 1 */
-    HEAT_DRIVER_LIFE,   /* 1 for a life form that lives and a building that stands */
+    HEAT_DRIVER_LIFE,   /* 1 for a life form alive and a building not destroyed */
     HEAT_DRIVER_PYROTECHNIC, /* 1 for an expendable's first four seconds */
     HEAT_DRIVER_BURNING,/* 1 while flaming */
     HEAT_DRIVER_COUNT
@@ -46,15 +46,15 @@ typedef struct HeatState {
     bool      moving, destroyed;
 } HeatState;
 
-/* What one report says. */
+/* The state of one report. */
 typedef struct HeatEvidence {
     DisEntityType type;
     uint32_t      appearance;
     double        speed_mps; /* as reported; 0 when frozen */
 } HeatEvidence;
 
-/* First report: taken to have been in that state for ambient_s: a wreck that does not flame is a cold one. Munitions
- * and expendables begin cold, and with their motor or grain lit. */
+/* First report: assumed to have been in that state for ambient_s, so a wreck without flames is cold. Munitions and
+ * expendables start cold, with their motor or grain burning. */
 void heat_begin(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s, double ambient_s);
 void heat_report(HeatState *state, const HeatTable *table, const HeatEvidence *evidence, double t_s);
 /* It fired; or it is the munition that was fired. */
@@ -62,13 +62,13 @@ void heat_fire(HeatState *state, const HeatTable *table, double t_s);
 void heat_launch(HeatState *state, const HeatTable *table, double t_s);
 
 /* Temperature above a passive part at t_s (at or after the last report; earlier counts as that), K. Only roles of
- * the mask (1 << role) are computed; others are 0. What a wreck has of HEAT_WRECK is added to every role. */
+ * the mask (1 << role) are computed; others are 0. HEAT_WRECK of a wreck is added to every role. */
 void heat_at(float rise_k[HEAT_ROLE_COUNT], const HeatState *state, const HeatTable *table, uint32_t roles, double t_s);
-/* Roles that a model's parts have and something drives. */
+/* Roles of a model's parts that have a driver. */
 uint32_t heat_roles(const Model *model, const HeatTable *table);
 
-/* Until when engine and rotors turn if nothing else is heard: power-plant bit, moving or moved lately, or an air
- * platform; never a destroyed one. -INFINITY: they stand; INFINITY: for as long as this is all we know. */
+/* Until when engine and rotors turn without a further report: power-plant bit, moving or moved lately, or an air
+ * platform; never a destroyed one. -INFINITY: they do not turn; INFINITY: until the next report. */
 double heat_runs_until(const HeatState *state);
 
 #endif

@@ -1,7 +1,7 @@
 /* entities/import/assimp.c: files that assimp reads.
  *
  * assimp has crashed on broken files often enough that it reads in a child process, which hands the flat scene back in
- * a memory file: header, then arrays. What comes back is checked as if a stranger had written it. */
+ * a memory file: header, then arrays. The result is validated like untrusted input. */
 #include "entities/import/model_import_private.h"
 
 #include <assimp/cfileio.h>
@@ -21,7 +21,7 @@
 
 /* ---- in the child: assimp's files ---------------------------------------------------------------- */
 
-/* The model `tank.obj.gz` is `tank.obj` to assimp; what it names (materials, buffers) lies in the same folder. */
+/* The model `tank.obj.gz` is `tank.obj` to assimp; files it names (materials, buffers) are in the same folder. */
 typedef struct Files {
     const char *path; /* as it is on disk */
     char shown[1024]; /* without .gz */
@@ -191,7 +191,7 @@ static void fill_material(ImportMaterial *out, const struct aiMaterial *material
     if (aiGetMaterialString(material, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS) copy_name(out->name, &name);
     out->has_colour = aiGetMaterialColor(material, AI_MATKEY_BASE_COLOR, &colour) == aiReturn_SUCCESS ||
                       aiGetMaterialColor(material, AI_MATKEY_COLOR_DIFFUSE, &colour) == aiReturn_SUCCESS;
-    /* a texture on white says nothing of the colour */
+    /* a texture on white gives no colour */
     if (out->has_colour && aiGetMaterialTextureCount(material, aiTextureType_DIFFUSE) > 0) out->has_colour = 0;
     if (out->has_colour) out->rgb[0] = colour.r, out->rgb[1] = colour.g, out->rgb[2] = colour.b;
 }
@@ -274,7 +274,7 @@ static void child_reads(int fd, const char *path)
             header.status = STATUS_OK;
         }
     }
-    if (files.no_memory) { /* without its materials, say, it would be another model */
+    if (files.no_memory) { /* without its materials, for example, it would be another model */
         header.status = STATUS_NO_MEMORY;
         flat.said = "out of memory";
     }
@@ -297,7 +297,7 @@ static void child_reads(int fd, const char *path)
     _exit(written ? 0 : 3); /* no clean-up: the process is the clean-up */
 }
 
-/* Time and memory, no core file, nothing on the terminal, and gone with its parent. */
+/* Limits time and memory; no core file, no terminal output, ends with its parent. */
 static void child_limits(void)
 {
     const struct rlimit no_core = {0, 0}, cpu = {import_max_seconds, import_max_seconds + 1};
@@ -417,7 +417,7 @@ void import_scene_close(ImportScene *s)
     memset(s, 0, sizeof *s);
 }
 
-/* Forward and up where nobody says: glTF's by its standard; assimp turns most others to y up as well; scanners and
+/* Default of forward and up axes: glTF's by its standard; assimp turns most others to y up as well; scanners and
  * printers (PLY, STL) have z up. */
 static void format_axes(ImportScene *s, const char *extension)
 {

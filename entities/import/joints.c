@@ -1,4 +1,4 @@
-/* entities/import/joints.c: which nodes move, about what, and with whom. */
+/* entities/import/joints.c: which nodes move, about which axes, and together with which nodes. */
 #include "entities/import/model_import_private.h"
 
 #include <stdlib.h>
@@ -67,7 +67,7 @@ static void affine_vector(double out[3], const double m[12], const double d[3])
     for (int i = 0; i < 3; i++) out[i] = m[4 * i] * d[0] + m[4 * i + 1] * d[1] + m[4 * i + 2] * d[2];
 }
 
-/* Where each node stands, what it is called from the root on, and whether it is there at all. */
+/* Position of each node, its path from the root, and whether it exists. */
 static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Sidecar *sidecar)
 {
     for (int i = 0; i < scene->node_count; i++) {
@@ -80,7 +80,7 @@ static Status place_nodes(ImportPlace *place, const ImportScene *scene, const Si
             affine_mul(place[i].m, place[node->parent].m, node->m);
             snprintf(path, sizeof path, "%s/%s", place[node->parent].path, node->name);
         }
-        /* a deeper path than any_sender writes a pattern for: the name alone, so that memory does not grow with depth */
+        /* a path deeper than patterns need: the name alone, so that memory does not grow with depth */
         place[i].path = strdup(strlen(path) < path_max ? path : node->name);
         if (!place[i].path) return STATUS_NO_MEMORY;
         place[i].joint = -1;
@@ -141,7 +141,7 @@ static void turn_to_dis_sign(ImportJoint *joint)
     }
 }
 
-/* What a degree of freedom in the file says by itself. A class is nowhere in OpenFlight; a name may be telling. */
+/* Properties of a degree of freedom in the file. OpenFlight has no articulation class; it may follow from the name. */
 static void fill_from_dof(ImportJoint *joint, const Builder *b, const ImportDof *dof)
 {
     const int parent = b->scene->node[dof->node].parent;
@@ -211,11 +211,11 @@ static void grow_radius(void *user, const double p_file[3])
     radius->most = fmax(radius->most, v3_length(off));
 }
 
-/* What the sidecar says, over what the file said. */
+/* The sidecar's values override those of the file. */
 static Status fill_from_spec(ImportJoint *joint, const Builder *b, const SidecarJoint *spec, int index)
 {
     const char *node = b->scene->node[joint->source].name;
-    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign is what was asked for */
+    const bool sided = !joint->from_file || spec->axis != AXIS_DEFAULT; /* the sign of the axis is set explicitly */
     if (spec->slides)
         joint->kind = JOINT_TRANSLATION;
     else if (!joint->from_file || spec->dis_metric >= 11)

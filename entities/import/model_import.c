@@ -109,7 +109,7 @@ static Status set_origin(Build *b)
     return STATUS_OK;
 }
 
-/* Printable, without what separates names in our products (`,;:"\`), and never empty. */
+/* Printable, without the separators of names in output files (`,;:"\`), and never empty. */
 static void clean_name(char out[model_name_size], const char *name, const char *instead)
 {
     size_t n = 0;
@@ -139,7 +139,7 @@ static void make_unique(char name[model_name_size], const char *taken, int count
     }
 }
 
-/* Rodrigues; see model.c, whose joints this undoes at rest. */
+/* Rodrigues; see model.c; this inverts its joints at rest. */
 static void turned(double r[9], const double a[3], double angle_rad)
 {
     const double c = cos(angle_rad), s = sin(angle_rad), v = 1 - c;
@@ -198,7 +198,7 @@ static Status check_materials(const Build *b)
     return STATUS_OK;
 }
 
-/* Says which patterns of the sidecar agree with nothing: a slip of the pen, or a general rule for many models. */
+/* Reports patterns of the sidecar without a match: a typing error, or a general rule for many models. */
 static void warn_unused(const Build *b)
 {
     const struct {

@@ -1,10 +1,10 @@
-/* entities/import/model_import.h: models of other people, from files.
+/* entities/import/model_import.h: imports 3D models from files.
  *
- * OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and whatever else assimp reads, plain or as `.gz`; OpenFlight (`.flt`) through
- * osgconv of Debian's openscenegraph. Nodes and materials become parts, named after their nodes; joints are what the
- * file (OpenFlight's degrees of freedom) or the sidecar says, see entities/sidecar.h. Everything else is drawn together
- * into the moving node above it. Facets keep their own plane; shading normals are the file's, else by crease angle.
- * The reader runs in a process of its own with limits on time and memory: a hostile file costs an error line. */
+ * OBJ, glTF, AC3D, 3DS, ASE, PLY, STL and other formats of assimp, plain or as `.gz`; OpenFlight (`.flt`) through
+ * osgconv of Debian's openscenegraph. Nodes and materials become parts, named after their nodes; joints come from the
+ * file (OpenFlight's degrees of freedom) or the sidecar, see entities/import/sidecar.h. All other nodes are merged into
+ * the moving node above them. Facets keep their own plane; shading normals are the file's, else by crease angle. The
+ * reader runs in a separate process with limits on time and memory: a hostile file causes an error line only. */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_H
 
@@ -37,13 +37,13 @@ typedef enum ImportMaterialSource {
     MATERIAL_SOURCE_COUNT
 } ImportMaterialSource;
 
-/* What happened on the way. */
+/* Statistics of an import. */
 typedef struct ModelImport {
     char   file[1024];                 /* the model's own */
     char   sidecar[1024];              /* empty: none */
     double scale_m;                    /* p_body = scale_m r_body_from_file (p_file - p_origin_file) */
     double r_body_from_file[9], p_origin_file[3];
-    bool   axes_assumed;               /* from the format, nobody said */
+    bool   axes_assumed;               /* from the format, not specified */
     int    source_nodes, source_meshes, source_materials;
     int    unnamed_nodes, shared_names; /* nodes without a name; with one that another has, too */
     int    dropped_meshes;             /* by the sidecar */
@@ -64,7 +64,7 @@ Status model_import(Model *out, ModelImport *report, const char *path);
 
 /* Whether a name means a file: it has a slash or a dot. */
 bool   model_is_path(const char *name);
-/* Parametric by its name, or imported by its path (*imported says which). sag_m: of parametric_build. Logs. */
+/* Parametric by its name, or imported by its path (*imported: which of them). sag_m: of parametric_build. Logs. */
 Status model_open(Model *out, ModelImport *report, bool *imported, const char *name, double sag_m);
 
 #endif

@@ -1,7 +1,8 @@
-/* entities/import/model_import_private.h: what a file holds, flat, before any_sender knows which way is up.
+/* entities/import/model_import_private.h: the content of a model file as a flat scene, before axes and scale are
+ * applied.
  *
  * A reader fills it from a format; model_import.c makes a Model of it. The readers check indices and counts, so that
- * everything here is in range; coordinates may still be anything (NaN too). */
+ * everything here is in range; coordinates may still have any value (NaN too). */
 #ifndef ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 #define ENTITIES_IMPORT_MODEL_IMPORT_PRIVATE_H
 
@@ -9,7 +10,7 @@
 #include "entities/import/sidecar.h"
 
 enum {
-    import_max_octets = 1 << 28, /* of a file, unpacked */
+    import_max_octets = 1 << 28, /* of a file, decompressed */
     import_max_nodes = 65536,
     import_max_meshes = 16384, /* and so of parts */
     import_max_vertices = 1 << 23,
@@ -56,7 +57,7 @@ typedef struct ImportScene {
     float (*normal)[3];      /* zero where the mesh has none */
     uint32_t (*triangle)[3]; /* from the mesh's first vertex */
     ImportDof *dof;
-    double forward[3], up[3]; /* what the format says */
+    double forward[3], up[3]; /* from the format */
     int lost[IMPORT_LOST_COUNT];
 } ImportScene;
 
@@ -114,14 +115,14 @@ const SidecarRule *import_rule(const SidecarRules *rules, const ImportScene *sce
 
 /* Logs why a joint of the sidecar has no node: the names that there are, and which was meant. */
 void import_report_missing_node(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, int joint);
-/* Warns of names that a sidecar goes by and that several nodes share, and of nodes without one. */
+/* Warns of names used by a sidecar that several nodes share, and of nodes without a name. */
 void import_warn_names(const ImportScene *scene, const ImportPlace *place, const Sidecar *sidecar, const char *file);
 /* How many nodes have no name, and how many share theirs. */
 void import_count_names(int *unnamed, int *shared, const ImportScene *scene);
 
 /* ---- model_import_surface.c ------------------------------------------------------------------ */
 
-/* Which material and heat role a part gets when the sidecar does not say. */
+/* Material and heat role of a part without an entry in the sidecar. */
 typedef struct ImportPaints {
     int count;
     char (*name)[32];
@@ -131,7 +132,7 @@ typedef struct ImportPaints {
 Status import_paints_open(ImportPaints *out);
 void import_paints_close(ImportPaints *paints);
 bool import_paints_have(const ImportPaints *paints, const char *name);
-/* By words in the material's name, else by colour, else paint_olive; *source says which. */
+/* By words in the material's name, else by colour, else paint_olive; *source: which of these. */
 const char *import_paint_guess(ImportMaterialSource *source, const ImportPaints *paints,
                                const ImportMaterial *material);
 /* By words in the path, the last word wins; HEAT_PASSIVE without any. */

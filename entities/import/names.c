@@ -1,4 +1,4 @@
-/* entities/import/names.c: names of a file's nodes, where a sidecar cannot find them or finds too many. */
+/* entities/import/names.c: suggests names of a file's nodes for patterns without a match or with too many. */
 #include "entities/import/model_import_private.h"
 
 #include <stdlib.h>
@@ -18,7 +18,7 @@ static int times_named(const ImportScene *scene, const char *name)
     return count;
 }
 
-/* The node whose name comes nearest to the words of a pattern, case aside; -1: none has them. */
+/* The node with the name most similar to the words of a pattern, ignoring case; -1: none has them. */
 static int nearest(const ImportScene *scene, const char *pattern)
 {
     char word[model_name_size];

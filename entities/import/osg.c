@@ -1,4 +1,4 @@
-/* entities/import/osg.c: OpenFlight by way of osgconv's text, the tree of which becomes a scene.
+/* entities/import/osg.c: OpenFlight through osgconv's text, converted to a scene.
  *
  * OpenSceneGraph's own reader turns the records into nodes, metres and polygons; its text form keeps names, degrees of
  * freedom and geometry. */
@@ -16,7 +16,7 @@ typedef struct Walk {
     int visits;
 } Walk;
 
-/* Room for `more` in a growing array; false: no memory. */
+/* Capacity for `more` in a growing array; false: no memory. */
 static bool grow(void *array, int *room, int count, int more, size_t size)
 {
     void *old;

@@ -83,7 +83,7 @@ static Status read_tree(OsgText *x, char *text)
     return depth == 0 && x->element_count > 0 ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
-/* The child whose first word this is; -1: none. */
+/* The child with this first word; -1: none. */
 int osg_find(const OsgText *x, int element, const char *name)
 {
     if (element < 0) return -1;
@@ -99,7 +99,7 @@ static long long id_of(const OsgText *x, int element)
     return c >= 0 && text_to_long(&id, osg_word(x, c, 1)) && id >= 0 && id < x->id_count ? id : -1;
 }
 
-/* An object said a second time is its id alone. */
+/* A repeated object is its id alone. */
 int osg_resolve(const OsgText *x, int element)
 {
     const long long id = id_of(x, element);

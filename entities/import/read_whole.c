@@ -1,4 +1,4 @@
-/* entities/import/read_whole.c: a whole file of a model, packed by gzip or plain. */
+/* entities/import/read_whole.c: reads a complete model file, plain or compressed by gzip. */
 #include "entities/import/model_import_private.h"
 
 #include <errno.h>

@@ -278,7 +278,7 @@ static Status add_rule(const char **complaint, SidecarRules *rules, SettingValue
     value->wrong_key = false;
     *complaint       = "not a name of 1 .. 31 characters";
     if (value->key && !copy_text(rule.value, sizeof rule.value, value->text)) return STATUS_BAD_VALUE;
-    if ((rules->count & (rules->count - 1)) == 0) { /* room for a power of two */
+    if ((rules->count & (rules->count - 1)) == 0) { /* capacity: a power of two */
         SidecarRule *grown = realloc(rules->rule, (rules->count ? 2 * (size_t)rules->count : 1) * sizeof *grown);
         if (!grown) return STATUS_NO_MEMORY;
         rules->rule = grown;

@@ -1,12 +1,12 @@
-/* entities/import/sidecar.h: what a model file does not say of itself: NAME.yaml beside it.
+/* entities/import/sidecar.h: properties that a model file lacks: NAME.yaml beside it.
  *
  *     file: tank.glb                  # when it has another name; relative to the sidecar
- *     name: T-54                      # as truth says it; else the file's name
+ *     name: T-54                      # in the truth records; else the file's name
  *     scale: 0.01                     # metres a unit of the file
- *     axes: +z +y                     # of the file: which way is forward, which up
+ *     axes: +z +y                     # of the file: forward and up
  *     origin: auto                    # centre of the base, or x y z
- *     crease_deg: 30                  # sharper edges stay sharp, where the file has no normals
- *     drop: [crew_*, air*]            # parts that are not there
+ *     crease_deg: 30                  # sharper edges are not smoothed, where the file has no normals
+ *     drop: [crew_*, air*]            # parts to remove
  *     joints:
  *       - {nodes: Joint_Turret, class: primary_turret_1, metric: azimuth}
  *       - {name: gun, nodes: Joint_MainGun, class: primary_gun_1, metric: elevation, limits_deg: -5 18, rest_deg: 15}
@@ -17,9 +17,9 @@
  *     damage: {destroyed: {hide: [antenna], materials: {"*": metal_dark}}}
  *
  * A pattern is matched (`*` and `?`, slashes too, case counts) against a node's own name and against its
- * path from the root, names joined by slashes. What hangs below a matched node is matched with it. Where several
- * patterns agree with the same node the last one in the file wins: say the general first, then the exceptions.
- * Places and vectors are in the file's own axes and units. */
+ * path from the root, names joined by slashes. Nodes below a matched node are matched with it. Where several
+ * patterns agree with the same node the last one in the file wins: write the general pattern first, then the
+ * exceptions. Places and vectors are in the file's own axes and units. */
 #ifndef ENTITIES_IMPORT_SIDECAR_H
 #define ENTITIES_IMPORT_SIDECAR_H
 
@@ -39,7 +39,7 @@ typedef struct SidecarRules {
     SidecarRule *rule;
 } SidecarRules;
 
-typedef enum PivotKind { PIVOT_NODE, PIVOT_GIVEN, PIVOT_CENTRE } PivotKind; /* NODE: where the node itself stands */
+typedef enum PivotKind { PIVOT_NODE, PIVOT_GIVEN, PIVOT_CENTRE } PivotKind; /* NODE: the node's origin */
 typedef enum AxisKind { AXIS_DEFAULT, AXIS_BODY, AXIS_FILE } AxisKind;
 
 typedef struct SidecarJoint {
@@ -82,10 +82,10 @@ Sidecar sidecar_default(void);
 Status sidecar_read(Sidecar *out, const char *path);
 /* The same from memory; path is for the messages. */
 Status sidecar_parse(Sidecar *out, const char *path, const char *text, size_t octets);
-/* Every key with its type, unit, range and meaning, from the tables that the reader goes by. */
+/* Every key with its type, unit, range and meaning, from the tables of the reader. */
 void   sidecar_write_keys(FILE *to);
 void   sidecar_close(Sidecar *sidecar); /* accepts zeroes */
-/* Words as the files have them; NULL where there is none (a number is then shown). */
+/* Names as in the files; NULL where there is none (a number is then shown). */
 const char *sidecar_class_text(char out[32], uint32_t dis_class);
 const char *sidecar_metric_text(uint32_t dis_metric);
 

@@ -1,4 +1,4 @@
-/* entities/import/surface.c: what a part's surface is when nobody says: material, heat, normals. */
+/* entities/import/surface.c: default surface of a part: material, heat, normals. */
 #include "entities/import/model_import_private.h"
 
 #include <ctype.h>
@@ -24,7 +24,7 @@ static Status read_paints(ImportPaints *paints, const char *path)
         status = STATUS_BAD_VALUE;
     }
     for (int r = 0; r < table.rows && status == STATUS_OK; r++) {
-        if (import_paints_have(paints, table_text(&table, r, name))) continue; /* the user's own stands in its place */
+        if (import_paints_have(paints, table_text(&table, r, name))) continue; /* replaced by the user's own */
         snprintf(paints->name[paints->count], sizeof paints->name[0], "%s", table_text(&table, r, name));
         for (int c = 0; c < 3 && status == STATUS_OK; c++) {
             double rho = 0;
@@ -66,7 +66,7 @@ bool import_paints_have(const ImportPaints *paints, const char *name)
     return false;
 }
 
-/* Where a word ends in the text, case aside; 0: not in it. The rightmost counts: the last word says the most. */
+/* End of a word in the text, ignoring case; 0: not in it. The rightmost counts: the last word is the most specific. */
 static size_t word_end(const char *text, const char *word)
 {
     size_t end = 0;

@@ -30,7 +30,7 @@ static int joint_position(const Articulation *articulation, uint32_t parameter)
     return low;
 }
 
-/* The joint of a value parameter, new at 0 when it was not there; NULL when there is no room. */
+/* The joint of a value parameter, new at 0 when absent; NULL when full. */
 static JointReport *joint_for(Articulation *articulation, uint32_t parameter)
 {
     const int at = joint_position(articulation, parameter);
@@ -99,7 +99,7 @@ bool articulation_value(double *value, const Articulation *articulation, uint32_
     return true;
 }
 
-/* A sender may say 350 degrees where the joint's limits say -10 .. 20. */
+/* A sender may report 350 degrees where the joint's limits are -10 .. 20. */
 static double turn_into_limits(double angle_rad, double low, double high)
 {
     if (low > high) return angle_rad;

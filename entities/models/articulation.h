@@ -1,6 +1,6 @@
-/* entities/models/articulation.h: where an entity's own parts were said to be, and where they are now.
+/* entities/models/articulation.h: articulated parts: reported values, extrapolated to the present time.
  *
- * A record is known by its class and metric, never by its place in the PDU: senders put the rate before the
+ * A record is identified by its class and metric, never by its position in the PDU: senders put the rate before the
  * angle or after it. Signs, as the standard has them: azimuth is positive clockwise seen from above, that is
  * right-handed about body z (down); elevation is positive up, that is right-handed about body y (right), which
  * takes x (forward) towards -z (up). A model's joint axis is chosen so that its value is the DIS value. */
@@ -22,11 +22,11 @@ typedef struct JointReport {
 typedef struct Articulation {
     double      t_s;            /* exercise time of the report */
     int         count;
-    int         attached_count; /* attached parts not detached, in the last report; kept, not shown */
+    int         attached_count; /* attached parts not detached, in the last report; stored, not rendered */
     JointReport joint[articulation_max_joints]; /* sorted by parameter */
 } Articulation;
 
-/* Values from the records of one PDU at t_s. A joint that it does not mention stops where it had come to. NaN and
+/* Values from the records of one PDU at t_s. A joint without a record stops at its present value. NaN and
  * infinite values are ignored. Returns how many articulated records were ignored because their class is none of
  * the standard's (SISO-REF-010: 1024 .. 8191), or because there are too many joints.
  * hold_s: longest time a rate is followed. */
@@ -37,14 +37,14 @@ int articulation_report(Articulation *articulation, const DisVariableParameter *
 bool articulation_value(double *value, const Articulation *articulation, uint32_t dis_class, uint32_t dis_metric,
                         double t_s, double hold_s);
 
-/* What else turns a model's joints: by itself, or over the ground. */
+/* Further inputs of a model's joints: running time, and motion over the ground. */
 typedef struct JointDrive {
-    double spin_s;     /* a clock that goes while the entity runs: rotors */
-    double distance_m; /* how far it has gone forward: wheels */
+    double spin_s;     /* time while the engine runs: rotors */
+    double distance_m; /* distance travelled forward: wheels */
     double speed_mps;  /* landing gear */
 } JointDrive;
 
-/* Below it landing gear that nobody reports is taken to be down. Fighters approach at 70 .. 80 m/s and may keep
+/* Below this speed landing gear without a report is assumed down. Fighters approach at 70 .. 80 m/s and may keep
  * their gear out to 150 (flight manuals); estimate. */
 static const double articulation_slow_mps = 100;
 

@@ -1,4 +1,4 @@
-/* entities/models/model.c: making, poses and destruction of models. */
+/* entities/models/model.c: creation, poses and destruction of models. */
 #include "entities/models/model.h"
 
 #include <stdio.h>
@@ -52,7 +52,7 @@ static void turn_about(double r[9], const double a[3], double angle_rad)
     memcpy(r, m, sizeof m);
 }
 
-/* Where a node is in its parent at one (already limited) joint value. */
+/* Pose of a node in its parent at one (already limited) joint value. */
 static void node_in_parent(double p[3], double r[9], const ModelNode *node, double value)
 {
     memcpy(p, node->p_parent, 3 * sizeof *p);
@@ -185,7 +185,7 @@ Status model_measure(Model *model)
                     box[mp->node][0][i] = fmin(box[mp->node][0][i], v[i]);
                     box[mp->node][1][i] = fmax(box[mp->node][1][i], v[i]);
                 }
-                /* what hangs on fixed nodes only: its vertices themselves */
+                /* parts on fixed nodes only: their vertices themselves */
                 bool fixed = true;
                 for (int n = mp->node; n >= 0 && fixed; n = model->node[n].parent)
                     fixed = model->node[n].joint == JOINT_FIXED;
@@ -215,7 +215,7 @@ Status model_measure(Model *model)
 
 /* ---- validation ------------------------------------------------------------------------------- */
 
-/* Returns STATUS_BAD_VALUE and says what is wrong with which model. */
+/* Logs the model and the error; returns STATUS_BAD_VALUE. */
 static Status refuse(const Model *model, const char *what, const char *where, long long index)
 {
     log_error("model: not valid: model=%.95s problem=\"%s\" where=%.95s index=%lld", model->name, what, where, index);
@@ -328,8 +328,7 @@ static void number_places(uint32_t *place, Corner *corner, const Model *m)
     }
 }
 
-/* What the edges of one part say. volume_m3: of what they enclose, when it is closed. edge: room for three a
- * triangle. */
+/* Properties of the edges of one part. volume_m3: of what they enclose, when it is closed. edge: three per triangle. */
 static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int part, const uint32_t *place,
                        uint64_t *edge)
 {
@@ -345,7 +344,7 @@ static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int p
         for (int k = 0; k < 3; k++) {
             const uint64_t a = place[v[k]], c = place[v[(k + 1) % 3]];
             if (a == c) continue;
-            /* both directions of an edge sort together; the lowest bit tells them apart */
+            /* both directions of an edge sort together; the lowest bit distinguishes them */
             edge[count++] = a < c ? a << 33 | c << 1 : c << 33 | a << 1 | 1;
         }
     }
@@ -359,7 +358,7 @@ static void part_edges(ModelEdges *out, double *volume_m3, const Model *m, int p
     }
 }
 
-/* Calls visit for each part until it says no. */
+/* Calls visit for each part until it returns false. */
 static Status walk_edges(const Model *m, Status (*visit)(void *user, const Model *m, int part, const ModelEdges *edges,
                                                          double volume_m3), void *user)
 {

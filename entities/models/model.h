@@ -1,4 +1,4 @@
-/* entities/models/model.h: what an entity is made of: nodes that move, parts that are seen.
+/* entities/models/model.h: the 3D model of an entity: nodes that move, parts that are rendered.
  *
  * Model axes are the entity's body axes: x forward, y right, z down, metres, origin at the centre of the
  * base (the ground contact, z = 0; everything above has z < 0). A model is immutable once built. */
@@ -8,11 +8,11 @@
 #include "pitviper.h"
 
 enum {
-    model_name_size = 96,    /* of nodes, parts and models: other people name a part by its whole path */
-    model_damage_states = 4, /* as DIS says it: 0 none, 1 slight, 2 moderate, 3 destroyed */
+    model_name_size = 96,    /* of nodes, parts and models: external models name a part by its whole path */
+    model_damage_states = 4, /* DIS damage: 0 none, 1 slight, 2 moderate, 3 destroyed */
 };
 
-/* What makes a part warm. One driver each; etc/heat.csv gives the figures. */
+/* Heat roles of parts. One driver each; etc/heat.csv gives the figures. */
 typedef enum HeatRole {
     HEAT_PASSIVE = 0,  /* follows air and sun only */
     HEAT_HULL,         /* engine, weakly */
@@ -66,14 +66,14 @@ typedef struct ModelPart {
     char     material[32];      /* a row of etc/materials.csv */
     HeatRole role;
     int      first_triangle, triangle_count;
-    /* How damage shows, by the damage the entity's appearance states ([0] is not used): not there at all (bit
-     * 1 << state), or of another material (empty: the same). Parametric models say nothing; a sidecar may. */
+    /* Effect of damage, by the damage state of the appearance ([0] is not used): hidden (bit
+     * 1 << state), or of another material (empty: the same). Parametric models have none; a sidecar may. */
     uint8_t  damage_hidden;
     char     damage_material[model_damage_states][32];
 } ModelPart;
 
 typedef struct Model {
-    char       name[model_name_size]; /* as truth says it: tank, truck, helicopter, missile ... */
+    char       name[model_name_size]; /* the name in the truth records: tank, truck, helicopter, missile ... */
     double     length_m, width_m, height_m; /* bounding box at rest */
     double     box_low[3], box_high[3];     /* at rest, body axes */
     double     radius_m;        /* of a sphere about the body origin that holds every pose */
@@ -108,11 +108,11 @@ typedef struct ModelSize {
     double length_m, width_m, height_m;
 } ModelSize;
 
-/* Brings a model to a size, its joints with it; wheels and rotors stay round, and wheels on the ground. Figures are met
+/* Scales a model to a size, with its joints; wheels and rotors stay round, and wheels on the ground. Sizes are reached
  * to 1e-3 where wheels and rotors allow it. STATUS_BAD_VALUE: a factor outside 0.02 .. 50; then, and without memory,
- * the model is as it was or half way, and good for model_destroy alone. */
+ * the model is in an undefined state, valid for model_destroy only. */
 Status model_resize(Model *model, const ModelSize *size);
-/* Factors along the body axes that the size asks for; false: outside 0.02 .. 50. */
+/* Scale factors along the body axes for the given size; false: outside 0.02 .. 50. */
 bool   model_scale_to(double factor[3], const Model *model, const ModelSize *size);
 /* A promise every builder keeps; tests and importers call it: indices in range, closed parts, unit normals,
  * names set, parents first. On failure logs what is wrong. */
@@ -127,7 +127,7 @@ typedef struct ModelEdges {
     int       open_parts, inside_out_parts; /* with open edges; closed, and of negative volume */
 } ModelEdges;
 
-/* STATUS_NO_MEMORY is the only failure. model: as model_check wants it. */
+/* STATUS_NO_MEMORY is the only failure. model: one that passes model_check. */
 Status model_edges(ModelEdges *out, const Model *model);
 
 #endif

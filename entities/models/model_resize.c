@@ -1,9 +1,8 @@
-/* entities/models/model_resize.c: a model brought to a given length, width and height, its moving parts with it.
+/* entities/models/model_resize.c: scales a model to a given length, width and height, with its moving parts.
  *
  * The rest pose is scaled along the body axes. A node keeps its rest attitude R, so in its own axes its points go
- * through R^T S R; what rolls or spins must stay round, and takes one factor across its axis instead (wheels that of
- * the height, so that they still stand on the ground; rotors that of the length). Joint axes are lines of the body and
- * go along. */
+ * through R^T S R; parts that roll or spin must stay round, and take one factor across their axis instead (wheels that
+ * of the height, so that they stay on the ground; rotors that of the length). Joint axes are scaled like the body. */
 #include "entities/models/model.h"
 
 #include <stdlib.h>
@@ -21,7 +20,7 @@ static void scale_in_node(double out[9], const double r_body_from_node[9], const
         }
 }
 
-/* Round about `axis`: `across` in its plane, what `m` says along it. */
+/* Round about `axis`: `across` in its plane, `m` along it. */
 static void make_round(double m[9], const double axis[3], double across)
 {
     double moved[3];

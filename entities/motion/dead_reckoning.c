@@ -1,4 +1,4 @@
-/* entities/motion/dead_reckoning.c: where a body is, dt after its report, by the nine algorithms.
+/* entities/motion/dead_reckoning.c: pose of a body dt after its report, by the nine algorithms.
  *
  * Source: IEEE 1278.1 Annex E. With w the body rates, x = |w| t, W v = w x v and R0 the world -> body rotation:
  *
@@ -34,7 +34,7 @@ typedef struct Body {
 } Body;
 
 #define ALWAYS_INLINE static inline __attribute__((always_inline))
-/* Stands before a loop whose outputs overlap none of its inputs. */
+/* Put before a loop with outputs that do not overlap its inputs. */
 #ifdef __clang__
 #define LANES_ARE_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
@@ -209,8 +209,8 @@ static void store_turn(TurnBlock *block, int i, Turn turn)
     block->d3[i] = turn.d3;
 }
 
-/* The series for everybody (it vectorizes; where it does not converge its value is replaced), then the few
- * fast turners one by one. */
+/* The series for all entities (it vectorizes; where it does not converge its value is replaced), then the few with high
+ * angular rates one by one. */
 static void turn_block(TurnBlock *block, const KinematicsArrays *k, int first, int count)
 {
     const double *wx = k->w_body_rps[0] + first, *wy = k->w_body_rps[1] + first, *wz = k->w_body_rps[2] + first;
@@ -236,7 +236,7 @@ static void turn_block(TurnBlock *block, const KinematicsArrays *k, int first, i
 }
 
 /* With `algorithm` a literal in each caller the compiler writes nine loops, each with only its own streams.
- * Independent: out never overlaps in (the header says so); forty pointers are too many for a run-time check. */
+ * Independent: out never overlaps in (see the header); forty pointers are too many for a run-time check. */
 ALWAYS_INLINE void reckon_block(MotionArrays *out, int algorithm, const KinematicsArrays *k, const TurnBlock *block,
                                 int first, int count)
 {

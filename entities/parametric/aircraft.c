@@ -3,7 +3,7 @@
  * high, wing area 27.87 m2 at aspect ratio 3.0, taper 0.21 and 40 degrees of leading-edge sweep (so span 9.144 m,
  * centre chord 5.04 m, tip 1.06 m), tailplane 5.58 m, wheel track 2.36 m, wheel base 4.00 m. Intake under the chin,
  * bubble canopy, ventral fins, nozzle 1.0 m across. Sections of the body are estimates from three-view drawings.
- * Bombers, cargo and other fixed-wing aircraft get this shape too, for want of a larger one.
+ * Bombers, cargo and other fixed-wing aircraft get this shape too, as there is no larger one.
  *
  * The base is the ground under the extended wheels. At rest the gear is up (a reported 3072 landing gear position of 1,
  * or slow flight unreported, puts it down), so the lowest point at rest is the belly.

@@ -63,7 +63,7 @@ static void build_turret(MeshBuilder *b)
     mesh_lathe(b, place_scaled(place_axis(0.18, 0, -1.38, 0, 0, -1), 1, 1, 1.10));
     mesh_sphere(b, place_scaled(place_at(0.08, 0.48, -roof_m), 0.34, 0.34, 0.14), 1);
     mesh_sphere(b, place_scaled(place_at(-1.25, 0, -1.68), 0.32, 0.75, 0.24), 1);
-    /* the gun is two air beams, the thicker where the fume extractor would be; it sags by a hand */
+    /* the gun is two air beams, the thicker where the fume extractor would be; it droops by 0.1 m */
     mesh_part(b, 0, "gun", "decoy_fabric", HEAT_PASSIVE);
     const double root[3] = {1.05, 0, -1.74}, middle[3] = {3.6, 0, -1.74}, tip[3] = {muzzle_x_m - 0.125, 0, -1.64};
     parts_limb(b, root, 0.20, middle, 0.16);

@@ -1,4 +1,4 @@
-/* entities/parametric/forms.h: pieces that the simpler built-in models share. For parametric_*.c alone.
+/* entities/parametric/forms.h: shapes shared by the simpler built-in models. For parametric_*.c alone.
  *
  * Heights are up and positive here, metres above the model's base; x is forward, y right. */
 #ifndef ENTITIES_PARAMETRIC_FORMS_H

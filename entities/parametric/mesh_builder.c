@@ -247,7 +247,7 @@ void mesh_add_band(MeshBuilder *b, const Warp *warp, uint32_t ring0, uint32_t ri
 
 enum { sides_least = 8, sides_most = 4096 };
 
-/* ---- sag ----------------------------------------------------------------------------------------- */
+/* ---- chord error --------------------------------------------------------------------------------- */
 
 double mesh_chord_angle(double radius_m, double sag_m)
 {

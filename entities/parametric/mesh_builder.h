@@ -1,16 +1,16 @@
-/* entities/parametric/mesh_builder.h: closed shells by the handful: what the parametric models are made with.
+/* entities/parametric/mesh_builder.h: builds the closed shells of the parametric models.
  *
  * A builder collects nodes, parts and shells, and hands over a Model. Every primitive adds one closed shell
  * (outward, edge-manifold by vertex position) to the part begun last. Curved surfaces carry smooth normals,
  * flat ones flat normals; vertices on a shared edge are bit-equal in position.
  *
- * Sag: vertices lie on the true surface, so a chord over an arc of radius r and angle a is r (1 - cos(a / 2))
- * inside it. Singly curved surfaces (cylinders, cones, belts) spend the whole sag on that; doubly curved ones
- * halve it (lathes with arcs) or split it 2 : 2 : 1 (lofts: around, along, the twist of a facet's diagonal).
+ * Chord error (sag_m): vertices lie on the true surface, so a chord over an arc of radius r and angle a is r (1 - cos(a
+ * / 2)) inside it. Singly curved surfaces (cylinders, cones, belts) use the whole chord error for that; doubly curved
+ * ones halve it (lathes with arcs) or split it 2 : 2 : 1 (lofts: around, along, the twist of a facet's diagonal).
  * A full circle has 8 to 4096 sides; at 4096 the error is 2.9e-7 of the radius, so 1e-5 m holds to 34 m.
  * tests/entities/test_parametric.c measures all three kinds against their true surfaces.
  *
- * Running out of memory latches; mesh_builder_finish reports it. Wrong use (our own code) is asserted. */
+ * Running out of memory latches; mesh_builder_finish reports it. Wrong use by the program itself is asserted. */
 #ifndef ENTITIES_PARAMETRIC_MESH_BUILDER_H
 #define ENTITIES_PARAMETRIC_MESH_BUILDER_H
 
@@ -32,7 +32,7 @@ Place place_turned(Place place, const double axis[3], double angle_rad); /* shap
 Place place_mirror_y(Place place);                         /* the same shape on the other side, y -> -y */
 
 MeshBuilder *mesh_builder_create(const char *model_name, double sag_m); /* NULL: no memory */
-/* Hands the model over (measured, validated by tests) and frees the builder, whatever the status. */
+/* Returns the model (measured, validated by tests) and frees the builder, for any status. */
 Status       mesh_builder_finish(Model *out, MeshBuilder *b);
 
 /* A node that does not move; the caller may then set the rest through mesh_node_get (valid until the next
@@ -45,7 +45,7 @@ void       mesh_joint(MeshBuilder *b, int node, double ax, double ay, double az,
 /* Begins a part; nodes must come in ascending order. */
 void       mesh_part(MeshBuilder *b, int node, const char *name, const char *material, HeatRole role);
 
-/* Sides of a full circle for a radius and permitted sag. */
+/* Sides of a full circle for a radius and a chord error. */
 int mesh_circle_sides(double radius_m, double sag_m);
 
 /* ---- bodies of revolution about the shape's x axis ------------------------------------------ */

@@ -1,4 +1,4 @@
-/* entities/parametric/mesh_builder_private.h: the builder from inside, for the files that make its shapes. */
+/* entities/parametric/mesh_builder_private.h: internals of the builder, for the files of its shapes. */
 #ifndef ENTITIES_PARAMETRIC_MESH_BUILDER_PRIVATE_H
 #define ENTITIES_PARAMETRIC_MESH_BUILDER_PRIVATE_H
 
@@ -32,10 +32,10 @@ Warp mesh_warp(const Place *place);
 
 /* Grows an array to hold `needed`; false, and latched, when memory is out. array: address of the pointer. */
 bool mesh_grow(MeshBuilder *b, void *array, int *capacity, int needed, size_t size);
-/* Room for what a shell adds: false when memory is out, and then nothing of the shell is added. */
+/* Reserves capacity for a shell: false when out of memory; nothing of the shell is then added. */
 bool mesh_reserve(MeshBuilder *b, long long vertices, long long triangles);
 void mesh_place_point(double out[3], const Place *place, const double p_shape[3]);
-/* Room must be reserved. Returns the new vertex's index. */
+/* Capacity must be reserved. Returns the new vertex's index. */
 uint32_t mesh_add_vertex(MeshBuilder *b, const Place *place, const Warp *warp, const double p_shape[3],
                          const double n_shape[3]);
 /* Adds a triangle unless two of its corners are one place (the pole of a sphere): its edges cancel, so the
@@ -43,7 +43,7 @@ uint32_t mesh_add_vertex(MeshBuilder *b, const Place *place, const Warp *warp, c
 void mesh_add_triangle(MeshBuilder *b, const Warp *warp, uint32_t i, uint32_t j, uint32_t k);
 /* Two rings of `sides` vertices each, joined by a band; ring 1 lies towards higher shape x. */
 void mesh_add_band(MeshBuilder *b, const Warp *warp, uint32_t ring0, uint32_t ring1, int sides);
-/* Angle of a chord with this sag; never more than 45 degrees. */
+/* Angle of a chord with this chord error; never more than 45 degrees. */
 double mesh_chord_angle(double radius_m, double sag_m);
 
 #endif

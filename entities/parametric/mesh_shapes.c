@@ -222,7 +222,7 @@ static void clip_ears(int (*triangle)[3], int count, const double (*p)[2])
             }
             if (free_of_others) ear = i;
         }
-        assert(ear >= 0); /* the outline crosses itself: our own mistake */
+        assert(ear >= 0); /* the outline intersects itself: a programming error */
         triangle[made][0] = left[(ear + remaining - 1) % remaining];
         triangle[made][1] = left[ear];
         triangle[made][2] = left[(ear + 1) % remaining];

@@ -178,7 +178,7 @@ Status parametric_munition(Model *out, const char *name, double sag_m)
     const bool mine = strcmp(name, "mine") == 0;
     int k = 0;
     while (!mine && strcmp(munitions[k].name, name) != 0) k++;
-    /* calibres are small against the permitted sag: here no coarser than a fiftieth of the radius */
+    /* calibres are small against the chord error: here no coarser than a fiftieth of the radius */
     MeshBuilder *b = mesh_builder_create(name, fmin(sag_m, 0.02 * (mine ? 0.17 : munitions[k].radius)));
     if (!b) return STATUS_NO_MEMORY;
     mesh_node(b, "body", -1, 0, 0, 0);

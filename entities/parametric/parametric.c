@@ -3,9 +3,9 @@
 
 #include "entities/parametric/mesh_builder.h"
 
-/* What stands in for a type that nobody described: 4 m long, 2 m wide, 1.6 m high, of a light vehicle's size.
+/* Default shape of an unknown type: 4 m long, 2 m wide, 1.6 m high, of a light vehicle's size.
  * The front is a ramp that falls forward, a fin stands at the rear on top and a block lies on the right:
- * forward, up and right can be told apart from any side. */
+ * forward, up and right can be distinguished from any side. */
 static Status parametric_unknown(Model *out, double sag_m)
 {
     static const double side[5][2] = {{-2, -0.2}, {-2, -1.2}, {0.8, -1.2}, {2, -0.5}, {2, -0.2}};
@@ -156,7 +156,7 @@ Status parametric_build_size(Model *out, const char *name, const ModelSize *size
     if (!size || !(size->length_m > 0 || size->width_m > 0 || size->height_m > 0))
         return parametric_build(out, name, sag_m);
     if (!chord_error_is_valid(name, sag_m)) return STATUS_BAD_VALUE;
-    /* once coarsely, for the factors; then with facets that keep to the sag when they have grown */
+    /* once coarsely, for the factors; then with facets within the chord error after scaling */
     Status status = build(&model, name, coarsest_m);
     if (status != STATUS_OK) return status;
     const bool fits = model_scale_to(factor, &model, size);

@@ -1,4 +1,4 @@
-/* entities/parametric/parametric.h: built-in models from public dimensions, as functions of the permitted sag.
+/* entities/parametric/parametric.h: built-in models from public dimensions, as functions of the chord error.
  *
  * Each file parametric_<name>.c gives its dimensions with their source. */
 #ifndef ENTITIES_PARAMETRIC_PARAMETRIC_H

@@ -1,4 +1,4 @@
-/* entities/parametric/parts.h: shapes that several built-in models share. For parametric_*.c alone. */
+/* entities/parametric/parts.h: shapes shared by several built-in models. For parametric_*.c alone. */
 #ifndef ENTITIES_PARAMETRIC_PARTS_H
 #define ENTITIES_PARAMETRIC_PARTS_H
 

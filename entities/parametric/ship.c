@@ -92,7 +92,8 @@ static double span_error_m(double x0, double x1, bool below)
     return worst;
 }
 
-/* Slabs from section to section, as long as the sag permits; they touch, so the caps between them are inside. */
+/* Slabs from section to section, as long as the chord error permits; they touch, so the caps between them are
+ * inside. */
 static void build_shell(MeshBuilder *b, double sag_m, double from_m, double to_m, bool below)
 {
     const Place along = {{0, 0, 0}, {0, 1, 0, 1, 0, 0, 0, 0, 1}}; /* shape x across, y forward, z down */

@@ -74,7 +74,7 @@ static void build_hull(MeshBuilder *b)
     }
     mesh_part(b, 0, "skirts", "rubber_black", HEAT_PASSIVE);
     for (int side = -1; side <= 1; side += 2) {
-        /* five sheets a side, a hand apart, flared at the front */
+        /* five sheets a side, 0.03 m apart, flared at the front */
         for (int i = 0; i < 5; i++) {
             const double x1 = 2.95 - 1.22 * i, x0 = x1 - 1.19;
             const double sheet[4][2] = {{x0, -1.215}, {x1, -1.215}, {x1 - (i == 0 ? 0.25 : 0), -0.66}, {x0, -0.66}};

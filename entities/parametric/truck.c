@@ -2,7 +2,7 @@
  * 2.870 m high over the canvas, wheel base 3.525 + 1.400 m, track 2.000 m, tyres 14.00-20 (1.26 m across, 0.37 m
  * wide), ground clearance 0.40 m (manufacturer's data as repeated in the open encyclopedias; Jane's Military
  * Vehicles and Logistics). Engine under a bonnet ahead of the cab. The upright exhaust stack on the right behind the
- * cab and the fuel tank on the left are this model's own choice, and tell its sides apart. The rest is estimate. */
+ * cab and the fuel tank on the left are this model's own choice, and distinguish its sides. The rest is estimate. */
 #include "entities/parametric/mesh_builder.h"
 #include "entities/parametric/parametric.h"
 

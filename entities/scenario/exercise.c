@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 
-/* What others know of an entity: as rounded on the wire. */
+/* The last report of an entity, as rounded in the PDU. */
 typedef struct Said {
     bool        known, gone;
     double      t_s;
@@ -32,7 +32,7 @@ struct Exercise {
     long long      bad; /* sent so far */
     int            event_count, next_event, heard;
     Event         *event;
-    long long     *look; /* tick at which each is looked at next [entity_count] */
+    long long     *look; /* tick of the next check of each [entity_count] */
     Said          *said;
     DisEntityState       es;
     DisEntityStateUpdate esu;
@@ -58,7 +58,7 @@ static DisEntityId id_of(const Exercise *x, int entity)
 /* ---- an entity's state -------------------------------------------------------------------------- */
 
 /* World axes into those of the algorithm: 6 .. 9 have body axes, and their acceleration is the derivative of the
- * velocity there, a - w x v. 1 stands. */
+ * velocity there, a - w x v. 1 is static. */
 static void into_axes(Kinematics *k, int algorithm)
 {
     k->algorithm = algorithm;
@@ -152,9 +152,9 @@ static void send_state(Exercise *x, int entity, const Kinematics *k, uint32_t ap
     said->appearance = appearance;
 }
 
-/* ---- when to say it ----------------------------------------------------------------------------- */
+/* ---- when to report ----------------------------------------------------------------------------- */
 
-/* How long until e + r t + b t^2 / 2 comes to the limit; a fifth less, since b is a guess that holds. */
+/* Time until e + r t + b t^2 / 2 reaches the limit; a fifth less, since b is an estimate. */
 static double safe_s(double limit, double error, double rate, double bend)
 {
     const double left = limit - error;
@@ -162,7 +162,7 @@ static double safe_s(double limit, double error, double rate, double bend)
     return 0.8 * 2 * left / (rate + sqrt(rate * rate + 2 * bend * left));
 }
 
-/* Whether what was said has become wrong, and when to look again if not. */
+/* Whether the last report exceeds a threshold by now, and when to check again if not. */
 static bool wrong(double *again_s, const Exercise *x, const Said *said, const Kinematics *truth,
                   const JointReport *joint, int joints, double age_s)
 {
@@ -180,7 +180,7 @@ static bool wrong(double *again_s, const Exercise *x, const Said *said, const Ki
     const double angle_rad = atan2(0.5 * v3_length(skew), 0.5 * (turn[0] + turn[4] + turn[8] - 1));
     if (!(off_m < s->dis.threshold_m) || !(angle_rad < threshold_rad)) return true;
 
-    /* both can bend by their accelerations, and by a little that neither has yet */
+    /* both can change by their accelerations, with a margin */
     const double turned_mps2 = dead_reckoning_in_body_axes(said->k.algorithm)
                                    ? v3_length(said->k.w_body_rps) * v3_length(said->k.v_mps) : 0;
     const double bend_mps2 = v3_length(truth->a_mps2) + v3_length(said->k.a_mps2) + turned_mps2 + 0.3;
@@ -232,7 +232,7 @@ static bool said_still(const Kinematics *k)
     return k->algorithm == 1 || v3_length(k->v_mps) + v3_length(k->a_mps2) + v3_length(k->w_body_rps) < 1e-6;
 }
 
-/* Whether acceleration and rates of the last Entity State, which an update keeps, would lead it away at once. */
+/* Whether acceleration and rates of the last Entity State, which an update keeps, would exceed a threshold at once. */
 static bool outdated(const Said *said, const Cast *cast, int entity, const Kinematics *k)
 {
     static const double unfelt_mps2 = 1, unfelt_rps = 0.1;
@@ -246,7 +246,7 @@ static bool outdated(const Said *said, const Cast *cast, int entity, const Kinem
 
 static void look_at(Exercise *x, int entity, double t_s)
 {
-    static const double longest_look_s = 1; /* a bend that was guessed too small is met within it */
+    static const double longest_look_s = 1; /* bounds the delay when the bend was underestimated */
     const Scenario *s = x->cast->scenario;
     Said           *said = &x->said[entity];
     const double    change_s = cast_next_change(x->cast, entity, t_s + 0.5 * x->tick_s), age_s = t_s - said->t_s;
@@ -344,7 +344,7 @@ static void send_detonation(Exercise *x, const CastRound *round)
         v3_sub(off, k.p_ecef, target.p_ecef);
         m3_tmul_v3(off_body, target.r_ecef_from_body, off);
         for (int i = 0; i < 3; i++) pdu->p_target_m[i] = (float)off_body[i];
-        x->look[round->target] = 0; /* its damage is seen at this tick */
+        x->look[round->target] = 0; /* its damage appears at this tick */
     }
     link_pdu(&x->link, t_s, x->bytes, dis_encode_detonation(x->bytes, sizeof x->bytes, pdu));
     if (round->munition >= 0 && !(cast->scenario->shot[round->shot].silent_s > 0) && x->said[round->munition].known) {
@@ -362,7 +362,7 @@ static void send_events(Exercise *x, double until_s)
     }
 }
 
-/* ---- the run ------------------------------------------------------------------------------------- */
+/* ---- time steps ---------------------------------------------------------------------------------- */
 
 static void send_start(Exercise *x)
 {

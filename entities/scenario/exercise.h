@@ -1,13 +1,13 @@
-/* entities/scenario/exercise.h: a simulator that takes part in an exercise: it says what a scenario's cast does, as
- * others expect it: an entity's state goes out when dead reckoning of what was said last has left the truth by a
- * threshold, at each heartbeat, and when its appearance changes; shots with Fire and Detonation.
+/* entities/scenario/exercise.h: a DIS simulator that publishes the entities of a scenario: Entity State is sent when
+ * dead reckoning of the last report deviates from the truth by a threshold, at each heartbeat, and when the appearance
+ * changes; shots with Fire and Detonation.
  *
- * The promise, after the first report: at every tick a receiver's dead reckoning is within the thresholds of the
- * truth, as far as the network delivers (tests/entities/test_exercise.c). Nobody is looked at more often than that
- * needs: from an error, its rate and bounds of what both can grow by follows when to look again. 10 000 vehicles
- * cost some 5 % of a core at 60 ticks a second.
+ * Guaranteed after the first report: at every tick a receiver's dead reckoning is within the thresholds of the
+ * truth, as far as the network delivers (tests/entities/test_exercise.c). An entity is checked no more often than that
+ * requires: the next check follows from the error, its rate and bounds on their growth. 10 000 vehicles cost some 5 %
+ * of a core at 60 ticks a second.
  *
- * Knows no clock and no socket: each step makes the datagrams of one tick and hands them to a sink. */
+ * Uses no clock and no socket: each step generates the datagrams of one tick and passes them to a sink. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_H
 #define ENTITIES_SCENARIO_EXERCISE_H
 
@@ -21,9 +21,9 @@ Status exercise_create(Exercise **out, const Cast *cast, double epoch_unix_s, Ex
 void   exercise_destroy(Exercise *exercise);
 /* Exercise time of the next step, s: whole ticks from 0. */
 double exercise_time(const Exercise *exercise);
-/* One tick. False when it is over: the duration has passed, or the sink wanted no more. */
+/* One tick. False when it is over: the duration has passed, or the sink returned false. */
 bool   exercise_step(Exercise *exercise);
-/* Hands out what the network still held back; exercise_step does it at the end. */
+/* Sends the datagrams still delayed; exercise_step calls it at the end. */
 void   exercise_finish(Exercise *exercise);
 const ExerciseCounts *exercise_counts(const Exercise *exercise);
 int    exercise_most_received(const Exercise *exercise); /* entities that were sent */
@@ -31,7 +31,7 @@ int    exercise_most_received(const Exercise *exercise); /* entities that were s
 /* Private to the exercise: exercise_bad.c. */
 enum { exercise_bad_kinds = 14 };
 void exercise_send_bad(ExerciseLink *link, const Cast *cast, DisEntityState *es, int kind, double t_s);
-/* Entity State of an entity with these kinematics (world axes), as its algorithm wants them; without joints. */
+/* Entity State of an entity with these kinematics (world axes), as its algorithm requires; without articulation. */
 void exercise_fill_state(DisEntityState *es, const ExerciseLink *link, const Cast *cast, int entity,
                          const Kinematics *k, uint32_t appearance, double t_s);
 

@@ -1,15 +1,16 @@
-/* entities/scenario/exercise_cast.c: where everybody is. Making the cast: exercise_casting.c; missiles:
+/* entities/scenario/exercise_cast.c: poses of all entities. Their creation: exercise_casting.c; missiles:
  * exercise_shots.c. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"
 
 static const double g_mps2 = 9.80665;
-static const double roll_out_s = 2;   /* of who is hit on the ground */
+static const double roll_out_s = 2;   /* of an entity hit on the ground */
 
-/* ---- how far along ---------------------------------------------------------------------------- */
+/* ---- distance along --------------------------------------------------------------------------- */
 
-/* Way made by the whole group since 0, m, and its speed. Unsteadiness bends time, so that who stands, stands. */
+/* Distance of the whole group since time 0, m, and its speed. Unsteadiness warps time, so stationary entities stay
+ * stationary. */
 static double travelled(double *speed_mps, const Cast *cast, int group, double t_s)
 {
     static const double swing_rps = 0.25;
@@ -78,7 +79,7 @@ static double phase_of(const Cast *cast, int entity, uint32_t which)
     return 2 * pi_rad * random_uniform((uint64_t)cast->scenario->seed, 3, which, (uint64_t)entity);
 }
 
-/* Hanging in the air: swaying by 0.4 m and nodding by a degree. */
+/* Hover: swaying by 0.4 m and pitching by a degree. */
 static void hover(CastPose *out, double forward[3], const Cast *cast, int entity, double t_s)
 {
     const double a = phase_of(cast, entity, 0), b = phase_of(cast, entity, 1);
@@ -87,14 +88,14 @@ static void hover(CastPose *out, double forward[3], const Cast *cast, int entity
     forward[2] += 0.02 * sin(0.5 * t_s + b);
 }
 
-/* Who was shot down falls; forward it goes on until it meets the ground. */
+/* An aircraft shot down falls, and continues forward until it hits the ground. */
 static void fall(CastPose *out, const CastEntity *e, double t_s)
 {
     const double after_s = fmin(t_s, e->rest_s) - e->hit_s;
     if (after_s > 0 && isfinite(e->rest_s)) out->p_enu[2] -= 0.5 * g_mps2 * after_s * after_s;
 }
 
-/* Leaning into a turn as far as it takes to feel none: tan = v^2 / (r g). */
+/* Bank angle of a coordinated turn: tan = v^2 / (r g). */
 static void lean(double up[3], const double left[3], double speed_mps, double curvature)
 {
     const double tan_bank = clamp(speed_mps * speed_mps * curvature / g_mps2, -2, 2);
@@ -121,7 +122,7 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
     const double left[3] = {-forward[1], forward[0], 0};
     const double x = at.p[0] + e->aside_m * left[0], y = at.p[1] + e->aside_m * left[1];
     const bool   stands = g->route_m.count == 2;
-    if (stands) speed_mps = 0; /* its route is but a heading */
+    if (stands) speed_mps = 0; /* its route only gives a heading */
     else curvature = (at.d[0] * at.dd[1] - at.d[1] * at.dd[0]) / (along * along * along);
 
     out->p_enu[0] = x, out->p_enu[1] = y;
@@ -138,7 +139,7 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s)
     double up[3] = {-slope[0], -slope[1], 1};
     if (flies) {
         if (e->carriage == CARRIAGE_FIXED_WING) nose[2] = at.d[2] / along;
-        else nose[2] -= 0.1 * fmin(speed_mps / 50, 1); /* a rotor pulls forward by leaning */
+        else nose[2] -= 0.1 * fmin(speed_mps / 50, 1); /* a rotorcraft pitches down to move forward */
         v3_normalize(up, up);
         lean(up, left, speed_mps, curvature);
         if (e->carriage == CARRIAGE_ROTARY && stands && !(t_s > e->hit_s)) hover(out, nose, cast, entity, t_s);
@@ -172,7 +173,7 @@ void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s)
     ecef_from_enu(out->p_ecef, &cast->ground.frame, at.p_enu);
 }
 
-/* ---- what else is said ------------------------------------------------------------------------ */
+/* ---- appearance and more ---------------------------------------------------------------------- */
 
 bool cast_present(const Cast *cast, int entity, double t_s)
 {
@@ -206,7 +207,7 @@ uint32_t cast_appearance(const Cast *cast, int entity, double t_s)
     if (e->carriage == CARRIAGE_LAND) {
         double speed_mps;
         way_of(&speed_mps, cast, e, t_s);
-        /* tracks throw up more than wheels */
+        /* tracks raise more dust than wheels */
         const uint32_t trail = *g->dust == 'a' ? (e->type.category <= 4 ? 2 : 1)
                              : *g->dust == 's' ? 1 : *g->dust == 'm' ? 2 : *g->dust == 'l' ? 3 : 0;
         if (fabs(speed_mps) > 1 && g->route_m.count > 2) bits |= trail << dis_appearance_trail_shift;
@@ -241,7 +242,7 @@ int cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity
 
 bool cast_still(const Cast *cast, int entity, double t_s)
 {
-    static const double over_s = 0.02; /* differences look so far */
+    static const double over_s = 0.02; /* step of the differences */
     const CastEntity *e = &cast->entity[entity];
     if (e->group < 0) return false;
     const ScenarioGroup *g = &cast->scenario->group[e->group];

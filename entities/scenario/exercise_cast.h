@@ -1,8 +1,8 @@
-/* entities/scenario/exercise_cast.h: who is in an exercise, and where everybody is at any time: a scenario made
- * definite.
+/* entities/scenario/exercise_cast.h: the entities of a scenario and their poses at any time.
  *
- * Everything is a pure function of scenario, seed, entity and time; nothing is stepped, so any time may be asked in
- * any order. A pose costs some 0.3 us over invented ground, 2 us over ground of files. Lengths in ENU at the place. */
+ * Everything is a pure function of scenario, seed, entity and time; nothing is stepped, so times can be evaluated in
+ * any order. A pose costs some 0.3 us over synthetic terrain, 2 us over terrain from files. Lengths in ENU at the
+ * place. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_CAST_H
 #define ENTITIES_SCENARIO_EXERCISE_CAST_H
 
@@ -12,7 +12,7 @@
 #include "entities/scenario/route.h"
 
 enum { cast_max_joints = 4 };
-static const double cast_ramp_s = 3; /* from a stand to full speed and back */
+static const double cast_ramp_s = 3; /* from standstill to full speed and back */
 
 typedef enum Carriage { /* how it moves */
     CARRIAGE_LAND, CARRIAGE_LIFE, CARRIAGE_SEA, CARRIAGE_ROTARY, CARRIAGE_FIXED_WING, CARRIAGE_MUNITION
@@ -25,7 +25,7 @@ typedef struct CastEntity {
     Carriage      carriage;
     int           group;      /* -1: a munition */
     int           round;      /* of a munition */
-    int           joints;     /* first of its model's, -1: says nothing of them */
+    int           joints;     /* first joint of its model, -1: no articulation parameters sent */
     float         behind_m, aside_m; /* in its formation: of the route's beginning, to the left */
     double        hit_s, rest_s;     /* INFINITY: never */
     uint8_t       damage;            /* since the hit */
@@ -53,8 +53,8 @@ typedef struct Cast {
     CastEntity     *entity;
     CastRound      *round;
     CastJoint      *joint;      /* cast_max_joints for each kind of entity that has them; class 0 ends */
-    Route          *route;      /* of each group; without knots: stands */
-    double         *stop_s;     /* of each group: begins to stop; INFINITY: does not */
+    Route          *route;      /* of each group; without knots: stationary */
+    double         *stop_s;     /* of each group: starts to stop; INFINITY: does not */
 } Cast;
 
 /* The scenario must outlive the cast. Logs what is wrong with names of types, files of ground, shots that do not
@@ -71,18 +71,19 @@ void cast_pose(CastPose *out, const Cast *cast, int entity, double t_s);
  * that they belong to it; velocity within 1 mm/s of wider differences (tests/entities/test_exercise_cast.c).
  * algorithm: 4. */
 void cast_kinematics(Kinematics *out, const Cast *cast, int entity, double t_s);
-/* Whether others hear of it at that time; a munition from its Fire to its Detonation. */
+/* Whether it is reported at that time; a munition from its Fire to its Detonation. */
 bool cast_present(const Cast *cast, int entity, double t_s);
 uint32_t cast_appearance(const Cast *cast, int entity, double t_s);
 /* Angles and rates of turret and gun; returns how many. */
 int    cast_joints(JointReport joint[cast_max_joints], const Cast *cast, int entity, double t_s);
-/* Whether it stands still until the next change; the next time at which something begins, ends or is hit. */
+/* Whether it is stationary until the next change; the next time of a start, an end or a hit. */
 bool   cast_still(const Cast *cast, int entity, double t_s);
 double cast_next_change(const Cast *cast, int entity, double t_s);
 /* `NAME NUMBER` as its marking; 11 octets, not terminated. */
 void   cast_marking(char marking[11], const Cast *cast, int entity);
 
-/* Private to the cast: shots are solved when everybody is there, in file order. entities/scenario/exercise_shots.c */
+/* Private to the cast: shots are solved after all entities are placed, in file order.
+ * entities/scenario/exercise_shots.c */
 Status cast_solve_shots(Cast *cast, const int *ids, const int *first);
 void   cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round, double t_s);
 

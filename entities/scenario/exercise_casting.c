@@ -1,4 +1,5 @@
-/* entities/scenario/exercise_casting.c: a scenario into a cast: types, routes, formations, joints, then the shots. */
+/* entities/scenario/exercise_casting.c: from a scenario to its entities (Cast): types, routes, formations, joints, then
+ * the shots. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/enumerations.h"
@@ -8,7 +9,7 @@
 
 /* ---- types ------------------------------------------------------------------------------------ */
 
-/* The first row of the catalog with this model; what it leaves open is 0. */
+/* The first row of the catalog with this model; its wildcards become 0. */
 static bool type_of_model(DisEntityType *out, const Table *catalog, const char *model)
 {
     const int type = table_column(catalog, "type"), name = table_column(catalog, "model");
@@ -101,7 +102,7 @@ static Status make_route(Cast *cast, int group, bool flies)
         turned(point[i], s, &g->route_m.number[2 * i]);
         point[i][2] = flies ? exercise_ground_at(NULL, &cast->ground, point[i][0], point[i][1]) + g->height_m : 0;
     }
-    if (count == 1) { /* a stand: a metre of route gives its heading */
+    if (count == 1) { /* stationary: a metre of route gives its heading */
         const double heading_rad = (g->heading_deg + s->place.turn_deg) * rad_per_deg;
         memcpy(point[1], point[0], sizeof point[1]);
         point[1][0] += sin(heading_rad);
@@ -111,7 +112,7 @@ static Status make_route(Cast *cast, int group, bool flies)
     return route_create(&cast->route[group], (const double (*)[3])point, count, g->loop);
 }
 
-/* When a group begins to stop: as told, or so that its first comes to rest where the route ends. */
+/* When a group starts to stop: as given, or so that its first entity stops at the end of the route. */
 static double stop_time(const Cast *cast, int group, Carriage carriage)
 {
     const ScenarioGroup *g = &cast->scenario->group[group];
@@ -122,7 +123,7 @@ static double stop_time(const Cast *cast, int group, Carriage carriage)
     return g->start_s + fmax(way_m / g->speed_mps + 0.5 * cast_ramp_s, cast_ramp_s);
 }
 
-/* ---- everybody -------------------------------------------------------------------------------- */
+/* ---- all entities ----------------------------------------------------------------------------- */
 
 static Status cast_group(Cast *cast, int group, int first, int first_id, const Table *types, const Catalog *catalog)
 {
@@ -187,7 +188,7 @@ static bool needs_models(const Scenario *s)
 
 static Status fill(Cast *cast, int *ids, int *first)
 {
-    static const double coarse_chord_error_m = 0.1; /* joints are asked for, not shapes */
+    static const double coarse_chord_error_m = 0.1; /* only joints are needed, not shapes */
     const Scenario *s = cast->scenario;
     char     path[4096];
     Table    types;

@@ -1,4 +1,4 @@
-/* entities/scenario/exercise_ground.c: the ground that an exercise moves over, from files or made up. */
+/* entities/scenario/exercise_ground.c: the ground of an exercise, from files or synthetic. */
 #include "entities/scenario/exercise_ground.h"
 
 #include "terrain/landscape/elevation_import.h"
@@ -64,7 +64,7 @@ static void weights(double w[4], double d[4], double t)
     d[0] = -0.5 * s * s, d[1] = t * (1.5 * t - 2), d[2] = s * (2 - 1.5 * s), d[3] = 0.5 * t * t;
 }
 
-/* Heights themselves as the spline's coefficients: what is left of bumps is smooth, hills stay where they are. */
+/* Heights themselves as the spline's coefficients: bumps are smoothed, hills keep their position. */
 static double smoothed(double slope[2], const ExerciseGround *ground, double x_m, double y_m)
 {
     const double h = ground->smooth_m, i = floor(x_m / h), j = floor(y_m / h);

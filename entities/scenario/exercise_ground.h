@@ -1,8 +1,7 @@
-/* entities/scenario/exercise_ground.h: the ground that an invented exercise moves over: smooth, in the tangent plane
- * of its place.
+/* entities/scenario/exercise_ground.h: the ground of a generated exercise: smooth, in the tangent plane of its place.
  *
- * Invented: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files: the terrain room's elevation,
- * through a cubic B-spline of `smooth_m`, so that what drives over its triangles has a velocity and a rate. */
+ * Synthetic: swells over the curved Earth, slopes below 2.4 % at 1.5 m. From files: elevation (terrain/), through a
+ * cubic B-spline of `smooth_m`, so that velocity and angular rate of vehicles on it are continuous. */
 #ifndef ENTITIES_SCENARIO_EXERCISE_GROUND_H
 #define ENTITIES_SCENARIO_EXERCISE_GROUND_H
 
@@ -23,8 +22,8 @@ typedef struct ExerciseGround {
 Status exercise_ground_create(ExerciseGround *out, const Scenario *scenario);
 void   exercise_ground_destroy(ExerciseGround *ground);
 
-/* z of the ENU plane, and its slope by x and y (may be NULL). Invented: the swells are added along z, not along the
- * local vertical: 4 mm aside at 16 km. */
+/* z of the ENU plane, and its slope by x and y (may be NULL). Synthetic: the swells are added along z, not along the
+ * local vertical: 4 mm off at 16 km. */
 double exercise_ground_at(double slope[2], const ExerciseGround *ground, double x_m, double y_m);
 /* The same of the ellipsoid at the height of the place: the sea. Within 1 cm at 30 km
  * (tests/entities/test_exercise_cast.c). */

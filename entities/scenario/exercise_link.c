@@ -1,4 +1,4 @@
-/* entities/scenario/exercise_link.c: PDUs stamped and bundled into datagrams, lost, delayed and doubled as
+/* entities/scenario/exercise_link.c: PDUs stamped and bundled into datagrams, dropped, delayed and duplicated as
  * configured. */
 #include "entities/scenario/exercise_link.h"
 
@@ -103,7 +103,7 @@ static void append(ExerciseLink *link, double t_s, const uint8_t *bytes, size_t 
     if (!link->scenario->dis.bundle) link_flush(link);
 }
 
-/* A PDU that a receiver of pictures only walks over: Attribute (72) in version 7, else Data (20). */
+/* A PDU that a receiver skips: Attribute (72) in version 7, else Data (20). */
 static size_t filler(uint8_t *out, const ExerciseLink *link, double t_s)
 {
     enum { attribute = 72, data = 20, information = 1, management = 5 };

@@ -1,7 +1,7 @@
 /* entities/scenario/exercise_shots.c: when and where a shot ends, and how its munition flies.
  *
- * The way is the straight line from launch to impact, lofted and weaving, both dying out towards either end. Its
- * length along the line: thrown out, pushed by a motor whose thrust dies away, slowed by a constant drag. */
+ * The path is the straight line from launch to impact with loft and weave, both zero at either end. Motion along the
+ * line: launch speed, a motor with decaying thrust, and a constant drag. */
 #include "entities/scenario/exercise_cast.h"
 
 #include "dis/warfare.h"
@@ -15,7 +15,7 @@ static double flown_m(const ScenarioShot *shot, double flight_s)
            0.5 * shot->drag_mps2 * flight_s * flight_s;
 }
 
-/* Until it would come back. */
+/* Until its speed is zero. */
 static double longest_s(const ScenarioShot *shot)
 {
     if (shot->drag_mps2 <= 0) return longest_flight_s;
@@ -65,7 +65,7 @@ void cast_munition_pose(CastPose *out, const Cast *cast, const CastRound *round,
     cast_axes(out->r_enu_from_body, nose, up);
 }
 
-/* ---- where it begins and ends ------------------------------------------------------------------- */
+/* ---- start and end of a shot -------------------------------------------------------------------- */
 
 static void launch_place(CastRound *round, const Cast *cast)
 {
@@ -81,7 +81,7 @@ static void launch_place(CastRound *round, const Cast *cast)
     v3_add(round->launch_enu, pose.p_enu, off_enu);
 }
 
-/* What is aimed at, where it is at t_s. */
+/* Position of the aim point at t_s. */
 static void impact_place(double p_enu[3], const Cast *cast, const CastRound *round, double t_s)
 {
     static const double above_base_m = 1.2, beside_m = 8, past_m = 60, over_m = 6;
@@ -112,8 +112,8 @@ static void impact_place(double p_enu[3], const Cast *cast, const CastRound *rou
     }
 }
 
-/* When it gets there depends on where the target is by then: a missile of 300 m/s at a target of 8 gets 40 times
- * nearer a round; one that is hardly faster than its target takes many. */
+/* The time of flight depends on the position of the target at its end; fixed-point iteration: a missile of 300 m/s
+ * against a target of 8 m/s gains a factor of 40 per iteration; one hardly faster than its target takes many. */
 static bool solve(CastRound *round, const Cast *cast)
 {
     const ScenarioShot *shot = &cast->scenario->shot[round->shot];
@@ -133,7 +133,7 @@ static bool solve(CastRound *round, const Cast *cast)
     return false;
 }
 
-/* A gun's round is first seen at the muzzle. */
+/* A gun's round starts at the muzzle. */
 static bool beyond_barrel(CastRound *round, const ScenarioShot *shot)
 {
     static const double barrel_m = 6;
@@ -155,7 +155,7 @@ static void damage(Cast *cast, const CastRound *round)
     e->damage = *name == 's' ? 1 : *name == 'm' ? 2 : 3;
     if (e->damage > 1 && e->carriage != CARRIAGE_ROTARY && e->carriage != CARRIAGE_FIXED_WING) {
         e->rest_s = round->impact_s + stops_s;
-    } else if (e->damage == 3) { /* it falls: until it meets the ground */
+    } else if (e->damage == 3) { /* it falls: until it hits the ground */
         for (double fall_s = 0; fall_s < 120; fall_s += 0.05) {
             CastPose pose;
             cast_pose(&pose, cast, round->target, round->impact_s + fall_s);

@@ -28,8 +28,8 @@ static double spline_at(const double *u, const double *value, int stride, const 
            ((a * a * a - a) * second[i] + (b * b * b - b) * second[i + 1]) * h * h / 6;
 }
 
-/* A loop is three rounds of its points with natural ends, of which the middle one is used: an end is forgotten by a
- * factor of 0.27 a point, so short loops go round more often. */
+/* A loop is solved as three rounds of its points with natural ends, of which the middle one is used: the effect of an
+ * end decays by a factor of 0.27 per point, so short loops use more rounds. */
 enum { around = 24, most_rolled = route_max_points + 2 * around + 2 };
 
 typedef struct Through {
@@ -94,7 +94,7 @@ static void control_from_samples(double (*control)[3], const double (*sample)[3]
     }
 }
 
-/* Where along the legs each sample lies: lengths of chords added up, then looked up. */
+/* Parameter of each sample along the legs: cumulative chord lengths, then look-up. */
 static void sample_evenly(double (*sample)[3], int samples, double step_m, const Through *t, const double *length_m)
 {
     const int chords = (t->last - t->first) * pieces;
@@ -120,7 +120,8 @@ static double *measure(const Through *t)
         at_u(q, t, leg, (k % pieces + 1.0) / pieces);
         const double whole = hypot(q[0] - p[0], q[1] - p[1]);
         const double halves = hypot(middle[0] - p[0], middle[1] - p[1]) + hypot(q[0] - middle[0], q[1] - middle[1]);
-        length_m[k + 1] = length_m[k] + halves + (halves - whole) / 3; /* Richardson: chords miss by their square */
+        length_m[k + 1] = length_m[k] + halves + (halves - whole) / 3; /* Richardson extrapolation: the error of chords
+                                                                        * is quadratic */
         memcpy(p, q, sizeof p);
     }
     return length_m;

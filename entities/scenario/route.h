@@ -1,4 +1,4 @@
-/* entities/scenario/route.h: a smooth way through points: position and its derivatives by the distance along it.
+/* entities/scenario/route.h: a smooth path through points: position and its derivatives by the distance along it.
  *
  * A cubic spline through the points (chord length its parameter, natural at the ends or closed), then sampled evenly
  * by arc length and held as a uniform cubic B-spline: twice differentiable, and as quick far along as at the
@@ -26,7 +26,7 @@ typedef struct RoutePoint {
  * STATUS_BAD_VALUE for fewer or nearer points, STATUS_NO_MEMORY. */
 Status route_create(Route *out, const double (*point)[3], int count, bool loop);
 void   route_destroy(Route *route);
-/* Before the beginning and behind the end it goes straight on; a loop goes round. */
+/* Before the start and after the end it continues straight; a loop is periodic. */
 void   route_at(RoutePoint *out, const Route *route, double distance_m);
 
 #endif

@@ -1,4 +1,4 @@
-/* entities/scenario/scenario.c: YAML -> Scenario, by tables; then what no table can check. */
+/* entities/scenario/scenario.c: YAML -> Scenario, by tables; then checks across keys. */
 #include "entities/scenario/scenario.h"
 
 #include <stdlib.h>
@@ -143,7 +143,7 @@ static ScenarioShot default_shot(void)
                           .hit = "entity", .damage = "destroyed"};
 }
 
-/* Room for one more, twice as much at each power of two. NULL: too many, or no memory. */
+/* Capacity for one more, doubled at each power of two. NULL: too many, or no memory. */
 static void *grown(void **items, int count, int most, size_t size)
 {
     if (count >= most) return NULL;
@@ -198,7 +198,7 @@ static Scenario default_scenario(void)
                               .threshold_m = 1, .threshold_deg = 3, .rate_hz = 60, .announce_per_s = 4000}};
 }
 
-/* ---- what belongs together ---------------------------------------------------------------------- */
+/* ---- checks across keys ------------------------------------------------------------------------- */
 
 bool scenario_type_parse(DisEntityType *out, const char *text)
 {
@@ -278,7 +278,7 @@ bool scenario_find(int *group, int *member, const Scenario *scenario, const int 
 static bool type_fits(const Scenario *s, int line, const char *key, const char *type)
 {
     DisEntityType parsed;
-    /* a name is looked up when the cast is made; digits alone are a slip of the pen */
+    /* a name is looked up by cast_create; digits alone are a typing error */
     if (*type && !(type[0] >= '0' && type[0] <= '9')) return true;
     if (scenario_type_parse(&parsed, type)) return true;
     char shown[128];

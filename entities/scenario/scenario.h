@@ -1,8 +1,7 @@
-/* entities/scenario/scenario.h: an exercise as somebody writes it down: a place, who moves where and when, who
- * shoots, and how it is said on the network. A small YAML file; etc/scenarios/demo.yaml shows every common key,
- * etc/scenarios/README.md all.
+/* entities/scenario/scenario.h: a scenario file: place, entities, routes, shots, and how they are reported on the
+ * network. A small YAML file; etc/scenarios/demo.yaml shows every common key, etc/scenarios/README.md all.
  *
- * A plain struct: what is absent has its default. exercise_cast.h makes entities of it, exercise.h sends them. */
+ * A plain struct: absent keys have their defaults. exercise_cast.h makes entities of it, exercise.h sends them. */
 #ifndef ENTITIES_SCENARIO_SCENARIO_H
 #define ENTITIES_SCENARIO_SCENARIO_H
 
@@ -22,7 +21,7 @@ typedef struct ScenarioGroup {
     char       type[scenario_type_size]; /* seven numbers with dots, or a model of etc/catalog.csv */
     int        id, count, columns, force, dead_reckoning; /* id 0: the next free one; dead_reckoning 0: that of dis */
     double     spacing_m, column_m, spread_m, behind_m;
-    NumberList route_m;                  /* x, y, x, y ... smooth through them; a single point: stands there */
+    NumberList route_m;                  /* x, y, x, y ... smooth through them; a single point: stationary */
     bool       loop, engine, parked;
     double     speed_mps, unsteady_m, heading_deg, height_m;
     double     start_s, stop_s, appears_s, leaves_s; /* NaN: moving from the beginning, to the end of the route, ... */
@@ -35,7 +34,7 @@ typedef struct ScenarioShot {
     char       name[scenario_name_size], type[scenario_type_size];
     int        line;
     char       from[2 * scenario_name_size], at[2 * scenario_name_size]; /* `NAME ID`; at empty: at_m */
-    NumberList at_m, launch_m;           /* x, y of a place; forward, right, down of the shooter */
+    NumberList at_m, launch_m;           /* x, y of a place; forward, right, down of the firing entity */
     int        id, force, rounds, dead_reckoning;
     double     time_s, every_s, launch_mps, boost_mps, boost_s, drag_mps2, loft_m, weave_m, silent_s;
     char       hit[8], damage[12];
@@ -68,11 +67,11 @@ typedef struct Scenario {
 } Scenario;
 
 /* Reads and checks a file: ranges, types, routes, names in shots. No side effects beyond the log. On failure one line
- * is logged with file, line, key, value, range; *out is then empty. The file itself is all that is opened. */
+ * is logged with file, line, key, value, range; *out is then empty. No other file is opened. */
 Status scenario_read(Scenario *out, const char *path);
-/* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is as it was. */
+/* One key above the lists as a command line gives it, `dis.version`, 5. On failure *scenario is unchanged. */
 Status scenario_set(Scenario *scenario, const char *key, const char *value, const char *source);
-/* Once more what belongs together, after scenario_set. */
+/* Repeats the checks across keys, after scenario_set. */
 Status scenario_check(const Scenario *scenario);
 void   scenario_destroy(Scenario *scenario); /* accepts zeroes */
 /* Every key, with range and default, as text for people. */

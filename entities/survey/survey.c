@@ -1,4 +1,4 @@
-/* entities/survey/survey.c: a log read once, every PDU: tracks, shots, clocks, counters. */
+/* entities/survey/survey.c: one pass over all PDUs of a log: tracks, shots, clocks, counters. */
 #include "entities/survey/survey.h"
 #include "dis/datagram.h"
 #include "dis/enumerations.h"
@@ -18,17 +18,17 @@ enum {
 static const double largest_speed_mps = 2e4; /* as entity_table.c: nothing is faster and stays */
 static const double year_1990_s = 631152000, year_2100_s = 4102444800;
 static const double absolute_agree_s = 10; /* clocks of one exercise, and what a network delays */
-static const double invented_epoch_s = 1e9; /* captures made out of logs without dates start here */
+static const double invented_epoch_s = 1e9; /* captures converted from logs without dates start here */
 
 typedef struct TrackBuild {
     int     capacity;
-    uint8_t algorithm; /* of the last Entity State: it says in which axes an update's velocity is */
+    uint8_t algorithm; /* of the last Entity State: it gives the axes of an update's velocity */
 } TrackBuild;
 
 typedef struct Building {
     Survey        *survey;
     ExerciseClock *clock;
-    DisPdu         pdu;   /* the one that is read */
+    DisPdu         pdu;   /* the log that is read */
     EntityIndex    index;
     int            track_capacity;
     TrackBuild    *build; /* beside survey->track */
@@ -36,7 +36,7 @@ typedef struct Building {
     int            warfare_count, warfare_capacity;
     uint64_t       points;
     bool           date_is_credible;
-    double        *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order heard */
+    double        *absolute_unix_s; /* one an absolute stamp: Unix time of exercise time 0, in the order received */
     int            absolute_capacity;
 } Building;
 
@@ -155,10 +155,10 @@ static Status add_warfare(Building *b, const WarfareEvent *event)
     return status;
 }
 
-/* A burst must be somewhere: the ground is fitted through it. */
+/* A burst must have a valid position: the ground is fitted through it. */
 static Status receive_detonation(Building *b, const DisDetonation *pdu, double t_s)
 {
-    const DisEntityId any_id = {1, 1, 1}; /* the place alone is judged */
+    const DisEntityId any_id = {1, 1, 1}; /* only the position is checked */
     const float euler_rad[3] = {0, 0, 0};
     DisDrop why;
 
@@ -172,7 +172,7 @@ static Status receive_detonation(Building *b, const DisDetonation *pdu, double t
     return add_warfare(b, &event);
 }
 
-/* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, says nothing. */
+/* Exercise time 0 on the simulation's own calendar. A clock of zero, or past 2100, is ignored. */
 static void receive_start(Building *b, const DisStartResume *pdu, double t_s)
 {
     const double unix_s = pdu->simulation.hour * 3600.0 + dis_timestamp_seconds(pdu->simulation.past_hour);
@@ -200,7 +200,8 @@ static int compare_doubles(const void *a, const void *b)
     return p < q ? -1 : p > q;
 }
 
-/* What most absolute stamps agree on, as the first of those said it: a single absurd one does not choose the date. */
+/* The consensus of absolute stamps, with the value of the first of them: a single outlier does not determine the
+ * date. */
 static Status settle_date(Building *b)
 {
     Survey      *survey = b->survey;
@@ -253,7 +254,7 @@ static Status receive_datagram(Building *b, int d, const DisDatagram *datagram, 
         }
         const uint64_t doubted = exercise_clock_anomalies(b->clock)->by_arrival;
         const double   t_s     = exercise_clock_pdu_time(b->clock, &header, pdu, datagram->capture_s);
-        if (isnan(t_s)) continue; /* of no type that we know, and from nobody */
+        if (isnan(t_s)) continue; /* of unknown type, and without a sender */
         if (isnan(survey->datagram_s[d])) survey->datagram_s[d] = t_s;
         if (!(survey->first_s <= t_s)) survey->first_s = t_s;
         if (!(survey->last_s >= t_s)) survey->last_s = t_s;
@@ -273,7 +274,7 @@ static int track_order(const void *a, const void *b)
     return dis_entity_id_compare(((const Track *)a)->id, ((const Track *)b)->id);
 }
 
-/* A track whose every report was refused for memory has no point; it is not a track. */
+/* A track without a point, since all its reports were dropped for lack of memory, is removed. */
 static void drop_empty_tracks(Survey *survey)
 {
     int kept = 0;
@@ -282,7 +283,7 @@ static void drop_empty_tracks(Survey *survey)
     survey->track_count = kept;
 }
 
-/* A munition whose burst was heard after its last report came to the burst: its track's last point. */
+/* A munition with a Detonation after its last report: the burst is the last point of its track. */
 static Status end_flights(Building *b)
 {
     static const double longest_silence_s = 60;

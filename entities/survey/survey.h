@@ -1,5 +1,5 @@
-/* entities/survey/survey.h: one pass over a whole log before the first frame: who flew, who was shot at, where the
- * ground is. What replay's defaults (host, aim, ground, time of day) are chosen from. */
+/* entities/survey/survey.h: one pass over a whole log before the first frame: munitions, targets, ground fixes. The
+ * defaults of replay (host, aim, ground, time of day) are chosen from it. */
 #ifndef ENTITIES_SURVEY_SURVEY_H
 #define ENTITIES_SURVEY_SURVEY_H
 
@@ -11,7 +11,7 @@
 /* One report of where an entity was. */
 typedef struct TrackPoint {
     double t_s;
-    double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes whatever the algorithm */
+    double p_ecef[3], v_ecef_mps[3]; /* velocity in world axes for all algorithms */
     double r_ecef_from_body[9];
     bool   frozen, deactivated, engine; /* engine: its power-plant bit */
 } TrackPoint;
@@ -22,7 +22,7 @@ typedef struct Track {
     char          marking[12];
     uint8_t       force;
     int           count;
-    TrackPoint   *point;          /* in order of time; of a munition heard to burst later, the burst is the last */
+    TrackPoint   *point;          /* in order of time; of a munition with a later Detonation, that is the last */
 } Track;
 
 typedef struct Survey {
@@ -31,13 +31,13 @@ typedef struct Survey {
     Shot     *shot;                       /* in order of fire (else detonation) time */
     int      *shot_by_munition;           /* [shot_count] of shot, sorted by munition, then by time; NULL: not made */
     double    first_s, last_s;            /* exercise time of the first and last PDU; NaN: none */
-    double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none heard */
+    double    clock_start_unix_s;         /* Unix time of exercise time 0 from Start/Resume; NaN: none received */
     double    absolute_unix_s;            /* the same from absolute stamps with a credible capture date
                                            * (1990 .. 2100, not 2001-09-09's round 1e9 s): of those that agree within
                                            * 10 s, when they are two at least and more than half; NaN: none */
     int       absolute_stamps, absolute_left_out; /* how many there were, and of them how many disagree */
-    ExerciseClockAnomalies doubts;           /* senders whose stamps are no clock */
-    DisCounters counters;                 /* everything heard and dropped, whole log */
+    ExerciseClockAnomalies doubts;           /* senders with rejected time stamps */
+    DisCounters counters;                 /* all received and dropped PDUs, whole log */
     double   *datagram_s;                 /* exercise time of each datagram's first PDU [log->count]; NaN: none */
     uint64_t  refused;                    /* track points dropped because they exceed the memory bound */
     uint64_t  late;                       /* reports older than the one before them, left out */
@@ -46,12 +46,12 @@ typedef struct Survey {
 /* Reads every PDU of the log once. exercise: only this exercise id; -1: all. */
 Status survey_log(Survey *out, const DisLog *log, int exercise);
 void   survey_destroy(Survey *survey);
-const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never heard */
-/* The first shot of that munition; NULL: none heard. O(log shots). */
+const Track *survey_track(const Survey *survey, DisEntityId id); /* NULL: never received */
+/* The first shot of that munition; NULL: none received. O(log shots). */
 const Shot  *survey_shot(const Survey *survey, DisEntityId munition);
 
 /* Where a track was at t_s, between its reports (cubic in position, shortest turn in attitude); held at the
- * ends. For a replay's own host only: a live node cannot know the next report. */
+ * ends. For a replay's own host only: a live node does not have the next report. */
 typedef struct TrackPose {
     double p_ecef[3], v_ecef_mps[3], r_ecef_from_body[9];
 } TrackPose;

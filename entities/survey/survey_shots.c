@@ -1,4 +1,4 @@
-/* entities/survey/survey_shots.c: Fire and Detonation put together, off line: everything has been heard. */
+/* entities/survey/survey_shots.c: matches Fire and Detonation offline, with the whole log at hand. */
 #include "entities/survey/survey_shots.h"
 #include "entities/table/entity_index.h"
 
@@ -6,7 +6,7 @@
 
 static const double same_s = 0.5;        /* a repeated PDU */
 static const double clock_slack_s = 1;   /* a Detonation may be stamped by another sender's clock than the Fire */
-enum { most_tries = 64 };                /* candidates looked at: bounds what a hostile log can cost */
+enum { most_tries = 64 };                /* candidates checked: bounds the cost of a hostile log */
 
 /* Fires by one of their keys, then by time. */
 typedef struct FireKey {
@@ -71,9 +71,9 @@ static bool contradicts(DisEntityId a, DisEntityId b)
     return !dis_entity_id_is_none(a) && !dis_entity_id_is_none(b) && dis_entity_id_compare(a, b) != 0;
 }
 
-/* The latest fire of the key up to slack_s after the detonation that nothing has ended yet, and that contradicts
- * neither its munition nor who fired; of the same event id if same_number. -1: none; -2: that fire was ended by this
- * very detonation, heard before. */
+/* The latest fire of the key up to slack_s after the detonation without a detonation so far, and consistent with its
+ * munition and firing entity; of the same event id if same_number. -1: none; -2: the fire was ended by the same
+ * detonation, received before. */
 static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int detonation, bool same_number,
                      double slack_s)
 {
@@ -91,7 +91,8 @@ static int open_fire(const Joining *j, const FireKey *list, uint64_t key, int de
     return -1;
 }
 
-/* The surest first: both ids, then the munition's, each before the detonation; then by a clock that is behind. */
+/* The most certain match first: both ids, then the munition's, each before the detonation; then by a clock that is
+ * behind. */
 static void join_detonation(Joining *j, int detonation)
 {
     const WarfareEvent *d = j->event + detonation;
@@ -155,7 +156,7 @@ Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int
     for (int e = 0; e < count; e++)
         if (event[e].is_detonation) join_detonation(&j, e);
 
-    /* in order of time, since events are: a joined detonation is told with its fire */
+    /* in order of time, since events are: a matched detonation is listed with its fire */
     int n = 0;
     for (int e = 0; e < count; e++)
         if (j.partner[e] != -2 && !(event[e].is_detonation && j.partner[e] >= 0)) shot[n++] = shot_of(&j, e);

@@ -4,7 +4,7 @@
 
 #include "entities/survey/shot.h"
 
-/* One Fire or Detonation as heard. */
+/* One Fire or Detonation as received. */
 typedef struct WarfareEvent {
     double      t_s;
     DisEntityId firing, target, munition;
@@ -15,7 +15,7 @@ typedef struct WarfareEvent {
 } WarfareEvent;
 
 /* A Detonation belongs to the latest Fire before it of the same munition id that has none yet (ids are used again; the
- * event id decides where it can), else to that of the same event id. One heard twice within half a second is one.
+ * event id decides where it can), else to that of the same event id. One received twice within half a second is one.
  * event is put in order of time. *shots is malloc'ed, in order of fire (else detonation) time. */
 Status survey_join_shots(Shot **shots, int *shot_count, WarfareEvent *event, int count);
 /* The numbers of the shots sorted by munition, then by number; malloc'ed. */

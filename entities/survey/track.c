@@ -1,4 +1,4 @@
-/* entities/survey/track.c: where a recorded entity was between two of its reports. */
+/* entities/survey/track.c: interpolates a recorded entity between its reports. */
 #include "entities/survey/survey.h"
 
 /* ---- attitude: the shortest turn at an even rate ------------------------------------------ */
@@ -56,7 +56,7 @@ static void interpolate_rotation(double out[9], const double r0[9], const double
 }
 
 /* Under any even acceleration the chord is no faster than the faster end; a third above that, and above a vehicle's
- * start from rest, it is no motion. */
+ * start from rest, it is a discontinuity. */
 static const double step_speeds = 1.3, step_floor_mps = 5;
 
 /* ---- position ----------------------------------------------------------------------------- */
@@ -106,7 +106,7 @@ void track_at(TrackPose *out, const Track *track, double t_s)
         return;
     }
     const TrackPoint *a = track->point + at, *b = a + 1;
-    if (a->frozen || a->deactivated) { /* what comes next is another life, or starts from here */
+    if (a->frozen || a->deactivated) { /* the next report is of a new entity, or starts from here */
         hold(out, a, false);
         return;
     }

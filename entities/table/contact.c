@@ -1,9 +1,9 @@
-/* entities/table/contact.c: entities set onto the ground or the water along the local vertical. */
+/* entities/table/contact.c: clamps entities to the ground or the water along the local vertical. */
 #include "entities/table/contact.h"
 
 #include "dis/enumerations.h"
 
-/* Leans with the ground. */
+/* Pitch and roll follow the ground. */
 static bool leans(DisEntityType type)
 {
     return (type.kind == dis_kind_platform && type.domain == dis_domain_land) ||
@@ -40,8 +40,8 @@ static bool vertical(double up_ecef[3], const double p_ecef[3])
     return true;
 }
 
-/* Way up from p to the ground. The vertical leans against ENU, so the ground is asked again where the last answer
- * leads; each step is smaller by lean times slope, below a hundredth. */
+/* Distance up from p to the ground. The vertical is inclined against ENU, so the query is iterated at the last result;
+ * each step is smaller by lean times slope, below a hundredth. */
 static double way_up_m(const ContactGround *ground, const double p_enu[3], const double up_enu[3])
 {
     double way_m = 0;
@@ -71,7 +71,7 @@ static bool is_airborne(const SnapshotEntity *e, const double up_ecef[3])
     return v > (e->type.kind == dis_kind_platform ? 60 : 12) || v_up < -fmax(2, 0.5 * along);
 }
 
-/* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are set on it. */
+/* Share of the way to the ground that an entity is moved, p_enu being its base: 1 where all entities are clamped. */
 static double share_of(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3],
                        const double up_ecef[3], double way_m)
 {
@@ -84,7 +84,7 @@ static double share_of(const SnapshotEntity *e, const ContactGround *ground, con
     return at_sea ? 0 : share;
 }
 
-/* Clearly on the ground already: the vertical's lean changes nothing in that. */
+/* Clearly consistent with the ground: independent of the inclination of the vertical. */
 static bool stands_near(const SnapshotEntity *e, const ContactGround *ground, const double p_enu[3])
 {
     const double above_m = p_enu[2] - elevation_height(ground->elevation, p_enu[0], p_enu[1], NULL);
@@ -130,14 +130,14 @@ void contact_set(SnapshotEntity *e, const ContactGround *ground, const Model *mo
                 sum_aa += a * a;
                 sum_bb += b * b;
             }
-        if (!isfinite(sum)) return; /* half over the rim of the world */
+        if (!isfinite(sum)) return; /* partly outside of the elevation data */
         way_m         = sum / (along * across);
         slope_forward = clamp(sum_a / sum_aa, -steepest, steepest);
         slope_right   = clamp(sum_b / sum_bb, -steepest, steepest);
     }
     v3_add_scaled(e->p_ecef, e->p_ecef, share * way_m, up_ecef);
     if (!upright) return;
-    if (share < 1) { /* between its own lean and the ground's */
+    if (share < 1) { /* between its own tilt and the ground's */
         const double own[3] = {r_enu_from_body[1], r_enu_from_body[4], r_enu_from_body[7]};
         const double forward_m = v3_dot(nose, forward), right_m = fmax(v3_dot(own, right), 0.1);
         slope_forward = v3_dot(nose, up) / forward_m + share * (slope_forward - v3_dot(nose, up) / forward_m);

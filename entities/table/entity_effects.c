@@ -1,10 +1,10 @@
-/* entities/table/entity_effects.c: what an entity's appearance and motion let it give off. Appearance bits are those of
- * dis/enumerations.h; a guided munition's motor burns for as long as heat.c says, whatever its bits. */
+/* entities/table/entity_effects.c: emissions by an entity's appearance and motion. Appearance bits are those of
+ * dis/enumerations.h; a guided munition's motor burns for the time given by heat.c, independent of its bits. */
 #include "entities/table/entity_table_private.h"
 
-static const double moving_mps = 0.3; /* as heat.c: no dust behind what stands */
+static const double moving_mps = 0.3; /* as heat.c: no dust from stationary entities */
 
-/* Lengths of flames and smoke go with the size of what burns: 1 for 40 m3 of vehicle. */
+/* Scale of flames and smoke by the size of the burning entity: 1 for 40 m3 of vehicle. */
 static double size_of(const Model *model)
 {
     return clamp(cbrt(model->length_m * model->width_m * model->height_m / 40), 0.25, 4);
@@ -107,7 +107,7 @@ void entity_effects_report(EntityTable *table, EntitySlot *slot, double t_s)
     }
 }
 
-/* One body of gas behind the tail, that breathes: its length is drawn at every fiftieth of a second, and straight in
+/* One volume of gas behind the tail with fluctuating length: random at every fiftieth of a second, linear in
  * between. */
 static bool plume_behind(EffectPuff *out, const SnapshotEntity *e, const Model *model, EffectKind kind,
                          const EffectTable *table, double length_m, double across_scale, double t_s)
@@ -150,12 +150,12 @@ bool entity_effects_carried(EffectPuff *out, const EntityTable *table, const Ent
     return false;
 }
 
-/* Who is set onto the ground smokes there, and a burst on the ground is on this one. */
+/* A ground-clamped entity emits smoke there, and a burst on the ground is on the same ground. */
 static void set_onto_ground(EffectPuff *puff, const ContactGround *ground)
 {
     static const DisEntityType vehicle = {.kind = dis_kind_platform, .domain = dis_domain_land};
     double way_m = puff->grounded ? puff->above_m - contact_above_m(ground, puff->p_ecef) : 0;
-    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* as far as its entity went */
+    if (ground->landscape) way_m *= contact_share(vehicle, way_m); /* clamped by the same distance as its entity */
     if (isfinite(way_m)) v3_add_scaled(puff->p_ecef, puff->p_ecef, way_m, puff->up_ecef);
 }
 
@@ -178,7 +178,7 @@ Status entity_effects_snapshot(Snapshot *snapshot, const EntityTable *table, con
     return STATUS_OK;
 }
 
-/* The gun has sunk to its stop and the turret stands where the blow left it, unless the sender says where they are. */
+/* The gun is at its lower stop and the turret at an arbitrary azimuth, unless the sender reports them. */
 void entity_effects_wreck_joints(double *joint_value, const Model *model, const SnapshotEntity *entity, int reports)
 {
     if (entity->type.kind != dis_kind_platform || reports > 0 ||

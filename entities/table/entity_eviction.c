@@ -1,4 +1,5 @@
-/* entities/table/entity_eviction.c: which entities are kept when the table is full: what entity_ranks.h is told, and the place to be near to. */
+/* entities/table/entity_eviction.c: which entities are kept when the table is full: updates of entity_ranks.h, and the
+ * focus position. */
 #include "entities/table/entity_table_private.h"
 
 static bool same_id(DisEntityId a, DisEntityId b) { return dis_entity_id_compare(a, b) == 0; }
@@ -21,8 +22,8 @@ static void rank_all_again(EntityTable *table, double t_s)
     table->focus.ranked_s = t_s;
 }
 
-/* The host's last report is the place to be near to. The others' distances are taken at their own reports; all of them
- * when there is a place for the first time, and when it has gone far enough for them to matter, once a second at most. */
+/* The host's last reported position is the focus. Distances of the others are updated at their own reports; all of them
+ * when a focus is first set, and when it has moved far enough to matter, once a second at most. */
 static void place_focus(EntityTable *table, const double p_ecef[3], double t_s)
 {
     static const double far_m = 500, often_s = 1;

@@ -1,5 +1,5 @@
 /* entities/table/entity_index.c: linear probing, at most half full; removal closes the gap, so there are no tombstones
- * and a probe ends at the first empty cell for ever. */
+ * and a probe always ends at the first empty cell. */
 #include "entities/table/entity_index.h"
 
 #include <stdlib.h>

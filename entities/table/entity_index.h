@@ -1,5 +1,5 @@
-/* entities/table/entity_index.h: entity id -> slot number, by open addressing. Memory is fixed when it is made; what it
- * answers does not depend on the order of insertions. */
+/* entities/table/entity_index.h: entity id -> slot number, by open addressing. Memory is fixed when it is made; results
+ * do not depend on the order of insertions. */
 #ifndef ENTITIES_TABLE_ENTITY_INDEX_H
 #define ENTITIES_TABLE_ENTITY_INDEX_H
 
@@ -27,7 +27,7 @@ int    entity_index_find(const EntityIndex *index, uint64_t key); /* -1: not the
 /* The key must not be there, and no more than capacity keys ever at once. */
 void   entity_index_insert(EntityIndex *index, uint64_t key, int value);
 void   entity_index_remove(EntityIndex *index, uint64_t key);
-/* Room for twice as many; on failure the index is as it was. */
+/* Doubles the capacity; on failure the index is unchanged. */
 Status entity_index_grow(EntityIndex *index);
 
 #endif

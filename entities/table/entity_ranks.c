@@ -1,12 +1,12 @@
-/* entities/table/entity_ranks.c: of each sender a list of entities a distance class, stalest first; of each tier a heap of
- * senders by how many they have in it. */
+/* entities/table/entity_ranks.c: per sender a list of entities for each distance class, oldest report first; of each
+ * tier a heap of senders by how many they have in it. */
 #include "entities/table/entity_ranks.h"
 #include "entities/table/entity_index.h"
 
 #include <stdlib.h>
 
 enum {
-    tier_count = 4, /* known * 2 + near: the first pays first */
+    tier_count = 4, /* known * 2 + near: evicted from in this order */
     list_count = 2 * entity_rank_classes, /* known * entity_rank_classes + class */
     nothing    = -1,
 };
@@ -17,8 +17,8 @@ static const uint32_t near_lists = (UINT32_C(1) << entity_rank_near_classes) - 1
 
 typedef struct Node {
     int     older, newer; /* in its list */
-    int     before, after; /* of all, in the order in which they were heard */
-    int     sender;       /* nothing: it is not there */
+    int     before, after; /* of all, in the order of their last reports */
+    int     sender;       /* none: not present */
     uint8_t list;
 } Node;
 
@@ -26,11 +26,11 @@ typedef struct Sender {
     uint32_t key;                     /* site, application */
     uint32_t lists;                   /* bit l: list l holds any */
     int      count[tier_count], at[tier_count]; /* at: in the heap of the tier, where count > 0 */
-    int      oldest[list_count], newest[list_count]; /* where lists says so */
+    int      oldest[list_count], newest[list_count]; /* as given by lists */
 } Sender;
 
 struct EntityRanks {
-    int         room, first, last;    /* room: of a tier; first, last: heard the longest ago, and just now */
+    int         room, first, last;    /* room: of a tier; first, last: least and most recently reported */
     Node       *node;                 /* [slots] */
     Sender     *sender;               /* [slots]; used below sender_end */
     int        *free_sender;
@@ -95,7 +95,7 @@ static void set_place(EntityRanks *r, int tier, int place, int sender)
     r->sender[sender].at[tier] = place;
 }
 
-/* To where it belongs, from a place at which there was or will be another. */
+/* Sifts it to its position in the heap, from a free position. */
 static void sift(EntityRanks *r, int tier, int place, int sender)
 {
     const int *heap = r->heap[tier], count = r->heap_count[tier];
@@ -189,7 +189,7 @@ static void change_list(EntityRanks *r, int slot, int list)
     add_to_count(r, before.sender, tier_of(list), 1);
 }
 
-/* ---- the order in which all were heard ------------------------------------------------------------- */
+/* ---- all entities in the order of their last report ---------------------------------------------------- */
 
 static void receive_last(EntityRanks *r, int slot)
 {
@@ -210,7 +210,7 @@ static void forget(EntityRanks *r, int slot)
     else r->last = n->before;
 }
 
-/* ---- what the table asks --------------------------------------------------------------------------- */
+/* ---- queries of the table -------------------------------------------------------------------------- */
 
 void entity_ranks_put(EntityRanks *r, int slot, DisEntityId id, bool known, int class)
 {

@@ -1,14 +1,14 @@
-/* entities/table/entity_ranks.h: which entity a full table gives up.
+/* entities/table/entity_ranks.h: which entity a full table evicts.
  *
- * Four tiers: an entity is new or known (it went on reporting), and far from the place that matters or near it. Each tier
- * has a quarter of the table for itself. Of the tiers with more than that, in the order far and new, near and new, far
- * and known, near and known, the first one pays; in it the sender (site and application) with the most entities there, of
- * several the one with the highest number; of its entities the farthest, by classes of doubled distance; of those the one
- * whose last report was heard the longest ago.
+ * Four tiers: an entity is new or known (it has kept reporting), and far from or near the focus. Each tier has a
+ * reserved quarter of the table. Of the tiers with more than that, in the order far and new, near and new, far and
+ * known, near and known, the first one loses an entity; in it the sender (site and application) with the most entities
+ * there, of several the one with the highest number; of its entities the farthest, by classes of doubled distance; of
+ * those the one with the oldest last report.
  *
- * So one sender, however many entities it invents, gives up its own; many invented senders give up what was heard once
- * before what goes on reporting, and none of them gets more of a tier than others that want as much. All of it follows
- * from the order of the calls alone. Put, remove and worst: O(log senders). Memory is fixed when it is made. */
+ * So a sender with many entities loses its own first; of many spurious senders, entities reported once are evicted
+ * before those that keep reporting, and tiers are shared fairly among senders. The result depends on the order of the
+ * calls alone. Put, remove and worst: O(log senders). Memory is fixed when it is made. */
 #ifndef ENTITIES_TABLE_ENTITY_RANKS_H
 #define ENTITIES_TABLE_ENTITY_RANKS_H
 
@@ -25,9 +25,9 @@ void   entity_ranks_destroy(EntityRanks *ranks);
 
 int    entity_rank_class(const double p_ecef[3], const double from_ecef[3]);
 
-/* A report of it was heard: it is there from now on, and the freshest. */
+/* A report of it was received: inserts it, or marks it the most recent. */
 void   entity_ranks_put(EntityRanks *ranks, int slot, DisEntityId id, bool known, int distance_class);
-/* The distance of all anew; times of reports stay. O(slots). */
+/* Updates the distances of all; times of reports are unchanged. O(slots). */
 void   entity_ranks_again(EntityRanks *ranks, int (*distance_class)(const void *user, int slot), const void *user);
 void   entity_ranks_remove(EntityRanks *ranks, int slot); /* not there: nothing happens */
 int    entity_ranks_worst(const EntityRanks *ranks);      /* -1: none is there */

@@ -8,7 +8,7 @@ enum { sender_limit = 4096 };
 
 typedef struct Bucket {
     uint64_t key;
-    double   tokens, filled_s; /* tokens there were at filled_s, the latest time of a call */
+    double   tokens, filled_s; /* tokens at filled_s, the latest time of a call */
 } Bucket;
 
 struct EntityRate {

@@ -1,13 +1,13 @@
-/* entities/table/entity_report.c: what an Entity State or its Update means for the entity's slot. */
+/* entities/table/entity_report.c: applies an Entity State or its Update to the entity's slot. */
 #include "entities/table/entity_table_private.h"
 
-/* No launcher uses an id again so soon. */
+/* Shorter than any reuse of an id by a launcher. */
 static const double after_detonation_s = 1;
 
-/* Faster than anything that leaves the Earth (11.2 km/s), and harder than a gun-launched round once it flies. */
+/* Above escape velocity (11.2 km/s), and above the acceleration of a gun-launched round in flight. */
 static const double largest_speed_mps = 2e4, largest_acceleration_mps2 = 1e4;
 
-/* Heartbeats of IEEE 1278.1-2012: 55 or 60 s for land, sea, life forms, the environment and whatever stands; 5 s
+/* Heartbeats of IEEE 1278.1-2012: 55 or 60 s for land, sea, life forms, the environment and stationary entities; 5 s
  * for air, space and munitions. Timeout is 2.4 of them. Before version 7 practice is 5 s for all. */
 static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8_t version)
 {
@@ -18,7 +18,7 @@ static double timeout_of(const EntityTable *table, const EntitySlot *slot, uint8
     return version >= 7 && (!quick || stands) ? table->config.timeout_land_v7_s : table->config.timeout_s;
 }
 
-/* Narrow in, wide out; false and zero when it is not finite or longer than anything real. */
+/* float to double; false and zero when not finite or above the limit. */
 static bool sanitize(double out[3], const float in[3], double longest)
 {
     const double v[3] = {in[0], in[1], in[2]};
@@ -27,7 +27,7 @@ static bool sanitize(double out[3], const float in[3], double longest)
     return good;
 }
 
-/* A report that no longer counts: older than the one we have. */
+/* A stale report: older than the latest. */
 static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
 {
     if (!(t_s < slot->report_s)) return false;
@@ -35,16 +35,16 @@ static bool is_late(EntityTable *table, const EntitySlot *slot, double t_s)
     return true;
 }
 
-/* Whether a report is of an entity that is gone: it is older than the end; or the end was a Detonation, and it comes
- * right after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates).
- * Only asked when an entity would be created. */
+/* Whether a report is of a removed entity: it is older than the end; or the end was a Detonation, and it follows right
+ * after it, or calls the munition destroyed (VR-Forces sends one such report before the one that deactivates). Only
+ * checked when an entity would be created. */
 static bool has_ended(const EntityTable *table, const DisEntityState *pdu, double t_s)
 {
     const bool destroyed = (pdu->appearance >> dis_appearance_damage_shift & 3) == dis_damage_destroyed;
     return tombstones_ended(table->tombstones, pdu->id, t_s, destroyed ? table->config.timeout_s : after_detonation_s);
 }
 
-/* The focus' own come in at any rate. */
+/* Entities of the focus are exempt from the rate. */
 static bool exceeds_rate(EntityTable *table, DisEntityId id, double t_s)
 {
     if (dis_entity_id_compare(id, table->focus.host) == 0 || dis_entity_id_compare(id, table->focus.also) == 0)
@@ -71,9 +71,9 @@ double entity_slot_forward(const EntitySlot *slot, const double p_ecef[3], const
     return v3_dot(moved, forward);
 }
 
-/* Brings what runs on between reports up to t_s, before the next report replaces what it ran on. The way is the
- * dead-reckoned one, so that a wheel never jumps; its difference from the truth is the position's, a metre. A
- * static algorithm has no way of its own: there the reports' own displacement counts. */
+/* Advances extrapolated state to t_s before the next report replaces it. Distance travelled is the dead-reckoned one,
+ * so that wheels never jump; its error is that of the position, a metre. With a static algorithm the displacement
+ * between reports is used. */
 static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const double r_next[9], double t_s)
 {
     Motion motion;
@@ -92,7 +92,7 @@ static void close_interval(EntitySlot *slot, const double p_next_ecef[3], const 
     if (!isfinite(slot->distance_m) || fabs(slot->distance_m) > 1e9) slot->distance_m = 0;
 }
 
-/* Place, velocity and attitude, which both kinds of report carry. */
+/* Position, velocity and attitude, common to both kinds of report. */
 static void take_place(EntityTable *table, EntitySlot *slot, const double p_ecef[3], const float v_mps[3],
                        const float euler_rad[3], bool is_first, double t_s)
 {

@@ -1,6 +1,6 @@
-/* entities/table/entity_snapshot.c: the table at one instant: everybody extrapolated, in the order of ids.
+/* entities/table/entity_snapshot.c: the table at one instant: all entities extrapolated, in the order of ids.
  *
- * Entities go through in chunks whose slots stay in cache; those of one algorithm in a chunk go through
+ * Entities are processed in chunks with slots that stay in cache; those of one algorithm in a chunk go through
  * dead_reckon_arrays together. */
 #include "entities/table/entity_table_private.h"
 
@@ -62,8 +62,8 @@ typedef struct Ordered {
     int      slot;
 } Ordered;
 
-/* Radix sort, an octet a pass, six octets of id; a pass whose octet is the same everywhere is left out. Returns
- * whichever of the two arrays holds the result. */
+/* Radix sort, one octet per pass, six octets of id; a pass with equal octets is skipped. Returns
+ * the one of the two arrays that holds the result. */
 static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
 {
     for (int shift = 0; shift < 48; shift += 8) {
@@ -83,10 +83,10 @@ static Ordered *sort_by_id(Ordered *from, Ordered *to, int count)
     return from;
 }
 
-/* ---- no more than are asked for -------------------------------------------------------------- */
+/* ---- limit of rendered entities -------------------------------------------------------------- */
 
-/* Squared distance from the place that matters, as a number that sorts as it does: of what was reported, not of what it
- * is extrapolated to. */
+/* Squared distance from the focus, as an integer of the same order: of the reported position, not of the extrapolated
+ * one. */
 static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
 {
     const EntityFocus *focus = &table->focus;
@@ -101,8 +101,8 @@ static uint64_t nearness(const EntityTable *table, const EntitySlot *slot)
     return bits;
 }
 
-/* The value of which `wanted` are not above it, and fewer below; *at_it: how many of those that equal it are wanted. An
- * octet a pass, from the highest. */
+/* The `wanted`-th smallest value; *at_it: how many of the values equal to it are within the first `wanted`. Radix
+ * select, one octet per pass, from the highest. */
 static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wanted)
 {
     uint64_t prefix = 0;
@@ -118,7 +118,7 @@ static uint64_t last_wanted(int *at_it, const uint64_t *value, int count, int wa
     return prefix;
 }
 
-/* Of count in the order of ids, the nearest config.shown in that order; among equally near ones those with the lower ids. */
+/* Of count entities in the order of ids the nearest config.shown, in that order; at equal distance the lower ids. */
 static Status keep_nearest(Ordered *order, int *count, const EntityTable *table, Arena *arena)
 {
     const int wanted = table->config.shown;
@@ -165,7 +165,7 @@ static void block_arrays(KinematicsArrays *k, MotionArrays *m, MotionBlock *bloc
     for (int i = 0; i < 9; i++) m->r_ecef_from_body[i] = block->out[a++];
 }
 
-/* The reach of geodesy and of every sender's arithmetic: what leaves it was no motion but a wrong report. */
+/* Range of valid positions: an extrapolation beyond it follows from an invalid report. */
 static bool is_near_earth(const double p_ecef[3])
 {
     const double r_m = v3_length(p_ecef);
@@ -210,7 +210,7 @@ static void reckon_block(SnapshotEntity *entity, const EntityTable *table, const
     }
 }
 
-/* Slots lie far apart, in no order of ids: a chunk's come into the cache together, not one after the other. */
+/* Slots lie far apart, in no order of ids: those of a chunk are prefetched together. */
 static void fetch_slots(const EntityTable *table, const Ordered *order, int first, int end)
 {
     for (int e = first; e < end; e++) {
@@ -235,7 +235,7 @@ static void reckon_chunk(SnapshotEntity *entity, const EntityTable *table, const
 
 /* ---- the rest of an entity ---------------------------------------------------------------- */
 
-/* From here on p is the model's origin, the centre of the base, on the ground where it is set onto it; z points down. */
+/* From here on p is the model's origin, the centre of the base, on the ground where it is clamped; z points down. */
 static void place_origin(SnapshotEntity *e, const EntityTable *table, const EntitySlot *slot)
 {
     const double height_m = catalog_model(table->catalog, slot->model)->height_m;
@@ -244,7 +244,7 @@ static void place_origin(SnapshotEntity *e, const EntityTable *table, const Enti
     contact_set(e, &table->config.ground, catalog_model(table->catalog, slot->model));
 }
 
-/* Of an entity whose place is still as it was reported. The way that it has gone is asked for by what rolls alone. */
+/* Of an entity still at its reported position. The travelled distance is needed by rolling parts only. */
 static JointDrive drive_joints(const EntitySlot *slot, const SnapshotEntity *e, double t_s)
 {
     const bool   stands = entity_slot_frozen(slot) || slot->stopped;
@@ -307,10 +307,10 @@ static void finish_entity(SnapshotEntity *e, SnapshotJoints *joints, JointReport
 
     keep_joints(joints, report, slot, e, t_s);
 
-    place_origin(e, table, slot); /* last: the way gone is measured between reported positions */
+    place_origin(e, table, slot); /* last: distance travelled is measured between reported positions */
 }
 
-/* Entities by chunks, each by whoever is free: they know nothing of each other. */
+/* Entities by chunks, distributed over the threads: chunks are independent. */
 typedef struct Chunks {
     Snapshot          *snapshot;
     const EntityTable *table;
@@ -331,7 +331,7 @@ static void finish_chunk(void *user, int worker, int chunk)
                       all->table->slot + all->order[e].slot, snapshot->t_s);
 }
 
-/* What entities carry first, then what they and the shots have let go. */
+/* First the puffs attached to entities, then those emitted by them and by shots. */
 static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Ordered *order, Arena *arena)
 {
     EffectPuff *carried = NULL, one;
@@ -353,7 +353,7 @@ static Status add_puffs(Snapshot *snapshot, const EntityTable *table, const Orde
 
 Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s, Arena *arena)
 {
-    enum { ahead = 12 }; /* slots that are fetched before they are read */
+    enum { ahead = 12 }; /* slots prefetched ahead */
     Snapshot snapshot = {.t_s = t_s};
 
     if (!isfinite(t_s)) return STATUS_BAD_VALUE;
@@ -364,7 +364,7 @@ Status entity_table_snapshot(Snapshot *out, const EntityTable *table, double t_s
 
     for (int s = 0; s < table->slot_end; s++) {
         const EntitySlot *slot = table->slot + s;
-        if (s + ahead < table->slot_end) { /* what is read of a slot lies within its first two lines */
+        if (s + ahead < table->slot_end) { /* the members read are within the first two cache lines of a slot */
             __builtin_prefetch(slot + ahead);
             __builtin_prefetch((const char *)(slot + ahead) + 64);
         }

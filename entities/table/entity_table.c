@@ -1,4 +1,5 @@
-/* entities/table/entity_table.c: slots, and what PDUs but reports do to them. Reports: entity_report.c; how a slot becomes a pose: snapshot.c. */
+/* entities/table/entity_table.c: slots, and the effects of PDUs other than Entity State. Reports: entity_report.c; from
+ * a slot to a pose: entity_snapshot.c. */
 #include "entities/table/entity_table_private.h"
 
 #include <stdlib.h>
@@ -160,7 +161,7 @@ void entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s)
     if (munition && munition->type.kind == dis_kind_munition) heat_launch(&munition->heat, &table->heat, t_s);
 }
 
-/* A munition does not outlive its Detonation; not every sender says so with a last Entity State. Version 7 also
+/* A munition ends with its Detonation; not every sender reports that with a last Entity State. Version 7 also
  * detonates things that are no munition and may stay. */
 void entity_table_detonation(EntityTable *table, const DisDetonation *pdu, double t_s)
 {
@@ -202,7 +203,7 @@ void entity_table_remove(EntityTable *table, const DisRemoveEntity *pdu, double 
 
 void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
 {
-    if (table->stopped_count == table->count) return; /* said over and over, it must not cost a walk each time */
+    if (table->stopped_count == table->count) return; /* a repeated one must not cost a walk each time */
     for (int s = 0; s < table->slot_end; s++) {
         EntitySlot *slot = table->slot + s;
         if (!entity_slot_lives(slot) || slot->stopped || !simulation_matches(pdu->receiving, slot->id)) continue;
@@ -216,7 +217,7 @@ void entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_s)
     }
 }
 
-/* Goes on from where it stood: the pause does not count as motion. */
+/* Continues from its position: the pause does not count as motion. */
 void entity_table_start(EntityTable *table, const DisStartResume *pdu, double t_s)
 {
     if (table->stopped_count == 0) return;

@@ -1,7 +1,7 @@
-/* entities/table/entity_table.h: what entities there are: one slot an entity, handles with a generation, the last report
- * of each, and what its history implies (heat, distance travelled, smoke left behind).
+/* entities/table/entity_table.h: the entity table: one slot per entity, handles with a generation, the last report of
+ * each, and state from its history (heat, distance travelled, smoke trails).
  *
- * Fed PDUs in the order of exercise time; asked for a Snapshot at any t at or after the last of them. */
+ * Takes PDUs in the order of exercise time; gives a Snapshot at any t at or after the last of them. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_H
 
@@ -13,37 +13,38 @@
 
 typedef struct EntityTable EntityTable;
 
-/* Stale handles are caught: entity_table_alive says false. {0} is never valid. */
+/* Stale handles are caught: entity_table_alive returns false. {0} is never valid. */
 typedef struct EntityHandle {
     uint32_t slot, generation;
 } EntityHandle;
 
 typedef struct EntityTableConfig {
-    int    capacity;              /* most entities at once; one more, and entity_ranks.h says which goes */
-    int    shown;                 /* most entities in a snapshot: those whose reports lie nearest the focus */
+    int    capacity;              /* most entities at once; beyond it entities are evicted by entity_ranks.h */
+    int    shown;                 /* most entities in a snapshot: those with reported positions nearest the focus */
     double timeout_s;             /* versions 5 and 6: 12 */
-    double timeout_land_v7_s;     /* version 7, whatever has the long heartbeat: land, sea, life forms, standing; 132 */
+    double timeout_land_v7_s;     /* version 7, entities with the long heartbeat: land, sea, life forms, standing;
+                                   * 132 */
     double extrapolation_limit_s; /* longest dead reckoning, then the entity is held; 12. Longer in proportion for
                                    * those with the long timeout, whose heartbeat is longer too */
     double rate_limit_rps;        /* a larger angular rate is not extrapolated; 20 */
-    double new_per_s;             /* entities that a sender may add a second, and at once; 65536: all its ids can name */
-    double ambient_s;             /* an entity first seen is taken to have been in that state so long; 3600 */
+    double new_per_s;             /* new entities of a sender per second, and at once; 65536: all its ids */
+    double ambient_s;             /* time for which a new entity is assumed to have been in its first state; 3600 */
     Pool  *pool;                  /* helps with snapshots; NULL: the caller alone. The same bits either way */
-    ContactGround ground;         /* what stands on it is set onto it in every pose handed out; none: it is not */
+    ContactGround ground;         /* ground entities are clamped to it in every pose; none: not clamped */
 } EntityTableConfig;
 
 /* Why entities came and went, and what was refused, how many. */
 typedef struct EntityCounters {
     uint64_t created, timed_out, deactivated, removed, updates_without_entity, unknown_articulation;
     uint64_t detonated;      /* munitions ended by their Detonation */
-    uint64_t late;           /* reports older than the one we have or than the entity's end, or of a munition after
+    uint64_t late;           /* reports older than the latest or than the entity's end, or of a munition after
                               * its Detonation */
     uint64_t motion_refused; /* reports with a velocity, acceleration or angular rate that is not finite or not
                               * possible (2e4 m/s, 1e4 m/s2, rate_limit_rps): that one vector is taken as zero */
-    uint64_t evicted;        /* given up for others when the table was full */
-    uint64_t refused;        /* not taken in, being those that a full table would have given up */
+    uint64_t evicted;        /* evicted for others when the table was full */
+    uint64_t refused;        /* refused by a full table, as they would be evicted at once */
     uint64_t over_rate;      /* reports of new ones, not taken in because their sender added more than new_per_s */
-    uint64_t tombstones_dropped; /* ends forgotten for want of room while a late report could still come */
+    uint64_t tombstones_dropped; /* tombstones dropped for lack of space while a late report was still possible */
 } EntityCounters;
 
 EntityTableConfig entity_table_default_config(void);
@@ -52,18 +53,18 @@ Status entity_table_create(EntityTable **out, const EntityTableConfig *config, c
                            const char *heat_path);
 void   entity_table_destroy(EntityTable *table);
 
-/* What a full table keeps: the host, `also` (its aim), and those whose last reports lie near the host's last report. 0:0:0:
- * none. A host that is not there, or no more: the place of before. A snapshot of more than config.shown takes the nearest
- * to that place. Extrapolated positions do not enter, so it does not matter at which instants snapshots are made. */
+/* What a full table keeps: the host, `also` (its aim), and entities with last reports near the host's last report.
+ * 0:0:0: none. Without a host, or after its end: the previous position. A snapshot of more than config.shown takes the
+ * nearest to that position. Extrapolated positions are not used, so the result does not depend on snapshot times. */
 void   entity_table_focus(EntityTable *table, DisEntityId host, DisEntityId also);
 /* Which sender has most entities here, and how many. O(senders). */
 int    entity_table_largest_sender(DisEntityId *sender, const EntityTable *table);
 
-/* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) stands still, and so does one that
- * Stop/Freeze names (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
+/* A report that deactivates (appearance bit 23) removes. A frozen entity (bit 21) is stationary, and so is one named by
+ * Stop/Freeze (0xFFFF: any; entity 0: a whole application) until Start/Resume or its own next report.
  *
  * One decoded PDU, usable (dis_entity_is_usable) and at exercise time t_s. STATUS_NO_MEMORY or
- * STATUS_UNSUPPORTED (refused: the table is full of others that come first) leave the table as it was. */
+ * STATUS_UNSUPPORTED (refused: the table is full of entities of higher rank) leave the table unchanged. */
 Status entity_table_entity_state(EntityTable *table, const DisEntityState *pdu, double t_s);
 Status entity_table_entity_state_update(EntityTable *table, const DisEntityStateUpdate *pdu, double t_s);
 void   entity_table_fire(EntityTable *table, const DisFire *pdu, double t_s);
@@ -74,14 +75,14 @@ void   entity_table_stop(EntityTable *table, const DisStopFreeze *pdu, double t_
 /* Removes those silent for too long at t_s. */
 void   entity_table_expire(EntityTable *table, double t_s);
 
-/* Any decoded PDU: checked, and handed to the right one of the above; types that the table does not need are ignored, and
- * an instant that is not finite. Every drop is counted. This is what replay and the node call. */
+/* Any decoded PDU: checked, and passed to the function above of its type; types that the table does not need are
+ * ignored, and an instant that is not finite. Every drop is counted. This is what replay and the node call. */
 void   entity_table_pdu(EntityTable *table, const DisPdu *pdu, double t_s, DisCounters *counters);
 
 int          entity_table_count(const EntityTable *table);
 EntityHandle entity_table_find(const EntityTable *table, DisEntityId id);
 bool         entity_table_alive(const EntityTable *table, EntityHandle handle);
-bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: not there */
+bool         entity_table_type(DisEntityType *out, const EntityTable *table, EntityHandle handle); /* false: absent */
 const EntityCounters *entity_table_counters(const EntityTable *table);
 const EffectCounters *entity_table_effect_counters(const EntityTable *table);
 

@@ -1,4 +1,4 @@
-/* entities/table/entity_table_private.h: what the table keeps of an entity, and snapshot.c reads. */
+/* entities/table/entity_table_private.h: state of an entity in the table, read by entity_snapshot.c. */
 #ifndef ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 #define ENTITIES_TABLE_ENTITY_TABLE_PRIVATE_H
 
@@ -28,12 +28,12 @@ typedef struct EntitySlot {
     double        created_s, report_s;
     double        timeout_s;  /* silence longer than this ends it */
     double        hold_s;     /* longest extrapolation */
-    bool          known;      /* it goes on reporting: heard for known_after_s */
+    bool          known;      /* known: has reported for known_after_s */
     bool          stopped;    /* by Stop/Freeze, at stop_s */
     double        stop_s;
     double        paused_s;   /* spent stopped since the report */
     double        spin_s, spin_from_s; /* running clock at spin_from_s */
-    double        distance_m; /* gone forward, at the report */
+    double        distance_m; /* distance travelled forward, at the report */
     double        missed_m, missed_rad, missed_s; /* by how much its last report set the extrapolation of the one before
                                * right, and after how long; missed_s 0: there was none */
     Kinematics    reported;   /* as sanitized: entity_report.c */
@@ -70,7 +70,7 @@ struct EntityTable {
 
 static inline bool entity_slot_lives(const EntitySlot *slot) { return slot->generation & 1; }
 static inline bool entity_slot_frozen(const EntitySlot *slot) { return slot->appearance >> dis_appearance_frozen_bit & 1; }
-/* Stopped entities are not expected to speak. */
+/* Stopped entities are not expected to report. */
 static inline bool entity_slot_silent(const EntitySlot *slot, double t_s)
 {
     return !slot->stopped && t_s - slot->report_s > slot->timeout_s;
@@ -90,16 +90,16 @@ static inline double entity_slot_dt(const EntitySlot *slot, double t_s)
 }
 
 EntitySlot *entity_slot_find(const EntityTable *table, DisEntityId id); /* NULL: not there */
-/* There is room for one more than the table keeps: entity_table_evict. */
+/* There is one slot more than the table keeps: entity_table_evict. */
 EntitySlot *entity_slot_new(EntityTable *table, DisEntityId id, double t_s);
 /* Out of the table, uncounted. */
 void entity_slot_free(EntityTable *table, EntitySlot *slot);
 /* The same with what follows from it; counter: why, one of the table's counters. */
 void entity_slot_remove(EntityTable *table, EntitySlot *slot, double t_s, uint64_t *counter);
 
-/* entity_room.c: of a report of it that was heard now. */
+/* entity_eviction.c: for a report received now. */
 void entity_eviction_rank(EntityTable *table, EntitySlot *slot, const double p_ecef[3], double t_s);
-/* A newcomer that is ranked comes in, if need be for another. False: it is the one to go, and is gone. */
+/* Admits a ranked new entity, evicting another if required. False: it is the one evicted. */
 bool entity_table_evict(EntityTable *table, EntitySlot *newcomer, double t_s);
 
 /* The running clock of rotors at t_s. */

@@ -1,5 +1,5 @@
-/* entities/table/snapshot.h: everybody at one instant, immutable and dense. What the renderer sees of the world's
- * inhabitants; it never sees a PDU or the table. */
+/* entities/table/snapshot.h: all entities at one instant, immutable and dense. The renderer's only view of entities; it
+ * uses neither PDUs nor the table. */
 #ifndef ENTITIES_TABLE_SNAPSHOT_H
 #define ENTITIES_TABLE_SNAPSHOT_H
 
@@ -14,9 +14,9 @@ typedef struct SnapshotEntity {
     char          marking[12];     /* terminated, raw bytes */
     uint32_t      appearance;
     int           model;           /* of the catalog */
-    double        p_ecef[3];       /* of the model's origin (base centre), whatever the sender's origin is */
+    double        p_ecef[3];       /* of the model's origin (base centre), independent of the sender's origin */
     double        v_ecef_mps[3];
-    double        w_body_rps[3];   /* of the attitude shown: 0 where the algorithm holds it, and when frozen */
+    double        w_body_rps[3];   /* of the rendered attitude: 0 where the algorithm holds it, and when frozen */
     double        r_ecef_from_body[9];
     double        age_s;           /* since the report it was extrapolated from */
     double        position_error_m;/* estimate: snapshot_position_error_m */
@@ -26,7 +26,7 @@ typedef struct SnapshotEntity {
                                     * it is a warm wreck */
 } SnapshotEntity;
 
-/* What turns the joints of an entity, kept until its nodes are asked for: snapshot_pose. */
+/* Joint state of an entity, kept for its nodes: snapshot_pose. */
 typedef struct SnapshotJoints {
     double     report_s, hold_s; /* of the joints' report; longest time a rate is followed */
     double     time_s;           /* the entity's own, of the snapshot */
@@ -38,7 +38,7 @@ typedef struct Snapshot {
     double          t_s;
     int             count, node_count;
     SnapshotEntity *entity; /* sorted by id */
-    NodePose       *node;   /* those of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
+    NodePose       *node;   /* of entity k: entity[k].first_node .. + model's node_count - 1. NULL: snapshot_pose */
     SnapshotJoints *joints; /* [count]; NULL where node is not */
     JointReport    *joint_report;
     int             puff_count;
@@ -50,7 +50,7 @@ typedef struct Snapshot {
 
 /* Whether a puff came out of this entity: its own trail, flames or plume. */
 bool snapshot_owns_puff(const Snapshot *snapshot, int index, const EffectPuff *puff);
-/* What its sender says of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
+/* Reported damage of a platform: 0 none, 1 slight, 2 moderate, 3 destroyed; others: 0. */
 int  snapshot_damage(const SnapshotEntity *entity);
 /* A platform that its sender calls destroyed. */
 bool snapshot_is_wreck(const SnapshotEntity *entity);
@@ -61,16 +61,16 @@ bool snapshot_is_wreck(const SnapshotEntity *entity);
  * a sender's own threshold may differ, and a missile's motor start misses by 12 m. */
 double snapshot_position_error_m(double age_s, double heartbeat_s, double hold_s, double speed_mps);
 
-/* How far an extrapolation is expected to have gone wrong, from how far the one before had when its next report came:
+/* Expected error of an extrapolation, from the error of the previous one at the next report:
  * missed_m and missed_rad after missed_s; 0: unknown, then `otherwise` for the place and nothing but the standard's 3
- * degrees a heartbeat for the attitude. A place goes wrong as an unreported acceleration carries it, an attitude as an
- * unreported rate, up to what was missed: a sender that is silent for longer has not gone on as it did, or it would have
- * spoken. tests/sensor/test_frame_error.c. */
+ * degrees a heartbeat for the attitude. The position error grows as by an unreported acceleration, that of the attitude
+ * as by an unreported rate, up to the previous error: a larger one would have caused a report.
+ * tests/sensor/test_frame_error.c. */
 void snapshot_drift(double *drift_m, double *drift_rad, double age_s, double missed_m, double missed_rad, double missed_s,
                     double otherwise_m, double heartbeat_s);
 
-/* Nodes of entity `index`, whose model this is, into pose[model->node_count]; joint_value: room for as many. Most entities
- * of a world are never looked at: a snapshot keeps what turns their joints, and the renderer poses those that it draws. */
+/* Nodes of entity `index`, with this model, into pose[model->node_count]; joint_value: same size. Most entities are
+ * never rendered: a snapshot keeps the joint state, and the renderer poses only what it draws. */
 void snapshot_pose(NodePose *pose, double *joint_value, const Snapshot *snapshot, int index, const Model *model);
 
 /* Index of an id, or -1. */

@@ -1,4 +1,4 @@
-/* entities/table/tombstones.c: a ring of ends, and an index into it by id. */
+/* entities/table/tombstones.c: a ring buffer of end times, and an index into it by id. */
 #include "entities/table/tombstones.h"
 #include "entities/table/entity_index.h"
 
@@ -40,7 +40,7 @@ void tombstones_destroy(Tombstones *t)
     free(t);
 }
 
-/* The place of a new one: a free place, or that of the oldest. */
+/* The slot of a new one: a free slot, or that of the oldest. */
 static int make_room(Tombstones *t, double now_s)
 {
     const int place = t->next;

@@ -1,7 +1,7 @@
-/* entities/table/tombstones.h: when entities ended: a late report must not bring one back.
+/* entities/table/tombstones.h: end times of entities: a late report must not recreate one.
  *
- * An entity has one tombstone, with its latest end. There is room for as many as the table keeps entities and 256
- * more; of a full room the oldest goes, and is counted when a report could still be that late. */
+ * An entity has one tombstone, with its latest end. Capacity: that of the entity table and 256 more; when full the
+ * oldest is dropped, and counted when a report could still be that late. */
 #ifndef ENTITIES_TABLE_TOMBSTONES_H
 #define ENTITIES_TABLE_TOMBSTONES_H
 

@@ -1,4 +1,4 @@
-/* terrain/earth/geodesy.h: WGS 84, through GeographicLib (the only file that knows it: geodesy.cpp). */
+/* terrain/earth/geodesy.h: WGS 84, through GeographicLib (used by geodesy.cpp only). */
 #ifndef TERRAIN_EARTH_GEODESY_H
 #define TERRAIN_EARTH_GEODESY_H
 

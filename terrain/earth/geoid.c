@@ -1,4 +1,5 @@
-/* terrain/earth/geoid.c: the .gtx grid, read whole and held with a margin, so that a look-up never asks where it is. */
+/* terrain/earth/geoid.c: the .gtx grid, read completely and stored with a margin, so that look-ups need no bounds
+ * checks. */
 #include "terrain/earth/geoid.h"
 
 #include <errno.h>
@@ -40,7 +41,7 @@ static bool find_file(char *out, size_t out_size)
     return false;
 }
 
-/* False: not a grid of the Earth that we would allocate for. */
+/* False: not a plausible grid of the Earth; nothing is allocated. */
 static bool read_header(Geoid *g, const uint8_t header[header_octets])
 {
     g->south_deg    = read_f64(header);

@@ -1,8 +1,8 @@
 /* terrain/earth/geoid.h: height of mean sea level above the ellipsoid, from a grid in PROJ's .gtx form.
  *
  * EGM96 by 15 minutes is Debian's proj-data. Cubic between the posts: within 10 mm of NGA's own interpolation and
- * 15 mm of the harmonic series at NGA's six places (tests/terrain/test_geoid.c). It changes by 0.6 m over 16 km: ask
- * for each place, never once for all. */
+ * 15 mm of the harmonic series at NGA's six places (tests/terrain/test_geoid.c). It changes by 0.6 m over 16 km:
+ * evaluate it at each position, never once for all. */
 #ifndef TERRAIN_EARTH_GEOID_H
 #define TERRAIN_EARTH_GEOID_H
 

@@ -1,4 +1,4 @@
-/* terrain/earth/local_frame.c: one matrix, taken once; the conversions are in the header. */
+/* terrain/earth/local_frame.c: one matrix, computed once; the conversions are in the header. */
 #include "terrain/earth/local_frame.h"
 
 Status local_frame_at(LocalFrame *out, const Geodetic *origin)

@@ -13,8 +13,8 @@ static const double day_s = 86400, unix_epoch_jd = 2440587.5;
 static const double unix_1900_s = -2208988800, unix_2101_s = 4133980800; /* 1900-01-01, 2101-01-01 */
 static const double au_m = 149597870700.0, light_day_per_au = 499.004783836 / 86400;
 
-/* TT - UT1 where no leap second tells it. 1900 .. 2020: observed, every five years (Astronomical Almanac,
- * section K), linear between, within 0.9 s. After 2020 a guess that may be out by tens of seconds in 2100;
+/* TT - UT1 where it does not follow from leap seconds. 1900 .. 2020: observed, every five years (Astronomical Almanac,
+ * section K), linear between, within 0.9 s. After 2020 an estimate, with an error of up to tens of seconds in 2100;
  * the sun moves 0.04 arcsecond a second, so even that is a thousandth of a degree. */
 static double estimate_delta_t_s(double year)
 {

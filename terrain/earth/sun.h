@@ -1,4 +1,4 @@
-/* terrain/earth/sun.h: where the sun stands, by ERFA. Apparent place with parallax and refraction as NREL SPA
+/* terrain/earth/sun.h: direction of the sun, by ERFA. Apparent place with parallax and refraction as NREL SPA
  * defines them; within 0.0005 degree of its published vector (tests/terrain/test_sun.c). */
 #ifndef TERRAIN_EARTH_SUN_H
 #define TERRAIN_EARTH_SUN_H

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <sys/mman.h>
 
-/* Zeroed heights. A ray touches a few of hundreds of megabytes: what is large lies on large pages where the system
- * has them, or half of a look would be looking up its page. NULL: no memory. */
+/* Zeroed heights. A ray touches a few of hundreds of megabytes: large arrays use huge pages where available, or half of
+ * a look-up would be the TLB miss. NULL: no memory. */
 static void *heights_create(size_t count, size_t size)
 {
     static const size_t page = (size_t)1 << 21;
@@ -13,7 +13,7 @@ static void *heights_create(size_t count, size_t size)
     if (bytes < 2 * page) return calloc(count, size);
     void *heights = aligned_alloc(page, (bytes + page - 1) / page * page);
     if (!heights) return NULL;
-    madvise(heights, bytes, MADV_HUGEPAGE); /* a wish: where it is not granted nothing changes but the time */
+    madvise(heights, bytes, MADV_HUGEPAGE); /* advisory: without huge pages only the run time changes */
     return memset(heights, 0, bytes);
 }
 

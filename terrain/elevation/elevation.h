@@ -11,16 +11,16 @@
  *     u <  v, north-west:  SW NE NW    z = sw + u (ne - nw) + v (nw - sw)
  *
  * Seams. The spacing of level k+1 is a whole multiple of that of level k, and the outline of level k runs
- * along cell edges of level k+1: the hole is a whole number of cells. A landscape of ours goes further:
+ * along cell edges of level k+1: the hole is a whole number of cells. A landscape of Pitviper goes further:
  * steps, origins and spacings are dyadic, and each edge post of level k is *exactly* on the straight edge
  * between two posts of level k+1, so the two surfaces are equal along the seam to the last bit and there is
  * neither crack nor skirt. What remains is a tracer's own rounding, and one rule closes it (it also closes
- * the seams of a ground that only keeps the first promise):
+ * the seams of a terrain that only has the first property):
  *
  *     The ground is solid. A ray that is below the surface at the place where it enters a cell, from a
  *     neighbour, from another level, or at a level's outline from outside, hits there: range at the entry,
- *     normal of the triangle entered. Compare the ray's z with the surface at the entry; do not ask for a
- *     proper crossing of a triangle.
+ *     normal of the triangle entered. Compare the ray's z with the surface at the entry; do not require a proper
+ *     crossing of a triangle.
  *
  * Beyond the outermost level there is nothing: such rays see the sky. */
 #ifndef TERRAIN_ELEVATION_ELEVATION_H
@@ -61,7 +61,7 @@ void   elevation_build_pyramids(Elevation *elevation);
 void   elevation_destroy(Elevation *elevation); /* accepts a half-built one */
 
 /* Height of the surface and (if not NULL) its upward unit normal at an ENU place, on the triangle the
- * tracer would hit. NaN beyond the outermost level (the normal is then left alone). */
+ * tracer would hit. NaN beyond the outermost level (the normal is then unchanged). */
 double elevation_height(const Elevation *elevation, double x_m, double y_m, double normal_enu[3]);
 
 #endif

@@ -1,4 +1,4 @@
-/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and halved into levels. */
+/* terrain/elevation/patch.c: a window of a raster: averaged, its voids filled, and reduced to mip levels. */
 #include "terrain/elevation/patch.h"
 
 #include <stdlib.h>
@@ -56,7 +56,7 @@ static double bilinear(const float *v, int nx, int ny, double x, double y)
     return south + w * (north - south);
 }
 
-/* Voids of one mip: first what the coarser one says, then relaxed towards the mean of the neighbours, so that the
+/* Voids of one mip: first from the coarser one, then relaxed towards the mean of the neighbours, so that the
  * filling meets the rim without a step and has no extremum of its own (a membrane; Laplace's equation). */
 static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx, int coarse_ny, uint8_t *hole,
                    long *voids)
@@ -95,7 +95,7 @@ static Status fill(float *v, int nx, int ny, const float *coarse, int coarse_nx,
 static Status read_posts(Patch *p, const Raster *raster, int band, int width, int height, double low, double high,
                          const char *key)
 {
-    int rows = p->factor; /* a strip of about a megapixel, whole rows of ours */
+    int rows = p->factor; /* a strip of about a megapixel, complete rows of the patch */
     while ((int64_t)rows * width < 1 << 20 && rows < height) rows += p->factor;
     float *strip = malloc((size_t)rows * (size_t)width * sizeof *strip);
     if (!strip) return STATUS_NO_MEMORY;

@@ -1,5 +1,5 @@
 /* terrain/elevation/patch.h: a window of one raster in memory: averaged to a coarser posting where that is enough,
- * its voids filled from their surroundings, and halved again and again for whoever looks from afar. */
+ * its voids filled from their surroundings, and reduced to mip levels for distant views. */
 #ifndef TERRAIN_ELEVATION_PATCH_H
 #define TERRAIN_ELEVATION_PATCH_H
 
@@ -8,8 +8,8 @@
 enum { patch_most_mips = 20 };
 
 typedef struct Patch {
-    int      factor;            /* pixels of the raster a side of one of ours, a power of two */
-    int      x0, y0;            /* pixel of the raster where our first begins */
+    int      factor;            /* pixels of the raster per side of a patch pixel, a power of two */
+    int      x0, y0;            /* first raster pixel of the patch */
     int      mips;              /* 0: nothing is valid here */
     int      nx[patch_most_mips], ny[patch_most_mips];
     float   *v[patch_most_mips];/* [0] finest; each next one the mean of 2 x 2 */

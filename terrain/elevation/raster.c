@@ -1,5 +1,5 @@
-/* terrain/elevation/raster.c: the door to GDAL. Its messages are kept, not printed: ours says them once, with what
- * to do. */
+/* terrain/elevation/raster.c: the interface to GDAL. Its messages are captured, not printed: one log line has them,
+ * with a remedy. */
 #include "terrain/elevation/raster.h"
 
 #include <strings.h>
@@ -19,7 +19,7 @@ static pthread_once_t once = PTHREAD_ONCE_INIT;
 
 static void register_drivers(void) { GDALAllRegister(); }
 
-/* GDAL's reason for the last failure, or a word of ours. */
+/* GDAL's reason for the last failure, or a default text. */
 static const char *reason(const char *else_text)
 {
     const char *text = CPLGetLastErrorMsg();
@@ -46,7 +46,7 @@ typedef struct Opened {
     OGRSpatialReferenceH crs;
 } Opened;
 
-/* As GDAL hands them on from files; 0: not a length that we know. */
+/* As GDAL reports them from files; 0: an unknown unit of length. */
 static double metres_of_unit(const char *unit)
 {
     static const struct {
@@ -376,7 +376,7 @@ void raster_px_from_earth(const Raster *raster, int count, double *lon_to_x, dou
     OCTTransform(raster->crs_from_earth, count, lon_to_x, lat_to_y, NULL);
     loud();
     through(raster->px_from_crs, count, lon_to_x, lat_to_y);
-    if (raster->whole_turn_px > 0) /* the turn on which the sheet lies */
+    if (raster->whole_turn_px > 0) /* the full turn of longitude of the raster */
         for (int k = 0; k < count; k++)
             lon_to_x[k] -= raster->whole_turn_px * rint((lon_to_x[k] - 0.5 * raster->width) / raster->whole_turn_px);
 }

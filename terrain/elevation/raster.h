@@ -34,8 +34,8 @@ typedef struct RasterSet {
     Raster *raster;              /* finest posting first; equals in the order given */
 } RasterSet;
 
-/* paths: files and folders, separated by commas; of a folder, what GDAL knows. key: the setting, for messages. What
- * cannot be used is one logged line with the next step, and STATUS_IO or STATUS_BAD_VALUE. */
+/* paths: files and folders, separated by commas; of a folder, all that GDAL reads. key: the setting, for messages. An
+ * unusable file is one logged line with a remedy, and STATUS_IO or STATUS_BAD_VALUE. */
 Status raster_set_open(RasterSet *out, const char *paths, const char *key);
 void   raster_set_close(RasterSet *set); /* accepts zeroes */
 

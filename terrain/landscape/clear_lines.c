@@ -1,11 +1,11 @@
-/* terrain/landscape/clear_lines.c: what clear lines allow.
+/* terrain/landscape/clear_lines.c: height limits of the terrain by clear lines.
  *
- * A line that was flown, or along which a shot was aimed and hit, lay above the ground. Every post within one
+ * A flight path, or the sight line of a shot that hit, is above the ground. Every post within one
  * cell's diagonal of a point of the line is held `clearance` below that point, so every triangle the line
- * passes over is, whole: no interpolation can bring it back. From there the ground may rise by one in two, a
- * valley. The clearance is 2 m, less where a believed fix stands closer under the line, 0.15 m at least; it
- * grows by one in twenty from where the line comes down to a fix, and within taper_of_spacing_m of such a place
- * the line claims nothing. A fix that still is above what is allowed is dropped. */
+ * passes over is below the line entirely, whatever the interpolation. From there the ground may rise by one in two, a
+ * valley. The clearance is 2 m, less where an accepted fix is closer under the line, 0.15 m at least; it grows by
+ * one in twenty from where the line comes down to a fix, and within taper_of_spacing_m of such a place the line sets no
+ * limit. A fix that is still above the limit is dropped. */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
@@ -13,7 +13,7 @@
 static const double full_clearance_m = 2, least_clearance_m = 0.15;
 static const double taper_slope = 0.05, valley_slope = 0.5;
 static const float  no_cap_m = 1e30f; /* finite, so that a share of nothing of it is nothing */
-static const double touch_m = 8; /* an end this near a fix has come down to it: half a big vehicle and its height */
+static const double touch_m = 8; /* an end this near a fix counts as at the fix: half a big vehicle and its height */
 
 /* ---- the usable lines --------------------------------------------------------------------- */
 
@@ -49,7 +49,7 @@ static int by_place(const void *pa, const void *pb)
     return 0;
 }
 
-/* Not from under the ground of any place on Earth: such a line would pull the country down with it. */
+/* Not from below the lowest ground on Earth: such a line would lower the terrain with it. */
 static bool under_the_ground(const double p[3], const Curve *curve)
 {
     double z_m, dz_per_h;
@@ -72,7 +72,7 @@ Status line_set_create(LineSet *out, const ClearLine *line, int count, const Loc
     for (int n = 0; n < count; n++) {
         const double *a = line[n].a_enu, *b = line[n].b_enu;
         if (!v3_is_finite(a) || !v3_is_finite(b)) continue;
-        /* wholly beyond one side of the world, or so long that it is nobody's path */
+        /* entirely beyond one side of the terrain, or too long for a path */
         if (fmin(a[0], b[0]) > horizon_m || fmax(a[0], b[0]) < -horizon_m || fmin(a[1], b[1]) > horizon_m ||
             fmax(a[1], b[1]) < -horizon_m || !(squared_distance(a, b) < 16 * horizon_m * horizon_m))
             continue;
@@ -318,7 +318,7 @@ static void seed_line(Cutter *cutter, const ClearLine *line)
         double a[3], b[3], mid[3];
         v3_add_scaled(a, line->a_enu, length_m > 0 ? s_m / length_m : 0, d);
 
-        /* how far nothing can happen: high above the whole level */
+        /* distance without effect: high above the whole level */
         const double above_m = a[2] - full_clearance_m - cutter->top_m;
         if (above_m > 0) {
             const double skip_m = slope > 0 ? above_m / slope : INFINITY;
@@ -404,7 +404,7 @@ Status line_cut(WorkLevel *level, int index, const LineSet *lines, FixSet *fixes
     for (size_t n = 0; n < posts; n++)
         if (!level->water || !level->water[n]) z->v[n] = z->v[n] < level->cap[n] ? z->v[n] : level->cap[n];
 
-    /* rows that would have to stand above what the lines allow */
+    /* rows that would be above the limit of the lines */
     const Field cap = {z->spacing_m, z->i0, z->j0, z->nx, z->ny, level->cap};
     for (int n = 0; n < fixes->count; n++) {
         FixRow *row = &fixes->row[n];

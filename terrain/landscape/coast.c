@@ -1,9 +1,8 @@
-/* terrain/landscape/coast.c: where the sea is, and how the land comes down to it.
+/* terrain/landscape/coast.c: extent of the sea, and the transition from land to it.
  *
- * Sea is what lies nearer to a place of sea than to one of dry land; the line between wanders by a share of the
- * distance to either, so that it looks like a shore and still leaves every place on its own side. The land's own
- * heights are faded to the sea's level towards the shore, and kept above it away from places where the exercise says
- * otherwise. */
+ * A position is sea when it is nearer to a sea fix than to a fix of dry land; the line between is perturbed by a share
+ * of the distance to either, so that it resembles a shore and still leaves every fix on its own side. The land's own
+ * heights are faded to the sea's level towards the shore, and kept above it except near fixes that are lower. */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
@@ -11,9 +10,9 @@
 enum { most_places = 512, block_posts = 16 };
 static const double wander = 0.3;           /* of the distance to the nearest place of either kind */
 static const double most_wander_m = 400;
-static const double innermost_m = 1024;     /* half width of the finest grid of answers; each next is four times it */
+static const double innermost_m = 1024;     /* half width of the finest grid of the cache; each next is four times it */
 static const double shore_land_m = 400;     /* the land has its own height from here on */
-static const double own_land_m = 50;        /* of a place of land: its country may be lower than the sea */
+static const double own_land_m = 50;        /* of a land fix: the terrain there may be lower than the sea */
 static const double wild_m = 300;           /* from it: no longer */
 static const double beach_m = 12;
 static const double own_share = 0.8;        /* or so near to a place of land, of the way from the shore */
@@ -66,12 +65,12 @@ static double most_wander_at(double to_sea_m, double to_land_m)
     return fmin(wander * fmin(to_sea_m, to_land_m), most_wander_m);
 }
 
-/* How far inland, m, about: half of what the sea is farther than the land. Negative on the water. */
+/* Approximate distance inland, m: half the difference of the distances to sea and land. Negative on the water. */
 static double inland_m(const Coast *coast, double to_sea_m, double to_land_m, double x_m, double y_m)
 {
     if (!coast->land_count) return -INFINITY;
     const double off_m = to_sea_m - to_land_m, room_m = most_wander_at(to_sea_m, to_land_m);
-    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m) return 0.5 * off_m; /* whatever the wandering */
+    if (off_m < -room_m || off_m > room_m + 2 * shore_land_m) return 0.5 * off_m; /* for any perturbation of the line */
     return 0.5 * (off_m + room_m * wander_at(coast->seed, x_m, y_m));
 }
 
@@ -104,7 +103,7 @@ CoastKind coast_at(const Coast *coast, double x_m, double y_m)
     return ask(coast, x_m, y_m);
 }
 
-/* ---- making it ---------------------------------------------------------------------------- */
+/* ---- construction ------------------------------------------------------------------------- */
 
 /* Places of one kind no nearer to one another than a distance that leaves most_places of them; and again those that the
  * thinned ones would give to the other kind. */
@@ -136,7 +135,7 @@ static int keep_contradicted(double (*out)[2], int count, const double (*other)[
     return count;
 }
 
-/* From coarse to fine: a cell inside one that is certain need not be asked. */
+/* From coarse to fine: a cell inside one that is certain need not be evaluated. */
 static Status make_grids(Coast *coast)
 {
     for (int g = coast_grids - 1; g >= 0; g--) {
@@ -198,14 +197,14 @@ void coast_destroy(Coast *coast)
 
 /* ---- heights ------------------------------------------------------------------------------ */
 
-/* Away from where the exercise was the country does not lie below the sea. */
+/* Away from the fixes the terrain is not below the sea. */
 static double dry_m(double above_m)
 {
     static const double round_m = 2;
     return 0.5 * (above_m + sqrt(above_m * above_m + 4 * round_m * round_m));
 }
 
-/* The land's height above the sea as the coast leaves it. */
+/* The land's height above the sea after fading to the shore. */
 static double led_down_m(double above_m, double inland, double to_sea_m, double to_land_m)
 {
     const double wild = smooth_step(own_land_m, wild_m, to_land_m);
@@ -213,8 +212,8 @@ static double led_down_m(double above_m, double inland, double to_sea_m, double 
     return smooth_step(0, 1, own) * (above_m + wild * (dry_m(above_m) - above_m));
 }
 
-/* A block's posts about (x, y): all of them on the water, or inland where the shore is not felt, and there all near a
- * place of land or all far from any. */
+/* A block's posts about (x, y): all of them on the water, or inland beyond the influence of the shore, and there all
+ * near a place of land or all far from any. */
 typedef enum BlockKind { BLOCK_MIXED, BLOCK_WATER, BLOCK_UNTOUCHED, BLOCK_WILD } BlockKind;
 
 static BlockKind kind_of_block(const Coast *coast, double x_m, double y_m, double reach_m)

@@ -1,6 +1,6 @@
-/* terrain/landscape/cover.c: what grows and lies on the ground. Invented: irregular fields, tracks and hedges between
- * some of them, scrub and rock where it is steep or nobody ploughs. Real: what the cover files say, else the same in
- * the lowlands and woods on the slopes. Pure functions of the place, eight places at once. */
+/* terrain/landscape/cover.c: land cover. Synthetic: irregular fields, tracks and hedges between some of them, scrub and
+ * rock on steep or uncultivated ground. Real: the land cover files, else the same in the lowlands and woods on the
+ * slopes. Pure functions of the position, eight positions at once. */
 #include "terrain/landscape/landscape_eight_private.h"
 
 #include <stdlib.h>
@@ -39,7 +39,7 @@ static Lattice moved(Lattice at, F32x8 by)
     return (Lattice){i32x8_add(at.cell, i32x8_truncate(whole)), share - whole};
 }
 
-/* Heights in the level's own steps, of lanes that lie in one of its cells. Two posts of a row come with one look. */
+/* Heights in the level's own steps, of lanes within its cells. Two posts of a row take one load. */
 static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F32x8 lanes)
 {
     const I32x8 post = i32x8_set(0xffff), none = i32x8_set(0), mask = _mm256_castps_si256(lanes);
@@ -54,7 +54,7 @@ static F32x8 level_heights(const ElevationLevel *level, Lattice x, Lattice y, F3
     return sw + f32x8_select(f32x8_less(x.share, y.share), north_west, south_east);
 }
 
-/* Slope about eight places, of those whose arms end on one level together; the others' are asked for one by one. Within
+/* Slope about eight places, of those whose arms end on one level together; the others' are evaluated one by one. Within
  * 1e-5 of slope_about. */
 static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
@@ -99,7 +99,7 @@ static F32x8 slopes_about(const Elevation *elevation, const double x_m[8], const
     return slope;
 }
 
-/* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; nobody sees it there. */
+/* Beyond some tens of kilometres the tilt of the plane itself would count as a slope; it is not visible there. */
 static F32x8 slopes_of_terrain(const Elevation *elevation, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     const F32x8 x = f32x8_of_doubles(x_m), y = f32x8_of_doubles(y_m);
@@ -107,11 +107,11 @@ static F32x8 slopes_of_terrain(const Elevation *elevation, const double x_m[8], 
     return f32x8_max(slopes_about(elevation, x_m, y_m, lanes) - lean, f32x8_set(0));
 }
 
-/* ---- invented cover ------------------------------------------------------------------------- */
+/* ---- synthetic cover ------------------------------------------------------------------------ */
 
 static const double track_half_m = 2, hedge_half_m = 1.5;
 
-/* What stands on the border of two fields, at a place near one; SURFACE_NONE: nothing. */
+/* Cover on the border of two fields, at a position near one; SURFACE_NONE: nothing. */
 static SurfaceClass border_surface(const PlotCell *cell, uint64_t seed, int site, float x_m, float y_m, bool scrubby)
 {
     double       near[plot_sites], border_m = INFINITY;
@@ -139,7 +139,7 @@ static unsigned near_border(const PlotCell *cell, F32x8 x, F32x8 y, I32x8 site, 
 {
     const F32x8    own_x = f32x8_gather(cell->x_m, site), own_y = f32x8_gather(cell->y_m, site);
     const I32x8 own = plot_look(cell->field, site);
-    const F32x8    reach = f32x8_set(track_half_m * track_half_m * 1.01); /* squared: no root; room for rounding */
+    const F32x8    reach = f32x8_set(track_half_m * track_half_m * 1.01); /* squared: no root; margin for rounding */
     F32x8          near = f32x8_set(0);
     for (int n = 0; n < plot_sites; n++) {
         const F32x8 sx = f32x8_set((double)cell->x_m[n]), sy = f32x8_set((double)cell->y_m[n]);
@@ -204,7 +204,7 @@ static void invented_surfaces(int32_t surface[8], const Cover *cover, PlotCells 
 
 /* Elevation files without cover: woods on slopes too steep for the plough and below the tree line, fields in the
  * lowlands, rock where it is steeper than soil stays (40 degrees), the sea where it is flat at its level. SURFACE_NONE:
- * as invented. */
+ * as synthetic. */
 static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m, double z_m, double slope,
                                      double patchy, double woods)
 {
@@ -225,12 +225,12 @@ static SurfaceClass unmapped_surface(const Cover *cover, double x_m, double y_m,
     return SURFACE_NONE;
 }
 
-/* What the cover files say; fills those lanes and returns the others. */
+/* Land cover from the files; fills those lanes and returns the others. */
 static unsigned mapped_surfaces(int32_t surface[8], const Cover *cover, const double x_m[8], const double y_m[8],
                                 unsigned lanes)
 {
     if (!cover->grid[0].surface && !cover->grid[1].surface) return lanes;
-    /* borders of coarse cells wander by half a cell, as nothing in the country runs in stairs of 30 m */
+    /* borders of coarse cells wander by half a cell, as real borders have no steps of 30 m */
     const double cell_m = cover->grid[0].cell_m, away_m = cell_m >= 5 ? 0.5 * cell_m : 0;
     F32x8        dx = f32x8_set(0), dy = f32x8_set(0);
     for (int octave = 0; away_m > 0 && octave < 3; octave++) {

@@ -1,4 +1,4 @@
-/* terrain/landscape/elevation_correct.c: imported elevation bent to fixes of the ground. */
+/* terrain/landscape/elevation_correct.c: corrects imported elevation by fixes of the ground. */
 #include "terrain/landscape/elevation_import_private.h"
 
 #include <stdlib.h>
@@ -48,7 +48,7 @@ Status elevation_import_correct(Import *m, const GroundFix *fix, int fix_count, 
         spline = fine;
         spacing_m /= 2;
     }
-    /* beyond the finest window nothing is known: led out to nothing over its last eighth */
+    /* no data beyond the finest window: faded to 0 over its last eighth */
     const double edge_m = (half - margin) * spline.spacing_m;
     for (int k = 0; k < m->level_count; k++) {
         Field *z = &m->level[k].z;

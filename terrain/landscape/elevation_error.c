@@ -25,8 +25,8 @@ static double off_m(const Import *m, const Elevation *elevation, double lon_rad,
     return elevation_height(elevation, p_enu[0], p_enu[1], NULL) - p_enu[2];
 }
 
-/* Places of the grid drawn at random, each taken to ENU by the exact way and held against the stored surface; and as
- * many posts of it, where a peak between our own posts is cut off most. */
+/* Places of the grid drawn at random, each converted exactly to ENU and compared with the stored surface; and as many
+ * posts of it, where peaks between the stored posts are lost most. */
 Status elevation_import_measure(ElevationReport *report, const Import *m, const Elevation *elevation,
                                 const Patch *patch)
 {

@@ -1,12 +1,12 @@
 /* terrain/landscape/elevation_import.c: plan the levels; from the horizon inwards, read what a level needs of every
- * grid, find its posts, bend and join; at the end measure what came of it against the files. */
+ * grid, find its posts, apply curvature and blend; at the end measure the error against the files. */
 #include "terrain/landscape/elevation_import_private.h"
 
 #include <stdlib.h>
 
 static const char key[] = "terrain.elevation";
 static const double lowest_m = -12500, highest_m = 9500; /* below the deepest trench or above Everest: a void */
-static const double rise_m = 4000; /* between the two heights at which places are looked up exactly */
+static const double rise_m = 4000; /* between the two heights with exact look-up */
 enum { most_posts_0 = 36 << 20, outer_half_posts = 1024, last_half_posts = 2048 };
 
 /* ---- plan ----------------------------------------------------------------------------------- */
@@ -285,7 +285,7 @@ static double composed(const Import *m, const double *x, const double *y, double
     return weights > 0 ? cover * sum / weights + (1 - cover) * m->base_h_m : m->base_h_m;
 }
 
-/* Where the vertical line of the ENU plane, which leans against the grids' own verticals, meets them. */
+/* Where the vertical line of the ENU plane, which is inclined against the grids' own verticals, intersects them. */
 static double height_at(const Import *m, const double *x0, const double *y0, const double *dx, const double *dy,
                         double n_m, double guess_m)
 {
@@ -336,7 +336,7 @@ static void find_posts(const Import *m, Field *z)
     }
 }
 
-/* Mean and spread of each grid's outline: how gently to lead on from it, and what lies beyond the coarsest. */
+/* Mean and spread of each grid's outline: for the blending from it, and the height beyond the coarsest. */
 static bool measure_edges(Import *m, double geoid_m)
 {
     bool any = false;

@@ -1,4 +1,4 @@
-/* terrain/landscape/elevation_import.h: the ground from elevation files, as nested levels in ENU.
+/* terrain/landscape/elevation_import.h: terrain from elevation files, as nested levels in ENU.
  *
  * Every post is curved into ENU: the vertical line of the ENU plane through (x, y) is followed to where the file's
  * own surface, bilinear between its posts and raised by the geoid at that latitude and longitude, crosses it. Beyond

@@ -1,4 +1,4 @@
-/* terrain/landscape/elevation_import_private.h: an import in work, for the files that make it. */
+/* terrain/landscape/elevation_import_private.h: state of an import in progress, shared by its files. */
 #ifndef TERRAIN_LANDSCAPE_ELEVATION_IMPORT_PRIVATE_H
 #define TERRAIN_LANDSCAPE_ELEVATION_IMPORT_PRIVATE_H
 

@@ -1,9 +1,9 @@
-/* terrain/landscape/fit.c: which fixes to sanitize_vector, and the last centimetres on the posts themselves.
+/* terrain/landscape/fit.c: which fixes are consistent, and the last centimetres on the posts themselves.
  *
- * Other simulators' ground, a burst on a roof, a vehicle slung under a helicopter: fixes contradict each other.
- * Whole entities that the others outvote are gone before (landscape_votes.c). Of what is left two fixes agree when a
- * slope of 35 degrees can join them. Where they do not, the higher one is the likelier liar and goes, unless the lower
- * is outvoted four to one (one report from under the ground). */
+ * Fixes can be inconsistent: terrain of other simulators, a burst on a roof, a vehicle slung under a helicopter.
+ * Entities rejected by the consensus are removed before (votes.c). Two of the remaining fixes agree when a slope of 35
+ * degrees can join them. Otherwise the higher one is more likely wrong and is dropped, unless the lower has a quarter
+ * of its support or less (one report from below the ground). */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
@@ -61,8 +61,8 @@ static int gather_candidates(Candidate *out, const LocalFrame *frame, const Grou
     return count;
 }
 
-/* Rows of one site: its median first, then whatever the median does not contradict. counted: the row that each voter
- * was last counted in. */
+/* Rows of one site: its median first, then all that are consistent with the median. counted: the row that each source
+ * entity was last counted in. */
 static void merge_site(FixSet *set, const Candidate *site, int count, const GroundFix *fix, int *counted)
 {
     const int median = (count - 1) / 2, first = set->count;
@@ -88,7 +88,7 @@ static void merge_site(FixSet *set, const Candidate *site, int count, const Grou
     }
 }
 
-/* ---- contradictions ----------------------------------------------------------------------- */
+/* ---- inconsistencies ---------------------------------------------------------------------- */
 
 typedef struct Vote {
     int    row;
@@ -108,8 +108,8 @@ static double weight_of(const FixRow *row)
     return row->weight < most_weight ? row->weight : most_weight;
 }
 
-/* Votes against a row among its neighbours: four for each lower one, one for each higher one. Crowded cells are
- * sampled, so a parade ground costs no more than a road. */
+/* Inconsistent neighbours of a row, weighted: four for each lower one, one for each higher one. Dense cells are
+ * sampled, so the cost is bounded. */
 static double votes_against(const FixRow *row, int self, const NearGrid *near, const FixRow *rows)
 {
     enum { most_a_cell = 64 };
@@ -130,7 +130,7 @@ static double votes_against(const FixRow *row, int self, const NearGrid *near, c
     return against;
 }
 
-/* Drops rows, most doubted first, until no two within reach_m contradict each other (as far as was sampled). */
+/* Drops rows, the most inconsistent first, until all within reach_m agree (as far as was sampled). */
 static Status drop_contradicted(FixRow *rows, int count, double reach_m)
 {
     NearGrid near;
@@ -157,8 +157,8 @@ static Status drop_contradicted(FixRow *rows, int count, double reach_m)
     return STATUS_OK;
 }
 
-/* The same between squares of 64 m, each spoken for by its middle row, so that a whole column of reports far
- * off the ground is seen from half a kilometre. */
+/* The same between squares of 64 m, each represented by its median row, so that a column of reports far off the ground
+ * is detected from half a kilometre. */
 static Status drop_contradicted_squares(FixSet *set)
 {
     static const double square_m = 64, reach_m = 512;
@@ -267,7 +267,7 @@ static bool on_outline(const Field *z, int at)
     return i == 0 || j == 0 || i == z->nx - 1 || j == z->ny - 1;
 }
 
-/* One projection: the row is met by the least change of its three posts, or a share of the way. Returns how far
+/* One projection: the row is fitted by the least change of its three posts, or a share of it. Returns how far
  * off it was. */
 static double meet_row(WorkLevel *level, const FixRow *row, double share)
 {
@@ -294,7 +294,7 @@ static double meet_row(WorkLevel *level, const FixRow *row, double share)
 }
 
 /* Kaczmarz's projections, row after row. The smooth field is already within centimetres, so little moves; rows
- * that cannot all be met share the error, because the last sweeps take ever smaller steps. Returns the worst
+ * that cannot all be fitted share the error, because the last sweeps take ever smaller steps. Returns the worst
  * that is left. */
 static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
 {
@@ -314,8 +314,8 @@ static double sweep_rows(WorkLevel *level, int index, const FixSet *fixes)
     }
 }
 
-/* A kerb, a step between two roads at one place: the posts cannot follow everybody. The worst go, a few at a
- * time, until the rest is met. */
+/* A kerb, a step between two roads at one place: the posts cannot fit all fixes. The worst are dropped, a few at a
+ * time, until the rest is fitted. */
 void fit_posts(WorkLevel *level, int index, FixSet *fixes)
 {
     enum { rounds = 15, gentle_rounds = 12 };

@@ -1,4 +1,4 @@
-/* terrain/landscape/ground_image.c: rasters of cover classes and of a photograph, resampled into ENU, and read at
+/* terrain/landscape/ground_image.c: rasters of land cover classes and of a photograph, resampled into ENU, and read at
  * points. */
 #include "terrain/landscape/ground_image.h"
 
@@ -10,7 +10,7 @@ static const char cover_key[] = "terrain.cover", photo_key[] = "terrain.orthopho
 
 /* ---- cover ---------------------------------------------------------------------------------- */
 
-/* Elevation given in the wrong place is the usual mistake, and comes in float. */
+/* Elevation given for the wrong key is the usual error; its pixels are float. */
 static Status open_whole(RasterSet *set, const char *paths, const char *key, const char *what)
 {
     const Status status = raster_set_open(set, paths, key);
@@ -74,7 +74,7 @@ Status cover_table_check(const char *path)
 
 static const char *const built_in[] = {"worldcover", "nlcd", "fbfm40"};
 
-/* The table that knows most of the pixels; of equals the first. */
+/* The table with most of the pixels' codes; of equals the first. */
 static Status choose_table(CoverTable *out, const char **name, const char *asked, const long histogram[most_codes])
 {
     char path[4096], file[64];
@@ -279,7 +279,7 @@ static int by_value(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* White of wide samples: what one in a thousand exceeds, of a few rows all over. */
+/* White level of wide samples: the 99.9th percentile over a few rows of the whole image. */
 static Status white_of(double *white, const Raster *raster, int bands)
 {
     enum { rows = 64 };
@@ -348,7 +348,7 @@ static Status photo_pixels(Photo *p, const Raster *raster, const Elevation *elev
             for (int i = 0; i < window.nx; i++) {
                 uint8_t *to = p->rgba[0] + 4 * ((size_t)j * (size_t)window.nx + (size_t)i);
                 double   at[2];
-                if (to[3]) continue; /* an earlier, finer photograph has it */
+                if (to[3]) continue; /* covered by an earlier, finer photograph */
                 finder_at(at, &f, i, j);
                 if (at[0] >= 0 && at[1] >= 0 && at[0] < raster->width && at[1] < raster->height)
                     photo_cell(to, px, bands, raster->bytes, white, w, h, at[0] - box[0], at[1] - box[1]);

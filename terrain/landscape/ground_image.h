@@ -1,4 +1,4 @@
-/* terrain/landscape/ground_image.h: what files say of the ground's looks, laid out in ENU: cover classes and a
+/* terrain/landscape/ground_image.h: appearance of the ground from files, resampled in ENU: land cover classes and a
  * photograph. */
 #ifndef TERRAIN_LANDSCAPE_GROUND_IMAGE_H
 #define TERRAIN_LANDSCAPE_GROUND_IMAGE_H
@@ -13,20 +13,20 @@ enum { ground_image_mips = 16, cover_windows = 2 };
 typedef struct CoverGrid {
     int      nx, ny;       /* 0: none */
     double   x0_m, y0_m, cell_m; /* south-west corner of the first cell */
-    uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files say nothing */
+    uint8_t *surface;      /* [ny][nx]; SURFACE_NONE where the files have no data */
 } CoverGrid;
 
 typedef struct CoverReport {
     const char *table;     /* in static storage, or the caller's */
     double      posting_m;
     int         band;
-    long        unknown;   /* cells whose code the table does not hold */
+    long        unknown;   /* cells with a code that the table lacks */
     double      share[SURFACE_COUNT]; /* of the cells of window 0 that have a class */
 } CoverReport;
 
 /* table: a CSV (code, surface, note), a name such as worldcover, nlcd or fbfm40 for etc/cover_NAME.csv, or empty: the
- * one of these three that knows the most of the codes met. band 0: the only one, or FBFM's fourth where there are eight
- * or more, as in landscape files. Failures are logged. */
+ * one of these three with the most of the codes found. band 0: the only one, or FBFM's fourth where there are eight or
+ * more, as in landscape files. Failures are logged. */
 Status cover_grid_read(CoverGrid out[cover_windows], CoverReport *report, const char *paths, const char *table,
                        int band, const Elevation *elevation, const LocalFrame *frame);
 /* Whether a table of codes (terrain.cover_table) can be read; logs what is wrong with it. */
@@ -42,7 +42,8 @@ typedef struct Photo {
     int      nx[ground_image_mips], ny[ground_image_mips];
     double   x0_m, y0_m, cell_m; /* corner; of mip 0 */
     uint8_t *rgba[ground_image_mips]; /* [ny][nx][4] */
-    float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled by who knows the classes */
+    float    mean[SURFACE_COUNT][photo_channels]; /* linear, over each class: filled in by the caller, which has the
+                                                   * classes */
 } Photo;
 
 /* Three bands or one, octets (taken as sRGB) or wider (taken as linear, brightest thousandth cut). */

@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape.c: plan of the levels, and the order of the work.
+/* terrain/landscape/landscape.c: layout of the levels, and the sequence of steps.
  *
  * From the horizon inwards, in heights above the ellipsoid: refine the smooth field, add the hills of that
  * wavelength, pull in the fixes, push down under the lines. Where its control points are as fine as a level's
@@ -13,7 +13,7 @@ enum { ratio = level_ratio };
 
 LandscapeConfig landscape_default_config(void)
 {
-    /* 420 km: the horizon of an eye 10 km up is at 357, and hills stand behind it */
+    /* 420 km: the horizon from 10 km height is at 357, and hills are beyond it */
     return (LandscapeConfig){.seed = 1, .relief_m = 15, .spacing_m = 4, .half_width_m = 6000, .horizon_m = 420000};
 }
 
@@ -48,7 +48,7 @@ static int round_out(double posts)
     return (int)(posts < 0 ? floor(posts / ratio) : ceil(posts / ratio)) * ratio;
 }
 
-/* Level 0 is asked for about the origin; it grows to hold the fixes while that stays affordable. */
+/* Level 0 is centred on the origin; it grows to hold the fixes while that stays affordable. */
 static Window innermost(const LandscapeConfig *config, const FixSet *fixes)
 {
     static const double margin_m = 400, most_posts = 16e6;
@@ -122,7 +122,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* Height of the country where nothing is known: the middle of the fixes; without any the sea's, else that of the
+/* Height of the terrain away from fixes: the median of the fixes; without any the sea's, else that of the
  * ellipsoid or as much lower as the lines need. */
 static Status choose_base(Work *work, const LocalFrame *frame)
 {
@@ -188,7 +188,7 @@ static Status gather_aims(Work *work, const LandscapeConfig *config, const Local
 /* ---- levels ------------------------------------------------------------------------------- */
 
 /* rms height of the hills of one octave. Above half a kilometre all wavelengths are equally high, below it height
- * goes with wavelength: equal slopes, like worn-down country. */
+ * goes with wavelength: equal slopes, like eroded terrain. */
 static double octave_rms_m(double spacing_m, double relief_m)
 {
     static const double knee_m = 512, largest_m = 8192;
@@ -311,8 +311,8 @@ static bool config_ok(const LandscapeConfig *config)
     return config->horizon_m >= config->half_width_m && config->horizon_m <= 1e6;
 }
 
-/* A fix that only shares a row is met through its neighbour; where that leaves it more than 5 cm off (at 4 m
- * posts) the neighbours have contradicted it. */
+/* A fix that only shares a row is fitted through its neighbour; with a residual above 5 cm (at 4 m posts) it is
+ * inconsistent. */
 static void count_fixes(Landscape *landscape, const Work *work, const GroundFix *fix, int fix_count)
 {
     for (int n = 0; n < fix_count; n++) {
@@ -329,7 +329,7 @@ static void count_fixes(Landscape *landscape, const Work *work, const GroundFix 
     }
 }
 
-/* Whatever stands on the water says nothing of the land. */
+/* Entities on the water give no height of the land. */
 static void drop_fixes_at_sea(Work *work)
 {
     for (int n = 0; work->coast.sea_count && n < work->fixes.count; n++) {

@@ -1,10 +1,9 @@
-/* terrain/landscape/landscape.h: the ground: of files (terrain/landscape/landscape_import.h), or when nobody gave
- * any an invented landscape fitted to what the exercise says of it. Surface, texture and albedo are asked here for
- * both.
+/* terrain/landscape/landscape.h: the terrain: from files (terrain/landscape/landscape_import.h), or without files a
+ * synthetic terrain fitted to the exercise. Surface, texture and albedo of both are queried here.
  *
- * The invented one:
+ * The synthetic terrain:
  *
- * it passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
+ * passes through every fix (ground vehicles, ground impacts), stays below every clear line (flight
  * paths, and the sight lines of shots that hit), has relief, fields, tracks and at least five surface
  * classes, and reaches the horizon without edge or hole. A pure function of its inputs. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_H
@@ -14,8 +13,8 @@
 #include "terrain/earth/local_frame.h"
 #include "terrain/surface.h"
 
-/* Somewhere the ground is known. The fixes of one voter (one entity) are one vote together; a fix of voter 0 is a vote
- * of its own, and only judged by its slopes to others. */
+/* A known point of the ground. The fixes of one source entity (voter) have one vote in the consensus together; a fix of
+ * voter 0 has a vote of its own, and is only checked by its slopes to others. */
 typedef struct GroundFix {
     double p_enu[3];
     int    voter; /* >= 0 */
@@ -27,24 +26,24 @@ typedef struct CoastPlace {
     bool   sea;
 } CoastPlace;
 
-/* A straight line that the ground must leave clear, from a to b, by 2 m where there is room and 0.15 m under any
- * circumstances. An end within 8 m of a fix has come down to it: within landscape_taper_m of such an end (14 m at
- * 4 m posts; in proportion on the coarser levels) the line claims nothing, so a shot may end on the ground it hits.
- * Elsewhere lines win: a fix above one is dropped. Give the places of gun, seeker and burst, not the point between
- * a vehicle's tracks: a line from base to base along flat ground drops every fix beside it. */
+/* A straight line that the ground must leave clear, from a to b, by 2 m where possible and 0.15 m at least. An end
+ * within 8 m of a fix counts as at the fix: within landscape_taper_m of such an end (14 m at 4 m posts; in proportion
+ * on the coarser levels) the line sets no limit, so a shot may end on the ground it hits. Elsewhere lines take
+ * precedence: a fix above one is dropped. Give the places of gun, seeker and burst, not the point between a vehicle's
+ * tracks: a line from base to base along flat ground drops every fix beside it. */
 typedef struct ClearLine {
     double a_enu[3], b_enu[3];
 } ClearLine;
 
 typedef struct LandscapeConfig {
     uint64_t seed;
-    double   relief_m;       /* rms height of the invented hills far from any fix, 0 .. 200 */
+    double   relief_m;       /* rms height of the hills far from any fix, 0 .. 200 */
     double   spacing_m;      /* of level 0, 1 .. 30 */
     double   half_width_m;   /* of level 0 */
     double   horizon_m;      /* half width of the outermost level */
 } LandscapeConfig;
 
-/* All that an exercise says of its ground. Without a place of sea there is no sea. */
+/* All evidence of an exercise on its ground. Without a sea fix there is no sea. */
 typedef struct LandscapeEvidence {
     int               fix_count, line_count, place_count;
     const GroundFix  *fix;
@@ -58,17 +57,19 @@ typedef struct Landscape {
     Elevation       elevation;
     LandscapeConfig config;
     double          fit_worst_m;  /* largest |surface - fix| over the fixes that were kept */
-    int             fixes_dropped;/* contradicted by their neighbours, above a clear line, or not on this ground */
-    LandscapeEvidence fitted_to;  /* a copy of what an invented one was made from: landscape_parts.h */
+    int             fixes_dropped;/* inconsistent with their neighbours, above a clear line, or outside of the
+                                   * terrain */
+    LandscapeEvidence fitted_to;  /* a copy of the inputs of a synthetic terrain: landscape_parts.h */
     void           *cover;        /* private; surface and texture need it */
 } Landscape;
 
 LandscapeConfig landscape_default_config(void);
 /* 0.2 s with nothing to fit, 0.7 s with 40 000 fixes and 23 000 lines (one core). Level 0 grows beyond half_width_m
- * to hold the fixes as long as it stays below 16 M posts; fixes further out are met on coarser levels. Of two fixes
- * that no slope of 35 degrees joins the higher is dropped, unless it outvotes the lower four to one; before that
- * whole voters go that their neighbours contradict (ground_inconsistent). With neither fixes nor
- * low lines the country lies at ellipsoid height 0. fix, line may be NULL when their count is 0. */
+ * to hold the fixes as long as it stays below 16 M posts; fixes further out are fitted on coarser levels. Of two fixes
+ * that no slope of 35 degrees joins the higher is dropped, unless its support exceeds that of the lower four to one;
+ * before that, source entities that are outliers against their neighbours are dropped as a whole (ground_inconsistent).
+ * With neither fixes nor low lines the terrain is at ellipsoid height 0. fix, line may be NULL when their count is
+ * 0. */
 Status landscape_create(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                         const GroundFix *fix, int fix_count, const ClearLine *line, int line_count);
 /* The same with a sea: flat at sea_h_m, wherever a place of sea is nearer than a place of dry land, the line between
@@ -77,20 +78,20 @@ Status landscape_create(Landscape *out, const LandscapeConfig *config, const Loc
  * water are dropped, and lines do not lower it. */
 Status landscape_create_from(Landscape *out, const LandscapeConfig *config, const LocalFrame *frame,
                              const LandscapeEvidence *evidence);
-/* Which fixes are of a voter that the others outvote: [fix_count] bytes, 1: outvoted. Voters are numbered from 1 and
- * are no more than the fixes. See landscape_votes.c. */
+/* Which fixes are of a source entity rejected by the consensus: [fix_count] bytes, 1: rejected. Source entities are
+ * numbered from 1, up to the number of fixes. See votes.c. */
 Status ground_inconsistent(uint8_t *outvoted, const GroundFix *fix, int fix_count);
-/* How far places are above the ground that the voters near them stand on (the plane that suits best), and how far the
- * nearest of them is, m; NaN: none within 300 m. */
+/* Height of positions above the ground of the source entities near them (the plane of best consensus), and the distance
+ * of the nearest of them, m; NaN: none within 300 m. */
 Status ground_consensus_height(double *above_m, double *nearest_m, const double (*p_enu)[3], int count, const GroundFix *fix,
                        int fix_count);
 void   landscape_destroy(Landscape *landscape);
 
-/* How far a line leaves the ground alone about an end that has come down to a fix. */
+/* Radius about an end at a fix within which a line sets no limit. */
 double landscape_taper_m(const LandscapeConfig *config);
 
-/* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. Of many
- * places at once a tenth of the time each, and the same answers. */
+/* Surface class at a place, anchored to the ground; SURFACE_NONE where there is none, and for NaN. Thread-safe. For
+ * many positions at once a tenth of the time each, and the same results. */
 SurfaceClass landscape_surface(const Landscape *landscape, double x_m, double y_m);
 void landscape_surfaces(uint8_t *surface, const Landscape *landscape, int count, const double *x_m, const double *y_m);
 /* Relative brightness of the ground's own texture, mean 1, about 0.6 .. 1.4, band-limited to features of

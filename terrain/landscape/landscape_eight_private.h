@@ -1,5 +1,5 @@
-/* terrain/landscape/landscape_eight_private.h: what cover and texture ask of eight places at once: smooth noise, and
- * the fields about them. A place's answer is the same in whatever company it is asked for. */
+/* terrain/landscape/landscape_eight_private.h: queries of cover and texture for eight positions at once: smooth noise,
+ * and the fields about them. The result of a position is independent of the other seven. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_EIGHT_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_EIGHT_PRIVATE_H
 
@@ -65,7 +65,7 @@ typedef struct PlotCell {
     float    across_x[plot_sites], across_y[plot_sites]; /* unit vector across its rows */
 } PlotCell;
 
-/* Those that one call met last; starts zeroed. */
+/* Those of the previous call; starts zeroed. */
 typedef struct PlotCells {
     PlotCell cell[plot_cells_kept];
 } PlotCells;

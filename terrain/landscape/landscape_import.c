@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape_import.c: elevation, cover and photograph files made into one landscape. */
+/* terrain/landscape/landscape_import.c: elevation, land cover and photograph files -> one landscape. */
 #include "terrain/landscape/landscape_import.h"
 
 #include "terrain/landscape/landscape_private.h"

@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape_import.h: real ground: elevation, cover and a photograph from files. */
+/* terrain/landscape/landscape_import.h: real ground: elevation, land cover and a photograph from files. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_IMPORT_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_IMPORT_H
 
@@ -9,7 +9,7 @@ typedef struct LandscapeFiles {
     ElevationFiles elevation;
     const char    *cover, *cover_table, *photo; /* empty: none */
     int            cover_band;                  /* 0: chosen */
-    uint64_t       seed;                        /* of texture, and of surfaces that no file knows */
+    uint64_t       seed;                        /* of texture, and of surfaces not in the files */
 } LandscapeFiles;
 
 typedef struct LandscapeReport {

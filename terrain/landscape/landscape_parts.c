@@ -1,4 +1,4 @@
-/* terrain/landscape/landscape_parts.c: a landscape taken apart into plain arrays, and made again from them. */
+/* terrain/landscape/landscape_parts.c: a landscape to plain arrays, and back. */
 #include "terrain/landscape/landscape_parts.h"
 
 #include "terrain/landscape/landscape_private.h"

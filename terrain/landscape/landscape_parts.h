@@ -1,8 +1,8 @@
-/* terrain/landscape/landscape_parts.h: all that a landscape is made of, as plain arrays: what a file must hold so that
- * the same ground can be made again, to the bit, without what it was first made from.
+/* terrain/landscape/landscape_parts.h: the data of a landscape as plain arrays: what a file must hold to reproduce the
+ * same terrain bit by bit without its original inputs.
  *
- * An invented landscape is a pure function of its configuration, frame and evidence, which it keeps a copy of. One of
- * files is its posts, cover classes and photograph as they were laid out in ENU. */
+ * A synthetic terrain is a pure function of its configuration, frame and evidence, of which it keeps a copy. One from
+ * files is its posts, land cover classes and photograph as resampled in ENU. */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PARTS_H
 
@@ -13,8 +13,8 @@ typedef struct LandscapeParts {
     LocalFrame        frame;
     LandscapeConfig   config;
     bool              invented;
-    LandscapeEvidence said;                /* invented: what it was fitted to */
-    Elevation         elevation;           /* of files: levels and posts; the pyramids are not looked at */
+    LandscapeEvidence said;                /* synthetic: the evidence it was fitted to */
+    Elevation         elevation;           /* of files: levels and posts; the pyramids are not used */
     CoverGrid         cover[cover_windows];
     Photo             photo;
     uint64_t          cover_seed;
@@ -23,8 +23,8 @@ typedef struct LandscapeParts {
 
 /* Borrows from the landscape. */
 void landscape_parts(LandscapeParts *out, const Landscape *landscape);
-/* Copies. Parts may come from a hostile file: STATUS_BAD_VALUE, and what is wrong with them in *why (static storage).
- * An invented one takes as long as landscape_create_from. */
+/* Copies. Parts may come from a hostile file: STATUS_BAD_VALUE, and the reason in *why (static storage). A synthetic
+ * one takes as long as landscape_create_from. */
 Status landscape_from_parts(Landscape *out, const char **why, const LandscapeParts *parts);
 
 /* Bounds that landscape_from_parts keeps: posts of all levels, cells of a cover window, pixels of a photograph, and

@@ -1,16 +1,16 @@
-/* terrain/landscape/landscape_private.h: what the files of the invented landscape share.
+/* terrain/landscape/landscape_private.h: shared by the files of the synthetic terrain.
  *
- * landscape.c        plan of the levels, and the order of the work
- * landscape_levels.c curvature, joining, quantisation: also for ground from files
- * landscape_field.c  smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
- * landscape_votes.c  which entities to sanitize_vector
- * landscape_coast.c  where the sea is, and how the land comes down to it
- * landscape_fit.c    which fixes to sanitize_vector, and the last centimetres on the posts themselves
- * landscape_clear.c  what clear lines allow
- * landscape_near.c   points by place
- * landscape_plots.c  invented fields
- * landscape_cover.c  what grows and lies on the ground: tracks, hedges, woods; what cover files say
- * landscape_texture.c how bright it is there; what photographs say */
+ * landscape.c        layout of the levels, and the sequence of steps
+ * levels.c           curvature, joining, quantisation: also for terrain from files
+ * field.c            smooth fields: cubic B-splines refined octave by octave, with hills and fixes in them
+ * votes.c            which entities are consistent with the others
+ * coast.c            extent of the sea, and the transition from land to it
+ * fit.c              which fixes are consistent, and the last centimetres on the posts themselves
+ * clear_lines.c      height limits by clear lines
+ * nearest_fix.c      spatial index of points
+ * plots.c            synthetic fields
+ * cover.c            land cover: tracks, hedges, woods; land cover from files
+ * texture.c          brightness of the ground; brightness from photographs */
 #ifndef TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 #define TERRAIN_LANDSCAPE_LANDSCAPE_PRIVATE_H
 
@@ -66,12 +66,12 @@ enum { lowest_ground_m = -1000 }; /* nothing on the ground or above it is lower;
 
 /* ---- fixes -------------------------------------------------------------------------------- */
 
-/* One believed place of the ground; fixes that say the same within 1 cm share a row. */
+/* One accepted fix of the ground; fixes equal within 1 cm share a row. */
 typedef struct FixRow {
     double x_m, y_m, z_m; /* ENU */
     double h_m;           /* above the ellipsoid */
     int    fix;           /* its number in the caller's array */
-    int    weight;        /* voters that share it */
+    int    weight;        /* source entities that share it */
     int    level;         /* level it lies on */
     bool   dropped;
 } FixRow;
@@ -95,7 +95,7 @@ typedef struct Field {
     float *v; /* [ny][nx] */
 } Field;
 
-/* How much of the invented relief is left near what is known, on its own coarse grid. */
+/* Share of the synthetic relief near fixes, on its own coarse grid. */
 typedef struct Calm {
     Field factor; /* v NULL: 1 everywhere */
 } Calm;
@@ -122,7 +122,7 @@ Status calm_create(Calm *out, const FixSet *fixes, double cell_m);
 
 typedef struct WorkLevel {
     Field z;    /* ENU z of the surface; starts as height above the ellipsoid */
-    float *cap; /* highest z that clear lines allow, NULL: no line comes near */
+    float *cap; /* highest z allowed by clear lines, NULL: no line is near */
     /* posts of the hole, inclusive, in this level's own index; hole_i1 < hole_i0: none */
     int hole_i0, hole_i1, hole_j0, hole_j1;
     bool outermost;
@@ -133,14 +133,14 @@ typedef struct WorkLevel {
  * three posts and their shares. */
 double posts_at(const Field *posts, double x_m, double y_m, int corner[3], double weight[3]);
 
-/* Moves posts until every row of this level is met, below cap, the outline untouched; drops rows that the posts
- * cannot follow together with their neighbours. */
+/* Moves posts until every row of this level is fitted, below cap, the outline unchanged; drops rows that the posts
+ * cannot fit together with their neighbours. */
 void fit_posts(WorkLevel *level, int index, FixSet *fixes);
 
 /* ---- clear lines -------------------------------------------------------------------------- */
 
-/* Within this of an end that has come down to a fix the line claims nothing. Two diagonals of a cell and a little:
- * closer, the posts that carry the fix would be those the line holds down. */
+/* Within this distance of an end at a fix the line sets no limit. Two diagonals of a cell and a little: closer, the
+ * line would limit the posts of the fix. */
 static inline double taper_of_spacing_m(double spacing_m)
 {
     return 3.5 * spacing_m;
@@ -149,7 +149,7 @@ static inline double taper_of_spacing_m(double spacing_m)
 typedef struct LineSet {
     int       count;
     ClearLine *line;       /* the usable ones */
-    int       touch_count; /* places where a line comes down to a fix */
+    int       touch_count; /* positions where a line ends at a fix */
     double   *touch;       /* [touch_count][3] */
     NearGrid  near_touch;
 } LineSet;
@@ -180,7 +180,7 @@ enum { level_ratio = 8 }; /* 2^3 between the spacings of neighbouring levels */
 
 /* Turns heights above the ellipsoid into ENU z, in place. */
 Status levels_bend(Field *posts, const Curve *curve);
-/* Leads the posts within `band` of the outline over to the surface of the level around, on which the outline lies. */
+/* Blends the posts within `band` of the outline into the surface of the enclosing level, on which the outline lies. */
 void   levels_join(WorkLevel *level, const WorkLevel *outer, int band);
 /* Quantises all levels and builds their pyramids; keeps both promises of terrain/elevation/elevation.h on seams. */
 Status levels_store(Elevation *out, const WorkLevel *level, int count);
@@ -189,8 +189,8 @@ Status levels_store(Elevation *out, const WorkLevel *level, int count);
 
 enum { coast_grids = 6, coast_cells = 256 };
 
-/* Thinned places, and for quick answers nested grids about the origin that say of each cell whether it is all sea, all
- * land away from the beach, or must be asked place by place. */
+/* Thinned places, and for quick answers nested grids about the origin that give for each cell whether it is all sea,
+ * all land away from the beach, or must be evaluated position by position. */
 typedef struct Coast {
     int      sea_count, land_count; /* sea_count 0: no sea */
     double (*sea)[2], (*land)[2];
@@ -212,7 +212,7 @@ Status    coast_shape(WorkLevel *level, const Coast *coast);
 typedef struct Cover {
     uint64_t  seed;
     bool      real;              /* elevation from files: no fields on steep slopes, woods instead */
-    Curve     curve;             /* real: heights above the sea are asked for */
+    Curve     curve;             /* real: heights above the sea are needed */
     double    geoid_m, treeline_m;
     CoverGrid grid[cover_windows];
     Photo     photo;

@@ -1,4 +1,4 @@
-/* terrain/landscape/levels.c: from heights above the ellipsoid to the stored levels: bent over the curved Earth into
+/* terrain/landscape/levels.c: from heights above the ellipsoid to the stored levels: with Earth curvature into
  * ENU, joined to the level around, and quantised, coarse before fine, so that edge posts fall exactly on the level
  * around them. */
 #include "terrain/landscape/landscape_private.h"
@@ -73,7 +73,7 @@ Status levels_bend(Field *posts, const Curve *curve)
 
 /* ---- joining --------------------------------------------------------------------------------- */
 
-/* Leads the posts near the outline over to the surface of the level around, on which the outline itself lies. */
+/* Blends the posts near the outline into the surface of the enclosing level, on which the outline itself lies. */
 void levels_join(WorkLevel *level, const WorkLevel *outer, int band)
 {
     Field *z = &level->z;

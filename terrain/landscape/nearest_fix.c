@@ -1,5 +1,5 @@
-/* terrain/landscape/nearest_fix.c: points by place, in a hash of square cells. Deterministic: buckets keep the order
- * of the points. */
+/* terrain/landscape/nearest_fix.c: spatial index of points, a hash of square cells. Deterministic: buckets keep the
+ * order of the points. */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>

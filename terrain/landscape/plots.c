@@ -1,5 +1,5 @@
-/* terrain/landscape/plots.c: the invented fields: cells of a jittered grid, some joined in twos and fours. What belongs
- * to a cell and not to a place is found once, however many places ask. */
+/* terrain/landscape/plots.c: the synthetic fields: cells of a jittered grid, some joined in twos and fours. Properties
+ * of a cell are computed once and shared by its positions. */
 #include "terrain/landscape/landscape_eight_private.h"
 
 static uint64_t field_of_site(uint64_t seed, int64_t i, int64_t j)

@@ -36,7 +36,7 @@ static void spline_weights(double w[4], double t)
     w[3] = t * t * t / 6;
 }
 
-/* Height goes with wavelength, so slopes are alike at every scale but the shortest, which are worn down. */
+/* Height goes with wavelength, so slopes are equal at every scale except the shortest, which are smoothed. */
 static Status make_octave(Octave *o, int index, int nx, int ny, uint64_t seed)
 {
     o->posts = longest_posts >> index;

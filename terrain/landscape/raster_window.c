@@ -1,4 +1,4 @@
-/* terrain/landscape/raster_window.c: a window of ENU, and where its cells lie in a raster. */
+/* terrain/landscape/raster_window.c: a window of ENU, and the positions of its cells in a raster. */
 #include "terrain/landscape/raster_window.h"
 
 #include <stdlib.h>

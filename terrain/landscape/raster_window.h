@@ -1,4 +1,4 @@
-/* terrain/landscape/raster_window.h: a window of ENU, and where its cells lie in a raster. */
+/* terrain/landscape/raster_window.h: a window of ENU, and the positions of its cells in a raster. */
 #ifndef TERRAIN_LANDSCAPE_RASTER_WINDOW_H
 #define TERRAIN_LANDSCAPE_RASTER_WINDOW_H
 

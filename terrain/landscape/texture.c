@@ -1,5 +1,5 @@
-/* terrain/landscape/texture.c: how bright the ground is against its class's mean: an invented pattern of several
- * wavelengths, and what a photograph shows. */
+/* terrain/landscape/texture.c: brightness of the ground relative to the mean of its class: a synthetic pattern of
+ * several wavelengths, and the photograph. */
 #include "terrain/landscape/landscape_eight_private.h"
 
 /* ---- pattern -------------------------------------------------------------------------------- */
@@ -7,8 +7,8 @@
 static const double octave_m[] = {0.11, 0.31, 0.9, 2.6, 7.5, 23, 71};
 enum { octave_count = sizeof octave_m / sizeof octave_m[0] };
 
-/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The
- * rows are invented, to look right. */
+/* Amplitude of each octave by class: grass is mottled, soil clotted, a track worn in stripes and puddles. The rows are
+ * estimates, chosen by appearance. */
 static const float amplitude[SURFACE_COUNT][octave_count] = {
     [SURFACE_NONE] = {0},
     [SURFACE_GRASS] = {.07f, .06f, .05f, .05f, .05f, .05f, .05f},
@@ -29,7 +29,7 @@ static const float amplitude[SURFACE_COUNT][octave_count] = {
     [SURFACE_WETLAND] = {.08f, .08f, .07f, .07f, .08f, .07f, .05f},
 };
 
-/* Whole for features four footprints long, gone for two: below that a pixel sees their mean, which is 1. */
+/* 1 for wavelengths of four texture footprints, 0 for two: below that a pixel averages to the mean, which is 1. */
 static F32x8 fade(double wavelength_m, F32x8 footprint_m)
 {
     const F32x8 t = f32x8_clamp((footprint_m * f32x8_set(1 / wavelength_m) - f32x8_set(0.25)) * f32x8_set(4), 0, 1);
@@ -62,7 +62,7 @@ static F32x8 rows_of(PlotCells *cells, uint64_t seed, const double x_m[8], const
     return f32x8_load(wave);
 }
 
-/* Finest features that the photograph leaves to be invented: those of two of its pixels are on it. */
+/* Largest wavelength of synthetic detail under a photograph: wavelengths from two of its pixels on are in it. */
 static F32x8 photo_fineness(const Photo *photo, const double x_m[8], const double y_m[8], unsigned lanes)
 {
     float seen_m[8];
@@ -148,7 +148,7 @@ double landscape_texture(const Landscape *landscape, SurfaceClass surface, doubl
 
 void cover_measure_photo(Landscape *landscape)
 {
-    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would blow up the others */
+    /* classes of few pixels lean on the mean of all: a class of a single dark pixel would amplify the others */
     static const double enough = 200, most = 400e3;
     Cover *cover = landscape->cover;
     Photo *p = &cover->photo;

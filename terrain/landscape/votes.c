@@ -1,44 +1,44 @@
-/* terrain/landscape/votes.c: which entities the ground is fitted to: one entity, one vote.
+/* terrain/landscape/votes.c: which entities the terrain is fitted to: robust consensus, one vote per entity.
  *
- * An entity is judged where it comes nearest to others, against the plane that most of the six nearest of them stand
- * on: nearer ones weigh more, level planes are preferred to sloping ones by a little, none is steeper than 35 degrees.
- * Planes that do nearly as well as the best are given the benefit of the doubt. An entity farther from all of them than
- * 1.5 m and 0.15 of its distance to the nearest supporter of that plane is contradicted at that place; one that is
- * contradicted at most of its places is outvoted, the worst first, and has no say in the next.
+ * An entity is checked where it is nearest to others, against the plane with the most inliers among the six nearest of
+ * them: nearer ones weigh more, level planes are slightly preferred to sloping ones, none is steeper than 35 degrees.
+ * Planes with nearly the support of the best are accepted too. An entity farther from all of them than 1.5 m and 0.15
+ * of its distance to the nearest inlier of that plane is an outlier at that place; one that is an outlier at most of
+ * its places is rejected, the worst first, and is not used in later checks.
  *
- * So a hillside is followed whose entities rise together, and a climb that begins among others, and two groups apart
- * at different heights; one entity 20 m below its neighbours 40 m away is not. With a single neighbour there is no
- * majority and no entity is judged. */
+ * So the fit follows a hillside with entities that rise together, a climb that starts among others, and two separate
+ * groups at different heights, but not one entity 20 m below its neighbours 40 m away. With a single neighbour there is
+ * no majority and no entity is checked. */
 #include "terrain/landscape/landscape_private.h"
 
 #include <stdlib.h>
 
 enum { most_neighbours = 6, most_kept = 64, most_judged = 8, most_a_cell = 128 };
-static const double reach_m = 300;      /* farther apart, ground may do as it likes */
-static const double apart_m = 8;        /* of the places that are kept of one entity */
-static const double alike_m = 40;       /* neighbours nearer than this weigh much alike: the closest may be wrong */
+static const double reach_m = 300;      /* farther apart, entities do not constrain each other */
+static const double apart_m = 8;        /* between the positions kept of one entity */
+static const double alike_m = 40;       /* neighbours nearer than this weigh about the same: the closest may be wrong */
 static const double steepest = 0.7;     /* tan 35 degrees */
-static const double trust_m = 1.5;      /* of two senders' ground, suspension, where an origin is */
-static const double free_slope = 0.15;  /* ground between entities may leave a plane by this */
-static const double agree_slope = 0.15; /* a neighbour may leave the plane it supports by this */
+static const double trust_m = 1.5;      /* tolerance for two senders' terrain, suspension, model origin */
+static const double free_slope = 0.15;  /* terrain between entities may deviate from a plane by this slope */
+static const double agree_slope = 0.15; /* an inlier may deviate from its plane by this slope */
 
 typedef struct ConsensusPoint {
     double p[3];
     int    voter;
 } ConsensusPoint;
 
-/* The places of all voters, sorted by voter. */
+/* The positions of all source entities, sorted by entity. */
 typedef struct Assembly {
     int        voters, places;
     int       *first; /* [voters + 2] of place; voter 0 has none */
     ConsensusPoint *place;
-    uint8_t   *out;   /* [voters + 1] outvoted */
+    uint8_t   *out;   /* [voters + 1] rejected */
     NearGrid   near;
 } Assembly;
 
 /* ---- places ------------------------------------------------------------------------------- */
 
-/* Places of one voter's fixes, each farther than step_m from the one before: how many. */
+/* Positions of one source entity's fixes, each farther than step_m from the one before; returns their number. */
 static int thin(ConsensusPoint *out, const GroundFix *fix, const int *number, int count, double step_m)
 {
     int kept = 0;
@@ -60,7 +60,7 @@ static Status assemble(Assembly *a, const GroundFix *fix, int fix_count)
     a->place = calloc((size_t)fix_count + most_kept + 1, sizeof *a->place);
     a->out = calloc((size_t)a->voters + 1, 1);
     Status status = number && start && a->first && a->place && a->out ? STATUS_OK : STATUS_NO_MEMORY;
-    if (status == STATUS_OK) { /* fix numbers by voter, in their order */
+    if (status == STATUS_OK) { /* fix numbers by source entity, in their order */
         for (int n = 0; n < fix_count; n++) start[fix[n].voter + 1]++;
         for (int v = 0; v <= a->voters; v++) start[v + 1] += start[v];
         for (int n = fix_count - 1; n >= 0; n--) number[--start[fix[n].voter + 1]] = n;
@@ -91,12 +91,12 @@ static void dismiss(Assembly *a)
 /* ---- neighbours --------------------------------------------------------------------------- */
 
 typedef struct Neighbour {
-    double d[3], away_m, weight; /* from the place asked about */
+    double d[3], away_m, weight; /* from the query position */
     int    voter;
 } Neighbour;
 
-/* The nearest place of each of the nearest voters that are still in, nearest first: how many. Crowded cells are
- * sampled. */
+/* The nearest position of each of the nearest source entities not rejected so far, nearest first; returns their number.
+ * Dense cells are sampled. */
 static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const ConsensusPoint *from)
 {
     int           count = 0;
@@ -113,7 +113,7 @@ static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const Co
                 v3_sub(q.d, p->p, from->p);
                 q.away_m = hypot(q.d[0], q.d[1]);
                 if (!(q.away_m < reach_m)) continue;
-                /* a voter's nearer place takes the place of its farther one */
+                /* a nearer position of an entity replaces its farther one */
                 int at = 0;
                 while (at < count && out[at].voter != q.voter) at++;
                 if (at < count && out[at].away_m <= q.away_m) continue;
@@ -132,7 +132,7 @@ static int find_neighbours(Neighbour out[most_neighbours], Assembly *a, const Co
 /* ---- planes ------------------------------------------------------------------------------- */
 
 typedef struct Plane {
-    double z_m, slope[2]; /* at the place asked about */
+    double z_m, slope[2]; /* at the query position */
     double cost;          /* share of the weight that does not support it, and something for its slope */
     double support_m;     /* distance of its nearest supporter */
 } Plane;
@@ -162,7 +162,7 @@ static bool plane_through(Plane *out, const Neighbour *a, const Neighbour *b, co
         slope[0] = uz * ux / square, slope[1] = uz * uy / square;
     } else {
         const double vx = c->d[0] - a->d[0], vy = c->d[1] - a->d[1], vz = c->d[2] - a->d[2], det = ux * vy - uy * vx;
-        /* nearly in line, a metre becomes a cliff */
+        /* nearly collinear: errors of a metre would be amplified */
         if (!(fabs(det) > 0.2 * hypot(ux, uy) * hypot(vx, vy)) || !(fabs(det) > 1)) return false;
         slope[0] = (uz * vy - uy * vz) / det, slope[1] = (ux * vz - uz * vx) / det;
     }
@@ -187,7 +187,7 @@ static int candidates(Plane plane[most_planes], const Neighbour *q, int count)
     return planes;
 }
 
-/* How far a place is from what its neighbours allow: above 1 it is contradicted. 0: too few to say. */
+/* Deviation of a position from the consensus of its neighbours: above 1 it is an outlier. 0: too few neighbours. */
 static double contradiction(Assembly *a, const ConsensusPoint *from, double *nearest_m)
 {
     static const double benefit = 0.25;
@@ -205,7 +205,7 @@ static double contradiction(Assembly *a, const ConsensusPoint *from, double *nea
     return least;
 }
 
-/* ---- voters ------------------------------------------------------------------------------- */
+/* ---- source entities ---------------------------------------------------------------------- */
 
 static int by_value(const void *pa, const void *pb)
 {
@@ -213,7 +213,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* The middle contradiction of those places of a voter where it is about as near to others as it ever is. */
+/* The median deviation of those positions of a source entity where it is about as near to others as it ever is. */
 static double judge(Assembly *a, int voter)
 {
     double    found[most_judged], nearest_m[most_judged], least_m = INFINITY;
@@ -243,7 +243,7 @@ static int worst_first(const void *pa, const void *pb)
     return (a->voter > b->voter) - (a->voter < b->voter);
 }
 
-/* Voters of the fixes; -1: numbers that are none. */
+/* Number of source entities of the fixes; -1: invalid numbers. */
 static int voters_of(const GroundFix *fix, int fix_count)
 {
     int voters = 0;

@@ -1,10 +1,10 @@
 /* sensor/bench/dis/network.c: datagrams over loopback at stated rates, how late they can be taken, and how fast they
  * are recorded.
  *
- * A thread sends so many in each millisecond; what is received is compared octet by octet with what its number says.
- * It stops after the time that was set, whatever the network does. Sender and receiver share the machine: beyond
- * some rate it is the sender that is measured. On quick rounds, which run beside other work, loss is shown and not
- * judged. */
+ * A thread sends a fixed number in each millisecond; received datagrams are compared octet by octet with the expected
+ * ones by sequence number. It stops after the set time, whatever the network does. Sender and receiver share the
+ * machine: beyond some rate the sender is the limit. In quick runs, beside other work, loss is reported but not a
+ * failure. */
 #include "sensor/bench/dis/network.h"
 
 #include "dis/log.h"
@@ -25,7 +25,7 @@ static const int64_t still_ns = 200000000; /* nothing for so long after the last
 
 typedef struct Flow {
     DisUdp    *sender;
-    int        octets, rate;   /* a second; 0: as fast as it goes */
+    int        octets, rate;   /* per second; 0: as fast as possible */
     uint64_t   count;          /* at most; the time ends it, too */
     double     for_s;
     double     took_s;
@@ -34,7 +34,7 @@ typedef struct Flow {
     /* receiver */
     uint8_t   *seen;           /* [count] */
     uint64_t   received, wrong, twice, disordered;
-    double    *late_s;         /* [count], in order of arrival; NULL: not asked for */
+    double    *late_s;         /* [count], in order of arrival; NULL: not needed */
 } Flow;
 
 /* Its number, and words that follow from it. */
@@ -184,7 +184,7 @@ static int by_value(const void *pa, const void *pb)
     return (a > b) - (a < b);
 }
 
-/* From the kernel's stamp until its taker, who waits for it, has it. */
+/* From the kernel's time stamp until the waiting receiver has the datagram. */
 static Status time_late(Link *l)
 {
     Flow f = {.sender = l->sender, .octets = pdu_octets, .rate = late_rate, .for_s = 60,

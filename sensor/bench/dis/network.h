@@ -1,4 +1,4 @@
-/* sensor/bench/dis/network.h: `pitviper bench network`, this room's part: sockets and the recorder. */
+/* sensor/bench/dis/network.h: `pitviper bench network`: sockets and the recorder. */
 #ifndef SENSOR_BENCH_DIS_NETWORK_H
 #define SENSOR_BENCH_DIS_NETWORK_H
 

@@ -1,5 +1,6 @@
-/* sensor/bench/dis/rows.c: octets to PDUs and back, bundles, and a capture from the disk. The PDUs are random octets
- * under true headers, from a counter; each row's error is octets that do not come back. */
+/* sensor/bench/dis/rows.c: decoding and encoding of PDUs, bundles, and a capture from the disk. The PDUs are random
+ * octets with valid headers, from a counter; each row's error is the number of octets that differ after a round
+ * trip. */
 #include "sensor/bench/dis/rows.h"
 
 #include "sensor/bench/dis/network.h"

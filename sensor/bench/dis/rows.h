@@ -1,4 +1,4 @@
-/* sensor/bench/dis/rows.h: what `pitviper bench` can measure of this room. */
+/* sensor/bench/dis/rows.h: the rows of `pitviper bench` for dis. */
 #ifndef SENSOR_BENCH_DIS_ROWS_H
 #define SENSOR_BENCH_DIS_ROWS_H
 

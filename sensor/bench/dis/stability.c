@@ -1,5 +1,5 @@
 /* sensor/bench/dis/stability.c: time stamps about the hour's wrap, clocks over days, and fields at the edges of a
- * float. The judges are whole numbers of ticks, 64 bits wide, and the octets themselves. */
+ * float. References: whole ticks in 64 bits, and the octets themselves. */
 #include "sensor/bench/dis/stability.h"
 
 #include "dis/decode.h"
@@ -91,7 +91,7 @@ static double clock_error_s(const Trip *trip, int packets)
         /* the first packet ties the ruler */
         const double   capture_s = 1.7e9 + truth_s + (n ? uniform(2, (uint64_t)n, -trip->jitter_s, trip->jitter_s) : 0);
         const uint32_t stamp = (uint32_t)(tick % hour_ticks) << 1 | trip->absolute;
-        /* all bits zero says that there is no stamp: then it is the ruler's, with its jitter */
+        /* all bits zero means no stamp: the time is then the arrival time, with its jitter */
         const double got_s = exercise_clock_time(clock, 1, 2, stamp, capture_s);
         if (stamp != 0) bench_worse(&worst, got_s - truth_s);
         else bench_worse(&worst, fmax(fabs(got_s - truth_s) - trip->jitter_s - 1e-6, 0));

@@ -1,4 +1,4 @@
-/* sensor/bench/dis/stability.h: this room's part of `pitviper bench stability`. */
+/* sensor/bench/dis/stability.h: the entries of `pitviper bench stability` for dis. */
 #ifndef SENSOR_BENCH_DIS_STABILITY_H
 #define SENSOR_BENCH_DIS_STABILITY_H
 

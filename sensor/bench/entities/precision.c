@@ -140,7 +140,7 @@ static const uint32_t heat_asked = 1u << HEAT_ENGINE_DECK | 1u << HEAT_TRACK | 1
 
 static double moment_s(int i) { return 1 + 3.7 * i; }
 
-/* From the report on, whose drives are constant till they end. */
+/* From the report on; its drives are constant until they end. */
 static double level_by_steps(const HeatSet *s, int role, double drive, double until_s, double t_s)
 {
     double level = s->state.level[role];

@@ -33,7 +33,7 @@ static double dice(uint32_t stream, int index, double low, double high)
 }
 
 /* Tanks, trucks, helicopters and ships: their senders report the base, as models have it. On a ball of the Earth's
- * size; everything below the limits of what is believed. */
+ * size; everything within the limits of accepted values. */
 static void make_report(DisEntityState *out, int k)
 {
     static const DisEntityType types[4] = {{1, 1, 222, 1, 1, 1, 0}, {1, 1, 222, 7, 1, 0, 0}, {1, 2, 225, 20, 1, 0, 0},
@@ -89,7 +89,7 @@ static void crowd_close(Crowd *c)
 
 /* ---- the works -------------------------------------------------------------------------------- */
 
-/* Everybody reports once more, as octets. */
+/* All entities report once more, as octets. */
 static void update_all(void *user)
 {
     Crowd         *c = user;
@@ -104,7 +104,7 @@ static void update_all(void *user)
     bench_keep(c->table);
 }
 
-/* The same of one decoded report with everybody's name. */
+/* The same from one decoded report under the id of each entity. */
 static void update_decoded(void *user)
 {
     Crowd *c = user;
@@ -126,7 +126,7 @@ static void snap(void *user)
     bench_keep(c->snapshot.entity);
 }
 
-/* ---- the judge -------------------------------------------------------------------------------- */
+/* ---- reference ------------------------------------------------------------------------------- */
 
 /* R' = R [w] */
 static void slope_of(double out[9], const double r[9], const double w[3])
@@ -170,7 +170,7 @@ static void integrate(double p_ecef[3], const DisEntityState *s, double t_s)
     v3_add(p_ecef, s->p_ecef, way);
 }
 
-/* Worst place in a snapshot, m, of some of everybody. */
+/* Largest position error in a snapshot, m, over a sample of the entities. */
 static double worst_place_m(Crowd *c)
 {
     double worst = 0;

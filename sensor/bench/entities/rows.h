@@ -1,4 +1,4 @@
-/* sensor/bench/entities/rows.h: what `pitviper bench` can measure of this room. */
+/* sensor/bench/entities/rows.h: the rows of `pitviper bench` for entities. */
 #ifndef SENSOR_BENCH_ENTITIES_ROWS_H
 #define SENSOR_BENCH_ENTITIES_ROWS_H
 

@@ -1,6 +1,6 @@
-/* sensor/bench/entities/stability.c: motion and attitude at their edges: dead reckoning from hardly turning to
- * spinning, from microseconds to hours; Euler angles straight up and down. The judge of motion is the exponential of
- * the turn's matrix by doubling, in 113 bits where the compiler has them: it knows none of the closed forms. */
+/* sensor/bench/entities/stability.c: motion and attitude at their edge cases: dead reckoning from tiny to large angular
+ * rates, from microseconds to hours; Euler angles straight up and down. The reference for motion is the exponential of
+ * the rotation's matrix by doubling, in 113 bits where the compiler has them, independent of the closed forms. */
 #include "sensor/bench/entities/stability.h"
 
 #include "entities/models/articulation.h"
@@ -18,7 +18,7 @@ static double uniform(uint32_t stream, uint64_t index, double low, double high)
     return low + (high - low) * random_uniform(0xDEAD, stream, 0, index);
 }
 
-/* ---- the judge ------------------------------------------------------------------------------ */
+/* ---- reference ----------------------------------------------------------------------------- */
 
 /* Over a time t, with W u = w x u: e^(Wt), its integral, and that of s e^(Ws). */
 typedef struct Exponential {
@@ -69,7 +69,7 @@ static Wide row_times(const Wide m[9], int row, const double v[3])
 }
 
 typedef struct MotionErrors {
-    double place, speed, turn; /* in roundings of the longest way, of the fastest speed, of 1 */
+    double place, speed, turn; /* in roundings of the longest distance, of the fastest speed, of 1 */
     double place_m;
     double crooked;
 } MotionErrors;
@@ -121,7 +121,8 @@ static Kinematics random_motion(uint64_t at, const Reach *reach)
     double     axis[3];
     for (int c = 0; c < 3; c++) {
         const uint32_t s = (uint32_t)c;
-        k.p_ecef[c] = at / 2 % 2 ? uniform(1 + s, at, -6.4e6, 6.4e6) : 0; /* from 0, nothing hides a small way */
+        k.p_ecef[c] = at / 2 % 2 ? uniform(1 + s, at, -6.4e6, 6.4e6) : 0; /* from 0, so small distances are not
+                                                                           * masked */
         k.v_mps[c]  = uniform(4 + s, at, -reach->speed_mps, reach->speed_mps) / 1.74;
         k.a_mps2[c] = uniform(7 + s, at, -reach->acceleration_mps2, reach->acceleration_mps2) / 1.74;
         axis[c]     = at % 4 == s ? 1 : at % 4 < 3 ? 0 : uniform(10 + s, at, -1, 1); /* about one axis, or any */
@@ -155,7 +156,7 @@ static MotionErrors motions(const Reach *reach, int count)
 
 static void dead_reckoning(Bench *bench)
 {
-    /* what the table lets through, and what the formulas are asked for at most */
+    /* the limits of the table, and the extremes of the formulas */
     static const Reach table = {1e-12, 20, 1e-6, 132, 2e4, 1e4}, real = {1e-12, 20, 1e-3, 12, 1000, 100},
                        all = {1e-12, 60, 1e-6, 1e4, 2e4, 1e4};
     const int count = bench_quick(bench) ? 400 : 5000;
@@ -202,7 +203,7 @@ static void extremes(Bench *bench)
                  "its start");
 }
 
-/* A body turned a little again and again, each turn from where the last one left it. */
+/* A body rotated in many small steps, each from the result of the last. */
 static void drift(Bench *bench)
 {
     const int  steps = bench_quick(bench) ? 20000 : 1000000;

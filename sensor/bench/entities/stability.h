@@ -1,4 +1,4 @@
-/* sensor/bench/entities/stability.h: this room's part of `pitviper bench stability`. */
+/* sensor/bench/entities/stability.h: the entries of `pitviper bench stability` for entities. */
 #ifndef SENSOR_BENCH_ENTITIES_STABILITY_H
 #define SENSOR_BENCH_ENTITIES_STABILITY_H
 
@@ -9,7 +9,7 @@ Status entities_bench_stability_inputs(Bench *bench); /* numbers of PDUs: sensor
 Status entities_bench_stability_text(Bench *bench);   /* numbers in files: sensor/bench/entities/stability_text.c */
 Status entities_bench_stability_models(Bench *bench); /* sensor/bench/entities/stability_models.c */
 
-/* How far a matrix is from a rotation: R'R - I, worst element, and its hand. */
+/* Deviation of a matrix from a rotation: R'R - I, worst element, and its handedness. */
 static inline void stress_rotation(double *worst, const double r[9])
 {
     double product[9], cross[3];

@@ -91,7 +91,7 @@ static void world_close(World *w)
     arena_destroy(w->arena);
 }
 
-/* A tank that smokes, burns and raises dust; a helicopter; a missile whose motor burns; on the equator. */
+/* A tank with smoke, fire and dust; a helicopter; a missile with its motor burning; on the equator. */
 static size_t good_state(uint8_t *out, size_t room, const World *w, int kind, int algorithm)
 {
     static const DisEntityType types[3] = {{1, 1, 222, 1, 1, 1, 0}, {1, 2, 225, 20, 1, 0, 0}, {2, 2, 225, 1, 1, 3, 0}};
@@ -274,7 +274,7 @@ static void stress_pdu(World *w, uint8_t type, const Field *field, int left, int
     DisRemoveEntity gone = {.receiving = {1, 1, w->entity}};
     entity_table_remove(w->table, &gone, w->t_s);
     w->entity = (uint16_t)(w->entity % 60000 + 1);
-    w->t_s += 200; /* smoke and bursts are gone */
+    w->t_s += 200; /* smoke and bursts have ended */
 }
 
 Status entities_bench_stability_inputs(Bench *bench)

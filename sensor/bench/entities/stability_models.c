@@ -1,6 +1,6 @@
-/* sensor/bench/entities/stability_models.c: shapes of a million to one, and files that no modeller would hand over:
- * needles, slivers, faces without area, twice over, or five at one edge. The judges are areas and volumes from
- * paper, and every vertex of every pose for the spheres about them. */
+/* sensor/bench/entities/stability_models.c: shapes with aspect ratios of a million, and degenerate files: needles,
+ * slivers, faces without area, duplicated, or five at one edge. References: analytic areas and volumes, and every
+ * vertex of every pose for the bounding spheres. */
 #include "sensor/bench/entities/stability.h"
 
 #include "entities/parametric/mesh_builder.h"

@@ -1,5 +1,5 @@
-/* sensor/bench/entities/stability_text.c: every number that somebody writes down, at the ends of floating point and
- * beyond: keys of scenarios, cells of tables, columns of probes. Each must be refused aloud, or what follows must be
+/* sensor/bench/entities/stability_text.c: every number in input text, at the limits of floating point and beyond: keys
+ * of scenarios, cells of tables, columns of probes. Each must be rejected with a message, or the results must be
  * finite. */
 #include "sensor/bench/entities/stability.h"
 
@@ -51,7 +51,7 @@ typedef struct Heard {
     int    pdus;
 } Heard;
 
-/* Takes what the exercise says; every Entity State must be fit for geodesy. */
+/* Sink of the exercise; every Entity State must be valid for geodesy. */
 static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t octets)
 {
     Heard         *h = user;
@@ -70,7 +70,7 @@ static bool take_datagram(void *user, double t_s, const uint8_t *bytes, size_t o
     return h->pdus < 200;
 }
 
-/* Whether an accepted scenario speaks sense for its first moments. */
+/* Whether an accepted scenario sends valid PDUs for its first moments. */
 static bool scenario_is_sound(const Scenario *scenario)
 {
     Cast     *cast = NULL;
@@ -120,7 +120,7 @@ static bool write_scenario(const char *path, const char *section, const char *ke
     return fclose(to) == 0;
 }
 
-/* Every key that `pitviper exercise --keys` tells of, with every text that is a number, or nearly. */
+/* Every key listed by `pitviper exercise --keys`, with every text that is a number, or nearly. */
 static Status scenarios(Bench *bench, const char *path)
 {
     char  *keys = NULL, section[64] = "", *rest = NULL;
@@ -300,7 +300,7 @@ static const Probe *find_probe(const char *name)
     return NULL;
 }
 
-/* Rows of an answer that say neither why not nor finite numbers in every column of results. */
+/* Rows of output with neither an error nor finite numbers in every result column. */
 static double unsound_rows(char *answer, int inputs, int rows)
 {
     double bad = 0;

@@ -254,7 +254,7 @@ static const double   spa_unix_s = 1066419030, spa_zenith_deg = 50.11162, spa_az
 static const Geodetic spa_place = {39.742476 * 0.017453292519943295769, -105.1786 * 0.017453292519943295769, 1830.14};
 
 typedef struct SunSet {
-    double hold_s; /* asked for once in so long; below 0: by the short formula */
+    double hold_s; /* evaluated at this interval; below 0: by the short formula */
     int    frames; /* of 30 a second in that time */
     double d_enu[3];
 } SunSet;

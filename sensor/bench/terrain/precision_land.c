@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 
-/* ---- invented ground ------------------------------------------------------------------------------ */
+/* ---- synthetic terrain ---------------------------------------------------------------------------- */
 
 typedef struct MakeSet {
     LandscapeConfig   config;
@@ -143,7 +143,7 @@ typedef struct PostSet {
     double   at[1024][2], z_m[1024];
 } PostSet;
 
-/* Hills of 60 m, as nobody can store them. */
+/* Hills of 60 m, without quantisation. */
 static double true_height(double x, double y)
 {
     return 500 + 30 * sin(x / 97.3) * cos(y / 61.7) + 7 * sin(x / 13.1 + 1) * sin(y / 17.9)

@@ -1,4 +1,4 @@
-/* sensor/bench/terrain/rows.h: what `pitviper bench` can measure of this room. */
+/* sensor/bench/terrain/rows.h: the rows of `pitviper bench` for terrain. */
 #ifndef SENSOR_BENCH_TERRAIN_ROWS_H
 #define SENSOR_BENCH_TERRAIN_ROWS_H
 

@@ -1,6 +1,5 @@
-/* sensor/bench/terrain/stability.c: the Earth at its awkward places: poles, date line, trenches and orbits, each
- * with its neighbours in floating point. The judges are WGS 84 written out in long double, ERFA by another of its
- * ways, and symmetry. */
+/* sensor/bench/terrain/stability.c: geodesy at its edge cases: poles, date line, trenches and orbits, each with its
+ * neighbours in floating point. References: WGS 84 in long double, ERFA by another method, and symmetry. */
 #include "sensor/bench/terrain/stability.h"
 
 #include "terrain/earth/geoid.h"
@@ -206,8 +205,8 @@ static void any_origin(Bench *bench)
 
 /* ---- sun ------------------------------------------------------------------------------------ */
 
-/* ERFA by its other way: the CIO-based matrix, light time to the Sun's own barycentric place, and the aberration of an
- * observer who turns with the Earth. Unit vector at the place, ENU, no air. */
+/* ERFA by its other method: the CIO-based matrix, light time to the Sun's barycentric position, and the aberration of
+ * an observer rotating with the Earth. Unit vector at the position, ENU, no refraction. */
 static void sun_another_way(double d_enu[3], double unix_s, const Geodetic *place, double delta_t_s)
 {
     const double au_m = 149597870700.0, c_au_day = 173.144632674, day = floor(unix_s / 86400), jd = 2440587.5 + day;
@@ -278,7 +277,7 @@ static void sun(Bench *bench)
         bench_worse(&off_rad, angle_between(bare.d_enu, want));
         bench_worse(&unit, v3_length(bare.d_enu) - 1);
         bench_worse(&unit, v3_length(air.d_enu) - 1);
-        /* NREL SPA, equation 42, from the other way's elevation */
+        /* NREL SPA, equation 42, from the other method's elevation */
         const long double e_deg = atan2l(want[2], hypotl(want[0], want[1])) / rad_per_deg;
         if (fabsl(e_deg + 0.83337L) < 2e-3L) continue; /* where the formula itself breaks off */
         const long double bend = e_deg < -0.83337L ? 0
@@ -293,7 +292,7 @@ static void sun(Bench *bench)
     bench_stress(bench, "the same: refraction", bent_rad / arcsec_rad, 0.01, "arcsec", "NREL SPA (42), long double");
 }
 
-/* Over the steps of the clocks, where TT - UT1 is chosen anew: leap seconds, year ends, the table's end. */
+/* Over the steps of the clocks, where TT - UT1 changes its source: leap seconds, year ends, the table's end. */
 static void sun_over_steps(Bench *bench)
 {
     const Geodetic place = {0.6, -2.1, 0};
@@ -313,7 +312,8 @@ static void sun_over_steps(Bench *bench)
         }
         bench_worse(&jump_rad, angle_between(before.d_enu, after.d_enu));
     }
-    /* 0.015 arcsec of the sky's turn in 1 ms, and 0.04 of the sun's way in the second by which TT - UT1 may step */
+    /* 0.015 arcsec of the Earth's rotation in 1 ms, and 0.04 of the sun's motion in the second by which TT - UT1 may
+     * step */
     bench_stress(bench, "sun over leap seconds, leap days, new years: step in 1 ms", jump_rad / arcsec_rad, 0.06,
                  "arcsec", "continuity");
 }

@@ -1,4 +1,4 @@
-/* sensor/bench/terrain/stability.h: this room's part of `pitviper bench stability`. */
+/* sensor/bench/terrain/stability.h: the entries of `pitviper bench stability` for terrain. */
 #ifndef SENSOR_BENCH_TERRAIN_STABILITY_H
 #define SENSOR_BENCH_TERRAIN_STABILITY_H
 

@@ -1,6 +1,6 @@
-/* sensor/bench/terrain/stability_ground.c: ground that no surveyor would sign: cliffs of all the quanta there are,
- * spikes one post wide, voids, grids of one cell and of a billion. The judges are each triangle's plane in long
- * double, every post looked at for the pyramids, and the least and greatest height of the file. */
+/* sensor/bench/terrain/stability_ground.c: extreme elevation data: cliffs over the full range of quanta, spikes one
+ * post wide, voids, grids of one cell and of a billion. References: each triangle's plane in long double, all posts for
+ * the pyramids, and the least and greatest height of the file. */
 #include "sensor/bench/terrain/stability.h"
 
 #include "terrain/elevation/elevation.h"
@@ -117,7 +117,7 @@ static void look(GridErrors *errors, const Elevation *ground, int looks)
     }
 }
 
-/* Entries of pyramid and rises that are not what all their posts say. */
+/* Entries of pyramid and rises that are inconsistent with their posts. */
 static double wrong_entries(const Elevation *ground)
 {
     const ElevationLevel *l = &ground->level[0];
