@@ -5,7 +5,7 @@
  * includes the actual surroundings: a shadowed wall, a warm engine deck, the darkness under a hull. Each direction
  * is traced to its hit, which is lit by the sun or emits, and from there in one more direction; that second hit is
  * lit by the quick form. All hits count as diffuse. Cost: 2 x samples first hits and shadow rays a hit. The error
- * falls with samples^-0.5 or faster; test_gather.c compares it with two other renderers. */
+ * falls with samples^-0.5 or faster; test_hemisphere.c compares it with two other renderers. */
 #ifndef RENDER_LIGHT_HEMISPHERE_H
 #define RENDER_LIGHT_HEMISPHERE_H
 

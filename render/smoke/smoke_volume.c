@@ -106,7 +106,7 @@ static double billows(const double p[3])
 
 /* At the ray's closest approach to the centre the pattern gives the bulge of the ball there (space is scaled by it,
  * 1 .. 1.6) and the density: the factor on the ray's whole column. The constant compensates the scaling: the mean
- * mass is kept (tests/render/test_veil.c). */
+ * mass is kept (tests/render/test_smoke_volume.c). */
 static double pattern_stretch(double *factor, const SmokeVolume *v, const double nearest[3], double q2)
 {
     double p[3];

@@ -5,7 +5,7 @@
  * end, and within a segment the column of each is exact (a polynomial), so the transmittance is exact whatever
  * overlaps. The source of a segment is the mean of its volumes' sources weighted by their optical depths: exact
  * where volumes are uniform inside or alone, and while there are no more than smoke_segments_max boundaries; beyond
- * that neighbouring segments are merged. tests/render/test_veil.c. */
+ * that neighbouring segments are merged. tests/render/test_smoke_volume.c. */
 #ifndef RENDER_SMOKE_SMOKE_VOLUME_H
 #define RENDER_SMOKE_SMOKE_VOLUME_H
 

@@ -1,5 +1,5 @@
-/* sensor/publish/retry_backoff.h: a place that takes no files while a live node goes on: said once, tried again now and
- * then. */
+/* sensor/publish/retry_backoff.h: retries a destination that cannot be written while a live node continues: reported
+ * once, retried at intervals. */
 #ifndef SENSOR_PUBLISH_RETRY_BACKOFF_H
 #define SENSOR_PUBLISH_RETRY_BACKOFF_H
 

@@ -32,7 +32,7 @@ static const struct Row {
     {"out", OUT, IN_BOTH, NULL, "DIR", "folder for the products (default: out)"},
     {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL,
      "replace the products of an earlier run in DIR, or a recording of that\nname; without it that is an error"},
-    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "bands to render: any of optical,mwir,lwir,radar (default: all)"},
+    {"bands", KEY, IN_BOTH, "sensor.bands", "LIST", "bands to render: any of optical,mwir,lwir,radar (default: all); swir in the place of optical"},
     {"size", SIZE, IN_BOTH, NULL, "WxH", "image size in pixels (default: 720x486)"},
     {"rate", KEY, IN_BOTH, "sensor.rate_hz", "HZ",
      "frames per second of exercise time (default: 5 for a munition, 1 for an\nobserver)"},
@@ -44,7 +44,7 @@ static const struct Row {
     {"only", ONLY, IN_REPLAY, NULL, "N,N,...",
      "render only these frames, by number; the same as in a full replay, except\n"
      "for the automatic level of display images (detector.agc_s)"},
-    {"save-frame", SAVE, IN_REPLAY, NULL, "N,N,...",
+    {"save-frame", SAVE, IN_REPLAY, NULL, "N,...",
      "save these frames to DIR/frame_NNNNNN.pvf, for `pitviper frame`, which\nre-renders one without the log"},
     {"host", HOST, IN_REPLAY, NULL, "ID",
      "entity that carries the sensor: site:application:entity, or observer; may\n"

@@ -132,7 +132,7 @@ static void a_full_table_refuses_and_recovers(void **state)
         const DisEntityState pdu = report(e, tank_type);
         hear(&f, &pdu, 0);
     }
-    /* who goes: test_entity_room.c. Here the newcomer, being the farthest */
+    /* who goes: test_entity_eviction.c. Here the newcomer, being the farthest */
     DisEntityState fourth = report(4, tank_type);
     entity_table_focus(f.table, entity_id(1), entity_id(0));
     fourth.p_ecef[0] += 1e6;

@@ -1,4 +1,4 @@
-/* tests/entities/test_entity_room.c: which entities are kept when the table is full: against a list that is searched from end to end,
+/* tests/entities/test_entity_eviction.c: which entities are kept when the table is full: against a list that is searched from end to end,
  * and in floods of invented entities. */
 #include "tests/entities/entity_fixture.h"
 #include "entities/table/entity_ranks.h"
