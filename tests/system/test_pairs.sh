@@ -102,5 +102,5 @@ check "some: what there is" complained "publish.pairs: 'some' is not one of off.
 replay "$tmp/demo.pcap" "$tmp/bad" --pairs all --no-files
 check "without files: refused" complained "publish.pairs: needs image files"
 run run --out "$tmp/bad" --for 1 --set publish.pairs=all
-check "live: refused" complained "publish.pairs: is made by .replay."
+check "live: refused" complained "publish.pairs: only made by .replay."
 finish

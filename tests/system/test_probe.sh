@@ -72,7 +72,7 @@ near "mrtd: cycles a milliradian" "$(cell 1 f_cyc_mrad)" 0.4 0.001
 check "mrtd grows with frequency" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cell 2 mrtd_v_bars_k)" 'BEGIN { exit !(a > 0 && b > 2 * a) }'
 check "row noise hides horizontal bars" awk -v a="$(cell 1 mrtd_v_bars_k)" -v b="$(cell 1 mrtd_h_bars_k)" 'BEGIN { exit !(b > 2 * a) }'
 probe mrtd < <(printf 'preset,f_cyc_px\nhubble,0.1\ntv,0.1\n')
-check "mrtd: an unknown sensor is named in its row" grep -q 'preset is no sensor' "$tmp/stdout"
+check "mrtd: an unknown sensor is named in its row" grep -q 'preset is not a sensor' "$tmp/stdout"
 check "mrtd: a camera of daylight sees no warmth" grep -q 'is not thermal' "$tmp/stdout"
 
 finish
