@@ -342,7 +342,11 @@ def main():
         take_data_pdus(topics["data-pdu"], pdus)
         runs_data_pdu(topics["data-pdu"], pdus)
     rows = [(t, r) for t in topics.values() for r in t.rows.values()]
-    for topic, row in rows: check(row.found, topic.name, row.path, "is in the reference and in no product")
+    # counters of a flood are written when they count: sensor/publish/records.c names them
+    source = open("sensor/publish/records.c").read()
+    for topic, row in rows:
+        if row.absent == "when 0": check(f'"{row.path.split(".")[-1]}"' in source, topic.name, row.path, "is never written")
+        else: check(row.found, topic.name, row.path, "is in the reference and in no product")
     for line in sorted(set(wrong))[:500]: print("FAILED:", line)
     print(len(topics), "topics,", len(rows), "rows")
     sys.exit(1 if wrong or len(rows) < 200 else 0)
