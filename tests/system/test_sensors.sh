@@ -108,8 +108,8 @@ slip() { # slip WHAT PATTERN options
 slip "unknown sensor" "no sensor named 'hubble'; there are: staring_lwir" --set sensor.preset=hubble
 slip "two of a band" "staring_lwir and scanning_flir are both for lwir" --set sensor.preset=staring_lwir,scanning_flir
 slip "band not shown" "tv is for optical, which sensor.bands does not name" --set sensor.preset=tv --bands lwir
-slip "key of no sensor" "detector.f_number: needs a sensor" --set detector.f_number=2
-slip "noise beside a sensor's" "detector.netd_lwir_k: the noise of lwir is that of its sensor, staring_lwir" --set sensor.preset=staring_lwir --set detector.netd_lwir_k=0.1
+slip "key of no sensor" "detector.f_number: overrides a sensor preset" --set detector.f_number=2
+slip "noise beside a sensor's" "detector.netd_lwir_k: the noise of lwir is set by its sensor, staring_lwir" --set sensor.preset=staring_lwir --set detector.netd_lwir_k=0.1
 slip "empty list" "is empty" --set sensor.preset=,
 slip "out of range" "detector.bad_share: '0.9' is not a number in 0 .. 0.2" --set sensor.preset=tv --set detector.bad_share=0.9
 slip "a lens that folds" "is not invertible within" --set sensor.hfov_deg=20 --set sensor.lens_k1=-60
