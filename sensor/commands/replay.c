@@ -137,7 +137,7 @@ static Status check_hosts(DisEntityId host[options_hosts_max], const Run *run)
                 return STATUS_BAD_VALUE;
             }
         if (!observer && !survey_track(&run->survey, host[i]) && !o->config.causal) {
-            log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists who is", o->host[i]);
+            log_error("replay: --host: %s is not in the log; `pitviper inspect LOG` lists the entities", o->host[i]);
             return STATUS_BAD_VALUE;
         }
     }

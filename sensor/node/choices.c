@@ -143,7 +143,7 @@ static Status aim_is_known(const Survey *survey, const Config *config)
         return STATUS_BAD_VALUE;
     }
     if (!survey_track(survey, aim) && !config->causal) {
-        log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists who is",
+        log_error("replay: exercise.aim: %s is not in the log; `pitviper inspect LOG` lists the entities",
                   config->exercise.aim);
         return STATUS_BAD_VALUE;
     }
@@ -209,7 +209,7 @@ Status plan_host(HostPlan *out, Choices *choices, const Survey *survey, const Co
     }
     if (!track) {
         dis_entity_id_text(text, host);
-        log_error("replay: host %s is not in the log; `pitviper inspect LOG` lists who is", text);
+        log_error("replay: host %s is not in the log; `pitviper inspect LOG` lists the entities", text);
         return STATUS_BAD_VALUE;
     }
     HostPlan    plan = {.host = host, .munition = track->type.kind == dis_kind_munition};

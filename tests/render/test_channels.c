@@ -1,5 +1,5 @@
 /* tests/render/test_channels.c: a channel of etc/channels.csv in the place of another: its air and sun against other
- * people's figures, and who is in a place. */
+ * published figures, and which channel is in a place. */
 #include "pitviper_channels.h"
 #include "render/air/atmosphere.h"
 #include "render/materials/materials.h"

@@ -240,7 +240,7 @@ static Status bench_table(Bench *bench)
 const BenchSuite entities_benches[] = {
     {.name = "dis", .help = "the entity table: reports in, snapshots out", .run = bench_table},
     {.name = "stability",
-     .help = "motion and attitude at their edges, every number from outside, models nobody would build",
+     .help = "motion and attitude at their edges, every number from outside, degenerate models",
      .run = entities_bench_stability},
     {.name = "precision", .help = "dead reckoning, heat", .run = bench_precision_motion},
 };
