@@ -43,10 +43,10 @@ static Status open_call(Consumer **out, const Call *made_of)
 Status consume_by_call(Consumer **out, FrameCall *call, void *user)
 {
     return open_call(out,
-                     &(Call){.consumer = {WANT_TARGETS, put_record, NULL, close_call}, .call = call, .user = user});
+                     &(Call){.consumer = {WANT_TARGETS, put_record, NULL, close_call, "dis"}, .call = call, .user = user});
 }
 
 Status consume_hashes(Consumer **out, FrameDone *done, void *user)
 {
-    return open_call(out, &(Call){.consumer = {WANT_SHA256, put_hash, NULL, close_call}, .done = done, .user = user});
+    return open_call(out, &(Call){.consumer = {WANT_SHA256, put_hash, NULL, close_call, NULL}, .done = done, .user = user});
 }

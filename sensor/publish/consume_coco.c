@@ -25,7 +25,7 @@ Status consume_coco(Consumer **out, const char *folder, const Config *config, co
 {
     CocoConsumer *c = calloc(1, sizeof *c);
     if (!c) return STATUS_NO_MEMORY;
-    c->consumer         = (Consumer){WANT_TARGETS | WANT_PLANES, put, NULL, close_coco};
+    c->consumer         = (Consumer){WANT_TARGETS | WANT_PLANES, put, NULL, close_coco, "coco"};
     const Status status = coco_open(&c->coco, folder, config->publish.png ? "png" : "exr",
                                     (CocoLimits){config->publish.coco_min_pixels, config->publish.coco_min_visible},
                                     config_sha256, config->seed);

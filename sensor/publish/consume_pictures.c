@@ -116,7 +116,7 @@ Status consume_pictures(Consumer **out, const PictureFiles *made_of)
         if (made_of->spare) chains_destroy(made_of->spare);
         return STATUS_NO_MEMORY;
     }
-    p->consumer = (Consumer){0, put, left_out, close_pictures};
+    p->consumer = (Consumer){0, put, left_out, close_pictures, "pictures"};
     p->of       = *made_of;
     p->patience = (RetryBackoff){.what = "picture files"};
     p->patient  = made_of->spare != NULL;

@@ -15,6 +15,9 @@ typedef enum FrameWant {
     WANT_CELLS   = 1 << 3, /* picture.small: small targets as a detector needs them */
     WANT_WITHOUT = 1 << 4, /* a second rendering without the target, or without all entities */
     WANT_SHA256  = 1 << 5, /* of all planes, truth too */
+    WANT_DISPLAY = 1 << 6, /* frame.display: behind the detector, with gain and level */
+    WANT_COUNTS  = 1 << 7, /* frame.display.counts: raw counts of the bands with a sensor */
+    WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
 } FrameWant;
 
 typedef struct Consumer Consumer;
@@ -26,6 +29,7 @@ struct Consumer {
     void   (*left_out)(Consumer *consumer, const Frame *frame);
     /* Finishes its products and frees the consumer. */
     Status (*close)(Consumer *consumer);
+    const char *name; /* in the latency ledger; NULL: not in it */
 };
 
 enum { consumers_max = 16 };

@@ -101,7 +101,7 @@ Status frame_queue_open(Consumer **out, Consumers *list, QueueRule rule, QueueCo
     q->list     = *list;
     q->rule     = rule;
     q->result   = counters;
-    q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue};
+    q->consumer = (Consumer){consumers_wants(list), put, NULL, close_queue, NULL};
     list->count = 0;
     pthread_mutex_init(&q->lock, NULL);
     pthread_cond_init(&q->work, NULL);

@@ -15,6 +15,18 @@
 
 #include <stdio.h>
 
+/* Where a line of sight meets the ground. */
+typedef struct GroundPoint {
+    bool   known;                /* false: it does not, within the terrain */
+    double lat_rad, lon_rad, height_m; /* WGS 84, above the ellipsoid */
+    double range_m;              /* from the sensor */
+} GroundPoint;
+/* The boresight, then the image's corners. */
+typedef enum FootprintPoint {
+    FOOTPRINT_CENTRE, FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT, FOOTPRINT_LOWER_LEFT,
+    FOOTPRINT_COUNT
+} FootprintPoint;
+
 typedef struct FrameRecord {
     int                   frame;
     double                time_s;
@@ -33,6 +45,7 @@ typedef struct FrameRecord {
     int                   target_count;
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */
+    const GroundPoint    *footprint;    /* [FOOTPRINT_COUNT]; NULL: not requested */
 } FrameRecord;
 
 /* One line, flushed. STATUS_IO when it cannot be written. */

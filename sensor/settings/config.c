@@ -157,6 +157,30 @@ static const Setting keys[] = {
      "targets with fewer mask pixels are marked in coco.json to be ignored (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
      "targets with a smaller visible fraction are marked in coco.json to be ignored (iscrowd)"},
+    {"publish.latest", SETTING_BOOL, AT(publish.latest), 0, 1, NULL, "",
+     "keep latest/BAND.png, the newest display of each band, replaced as a whole"},
+    {"publish.video", SETTING_PATH, AT(publish.video), 0, 0, NULL, "",
+     "a video file, all bands side by side (.mp4, .mkv, .ts); or a folder: per band a .ts with KLV and an .mp4; empty: "
+     "none"},
+    {"publish.video_codec", SETTING_TEXT, AT(publish.video_codec), 0, 0, "h264|h264-10|hevc-12|ffv1", "",
+     "of videos and streams: 8 bits; 10 bits; 12 bits; 16 bits without loss, in .mkv files only"},
+    {"publish.stream", SETTING_TEXT, AT(publish.stream), 0, 0, NULL, "",
+     "udp://HOST:PORT, numeric: MPEG-TS with KLV, the first band at PORT, each further one at a port higher by 2; empty: "
+     "none"},
+    {"publish.klv", SETTING_TEXT, AT(publish.klv), 0, 0, "async|sync|off", "",
+     "MISB ST 0601 metadata in streams and .ts files: asynchronous, synchronous (stream type 0x15), or none"},
+    {"publish.vmti", SETTING_TEXT, AT(publish.vmti), 0, 0, "atr|truth|off", "",
+     "MISB ST 0903 targets in that metadata: detections received (publish.detections_port); truth, marked so; or none"},
+    {"publish.memory", SETTING_TEXT, AT(publish.memory), 0, 0, NULL, "",
+     "name of a shared-memory ring of frames for a recogniser on this machine, /dev/shm/NAME; empty: none"},
+    {"publish.memory_planes", SETTING_TEXT, AT(publish.memory_planes), 0, 0, "float|counts", "",
+     "planes of the ring: radiance, float; or raw counts of the bands with a sensor, 16 bits"},
+    {"publish.memory_record", SETTING_TEXT, AT(publish.memory_record), 0, 0, "sensor|truth", "",
+     "targets in the ring: sensor, none; truth, with ids and ranges"},
+    {"publish.memory_slots", SETTING_INT, AT(publish.memory_slots), 2, 64, NULL, "",
+     "frames that the ring holds; a reader slower than that loses frames"},
+    {"publish.detections_port", SETTING_INT, AT(publish.detections_port), 0, 65535, NULL, "",
+     "UDP port on loopback that receives a recogniser's detections; 0: none"},
     {"record.path", SETTING_PATH, AT(record.path), 0, 0, NULL, "",
      "pcapng file to which `run` records all received datagrams; empty: none"},
     {"weather.atmosphere", SETTING_NAME_OR_PATH, AT(weather.atmosphere), 0, 0, NULL, "",
@@ -290,6 +314,12 @@ Config config_default(void)
     c.publish.files                 = true;
     c.publish.png                   = true;
     c.publish.coco_min_pixels       = 1;
+    strcpy(c.publish.video_codec, "h264");
+    strcpy(c.publish.klv, "async");
+    strcpy(c.publish.vmti, "atr");
+    strcpy(c.publish.memory_planes, "float");
+    strcpy(c.publish.memory_record, "sensor");
+    c.publish.memory_slots          = 4;
     strcpy(c.weather.atmosphere, "us1976");
     c.weather.visibility_m          = 23000;
     c.weather.air_temp_k            = NAN;

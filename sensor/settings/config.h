@@ -74,6 +74,17 @@ typedef struct Config {
         bool   coco;
         int    coco_min_pixels;    /* targets below are marked to be ignored */
         double coco_min_visible;
+        bool   latest;             /* OUT/latest: the newest display of each band */
+        char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */
+        char   video_codec[16];    /* h264, h264-10, hevc-12 or ffv1 */
+        char   stream[128];        /* udp://HOST:PORT; empty: none */
+        char   klv[8];             /* async, sync or off */
+        char   vmti[8];            /* atr, truth or off */
+        char   memory[64];         /* name of the shared memory; empty: none */
+        char   memory_planes[8];   /* float or counts */
+        char   memory_record[8];   /* sensor or truth */
+        int    memory_slots;
+        int    detections_port;    /* UDP, loopback; 0: none */
     } publish;
     struct {
         char   path[1024];         /* empty: nothing is recorded */

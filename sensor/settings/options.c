@@ -76,6 +76,15 @@ static const struct Row {
     {"pairs", KEY, IN_REPLAY, "publish.pairs", "WHO",
      "target or all: each frame also without its target, or without any\nentity, and both without noise, in DIR/pairs"},
     {"coco", KEY, IN_REPLAY, "publish.coco=true", NULL, "DIR/coco.json: boxes and masks in COCO's format"},
+    {"video", KEY, IN_BOTH, "publish.video", "PATH",
+     "a file to play (.mp4, .mkv, .ts), all bands side by side; or a folder:\n"
+     "per band a .ts with metadata and an .mp4"},
+    {"stream", KEY, IN_BOTH, "publish.stream", "URL",
+     "udp://HOST:PORT: live video with metadata (MPEG-TS), one port per band"},
+    {"memory", KEY, IN_BOTH, "publish.memory", "NAME",
+     "a ring of frames in shared memory, for a recogniser on this machine"},
+    {"latest", KEY, IN_BOTH, "publish.latest=true", NULL,
+     "DIR/latest/BAND.png: the newest display of each band"},
     {"sweep", SWEEP, IN_REPLAY, NULL, "FILE",
      "one run for each combination of the settings in a YAML file, in folders\n"
      "of DIR, with manifest.jsonl and manifest.html; resumes when repeated"},

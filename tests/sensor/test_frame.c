@@ -50,7 +50,7 @@ static Status noting_close(Consumer *consumer)
 
 static void noting(Noting *n, unsigned wants, int fail_at, bool open)
 {
-    *n = (Noting){.consumer = {wants, noting_put, noting_left_out, noting_close}, .fail_at = fail_at, .open = open};
+    *n = (Noting){.consumer = {wants, noting_put, noting_left_out, noting_close, NULL}, .fail_at = fail_at, .open = open};
     pthread_mutex_init(&n->lock, NULL);
     pthread_cond_init(&n->opened, NULL);
 }
