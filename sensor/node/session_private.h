@@ -35,7 +35,7 @@ struct Session {
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
-    FrameLevel           level[BAND_COUNT]; /* of the image files: used by the publishing thread */
+    int                  queues;        /* consumers in threads of their own */
     QueueCounters        written;       /* live: image files; when closed */
     int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
     int                  published;     /* frames that all consumers have received: used by the publishing thread */
