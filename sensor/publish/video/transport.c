@@ -3,6 +3,7 @@
  * av_write_frame, not the interleaving form: that would keep metadata back until the next frame. */
 #include "sensor/publish/video/transport.h"
 
+#include <libavcodec/avcodec.h>
 #include <libavformat/avformat.h>
 #include <libavutil/opt.h>
 #include <stdlib.h>
