@@ -16,16 +16,17 @@ struct Encoder {
     int64_t         count; /* images so far */
 };
 
-/* Per codec: bits, its encoder, and the library's formats by layout. Quality: of 12 .. 51, where a lower one is better,
- * chosen so that 8-bit grey levels are within 2 rms (tests/sensor/test_video_encoder.c). */
+/* Per codec: bits, its encoder, and the library's formats by layout. Quality (CRF; lower is better): such that an image
+ * with noise of 2 in 256 levels comes back with a smaller error than that, and a smaller one with more bits
+ * (tests/sensor/test_video_encoder.c). */
 static const struct Form {
     int                bits;
     const char        *library, *quality;
     enum AVPixelFormat format[4];
 } forms[] = {
-    {8, "libx264", "18", {AV_PIX_FMT_GRAY8, AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV444P, AV_PIX_FMT_NONE}},
-    {10, "libx264", "18", {AV_PIX_FMT_GRAY10LE, AV_PIX_FMT_YUV420P10LE, AV_PIX_FMT_YUV444P10LE, AV_PIX_FMT_NONE}},
-    {12, "libx265", "14", {AV_PIX_FMT_GRAY12LE, AV_PIX_FMT_YUV420P12LE, AV_PIX_FMT_YUV444P12LE, AV_PIX_FMT_NONE}},
+    {8, "libx264", "16", {AV_PIX_FMT_GRAY8, AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV444P, AV_PIX_FMT_NONE}},
+    {10, "libx264", "10", {AV_PIX_FMT_GRAY10LE, AV_PIX_FMT_YUV420P10LE, AV_PIX_FMT_YUV444P10LE, AV_PIX_FMT_NONE}},
+    {12, "libx265", "8", {AV_PIX_FMT_GRAY12LE, AV_PIX_FMT_YUV420P12LE, AV_PIX_FMT_YUV444P12LE, AV_PIX_FMT_NONE}},
     {16, "ffv1", NULL, {AV_PIX_FMT_GRAY16LE, AV_PIX_FMT_NONE, AV_PIX_FMT_NONE, AV_PIX_FMT_RGB48LE}},
 };
 
@@ -51,6 +52,8 @@ static PixelLayout layout_of(const EncoderConfig *c)
     if (c->codec == VIDEO_FFV1) return c->colour ? PIXELS_RGB : PIXELS_GREY;
     return !odd ? PIXELS_420 : c->colour ? PIXELS_444 : PIXELS_GREY;
 }
+
+enum { ffv1_slices = 4 };
 
 /* Key frames come by request alone, once a second of exercise time. */
 static bool set_options(AVDictionary **out, const EncoderConfig *c)
@@ -89,7 +92,8 @@ static Status open_context(Encoder *e)
     x->time_base    = av_inv_q(x->framerate);
     x->gop_size     = c->codec == VIDEO_FFV1 ? 1 : 1 << 20;
     x->max_b_frames = 0;
-    x->thread_count = 1;
+    x->thread_count = c->codec == VIDEO_FFV1 ? ffv1_slices : 1; /* a thread each; the bytes depend on slices alone */
+    x->thread_type  = FF_THREAD_SLICE;
     x->level        = c->codec == VIDEO_FFV1 ? 3 : FF_LEVEL_UNKNOWN;
     x->flags        = AV_CODEC_FLAG_GLOBAL_HEADER; /* for .mp4 and .mkv; MPEG-TS uses those in the key frames */
     x->color_range            = AVCOL_RANGE_JPEG;
