@@ -25,6 +25,7 @@ typedef struct Channel {
 typedef struct Video {
     Consumer  consumer;
     VideoOf   of;
+    unsigned  to;     /* VideoTo: those of `of` that are configured */
     KlvMode   klv;
     int       channels;
     Channel   channel[BAND_COUNT + 1];
@@ -217,7 +218,7 @@ static Status add_stream(Video *v, Channel *c)
     const Config *config = v->of.config;
     StreamUrl     url;
     VideoOutput  *o;
-    if (!video_stream_url(&url, config, v->of.bands, (Band)__builtin_ctz(c->bands))) return STATUS_OK;
+    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, (Band)__builtin_ctz(c->bands))) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
     return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
@@ -235,14 +236,14 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
 static Status add_channels(Video *v)
 {
     const Config   *config = v->of.config;
-    const VideoKind asked  = video_kind(config->publish.video);
+    const VideoKind asked  = v->to & VIDEO_TO_FILE ? video_kind(config->publish.video) : VIDEO_NONE;
     const unsigned  bands  = v->of.bands;
     const bool      single = asked > VIDEO_FOLDER, alone = (bands & (bands - 1)) == 0;
     VideoKind       kind[2];
     const int       kinds  = asked == VIDEO_FOLDER ? video_folder_kinds(kind, config) : 0;
     Status          status = STATUS_OK;
     for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
-        if (!(bands >> b & 1) || (!kinds && !*config->publish.stream)) continue;
+        if (!(bands >> b & 1) || (!kinds && !(v->to & VIDEO_TO_STREAM))) continue;
         Channel *c = add_channel(v, 1u << b);
         status     = add_stream(v, c);
         for (int k = 0; k < kinds && status == STATUS_OK; k++) status = add_file(v, c, kind[k]);
@@ -265,8 +266,9 @@ static Status make_folder(const VideoOf *of)
 
 Status consume_video(Consumer **out, const VideoOf *of)
 {
-    const bool single = video_kind(of->config->publish.video) > VIDEO_FOLDER;
-    if (of->host_folder && (single || *of->config->publish.stream)) {
+    const unsigned to     = of->to & video_wanted(of->config);
+    const bool     single = to & VIDEO_TO_FILE && video_kind(of->config->publish.video) > VIDEO_FOLDER;
+    if (of->host_folder && (single || to & VIDEO_TO_STREAM)) {
         log_error("video: several hosts do not fit into one %s; choose one --host, or --video FOLDER",
                   single ? "file" : "stream");
         return STATUS_UNSUPPORTED;
@@ -275,10 +277,11 @@ Status consume_video(Consumer **out, const VideoOf *of)
     if (!v) return STATUS_NO_MEMORY;
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
     v->of       = *of;
+    v->to       = to;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
                                                                  : KLV_NONE;
-    Status status = make_folder(of);
+    Status status = to & VIDEO_TO_FILE ? make_folder(of) : STATUS_OK;
     if (status == STATUS_OK) status = add_channels(v);
     for (int i = 0; i < v->channels; i++)
         if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;

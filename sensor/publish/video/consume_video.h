@@ -15,8 +15,11 @@
 /* A recogniser's targets in this frame, or NULL: none are known. Valid until the next call. */
 typedef const KlvTargets *VideoDetections(void *user, const Frame *frame, Band band);
 
+typedef enum VideoTo { VIDEO_TO_STREAM = 1, VIDEO_TO_FILE = 2 } VideoTo;
+
 typedef struct VideoOf {
     const Config    *config;
+    unsigned         to;          /* VideoTo: which of those that are configured; encoded once for both */
     unsigned         bands;       /* rendered */
     double           rate_hz;     /* of the run */
     const char      *host_folder; /* of several hosts in a run: this one's, below that of the videos; NULL: the only one */
@@ -28,6 +31,9 @@ typedef struct VideoOf {
 
 /* STATUS_UNSUPPORTED, logged: built without FFmpeg's libraries; or a file or stream of several hosts. */
 Status consume_video(Consumer **out, const VideoOf *of);
+
+/* Of a configuration: what there is to publish; 0: nothing. */
+unsigned video_wanted(const Config *config);
 
 /* Whether a video that this run would replace exists, and its path. */
 enum { video_found_size = 4096 };

@@ -11,6 +11,12 @@ Status consume_video(Consumer **out, const VideoOf *of)
     return STATUS_UNSUPPORTED;
 }
 
+unsigned video_wanted(const Config *config)
+{
+    (void)config;
+    return 0;
+}
+
 bool video_earlier(char found[video_found_size], const Config *config, unsigned bands, const char *host_folder)
 {
     (void)config, (void)bands, (void)host_folder;

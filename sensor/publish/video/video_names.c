@@ -35,6 +35,11 @@ bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band
     return true;
 }
 
+unsigned video_wanted(const Config *config)
+{
+    return (*config->publish.stream ? VIDEO_TO_STREAM : 0u) | (*config->publish.video ? VIDEO_TO_FILE : 0u);
+}
+
 static bool exists(char found[video_found_size], const char *path)
 {
     struct stat about;
