@@ -1,6 +1,7 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/pairs.h"
 #include "sensor/publish/video/consume_video.h"
 
@@ -100,6 +101,13 @@ static Status add_coco(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static Status add_klv(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_klv(&consumer, &(KlvFiles){s->out, s->shared->config, s->shared->bands, s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_call(Consumers *list, const SessionShared *shared)
 {
     Consumer    *consumer = NULL;
@@ -140,6 +148,7 @@ static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *p
         status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
     if (status == STATUS_OK) status = add_truth_lines(list, s);
     if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
+    if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
     if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
     return status == STATUS_OK ? add_hashes(list, s, done) : status;
 }
@@ -173,6 +182,7 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
     if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
     if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
+    if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
     if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
     if (status == STATUS_OK) status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);

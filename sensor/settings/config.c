@@ -172,6 +172,8 @@ static const Setting keys[] = {
      "MISB ST 0601 metadata in streams and .ts files: asynchronous, synchronous (stream type 0x15), or none"},
     {"publish.vmti", SETTING_TEXT, AT(publish.vmti), 0, 0, "atr|truth|off", "",
      "MISB ST 0903 targets in that metadata: detections received (publish.detections_port); truth, marked so; or none"},
+    {"publish.klv_files", SETTING_BOOL, AT(publish.klv_files), 0, 1, NULL, "",
+     "write the metadata also into BAND.klv, without video"},
     {"publish.memory", SETTING_TEXT, AT(publish.memory), 0, 0, NULL, "",
      "name of a shared-memory ring of frames for a recogniser on this machine, /dev/shm/NAME; empty: none"},
     {"publish.memory_planes", SETTING_TEXT, AT(publish.memory_planes), 0, 0, "float|counts", "",
