@@ -1,6 +1,7 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/pairs.h"
 
 #include <stdlib.h>
@@ -83,6 +84,27 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+/* Shared memory, and what comes back from it. */
+static Status add_memory(Consumers *list, Session *s)
+{
+    const SessionShared *shared   = s->shared;
+    const Config        *config   = shared->config;
+    Consumer            *consumer = NULL;
+    Status               status   = STATUS_OK;
+    if (config->publish.detections_port) {
+        status = detections_open(&s->detections, config->publish.detections_port, shared->bands,
+                                 config->sensor.width_px, config->sensor.height_px);
+        if (status == STATUS_OK) status = consume_detections(&consumer, s->detections);
+        if (status == STATUS_OK) status = consumers_add(list, consumer);
+    }
+    if (status != STATUS_OK || !*config->publish.memory) return status;
+    MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+                   .host = shared->several ? s->host_text : NULL};
+    for (int b = 0; b < BAND_COUNT; b++) of.with_sensor |= s->chain[b] ? 1u << b : 0;
+    status = consume_memory(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule)
 {
     Consumer    *consumer = NULL;
@@ -132,6 +154,7 @@ Status session_consumers(Session *s, FrameDone *done)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
+    if (status == STATUS_OK) status = add_memory(&s->consumers, s);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
     if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
