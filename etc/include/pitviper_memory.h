@@ -527,9 +527,9 @@ static inline const unsigned char *pitviper_memory_in_place(const PitviperMemory
 {
     const PitviperMemoryHeader *h = (const PitviperMemoryHeader *)(const void *)m->at;
     const uint64_t              n = __atomic_load_n(&h->newest, __ATOMIC_ACQUIRE);
+    *sequence                     = n;
     if (n == 0 || n > UINT64_MAX / 2) return NULL;
     const unsigned char *slot = m->at + m->header.slot_offset + (n - 1) % m->header.slot_count * m->header.slot_size;
-    *sequence                 = n;
     return __atomic_load_n((const uint64_t *)(const void *)slot, __ATOMIC_ACQUIRE) == 2 * n ? slot : NULL;
 }
 
