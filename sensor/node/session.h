@@ -29,6 +29,7 @@ typedef struct SessionShared {
     void          *user;
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
+    bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };
