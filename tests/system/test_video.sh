@@ -27,8 +27,8 @@ bound() {
     done
     fail "the receivers did not start"
 }
-live=(--bands lwir --from 1366 --rate 20 --planes none)
-watch() { receive "$1" ffmpeg -v info -y -fflags nobuffer -analyzeduration 1200000 -copyts -i "$2" -map 0:v -fps_mode passthrough -vf showinfo -f rawvideo -pix_fmt gray "$tmp/$1.gray" -map 0:d -c copy -f data "$tmp/$1.klv"; }
+live=(--bands lwir --from 1366 --rate 20 --planes none --set sensor.antialias=off --set quality.budget=off)
+watch() { receive "$1" ffmpeg -v info -y -analyzeduration 1200000 -copyts -i "$2" -map 0:v -fps_mode passthrough -vf showinfo -f rawvideo -pix_fmt gray -flush_packets 1 "$tmp/$1.gray" -map 0:d -c copy -flush_packets 1 -f data "$tmp/$1.klv"; }
 
 # ---- multicast, asynchronous metadata; targets of truth; the file beside it has every frame
 gst=no tshark=no sockets=1
@@ -44,7 +44,7 @@ if command -v tshark >/dev/null && timeout 5 tshark -i lo -a duration:0 -w /dev/
     receive tshark tshark -i lo -a duration:60 -f "udp port $port" -w "$tmp/group.pcap"
 fi
 bound "$port" $sockets
-replay "$tmp/demo.pcap" "$tmp/a" "${live[@]}" --to 1369 --speed 2 --video "$tmp/a.ts" --stream "udp://$group:$port" \
+replay "$tmp/demo.pcap" "$tmp/a" "${live[@]}" --to 1368 --speed 2 --video "$tmp/a.ts" --stream "udp://$group:$port" \
     --set network.interface=lo --set publish.vmti=truth
 check "the replay that streams" [ "$code" = 0 ]
 finish_receivers
@@ -96,31 +96,31 @@ def is_some_of(part, whole):  # in order
     at = iter(whole)
     return all(p in at for p in part)
 most = 2.0  # of 256 levels, rms: tests/sensor/test_video_encoder.c
-for out, ts, name in (("a", "a.ts", "group"), ("b", "b/lwir.ts", "host")):
+for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "host", 61)):
     png, klv, pts = pngs(out), klv_of(ts), [int(p) for p in probe(ts, "v")]
-    assert len(png) == len(klv) == len(pts) == 61, (len(png), len(klv), len(pts))
-    assert [round(b - a) for a, b in zip(pts, pts[1:])] == [4500] * 60, "time stamps: 20 Hz of exercise time"
+    assert len(png) == len(klv) == len(pts) == all_of, (len(png), len(klv), len(pts))
+    assert [round(b - a) for a, b in zip(pts, pts[1:])] == [4500] * (all_of - 1), "time stamps: 20 Hz of exercise time"
     # exercise time, modulo 33 bits, in both
     assert all(abs((unix_us(k) * 9 // 100 - p + 45) % 2**33 - 45) <= 2 for k, p in zip(klv, pts)), "metadata's time is the picture's"
     of_klv = probe(ts, "d")
-    assert of_klv == (["N/A"] * 61 if out == "a" else [str(p) for p in pts]), of_klv[:3]
+    assert of_klv == (["N/A"] * all_of if out == "a" else [str(p) for p in pts]), of_klv[:3]
     # as it was sent
     shown = [int(n) for n in re.findall(r"n: *\d+ pts: *(\d+)", read(f"{name}.err").decode(errors="replace"))]
     seen = pictures(f"{name}.gray", png[0])
-    assert len(seen) == len(shown) >= 20 and set(shown) <= set(pts) and shown == sorted(shown), (name, len(seen), len(shown))
+    assert 12 <= len(seen) <= len(shown) and set(shown) <= set(pts) and shown == sorted(shown), (name, len(seen), len(shown))
     if out == "b": assert shown[0] > pts[0], "it was to join in the middle"
     errors = [error(s, png[pts.index(t)]) for s, t in zip(seen, shown)]
-    print(f"{name}: {len(seen)} of 61 pictures received and decoded, error {max(errors):.2f} levels rms at most, PSNR {20 * np.log10(255 / max(errors)):.1f} dB")
+    print(f"{name}: {len(seen)} of {all_of} pictures received and decoded, error {max(errors):.2f} levels rms at most, PSNR {20 * np.log10(255 / max(errors)):.1f} dB")
     assert max(errors) <= most, errors
     got = packets(read(f"{name}.klv"))
-    assert len(got) >= 20 and is_some_of(got, klv), (name, len(got))
+    assert len(got) >= 12 and is_some_of(got, klv), (name, len(got))
 mp4 = subprocess.run(["ffmpeg", "-v", "error", "-i", f"{tmp}/b/lwir.mp4", "-f", "rawvideo", "-pix_fmt", "gray", "-"], check=True, capture_output=True).stdout
 mp4 = np.frombuffer(mp4, np.uint8).reshape(-1, *png[0].shape).astype(float)
 assert len(mp4) == 61 and max(error(a, b) for a, b in zip(mp4, png)) <= most, "mp4"
 if gst:
     png, klv = pngs("a"), klv_of("a.ts")
     seen = pictures("gst.gray", png[0])
-    best = [min(range(61), key=lambda i: error(s, png[i])) for s in seen]
+    best = [min(range(41), key=lambda i: error(s, png[i])) for s in seen]
     assert len(seen) >= 20 and best == sorted(best) and max(error(s, png[i]) for s, i in zip(seen, best)) <= most, ("gst", len(seen))
     got = packets(read("gst.klv"))
     print(f"GStreamer: {len(seen)} pictures, {len(got)} metadata packets")
@@ -133,7 +133,9 @@ if [ $tshark = yes ]; then
     check "tshark: program tables" [ "$(grep -c 'Program Map Table' "$tmp/dissected")" -ge 20 ]
     check "tshark: H.264 and private data registered as KLVA" grep -q "Stream type: AVC video" "$tmp/dissected"
     check "tshark: private data" grep -qi "Stream type:.*(0x06)" "$tmp/dissected"
-    check "tshark: continuous, well formed" not grep -qiE "malformed|continuity.*(drop|error)|CC.*drop|detected [0-9]+ missing" "$tmp/dissected"
-    check "tshark: datagrams of whole packets" [ -z "$(tshark -r "$tmp/group.pcap" -T fields -e udp.length 2>/dev/null | awk '($1 - 8) % 188 || $1 > 1324')" ]
+    # a column each: octets of the datagram, continuity lost, malformed
+    tshark -r "$tmp/group.pcap" -d "udp.port==$port,mp2t" -T fields -e udp.length -e mp2t.cc.drop -e _ws.malformed >"$tmp/columns" 2>/dev/null
+    check "tshark: datagrams" [ "$(wc -l <"$tmp/columns")" -ge 40 ]
+    check "tshark: continuous, well formed, whole packets" [ -z "$(awk '($1 - 8) % 188 || $1 > 1324 || NF > 1' "$tmp/columns")" ]
 fi
 finish
