@@ -45,7 +45,9 @@ static void put_id(Octets *o, DisEntityId id)
 
 static void put_box(Octets *o, const int box[4])
 {
-    for (int k = 0; k < 4; k++) put(o, (uint64_t)clamp(box[k], 0, UINT16_MAX), 2);
+    uint16_t edge[4];
+    box_u16(edge, box);
+    for (int k = 0; k < 4; k++) put(o, edge[k], 2);
 }
 
 static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
@@ -60,7 +62,7 @@ static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from
                                                               .value = o->at + from};
 }
 
-static void put_seen(Octets *o, const Target *t, Band band)
+static void put_seen(Octets *o, const TargetRecord *t, Band band)
 {
     const bool thermal = band == BAND_MWIR || band == BAND_LWIR;
     put_box(o, t->box);
@@ -73,9 +75,9 @@ static void put_seen(Octets *o, const Target *t, Band band)
     put_f32(o, band == BAND_RADAR ? t->closing_mps : NAN);
 }
 
-static void put_truth(Octets *o, const Target *t, const Snapshot *snapshot, Band band)
+static void put_truth(Octets *o, const TargetRecord *t, Band band)
 {
-    put_id(o, snapshot->entity[t->index].id);
+    put_id(o, t->id);
     put_box(o, t->box);
     put_f32(o, t->pixels);
     put_f32(o, t->visible_fraction);
@@ -111,7 +113,7 @@ static void add_targets(DisData *pdu, Octets *o, const FrameRecord *r, Band band
     for (int i; count < most && room >= one && (i = next_largest(r, chosen, count, truth)) >= 0; room -= one) {
         const size_t from = o->used;
         chosen[count++]   = i;
-        if (truth) put_truth(o, &r->target[i], r->snapshot, band);
+        if (truth) put_truth(o, &r->target[i], band);
         else put_seen(o, &r->target[i], band);
         add_variable(pdu, truth ? datum_truth : datum_target_measured, o, from);
     }

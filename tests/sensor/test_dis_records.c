@@ -52,7 +52,7 @@ static const uint8_t *variable(uint32_t *bits, const uint8_t *pdu, size_t octets
 }
 
 enum { most_targets = 60 };
-static Target         target[most_targets];
+static TargetRecord   target[most_targets];
 static SnapshotEntity entity[most_targets + 1];
 static Snapshot       snapshot = {.entity = entity};
 static RenderRequest  request = {.bands = 15, .view = {.width = 720, .height = 486, .focal_px = 6868.6}};
@@ -63,7 +63,7 @@ static FrameRecord frame_of(int targets, int hidden)
 {
     for (int i = 0; i < targets; i++) {
         entity[i].id = (DisEntityId){1, 2, (uint16_t)(100 + i)};
-        target[i]    = (Target){.index = i, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5,
+        target[i]    = (TargetRecord){.index = i, .id = entity[i].id, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5,
                                 .los_az_rad = 1.25, .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
                                 .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75,
                                 .box = {i, 2, i + 3, 4}};
