@@ -6,6 +6,7 @@
 #include "render/frame/render.h"
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
+#include "sensor/publish/consume_dis.h"
 #include "sensor/settings/sensors.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
@@ -24,8 +25,9 @@ typedef struct SessionShared {
     bool           live;      /* a file that cannot be written does not end the session */
     const char    *config_sha256;
     const Sensors *sensors;
-    void         (*publish)(void *user, const FrameRecord *frame); /* every frame; NULL: not published */
+    void         (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
     void          *user;
+    const DisOf   *dis;       /* Data PDUs of each frame, its clock being the player; NULL: none */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
 } SessionShared;

@@ -83,6 +83,18 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+static Status add_dis(Consumers *list, const Session *s)
+{
+    Consumer    *consumer = NULL;
+    DisOf        of       = *s->shared->dis;
+    of.arrival_s          = arrival_s;
+    of.clock              = s->player;
+    const Status status   = consume_dis(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule)
 {
     Consumer    *consumer = NULL;
@@ -132,7 +144,8 @@ Status session_consumers(Session *s, FrameDone *done)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
-    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
+    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
+    if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     return status == STATUS_OK ? frame_pool_create(&s->frames, s->publish_pool ? queue_frames : 1) : status;
