@@ -35,8 +35,8 @@ struct Session {
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
-    FrameLevel           level[BAND_COUNT]; /* of the image files: used by the publishing thread */
-    QueueCounters        written;       /* live: image files; when closed */
+    int                  queues;        /* consumers in threads of their own */
+    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
     int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
     int                  published;     /* frames that all consumers have received: used by the publishing thread */
     Status               listed;        /* of the result's lists: used by the publishing thread */
