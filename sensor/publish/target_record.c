@@ -20,6 +20,8 @@ static TargetRecord record_of(const Target *t, const Snapshot *snapshot, const C
                  .los_el_rad = t->los_el_rad, .occluder = occluder_of(t), .age_s = entity->age_s,
                  .position_error_m = entity->position_error_m};
     memcpy(r.marking, entity->marking, sizeof r.marking);
+    memcpy(r.p_ecef, entity->p_ecef, sizeof r.p_ecef);
+    memcpy(r.v_ecef_mps, entity->v_ecef_mps, sizeof r.v_ecef_mps);
     memcpy(r.box, t->box, sizeof r.box);
     memcpy(r.amodal_box, t->amodal_box, sizeof r.amodal_box);
     memcpy(r.los_rate_rps, t->los_rate_rps, sizeof r.los_rate_rps);

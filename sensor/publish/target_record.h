@@ -49,6 +49,7 @@ typedef struct TargetRecord {
     double        amodal_box[4];
     double        pixels;                  /* area, parts of pixels too */
     double        visible_fraction;        /* of its area on the image */
+    double        p_ecef[3], v_ecef_mps[3]; /* of the model's origin */
     double        range_m, closing_mps;
     double        aspect_rad;              /* 0: nose on, to its right, below 2 pi */
     double        depression_rad;

@@ -69,7 +69,7 @@ static void the_record_is_of_its_entity(void **state)
     SnapshotEntity entity[3] = {
         {.id = {1, 2, 3}, .type = {1, 1, 222, 1, 1, 1, 0}, .marking = "T-72", .model = 0, .age_s = 1.5,
          .position_error_m = 0.25},
-        {.id = {1, 2, 4}, .marking = "\xff\x01", .model = 1},
+        {.id = {1, 2, 4}, .marking = "\xff\x01", .model = 1, .p_ecef = {11, 12, 13}, .v_ecef_mps = {14, 15, 16}},
         {.id = {7, 8, 9}},
     };
     const Snapshot snapshot  = {.count = 3, .entity = entity};
@@ -90,6 +90,7 @@ static void the_record_is_of_its_entity(void **state)
     CHECK(r[0].amodal_box[0] == -2.5 && r[0].amodal_box[2] == 6.25);
     CHECK(r[0].occluder == OCCLUDER_ENTITY && r[0].occluder_id.site == 7);
     CHECK(r[0].los_rate_rps[1] == 2 && r[0].boresight_error_rad[0] == 3);
+    CHECK(r[0].p_ecef[0] == 11 && r[0].p_ecef[2] == 13 && r[0].v_ecef_mps[1] == 15);
     CHECK(r[0].band[0].snr == 5 && r[0].band[2].contrast_k == 7 && r[0].band[3].contrast == 8);
     CHECK(strcmp(r[0].model, catalog_model(catalog, 1)->name) == 0);
     CHECK(r[1].plane_value == 1 && strcmp(r[1].marking, "T-72") == 0 && r[1].age_s == 1.5);

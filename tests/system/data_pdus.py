@@ -1,7 +1,7 @@
 """Data PDUs as sensor/publish/dis_records.h describes them, read from recordings: used by test_replay_publishes.sh and
 test_five_records.sh.
 
-    data_pdus.py receive PORT FILE             datagrams to 127.0.0.1:PORT into FILE, a line of hex each, until a line
+    data_pdus.py receive ADDRESS PORT FILE     datagrams to ADDRESS:PORT into FILE, a line of hex each, until a line
                                                comes in on standard input, or that is closed; says when it listens
     data_pdus.py same LIVE.pcapng FILE LEAST   the Data PDUs of FILE against those of the recording, by frame and band
 """
@@ -32,10 +32,10 @@ def datums(pdu):
     assert at == len(pdu), "it does not end where its records do"
     return values, records
 
-def receive(port, path):
+def receive(address, port, path):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear, open(path, "w") as to:
         ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 21)
-        ear.bind(("127.0.0.1", int(port)))
+        ear.bind((address, int(port)))
         print("listening", flush=True)
         for _ in range(300):  # at most 60 s
             ready, _, _ = select.select([ear, sys.stdin], [], [], 0.2)

@@ -18,7 +18,7 @@ ended live 30
 end_sender
 check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
 
-coproc receiver { "${pdus[@]}" receive $port "$tmp/replayed"; }
+coproc receiver { "${pdus[@]}" receive 127.0.0.1 $port "$tmp/replayed"; }
 read -r -t 10 listening <&"${receiver[0]}"
 check "a receiver listens" [ "${listening:-}" = listening ]
 again() { run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "$(time_of "$tmp/live" '$')" "${few[@]}" "$@"; }
