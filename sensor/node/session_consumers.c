@@ -143,6 +143,18 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+static Status add_dis(Consumers *list, const Session *s)
+{
+    Consumer    *consumer = NULL;
+    DisOf        of       = *s->shared->dis;
+    of.arrival_s          = arrival_s;
+    of.clock              = s->player;
+    const Status status   = consume_dis(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
 {
     Consumer *consumer = NULL;
@@ -239,7 +251,8 @@ Status session_consumers(Session *s, FrameDone *done)
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK) status = add_detections(&s->consumers, s);
-    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
+    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
+    if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     /* the one being rendered, and of each queue the one that waits and the one being published */

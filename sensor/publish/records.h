@@ -10,8 +10,8 @@
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
 #include "sensor/truth/footprint.h"
+#include "sensor/publish/target_record.h"
 #include "sensor/truth/frame_error.h"
-#include "sensor/truth/truth.h"
 #include "terrain/earth/sun.h"
 
 #include <stdio.h>
@@ -30,7 +30,7 @@ typedef struct FrameRecord {
     bool                  gimbal_at_limit;
     double                scene_rate_px_s[2]; /* column, row: image motion of a stationary point at the centre */
     const Sun            *sun;
-    const Target         *target;
+    const TargetRecord   *target;
     int                   target_count;
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */
