@@ -38,6 +38,8 @@ struct Run {
     Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     void     *user;              /* of both */
+    double  (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
+    void     *clock;
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */

@@ -2,6 +2,7 @@
 #include "sensor/node/live.h"
 
 #include "dis/exercise_clock.h"
+#include "dis/steady_clock.h"
 #include "dis/udp.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/node/health.h"
@@ -221,6 +222,14 @@ static void publish_frame(void *user, const FrameRecord *frame)
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
 
+/* Exercise time as the time of arrival that it stands for, on the clock of wall_clock_s. */
+static double wall_of(void *user, double t_s)
+{
+    const Live           *l  = user;
+    const struct timespec at = steady_clock_monotonic(dis_unix_ns_until(player_arrival_s(l->player, t_s)));
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
 static Status feed(Live *l, Player *player, int64_t until_ns)
 {
     DisDatagram datagram;
@@ -438,6 +447,8 @@ int run_command(int argc, char **argv)
     l->run.live                  = &l->counters;
     l->run.user                  = l;
     l->run.publish               = publish_frame;
+    l->run.wall_s                = wall_of;
+    l->run.clock                 = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);
     if (*name) l->run.log_name = basename(name);
     l->latency_s = NAN;

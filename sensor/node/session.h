@@ -26,6 +26,9 @@ typedef struct SessionShared {
     const Sensors *sensors;
     void         (*publish)(void *user, const FrameRecord *frame); /* every frame; NULL: not published */
     void          *user;
+    double       (*wall_s)(void *clock, double t_s); /* wall_clock_s at which exercise time t_s arrives here; NULL: no
+                                                    * latency ledger is kept */
+    void          *clock;     /* of wall_s */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
 } SessionShared;
@@ -46,6 +49,7 @@ typedef struct SessionResult {
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */
+    LatencySummary latency;           /* when closed; of a session with a ledger */
     RenderCounters counters;
     EntityCounters entities;
     EffectCounters effects;

@@ -86,6 +86,7 @@ static Status add_call(Consumers *list, const SessionShared *shared)
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule)
 {
     Consumer    *consumer = NULL;
+    consumers_expect(behind, s->latency);
     const Status status   = frame_queue_open(&consumer, behind, rule, rule == QUEUE_WAIT ? NULL : &s->written);
     return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
 }
@@ -132,8 +133,10 @@ Status session_consumers(Session *s, FrameDone *done)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
+    if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
     if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
+    consumers_expect(&s->consumers, s->latency);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     return status == STATUS_OK ? frame_pool_create(&s->frames, s->publish_pool ? queue_frames : 1) : status;
 }

@@ -34,6 +34,8 @@ struct Session {
     Consumers            consumers;
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
+    Latency             *latency;       /* NULL: none is kept */
+    double               fed_s;         /* of the last frame in it: player_fed_s */
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
     FrameLevel           level[BAND_COUNT]; /* of the image files: used by the publishing thread */
     QueueCounters        written;       /* live: image files; when closed */

@@ -44,7 +44,12 @@ Status   consumers_add(Consumers *list, Consumer *consumer);
 unsigned consumers_wants(const Consumers *list);
 /* The frame to each in turn; the first failure ends it. */
 Status   consumers_put(const Consumers *list, Frame *frame);
-/* Closes all of them; returns the first failure. */
+/* The frame was rendered and is put to none of them. */
+void     consumers_left_out(const Consumers *list, const Frame *frame);
+/* Their names into the ledger. NULL: none is kept. */
+void     consumers_expect(const Consumers *list, Latency *latency);
+/* Closes all of them, the last one first, so that those behind a queue have had the last frame when the first is
+ * closed. Returns the first failure. */
 Status   consumers_close(Consumers *list);
 /* The planes that a request must contain. Whether the error budget is on is up to the caller. */
 void     consumers_request(RenderRequest *request, unsigned wants);
