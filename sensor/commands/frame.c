@@ -155,6 +155,7 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
 {
     Chain      *chain[BAND_COUNT] = {NULL};
     FrameLevel *level = arena_alloc(arena, BAND_COUNT, sizeof *level);
+    FrameDisplay display[BAND_COUNT];
     TruthNoise  noise;
     char        hash[sha256_text_size];
     unsigned    raw = 0;
@@ -164,11 +165,17 @@ static Status write_products(const FrameOptions *o, const FrameFile *file, Frame
     const unsigned kept = file->request.bands | (frame_files_truth(&s->config) ? frame_truth : 0);
     if (status == STATUS_OK) status = frame_files_prepare(o->out, kept, raw);
     if (status == STATUS_OK) {
+        const DisplaysOf of = {.config = &s->config, .picture = &again->picture, .chain = chain, .level = level,
+                               .frame = file->frame, .time_s = file->time_s,
+                               .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .counts = raw != 0};
+        status = displays_make(display, &of, file->request.bands, pool, arena);
+    }
+    if (status == STATUS_OK) {
         const FrameFiles files = {.out = o->out, .config = &s->config, .world = &s->world, .picture = &again->picture,
                                   .snapshot = &s->snapshot, .request = &file->request, .host = file->host,
                                   .config_sha256 = file->config_sha256, .frame = file->frame, .time_s = file->time_s,
-                                  .unix_s = file->unix_s + file->time_s, .png = s->config.publish.png, .chain = chain,
-                                  .level = level, .rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}};
+                                  .unix_s = file->unix_s + file->time_s, .png = s->config.publish.png, .raw = raw != 0,
+                                  .display = display};
         frame_expose(&noise, chain, &again->picture, &s->config);
         status = frame_files_write(hash, &files, pool);
     }

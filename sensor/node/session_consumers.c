@@ -14,20 +14,31 @@ static Status chains_of(Chains *out, const Sensors *sensors, const Config *confi
     return status;
 }
 
+/* Displays, if a consumer of the other list wants them. */
+static Status add_displays(Consumers *list, Session *s, Pool *pool, unsigned wants)
+{
+    const SessionShared *shared   = s->shared;
+    Consumer            *consumer = NULL;
+    Chains               chains;
+    if (!(wants & (WANT_DISPLAY | WANT_COUNTS))) return STATUS_OK;
+    Status status = chains_of(&chains, shared->sensors, shared->config);
+    if (status == STATUS_OK)
+        status = consume_displays(&consumer, shared->config, pool, &chains, (wants & WANT_COUNTS) != 0);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_pictures(Consumers *list, Session *s, Pool *pool)
 {
-    const SessionShared *shared = s->shared;
-    PictureFiles         of     = {.out = s->out, .config = shared->config, .pool = pool, .level = s->level};
-    Chains               spare;
-    Consumer            *consumer = NULL;
-    Status               status   = chains_of(&of.chains, shared->sensors, shared->config);
-    if (status != STATUS_OK) return status;
-    if (shared->live) {
-        status   = chains_of(&spare, shared->sensors, shared->config);
-        of.spare = &spare;
-    }
-    if (status == STATUS_OK) status = consume_pictures(&consumer, &of);
-    else chains_destroy(&of.chains);
+    Consumer    *consumer = NULL;
+    const Status status   = consume_pictures(&consumer, &(PictureFiles){.out = s->out, .config = s->shared->config,
+                                                                        .pool = pool, .patient = s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static Status add_latest(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_latest(&consumer, s->out, s->shared->live);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -35,7 +46,7 @@ static Status add_pairs(Consumers *list, Session *s, Pool *pool, unsigned raw)
 {
     const SessionShared *shared = s->shared;
     PairsOf              of = {.out = s->out, .config = shared->config, .config_sha256 = shared->config_sha256,
-                               .pool = pool, .bands = shared->bands, .raw = raw, .level = s->level};
+                               .pool = pool, .bands = shared->bands, .raw = raw};
     Consumer            *consumer = NULL;
     Sensors             *quiet    = malloc(sizeof *quiet);
     if (!quiet) return STATUS_NO_MEMORY;
@@ -83,45 +94,75 @@ static Status add_call(Consumers *list, const SessionShared *shared)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-static Status add_queue(Session *s, Consumers *behind, QueueRule rule)
+static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
 {
-    Consumer    *consumer = NULL;
+    Consumer *consumer = NULL;
+    if (behind->count == 0) return STATUS_OK;
     consumers_expect(behind, s->latency);
-    const Status status   = frame_queue_open(&consumer, behind, rule, rule == QUEUE_WAIT ? NULL : &s->written);
+    const Status status = frame_queue_open(&consumer, behind, rule, counters);
+    if (status == STATUS_OK) s->queues++;
     return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
 }
 
-/* A replay with more than one thread publishes a frame while the next is rendered. */
-static Status for_replay(Session *s, FrameDone *done, unsigned raw)
+/* All of the other list, which is empty then. */
+static Status add_all(Consumers *list, Consumers *others)
 {
-    const Config *config  = s->shared->config;
-    const int     threads = pool_threads(s->shared->pool);
-    const bool    behind  = threads > 1;
-    Consumers     list    = {0};
-    Status        status  = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
-    Pool         *pool    = behind ? s->publish_pool : s->shared->pool;
-    if (status == STATUS_OK && config->publish.files) status = add_pictures(&list, s, pool);
-    if (status == STATUS_OK) status = add_truth_lines(&list, s);
-    if (status == STATUS_OK && config->publish.coco) status = add_coco(&list, s);
-    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(&list, s, pool, raw);
-    if (status == STATUS_OK) status = add_hashes(&list, s, done);
-    if (status == STATUS_OK && behind) return add_queue(s, &list, QUEUE_WAIT);
-    for (int i = 0; i < list.count && status == STATUS_OK; i++) status = consumers_add(&s->consumers, list.consumer[i]);
-    if (status != STATUS_OK) consumers_close(&list);
+    Status status = STATUS_OK;
+    for (int i = 0; i < others->count; i++) {
+        const Status one = consumers_add(list, others->consumer[i]);
+        if (status == STATUS_OK) status = one;
+    }
+    others->count = 0;
     return status;
 }
 
-/* A slow disk never delays a live node: image files are written by a thread of their own, and dropped when it is
- * late. */
+/* ---- what a session's frames go to -------------------------------------------------------------- */
+
+/* Files of a replay: nothing is dropped, a slow disk delays it. */
+static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *pool, unsigned raw)
+{
+    const Config *config = s->shared->config;
+    Status        status = config->publish.files ? add_pictures(list, s, pool) : STATUS_OK;
+    if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
+    if (status == STATUS_OK) status = add_truth_lines(list, s);
+    if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
+    if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
+    return status == STATUS_OK ? add_hashes(list, s, done) : status;
+}
+
+/* With more than one thread a frame is published while the next is rendered. */
+static Status for_replay(Session *s, FrameDone *done, unsigned raw)
+{
+    const int  threads = pool_threads(s->shared->pool);
+    const bool behind  = threads > 1;
+    Consumers  files = {0}, all = {0};
+    Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
+    Pool      *pool   = behind ? s->publish_pool : s->shared->pool;
+    if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
+    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&files));
+    if (status == STATUS_OK) status = add_all(&all, &files);
+    if (status == STATUS_OK) status = behind ? add_queue(s, &all, QUEUE_WAIT, NULL) : add_all(&s->consumers, &all);
+    if (status != STATUS_OK) consumers_close(&files);
+    if (status != STATUS_OK) consumers_close(&all);
+    return status;
+}
+
+/* A slow consumer never delays a live node: each has a thread of its own, and frames are dropped when it is late. */
 static Status for_live(Session *s, FrameDone *done)
 {
-    Consumers pictures = {0};
-    Status    status   = add_truth_lines(&s->consumers, s);
-    if (status == STATUS_OK) status = add_hashes(&s->consumers, s, done);
-    if (status != STATUS_OK || !s->shared->config->publish.files) return status;
-    status = pool_create(&s->publish_pool, 1);
-    if (status == STATUS_OK) status = add_pictures(&pictures, s, s->publish_pool);
-    return status == STATUS_OK ? add_queue(s, &pictures, QUEUE_LEAVE_OUT) : status;
+    const Config *config   = s->shared->config;
+    Consumers     pictures = {0}, first = {0};
+    Status        status   = pool_create(&s->publish_pool, 1);
+    if (status == STATUS_OK) status = add_truth_lines(&first, s);
+    if (status == STATUS_OK) status = add_hashes(&first, s, done);
+    if (status == STATUS_OK && config->publish.files) status = add_pictures(&pictures, s, s->publish_pool);
+    if (status == STATUS_OK && config->publish.latest) status = add_latest(&pictures, s);
+    if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, consumers_wants(&pictures));
+    if (status == STATUS_OK) status = add_all(&s->consumers, &first);
+    if (status == STATUS_OK) status = add_queue(s, &pictures, QUEUE_LEAVE_OUT, &s->written);
+    if (status != STATUS_OK) consumers_close(&pictures);
+    if (status != STATUS_OK) consumers_close(&first);
+    return status;
 }
 
 Status session_consumers(Session *s, FrameDone *done)
@@ -138,5 +179,6 @@ Status session_consumers(Session *s, FrameDone *done)
     if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
-    return status == STATUS_OK ? frame_pool_create(&s->frames, s->publish_pool ? queue_frames : 1) : status;
+    /* the one being rendered, and of each queue the one that waits and the one being published */
+    return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
 }

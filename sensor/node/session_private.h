@@ -37,7 +37,7 @@ struct Session {
     Latency             *latency;       /* NULL: none is kept */
     double               fed_s;         /* of the last frame in it: player_fed_s */
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
-    FrameLevel           level[BAND_COUNT]; /* of the image files: used by the publishing thread */
+    int                  queues;        /* consumers in threads of their own */
     QueueCounters        written;       /* live: image files; when closed */
     int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
     int                  published;     /* frames that all consumers have received: used by the publishing thread */

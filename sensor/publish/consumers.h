@@ -15,19 +15,22 @@ typedef struct Chains {
 } Chains;
 void chains_destroy(Chains *chains);
 
-/* OUT/frames, raw and profiles (frame_files.h). level: of its displays, [BAND_COUNT], the caller's, so that others
- * in the same thread may read their last values. spare: NULL, or detectors for dropped frames: the state of an
- * automatic level includes those too, so that later displays do not depend on which frames were dropped; with them a
- * frame that cannot be written is dropped, reported, and writing is retried at intervals (retry_backoff.h). */
+/* frame.display of every frame put, in order; in a list before those that want it. counts: raw counts too. Takes the
+ * chains over, also on failure. */
+Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains *chains, bool counts);
+
+/* OUT/frames, raw and profiles (frame_files.h). patient: a frame that cannot be written is dropped, reported, and
+ * writing is retried at intervals (retry_backoff.h). */
 typedef struct PictureFiles {
     const char   *out;
     const Config *config;
     Pool         *pool;      /* of the thread that puts */
-    FrameLevel   *level;
-    Chains        chains;
-    Chains       *spare;
+    bool          patient;
 } PictureFiles;
 Status consume_pictures(Consumer **out, const PictureFiles *made_of);
+
+/* OUT/latest/BAND.png: the newest display of each band, 8 bits, replaced as a whole. patient: as above. */
+Status consume_latest(Consumer **out, const char *folder, bool patient);
 
 /* OUT/truth.jsonl, a line per frame. patient: a line that cannot be written is dropped; failed: how many, when
  * closed. */

@@ -6,7 +6,7 @@
 #ifndef SENSOR_PUBLISH_FRAME_H
 #define SENSOR_PUBLISH_FRAME_H
 
-#include "sensor/detector/level.h"
+#include "sensor/publish/display.h"
 #include "sensor/publish/latency.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
@@ -39,18 +39,6 @@ typedef struct FrameView {
     char       sha256[sha256_text_size]; /* of the planes; empty: not yet, see frame_sha256 */
 } FrameView;
 
-/* A band's image behind its detector, before quantisation (frame_display_quantise). Without a sensor: radiance with
- * noise as configured. */
-typedef struct FrameDisplay {
-    int             planes;    /* 0: none; 1: grey; 3: R, G, B */
-    const float    *plane[3];  /* [height][width] */
-    bool            decibels;  /* radar: power, displayed in dB below the brightest */
-    DetectorConfig  detector;
-    DetectorLevel   level;     /* displayed as black and white */
-    const uint16_t *counts[3]; /* raw, [height][width]; NULL: not requested, or no sensor */
-    int             count_bits;
-} FrameDisplay;
-
 /* The inputs of the frame, its program and its time. */
 typedef struct Provenance {
     const char *version, *config_sha256;
@@ -65,8 +53,8 @@ struct Frame {
     double            time_s, unix_s;    /* of the exercise */
     char              host[dis_id_text_size];
     FrameView         seen;
-    FrameDisplay      display[BAND_COUNT];
-    GroundPoint       footprint[FOOTPRINT_COUNT];
+    FrameDisplay      display[BAND_COUNT]; /* consume_displays, if a consumer wants it */
+    GroundPoint       footprint[FOOTPRINT_COUNT]; /* if a consumer wants it; as in record */
     FrameView        *without;           /* the same without the removed entities; NULL: not requested */
     const DisEntityId *taken;            /* [taken_count] */
     int               taken_count;
@@ -94,9 +82,6 @@ enum { frame_plane_name_size = 64 };
 Plane  frame_plane(char name[frame_plane_name_size], const FrameArray *plane);
 /* Of all planes. Computed on the first call, in the publishing thread. */
 Status frame_sha256(FrameView *view);
-
-/* To 8 .. 16 bits: uint8_t (8) or uint16_t values of a grey image, or of R G B interleaved. */
-void   frame_display_quantise(void *out, const FrameDisplay *display, size_t count, int bits);
 
 typedef struct FramePool FramePool;
 

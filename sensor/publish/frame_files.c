@@ -247,7 +247,7 @@ Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, P
     for (int b = 0; b < BAND_COUNT; b++)
         if (frame->request->bands >> b & 1) add_job(&jobs, write_exr, b);
     for (int b = 0; b <= BAND_COUNT; b++) {
-        const bool raw = b < BAND_COUNT && frame->chain[b] && frame->config->detector.raw;
+        const bool raw = b < BAND_COUNT && frame->raw && frame->display[b].counts[0];
         if ((frame->png || raw) && (b == BAND_COUNT ? truth : frame->request->bands >> b & 1))
             add_job(&jobs, display_write, b);
     }

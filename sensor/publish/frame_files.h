@@ -4,36 +4,20 @@
 #ifndef SENSOR_PUBLISH_FRAME_FILES_H
 #define SENSOR_PUBLISH_FRAME_FILES_H
 
-#include "render/frame/render.h"
-#include "sensor/detector/chain.h"
-#include "sensor/detector/level.h"
-#include "sensor/settings/config.h"
-#include "sensor/truth/truth.h"
 #include "sensor/publish/frame.h"
-
-/* An automatic level with a time constant; starts with the first frame. */
-typedef struct FrameLevel {
-    bool          known;
-    double        time_s;
-    DetectorLevel level;
-    DetectorLevel shown;            /* of the last display: values of its black and white; R G B: balanced */
-} FrameLevel;
 
 typedef struct FrameFiles {
     const char     *out;            /* folder of this host; exists, with its subfolders */
     const Config   *config;
     const World    *world;
     const Picture  *picture;
-    const Picture  *noise_of;       /* the image whose mean white noise is a share of; NULL: picture */
     const Snapshot *snapshot;
     const RenderRequest *request;
     const char     *host, *config_sha256;
     int             frame;
     double          time_s, unix_s;
-    bool            png;
-    Chain *const   *chain;          /* [BAND_COUNT]; NULL: white noise as configured */
-    FrameLevel     *level;          /* [BAND_COUNT] */
-    double          rate_px_s[2];   /* image motion of the scene: column, row */
+    bool            png, raw;       /* displays; raw counts, where there are any */
+    const FrameDisplay *display;    /* [BAND_COUNT]; of those and truth, if it is png */
 } FrameFiles;
 
 /* Bands with a detector: all but radar. */
@@ -59,8 +43,6 @@ enum { pair_folders = 3 };
 extern const char *const pair_folder[pair_folders];
 /* Whether any plane of truth is written to files. */
 bool   frame_files_truth(const Config *config);
-/* Exposes the sensors for this image, and gives their noise at its mean radiance. */
-void   frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Picture *picture, const Config *config);
 /* Writes all files of the frame, one task per file. hash: over all planes, before encoding; NULL: none. */
 Status frame_files_write(char hash[sha256_text_size], const FrameFiles *frame, Pool *pool);
 /* Only the products of detectors: display images and raw counts of its bands. */
@@ -71,18 +53,7 @@ bool   frame_path(char path[frame_path_size], const FrameFiles *frame, const cha
 
 /* ---- displays (display_files.c) ---------------------------------------------------------------- */
 
-/* Runs the band's detector, writes its display image and its raw counts, as configured. BAND_COUNT: the preview of
- * truth. */
+/* Writes the band's display image and its raw counts, as requested. BAND_COUNT: the preview of truth. */
 Status display_write(const FrameFiles *frame, int band);
-/* Gain and level of a frame by itself, by band: the contribution of a frame that is not written to the state of a
- * display (detector.agc_s). No bands where there is no state. Runs the detectors, which must be exposed for this
- * image. */
-typedef struct DisplayLevels {
-    double        time_s;
-    unsigned      bands;
-    DetectorLevel level[BAND_COUNT];
-} DisplayLevels;
-Status display_levels(DisplayLevels *now, const FrameFiles *frame);
-void   display_follow(FrameLevel level[BAND_COUNT], const DisplayLevels *now, double agc_s);
 
 #endif

@@ -91,10 +91,23 @@ static void product_folder(char path[path_size], const char *out, int b)
 
 const char *const pair_folder[pair_folders] = {"pairs/clean", "pairs/background", "pairs/background_clean"};
 
+/* BAND.png and BAND.part.png of consume_latest. */
+static bool is_latest(const char *name)
+{
+    const size_t stem = strcspn(name, ".");
+    bool         band = false;
+    for (int b = 0; b < BAND_COUNT; b++)
+        band |= strlen(band_name((Band)b)) == stem && strncmp(name, band_name((Band)b), stem) == 0;
+    return band && (strcmp(name + stem, ".png") == 0 || strcmp(name + stem, ".part.png") == 0);
+}
+
 static void clear_products(const char *out)
 {
     static const char *const parents[] = {"frames", "profiles", "raw"};
     char path[path_size];
+    snprintf(path, sizeof path, "%s/latest", out);
+    clear_folder(path, is_latest);
+    rmdir(path);
     for (int b = 0; b < folder_count; b++) {
         product_folder(path, out, b);
         clear_folder(path, is_frame_name);

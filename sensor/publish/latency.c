@@ -128,7 +128,7 @@ uint64_t latency_begin(Latency *l, const LatencyTimes *t)
     Entry         *e   = &l->entry[key % latency_frames];
     *e = (Entry){.key = key,
                  .stage_ms = {span_ms(t->arrived_s, t->posed_s), span_ms(t->posed_s, t->render_s),
-                              span_ms(t->render_s, t->rendered_s), span_ms(t->rendered_s, t->displayed_s)}};
+                              span_ms(t->render_s, t->rendered_s), NAN}};
     for (int i = 0; i < LATENCY_STAGE_COUNT; i++)
         if (i != LATENCY_ARRIVAL_TO_POSE || t->fresh) count_one(&l->stage[i], e->stage_ms[i]);
     for (int i = 0; i < l->consumers; i++) {
@@ -153,6 +153,16 @@ static bool settle(Entry *e, int i)
     if (e->waits[i] == 0) return false;
     e->outstanding--;
     return --e->waits[i] == 0;
+}
+
+void latency_displayed(Latency *l, uint64_t key, double rendered_s)
+{
+    const double ms = 1e3 * fmax(0, wall_clock_s() - rendered_s);
+    pthread_mutex_lock(&l->lock);
+    Entry *e = find(l, key);
+    if (e) e->stage_ms[LATENCY_DISPLAY] = ms;
+    count_one(&l->stage[LATENCY_DISPLAY], ms);
+    pthread_mutex_unlock(&l->lock);
 }
 
 void latency_done(Latency *l, uint64_t key, double rendered_s, const char *name)

@@ -19,11 +19,11 @@ extern const char *const latency_stage_name[LATENCY_STAGE_COUNT];
 /* Of one frame; 0: not there. arrived: the newest datagram that the frame used; fresh: no earlier frame used it. Only
  * then is it in the statistics: a silent exercise is no latency. */
 typedef struct LatencyTimes {
-    double arrived_s, posed_s, render_s, rendered_s, displayed_s;
+    double arrived_s, posed_s, render_s, rendered_s;
     bool   fresh;
 } LatencyTimes;
 
-/* Of one frame, ms; NaN: not there. Of a consumer: after the end of rendering; NaN: not done. */
+/* Of one frame, ms; NaN: not there. Of displays and of a consumer: after the end of rendering; NaN: not done. */
 typedef struct LatencyLine {
     double stage_ms[LATENCY_STAGE_COUNT];
     int    consumers;
@@ -57,6 +57,8 @@ void   latency_expect(Latency *latency, const char *name);
 
 /* A rendered frame, before its consumers get it; returns its key. */
 uint64_t latency_begin(Latency *latency, const LatencyTimes *times);
+/* The displays of the frame are made, now. */
+void     latency_displayed(Latency *latency, uint64_t key, double rendered_s);
 /* A consumer of that name has returned, now; or did not get the frame. Also of frames no longer kept. */
 void     latency_done(Latency *latency, uint64_t key, double rendered_s, const char *name);
 void     latency_left_out(Latency *latency, uint64_t key, const char *name);

@@ -26,7 +26,7 @@ static json_t *member_json(const PairRecord *r, const PairMember *m)
             set_file(band, "display", b == BAND_RADAR ? m->radiance : m->shown, "frames", name, r->frame, "png");
         if (r->raw >> b & 1) set_file(band, "raw", m->shown, "raw", name, r->frame, "png");
         if (r->png && b != BAND_RADAR)
-            json_object_set_new(band, "level", json_pack("[f,f]", m->level[b].shown.low, m->level[b].shown.high));
+            json_object_set_new(band, "level", json_pack("[f,f]", m->display[b].level.low, m->display[b].level.high));
         json_object_set_new(bands, name, band);
     }
     json_object_set_new(member, "bands", bands);

@@ -10,7 +10,7 @@ enum { pair_members = 1 + pair_folders };
 typedef struct PairMember {
     bool        target, noise;
     const char *radiance, *shown;       /* folders below the run's: of radiance and truth, of displays and raw counts */
-    const FrameLevel *level;            /* [BAND_COUNT] values of black and white */
+    const FrameDisplay *display;        /* [BAND_COUNT] values of black and white */
 } PairMember;
 
 typedef struct PairRecord {

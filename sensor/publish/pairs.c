@@ -13,6 +13,7 @@ typedef struct Member {
     char       folder[path_size];
     Chains     chains;
     FrameLevel level[BAND_COUNT];
+    FrameDisplay display[BAND_COUNT]; /* of the present frame */
 } Member;
 
 typedef struct Pairs {
@@ -62,7 +63,7 @@ static Status write_line(const Pairs *p, const Frame *frame)
             .noise    = m == WITH || m == BACKGROUND,
             .radiance = m < BACKGROUND ? "" : pair_folder[BACKGROUND - 1],
             .shown    = m == WITH ? "" : pair_folder[m - 1],
-            .level    = m == WITH ? p->of.level : p->member[m].level,
+            .display  = m == WITH ? frame->display : p->member[m].display,
         };
     const Status status = record_write_pair(p->index, &r);
     if (status == STATUS_IO) log_error("pairs: cannot write pairs.jsonl: %s", strerror(errno));
@@ -95,15 +96,18 @@ static Status write_member(Pairs *p, int m, Frame *frame)
 {
     Member          *member = &p->member[m];
     FrameView       *view   = m < BACKGROUND ? &frame->seen : frame->without;
-    TruthNoise       ignored;
-    const FrameFiles files = {.out = member->folder, .config = m == BACKGROUND ? p->of.config : &p->noiseless,
-                              .world = frame->world, .picture = &view->picture,
-                              .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture, .snapshot = &view->snapshot,
-                              .request = &frame->request, .host = frame->host, .config_sha256 = p->of.config_sha256,
-                              .frame = frame->number, .time_s = frame->time_s, .unix_s = frame->unix_s,
-                              .png = p->of.config->publish.png, .chain = member->chains.band, .level = member->level,
-                              .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}};
-    frame_expose(&ignored, files.chain, files.picture, files.config);
+    const Config    *config = m == BACKGROUND ? p->of.config : &p->noiseless;
+    const DisplaysOf of     = {.config = config, .picture = &view->picture,
+                               .noise_of = m < BACKGROUND ? NULL : &frame->seen.picture, .chain = member->chains.band,
+                               .level = member->level, .frame = frame->number, .time_s = frame->time_s,
+                               .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}, .counts = p->of.raw != 0};
+    const FrameFiles files  = {.out = member->folder, .config = config, .world = frame->world,
+                               .picture = &view->picture, .snapshot = &view->snapshot, .request = &frame->request,
+                               .host = frame->host, .config_sha256 = p->of.config_sha256, .frame = frame->number,
+                               .time_s = frame->time_s, .unix_s = frame->unix_s, .png = p->of.config->publish.png,
+                               .raw = p->of.raw != 0, .display = member->display};
+    const Status     made   = displays_make(member->display, &of, frame->request.bands, p->of.pool, frame->arena);
+    if (made != STATUS_OK) return made;
     return m == BACKGROUND ? frame_files_write(view->sha256, &files, p->of.pool)
                            : frame_files_write_displays(&files, p->of.pool);
 }
@@ -152,7 +156,7 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
         for (int m = 0; m < 3; m++) chains_destroy(&chains[m]);
         return STATUS_NO_MEMORY;
     }
-    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256, put, NULL, close_pairs, "pairs"};
+    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL, close_pairs, "pairs"};
     p->of       = *of;
     p->all      = strcmp(of->config->publish.pairs, "all") == 0;
     p->noiseless = *of->config;

@@ -28,7 +28,6 @@ typedef struct PairsOf {
     const char       *config_sha256;
     Pool             *pool;
     unsigned          bands, raw;
-    const FrameLevel *level;  /* [BAND_COUNT] of the run's own displays */
     Chains            clean, background, background_clean; /* taken over, also on failure; clean: without noise */
 } PairsOf;
 

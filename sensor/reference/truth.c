@@ -157,6 +157,8 @@ static const ReferenceField fields[] = {
      "from the arrival of the newest datagram that the frame used until the sensor's pose was sampled"},
     {"latency_ms.pose_to_render", "number", "ms", "", "", "from then until rendering began"},
     {"latency_ms.render", "number", "ms", "", "", "rendering, with the truth of targets where it is requested"},
+    {"latency_ms.display", "number", "ms", "after the end of rendering",
+     "when no consumer takes displays, or not done two frames later", "displays made: the detector, gain and level"},
     {"latency_ms.consumers", "object", "", "", "", "by consumer of the frame"},
     {"latency_ms.consumers.CONSUMER", "number", "ms", "after the end of rendering",
      "when it was not given the frame, or not done two frames later", "the consumer was done with the frame"},

@@ -343,9 +343,11 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     static uint8_t rgb[256 * 3];
     CHECK(temp_folder(folder));
     assert_int_equal(frame_files_prepare_displays(folder, request.bands, 0), STATUS_OK);
-    FrameFiles       files = {.out = folder, .config = &config, .world = &hand.world, .picture = &picture,
+    FrameDisplay     display[BAND_COUNT];
+    DisplaysOf       shown = {.config = &config, .picture = &picture, .chain = chain, .level = level};
+    const FrameFiles files = {.out = folder, .config = &config, .world = &hand.world, .picture = &picture,
                               .snapshot = &hand.snapshot, .request = &request, .host = "h", .config_sha256 = "0",
-                              .frame = 0, .png = true, .chain = chain, .level = level};
+                              .frame = 0, .png = true, .display = display};
     snprintf(path, sizeof path, "%s/frames/optical/000000.png", folder);
 
     /* by radiance; then by counts of a camera without noise, at a level by itself and at one by hand */
@@ -358,12 +360,13 @@ static void a_frame_is_balanced_by_its_own_day(void **state)
     assert_int_equal(chain_create(&camera, &preset, 16, 16, 1, 1), STATUS_OK);
     chains[BAND_OPTICAL] = camera;
     for (int pass = 0; pass < 3; pass++) {
-        if (pass > 0) files.chain = chains, chain_expose(camera, (const float *const *)picture.optical);
+        if (pass > 0) shown.chain = chains;
         if (pass == 2) {
             strcpy(config.detector.level, "manual");
             config.detector.optical_high_w_m2_sr = (white[0] + white[1] + white[2]) / 3;
         }
         level[BAND_OPTICAL].known = false;
+        assert_int_equal(displays_make(display, &shown, request.bands, hand.pool, hand.arena), STATUS_OK);
         assert_int_equal(frame_files_write_displays(&files, hand.pool), STATUS_OK);
         assert_int_equal(image_read_png(rgb, path), STATUS_OK);
         for (int i = 0; i < 256; i++) /* a count of the camera is up to a code at the dark end */

@@ -196,27 +196,29 @@ static void a_late_queue_leaves_out(void **state)
 
 /* ---- levels ----------------------------------------------------------------------------------------- */
 
-/* What a display shows last after frames of different brightness, of which `put` are put and the others left out; tell:
- * whether it is told of those. */
-static DetectorLevel shown_after(unsigned put, bool live, bool tell)
+/* The level of the last display after frames of different brightness, of which `made` are put to the displays, and of
+ * those `written` to the files: the latter makes no difference. */
+static DetectorLevel shown_after(unsigned made, unsigned written)
 {
     enum { side = 16, frames = 5 };
     Config      config = config_default();
-    FrameLevel  level[BAND_COUNT] = {0};
-    Consumer   *pictures = NULL;
+    Consumer   *displays = NULL, *pictures = NULL;
     FramePool  *pool = NULL;
-    Chains      spare = {{NULL}};
+    Chains      chains = {{NULL}};
     char        folder[temp_path_size], path[temp_path_size + 64];
     static float plane[side * side];
+    DetectorLevel last = {NAN, NAN};
     config.detector.agc_s = 2;
+    config.detector.raw   = false;
     config.publish.png = config.publish.files = true;
     strcpy(config.publish.planes, "none");
     CHECK(temp_folder(folder));
     assert_int_equal(frame_files_prepare(folder, 1u << BAND_LWIR, 0), STATUS_OK);
     assert_int_equal(frame_pool_create(&pool, 1), STATUS_OK);
-    assert_int_equal(consume_pictures(&pictures, &(PictureFiles){.out = folder, .config = &config, .pool = hand.pool,
-                                                                 .level = level, .spare = live ? &spare : NULL}),
+    assert_int_equal(consume_displays(&displays, &config, hand.pool, &chains, false), STATUS_OK);
+    assert_int_equal(consume_pictures(&pictures, &(PictureFiles){.out = folder, .config = &config, .pool = hand.pool}),
                      STATUS_OK);
+    CHECK(displays->wants == WANT_CELLS && pictures->wants == WANT_DISPLAY);
     for (int k = 0; k < frames; k++) {
         Frame *f = frame_pool_take(pool);
         for (int i = 0; i < side * side; i++) plane[i] = 30.0f + (float)(k * k) + 0.05f * (float)i;
@@ -227,36 +229,64 @@ static DetectorLevel shown_after(unsigned put, bool live, bool tell)
         f->seen.picture     = (Picture){.width = side, .height = side, .lwir = plane};
         f->seen.plane_count = frame_planes(f->seen.plane, &f->seen.picture, &f->request);
         f->provenance.config_sha256 = "";
-        if (put >> k & 1) assert_int_equal(pictures->put(pictures, f), STATUS_OK);
-        else if (tell) pictures->left_out(pictures, f);
-        if (put >> k & 1) CHECK(*f->seen.sha256); /* computed beside the files */
+        if (made >> k & 1) assert_int_equal(displays->put(displays, f), STATUS_OK);
+        if (made >> k & 1) last = f->display[BAND_LWIR].level;
+        if (written >> k & 1) assert_int_equal(pictures->put(pictures, f), STATUS_OK);
+        if (written >> k & 1) CHECK(*f->seen.sha256); /* computed beside the files */
         frame_release(f);
         for (int e = 0; e < 2; e++) {
             snprintf(path, sizeof path, "%s/frames/lwir/%06d.%s", folder, k, e ? "png" : "exr");
-            CHECK((remove(path) == 0) == (put >> k & 1));
+            CHECK((remove(path) == 0) == (written >> k & 1));
         }
     }
-    const DetectorLevel shown = level[BAND_LWIR].shown;
     assert_int_equal(pictures->close(pictures), STATUS_OK);
+    assert_int_equal(displays->close(displays), STATUS_OK);
     frame_pool_destroy(pool);
     snprintf(path, sizeof path, "%s/frames/lwir", folder);
     remove(path);
     snprintf(path, sizeof path, "%s/frames", folder);
     remove(path);
     remove(folder);
-    return shown;
+    return last;
 }
 
 static void frames_left_out_move_the_level(void **state)
 {
     (void)state;
-    const DetectorLevel replay = shown_after(0x1f, false, false), live = shown_after(0x1f, true, false);
-    const DetectorLevel late = shown_after(0x12, true, true), first = shown_after(0x11, true, true);
-    const DetectorLevel untold = shown_after(0x11, true, false);
-    CHECK(live.low == replay.low && live.high == replay.high);
-    CHECK(late.low == replay.low && late.high == replay.high);
-    CHECK(first.low == replay.low && first.high == replay.high);
-    CHECK(fabs(untold.low - replay.low) > 0.1); /* the twin: this is what is mended */
+    const DetectorLevel all = shown_after(0x1f, 0x1f), late = shown_after(0x1f, 0x12);
+    const DetectorLevel never_made = shown_after(0x11, 0x11);
+    CHECK(late.low == all.low && late.high == all.high);
+    CHECK(fabs(never_made.low - all.low) > 0.1); /* the twin: frames that no detector saw do not move it */
+}
+
+/* 8, 10, 12 and 16 bits of one display agree to a step of the coarser. */
+static void a_display_of_any_depth(void **state)
+{
+    (void)state;
+    enum { side = 16, count = side * side };
+    Config       config = config_default();
+    FrameLevel   level[BAND_COUNT] = {0};
+    FrameDisplay display[BAND_COUNT];
+    Chain *const chain[BAND_COUNT] = {NULL};
+    static float plane[count];
+    uint8_t      eight[count];
+    uint16_t     deep[3][count];
+    for (int i = 0; i < count; i++) plane[i] = 30.0f + 0.01f * (float)i;
+    config.detector.noise = 0;
+    const Picture    picture = {.width = side, .height = side, .lwir = plane};
+    const DisplaysOf of = {.config = &config, .picture = &picture, .chain = chain, .level = level};
+    Arena *arena = arena_create();
+    assert_non_null(arena);
+    assert_int_equal(displays_make(display, &of, 1u << BAND_LWIR | 1u << BAND_MWIR, hand.pool, arena), STATUS_OK);
+    CHECK(display[BAND_LWIR].planes == 1 && display[BAND_MWIR].planes == 0 && !display[BAND_LWIR].counts[0]);
+    frame_display_quantise(eight, &display[BAND_LWIR], count, 8);
+    for (int k = 0; k < 3; k++) frame_display_quantise(deep[k], &display[BAND_LWIR], count, k == 2 ? 16 : 10 + 2 * k);
+    for (int i = 0; i < count; i++) {
+        CHECK(deep[0][i] <= 1023 && deep[1][i] <= 4095 && deep[2][i] >> 4 == deep[1][i] && deep[2][i] >> 6 == deep[0][i]);
+        CHECK(fabs(deep[2][i] / 65535.0 - eight[i] / 255.0) <= 0.5 / 255 + 1e-5);
+    }
+    CHECK(eight[0] < 20 && eight[count - 1] > 235 && deep[2][1] > deep[2][0]);
+    arena_destroy(arena);
 }
 
 /* ---- arrays ----------------------------------------------------------------------------------------- */
@@ -333,6 +363,7 @@ int main(void)
         cmocka_unit_test(a_queue_stops_at_the_first_failure),
         cmocka_unit_test(a_late_queue_leaves_out),
         cmocka_unit_test(frames_left_out_move_the_level),
+        cmocka_unit_test(a_display_of_any_depth),
         cmocka_unit_test(arrays_of_any_axes),
         cmocka_unit_test(a_long_path_is_refused),
     };

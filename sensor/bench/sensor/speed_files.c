@@ -9,16 +9,22 @@
 #include <unistd.h>
 
 typedef struct Encode {
-    FrameFiles files;
-    Pool      *pool;
-    Status     status;
-    char       hash[sha256_text_size];
+    FrameFiles   files;
+    DisplaysOf   shown;
+    FrameDisplay display[BAND_COUNT];
+    Pool        *pool;
+    Arena       *arena;
+    Status       status;
+    char         hash[sha256_text_size];
 } Encode;
 
 static void encode(void *user)
 {
     Encode *e = user;
-    e->status = frame_files_write(e->hash, &e->files, e->pool);
+    arena_reset(e->arena);
+    e->status = STATUS_OK;
+    if (e->files.png) e->status = displays_make(e->display, &e->shown, e->files.request->bands, e->pool, e->arena);
+    if (e->status == STATUS_OK) e->status = frame_files_write(e->hash, &e->files, e->pool);
 }
 
 /* Values of the file's planes that differ from those of the picture. */
@@ -69,6 +75,8 @@ Status speed_files(Speed *s)
     Status status = frame.status;
     if (status == STATUS_OK && !temp_folder(out)) status = STATUS_IO;
     if (status != STATUS_OK) return status;
+    Arena *arena = arena_create();
+    if (!arena) return STATUS_NO_MEMORY;
     status = frame_files_prepare(out, three_bands | frame_truth, 0);
     Encode with = {.pool = s->many,
                    .files = {.out = out,
@@ -80,11 +88,12 @@ Status speed_files(Speed *s)
                              .host = "observer",
                              .config_sha256 = "",
                              .unix_s = s->scene.unix_s,
-                             .png = true,
-                             .chain = chain,
-                             .level = level}};
+                             .png = true},
+                   .shown = {.config = &config, .picture = &frame.picture, .chain = chain, .level = level},
+                   .arena = arena};
     Encode without = with;
-    without.files.png = false;
+    with.files.display = with.display;
+    without.files.png  = false;
     const BenchWork work[2] = {{encode, &with, 1}, {encode, &without, 1}};
     if (status == STATUS_OK) bench_time(time, s->bench, work, 2);
     if (status == STATUS_OK) status = with.status != STATUS_OK ? with.status : without.status;
@@ -98,6 +107,7 @@ Status speed_files(Speed *s)
         bench_add(s->bench, &row);
     }
     remove_folder(out);
+    arena_destroy(arena);
     return status;
 }
 
