@@ -14,6 +14,7 @@ const Reference reference_products = {
         "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal\n"
         "    frames/BAND/NNNNNN.png           help png       display images; absent with --no-png\n"
         "    frames/truth/NNNNNN.png          help png       the truth for viewing\n"
+        "    latest/BAND.png                  help png       the newest display image; --latest\n"
         "    raw/BAND/NNNNNN.png              help raw       counts of the detector; with sensor.preset or "
         "sensor.table\n"
         "    profiles/radar/NNNNNN.csv        help profile   radar power over range\n"
