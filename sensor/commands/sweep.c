@@ -176,6 +176,14 @@ static Status prepare(SweepRun *s)
         log_error("sweep: only one --host; to vary it, make exercise.host an axis");
         return STATUS_BAD_VALUE;
     }
+    const char *const of_one[][2] = {{"video", o->config.publish.video},
+                                     {"stream", o->config.publish.stream},
+                                     {"memory", o->config.publish.memory}};
+    for (int i = 0; i < 3; i++)
+        if (*of_one[i][1]) {
+            log_error("sweep: publish.%s names one place, and variants are many; replay one variant with it", of_one[i][0]);
+            return STATUS_BAD_VALUE;
+        }
     Status status = sweep_read(&s->sweep, o->sweep, &o->config);
     if (status != STATUS_OK) return status;
     s->variant = calloc((size_t)s->sweep.count, sizeof *s->variant);

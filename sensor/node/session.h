@@ -22,6 +22,7 @@ typedef struct SessionShared {
     bool           no_skip;
     GroundContact  contact;   /* which entities are clamped to the world's ground */
     bool           live;      /* a file that cannot be written does not end the session */
+    bool           paced;     /* a replay by the clock: streams are left out when late, as live */
     const char    *config_sha256;
     const Sensors *sensors;
     void         (*publish)(void *user, const FrameRecord *frame); /* every frame; NULL: not published */

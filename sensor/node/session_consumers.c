@@ -147,20 +147,26 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
     return status;
 }
 
-/* A slow consumer never delays a live node: each has a thread of its own, and frames are dropped when it is late. */
-static Status for_live(Session *s, FrameDone *done)
+/* By the clock: what is sent is sent at once or left out, and never delays rendering. A live node's files are left out
+ * too when the disk is late; those of a replay delay it. */
+static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
 {
-    const Config *config   = s->shared->config;
-    Consumers     pictures = {0}, first = {0};
-    Status        status   = pool_create(&s->publish_pool, 1);
-    if (status == STATUS_OK) status = add_truth_lines(&first, s);
-    if (status == STATUS_OK) status = add_hashes(&first, s, done);
-    if (status == STATUS_OK && config->publish.files) status = add_pictures(&pictures, s, s->publish_pool);
-    if (status == STATUS_OK && config->publish.latest) status = add_latest(&pictures, s);
-    if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, consumers_wants(&pictures));
+    const Config *config = s->shared->config;
+    const bool    live   = s->shared->live;
+    Consumers     first = {0}, files = {0}, sent = {0};
+    Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
+    if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
+    if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
+    if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
+    if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
+    if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
+    const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
+    if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
+    if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
     if (status == STATUS_OK) status = add_all(&s->consumers, &first);
-    if (status == STATUS_OK) status = add_queue(s, &pictures, QUEUE_LEAVE_OUT, &s->written);
-    if (status != STATUS_OK) consumers_close(&pictures);
+    if (status == STATUS_OK) status = add_queue(s, &files, live ? QUEUE_LEAVE_OUT : QUEUE_WAIT, &s->written);
+    if (status != STATUS_OK) consumers_close(&files);
+    if (status != STATUS_OK) consumers_close(&sent);
     if (status != STATUS_OK) consumers_close(&first);
     return status;
 }
@@ -176,7 +182,7 @@ Status session_consumers(Session *s, FrameDone *done)
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
-    if (status == STATUS_OK) status = shared->live ? for_live(s, done) : for_replay(s, done, raw);
+    if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     /* the one being rendered, and of each queue the one that waits and the one being published */

@@ -38,7 +38,7 @@ struct Session {
     double               fed_s;         /* of the last frame in it: player_fed_s */
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
     int                  queues;        /* consumers in threads of their own */
-    QueueCounters        written;       /* live: image files; when closed */
+    QueueCounters        written, streamed; /* by the clock: files, streams; when closed */
     int                  lines_failed;  /* live: lines of truth.jsonl; when closed */
     int                  published;     /* frames that all consumers have received: used by the publishing thread */
     Status               listed;        /* of the result's lists: used by the publishing thread */

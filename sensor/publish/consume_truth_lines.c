@@ -90,7 +90,8 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
     char        path[frame_path_size];
     TruthLines *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
-    *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256, put, NULL, close_lines, "truth_lines"},
+    *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256 | WANT_LATENCY, put, NULL, close_lines,
+                                  "truth_lines"},
                       .patient = patient, .patience = {.what = "lines in truth.jsonl"}, .failed = failed};
     const bool fits = snprintf(path, sizeof path, "%s/truth.jsonl", folder) < (int)sizeof path;
     if (!fits) errno = ENAMETOOLONG;

@@ -49,8 +49,11 @@ void consumers_expect(const Consumers *list, Latency *latency)
 Status consumers_close(Consumers *list)
 {
     Status status = STATUS_OK;
-    for (int i = list->count - 1; i >= 0; i--) {
-        const Status one = list->consumer[i]->close(list->consumer[i]);
+    for (int i = 0; i < 2 * list->count; i++) {
+        Consumer *c = list->consumer[i % list->count];
+        if (!c || ((c->wants & WANT_LATENCY) != 0) != (i >= list->count)) continue;
+        list->consumer[i % list->count] = NULL;
+        const Status one = c->close(c);
         if (status == STATUS_OK) status = one;
     }
     list->count = 0;

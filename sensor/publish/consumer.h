@@ -18,6 +18,7 @@ typedef enum FrameWant {
     WANT_DISPLAY = 1 << 6, /* frame.display: behind the detector, with gain and level */
     WANT_COUNTS  = 1 << 7, /* frame.display.counts: raw counts of the bands with a sensor */
     WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
+    WANT_LATENCY = 1 << 9, /* when other consumers are done with the frame: closed after those that do not want it */
 } FrameWant;
 
 typedef struct Consumer Consumer;
@@ -48,8 +49,7 @@ Status   consumers_put(const Consumers *list, Frame *frame);
 void     consumers_left_out(const Consumers *list, const Frame *frame);
 /* Their names into the ledger. NULL: none is kept. */
 void     consumers_expect(const Consumers *list, Latency *latency);
-/* Closes all of them, the last one first, so that those behind a queue have had the last frame when the first is
- * closed. Returns the first failure. */
+/* Closes all of them; returns the first failure. */
 Status   consumers_close(Consumers *list);
 /* The planes that a request must contain. Whether the error budget is on is up to the caller. */
 void     consumers_request(RenderRequest *request, unsigned wants);

@@ -94,6 +94,7 @@ const Reference reference_png = {
     .about = "Noise, gain, level and quantisation of the detector.* settings. Same pixels as the EXR. detector.bits: "
              "16\n"
              "makes 16 bits of all but truth. Black and white of an automatic level are in pairs.jsonl (level).\n"
+             "With publish.latest, latest/BAND.png is the newest of each band, 8 bits, replaced as a whole.\n"
              "Python: `pip install pillow numpy`.",
     .notation = "Field: folder below frames/. Type: channels and bits of each.",
     .field = REFERENCE_FIELDS(png_fields),

@@ -15,6 +15,7 @@ static const char *const samples[][2] = {
     {"samples", "2"}, {"config", "FILE"}, {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"},
     {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
     {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},
+    {"video", "/tmp/clip.mp4"}, {"stream", "udp://127.0.0.1:5004"}, {"memory", "frames"},
 };
 enum { sample_count = sizeof samples / sizeof *samples };
 

@@ -162,6 +162,8 @@ sweep "$tmp/grid.yaml" "$tmp/slip" --host 1:3001:41 --host 1:3001:42
 check "several hosts: an axis" complained 'make exercise.host an axis'
 sweep "$tmp/same.yaml" "$tmp/odd" --set record.path=$'a\nb'
 check "a setting that no file holds: said, not lost" complained 'variant 1, .*its settings cannot be written or read back'
+sweep "$tmp/grid.yaml" "$tmp/slip" --memory frames
+check "one place for many variants" complained 'publish.memory names one place'
 sweep "$tmp/grid.yaml" "$tmp/slip" --coco --no-files
 check "what does not go together, in no variant" complained 'publish.coco: needs image files'
 # bytes of no sense end in a line, not in a crash (run counts exit codes above 123 as failures)
