@@ -6,28 +6,26 @@
 /* Of wall_clock_s, which is CLOCK_MONOTONIC. A double holds it to 0.1 us for four months of uptime. */
 static int64_t ns(double wall_s) { return wall_s > 0 ? (int64_t)llround(1e9 * wall_s) : 0; }
 
-static void fill_target(PitviperMemoryTarget *out, const Target *t, const SnapshotEntity *entity)
+static void fill_target(PitviperMemoryTarget *out, const TargetRecord *t)
 {
-    char      type[dis_type_text_size];
-    const int number = target_class(entity->type);
-    dis_entity_type_text(type, entity->type);
+    char type[dis_type_text_size];
+    dis_entity_type_text(type, t->type);
     *out = (PitviperMemoryTarget){
-        .site = entity->id.site, .application = entity->id.application, .entity = entity->id.entity,
-        .class_number = (uint16_t)number, .plane_value = (uint32_t)t->index + 1,
-        .flags = t->occluder ? t->occluder_index >= 0 ? 2 : 1 : 0, .range_m = t->range_m,
+        .site = t->id.site, .application = t->id.application, .entity = t->id.entity,
+        .class_number = (uint16_t)t->class_number, .plane_value = (uint32_t)t->plane_value,
+        .flags = t->occluder == OCCLUDER_ENTITY ? 2 : t->occluder == OCCLUDER_GROUND, .range_m = t->range_m,
         .closing_mps = t->closing_mps, .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad,
         .los_az_rad = t->los_az_rad, .los_el_rad = t->los_el_rad, .pixels = t->pixels,
-        .visible_fraction = t->visible_fraction, .age_s = entity->age_s,
-        .position_error_m = entity->position_error_m};
-    snprintf(out->class_name, sizeof out->class_name, "%s", target_class_name(number));
-    memcpy(out->marking, entity->marking, strnlen(entity->marking, sizeof entity->marking));
+        .visible_fraction = t->visible_fraction, .age_s = t->age_s, .position_error_m = t->position_error_m};
+    snprintf(out->class_name, sizeof out->class_name, "%s", target_class_name(t->class_number));
+    memcpy(out->marking, t->marking, strlen(t->marking));
     snprintf(out->type, sizeof out->type, "%s", type);
     for (int k = 0; k < 4; k++) out->box[k] = t->box[k];
     memcpy(out->amodal_box, t->amodal_box, sizeof out->amodal_box);
     memcpy(out->los_rate_rps, t->los_rate_rps, sizeof out->los_rate_rps);
     memcpy(out->boresight_error_rad, t->boresight_error_rad, sizeof out->boresight_error_rad);
-    memcpy(out->p_ecef, entity->p_ecef, sizeof out->p_ecef);
-    memcpy(out->v_ecef, entity->v_ecef_mps, sizeof out->v_ecef);
+    memcpy(out->p_ecef, t->p_ecef, sizeof out->p_ecef);
+    memcpy(out->v_ecef, t->v_ecef_mps, sizeof out->v_ecef);
     for (int b = 0; b < BAND_COUNT; b++) {
         const TargetBand *in = &t->band[b];
         out->band[b] = (PitviperMemoryTargetBand){in->contrast_k, in->dt_rss_k, in->contrast, in->snr,
@@ -44,7 +42,7 @@ static int fill_targets(PitviperMemoryTarget *out, int room, const FrameRecord *
     int hidden = room - visible; /* those for which there is room beside the visible ones */
     for (int i = 0; i < all && count < room; i++)
         if (r->target[i].pixels > 0 || hidden-- > 0)
-            fill_target(&out[count++], &r->target[i], &r->snapshot->entity[r->target[i].index]);
+            fill_target(&out[count++], &r->target[i]);
     return count;
 }
 
