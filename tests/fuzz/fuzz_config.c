@@ -1,6 +1,7 @@
 /* tests/fuzz/fuzz_config.c: any octets as a configuration file. Without a fuzzer run_corpus.c drives it. */
 #include "tests/fuzz/fuzz_seed.h"
 
+#include "sensor/settings/config.h"
 #include "sensor/settings/video_choice.h"
 
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 /* tests/sensor/test_video_consumer.c: videos in files: bands side by side to the bit, gaps in time, a full disk, an
- * encoder that fails, a run that is killed. Two functions of the libraries are replaced here: the encoder fails when told
- * to, and the clock is set forward in place of waiting. */
+ * encoder that fails, a run that is killed. Two functions of the libraries are replaced here: the encoder fails when
+ * told to, and the clock is set forward in place of waiting. */
 #include "tests/check.h"
 
 #ifndef PITVIPER_VIDEO
@@ -71,8 +71,8 @@ static Consumer *open_video(Config *config, const char *path, const char *codec,
     snprintf(config->publish.video, sizeof config->publish.video, "%s", path);
     strcpy(config->publish.video_codec, codec);
     strcpy(config->publish.klv, "off");
-    const VideoOf of = {.config = config, .to = VIDEO_TO_FILE, .bands = 1u << BAND_MWIR | 1u << BAND_LWIR, .rate_hz = 10,
-                        .patient = patient};
+    const VideoOf of = {.config = config, .to = VIDEO_TO_FILE, .bands = 1u << BAND_MWIR | 1u << BAND_LWIR,
+                        .rate_hz = 10, .patient = patient};
     assert_int_equal(consume_video(&consumer, &of), STATUS_OK);
     CHECK(consumer->wants & WANT_DISPLAY);
     warnings = again = 0;
@@ -164,7 +164,8 @@ static void disk_full_for_a_while(const char *path, int frames_least)
 static void a_full_disk_is_survived(void **state)
 {
     char path[temp_name_size];
-    static const struct { const char *name; int least; } cases[] = {{"full.ts", 35}, {"full.mkv", 30}, {"full.mp4", 30}};
+    static const struct { const char *name; int least; } cases[] = {
+        {"full.ts", 35}, {"full.mkv", 30}, {"full.mp4", 30}};
     signal(SIGXFSZ, SIG_IGN);
     log_set_sink(count_messages, NULL);
     for (int i = 0; i < 3; i++) {
@@ -240,7 +241,7 @@ static void a_killed_run_leaves_a_film(void **state)
 static void names_and_addresses(void **state)
 {
     Config    config = config_default();
-    char      text[1024], found[video_found_size];
+    char      text[1024], found[video_path_size];
     strcpy(config.publish.stream, "udp://239.1.2.3:5004");
     video_watch_lines(text, sizeof text, &config, 1u << BAND_MWIR | 1u << BAND_LWIR);
     CHECK(strstr(text, "mwir") && strstr(text, "ffplay") && strstr(text, "udp://239.1.2.3:5004 ") &&
