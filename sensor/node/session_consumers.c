@@ -49,8 +49,10 @@ static Status add_latest(Consumers *list, Session *s)
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
+    const char          *slash  = strrchr(s->out, '/');
     const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
-                                   .rate_hz = s->plan.rate_hz, .patient = patient};
+                                   .rate_hz = s->plan.rate_hz, .patient = patient,
+                                   .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
     Consumer            *consumer = NULL;
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
     const Status status = consume_video(&consumer, &of);
