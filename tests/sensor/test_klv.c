@@ -374,6 +374,12 @@ static void many_targets_and_truth(void **state)
     set = tag_of(74);
     CHECK(number(find(set, 5), false) == 0 && number(find(set, 6), false) == 0 && !find(set, 101).at);
 
+    /* an id once */
+    const KlvTarget two[2] = {some_target(5), some_target(5)};
+    encode(&(KlvTargets){.count = 2, .target = two});
+    set = tag_of(74);
+    CHECK(number(find(set, 5), false) == 2 && number(find(set, 6), false) == 1);
+
     /* no box outside of the image, no place outside of the range */
     KlvTarget odd = some_target(1);
     odd.box[0] = -1;
