@@ -2,6 +2,7 @@
 #include "sensor/commands/replay.h"
 
 #include "sensor/publish/frame_files.h"
+#include "sensor/node/dis_network.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
@@ -26,11 +27,22 @@ static void show_progress(double n, double first, double last, double begun_s)
     log_status(text);
 }
 
-/* Waits until the log's own clock, times speed, has reached t_s, or a signal. */
-static void pace(double begun_s, double first_s, double t_s, double speed)
+/* The log's own clock, times speed. */
+typedef struct Pace {
+    double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
+} Pace;
+
+static double wall_of(void *clock, double t_s)
 {
-    if (!isfinite(speed)) return;
-    const double    until_s = begun_s + (t_s - first_s) / speed;
+    const Pace *p = clock;
+    return p->begun_s + (t_s - p->first_s) / p->speed;
+}
+
+/* Waits until that clock has reached t_s, or a signal. */
+static void pace(Pace *p, double t_s)
+{
+    if (!isfinite(p->speed)) return;
+    const double    until_s = wall_of(p, t_s);
     static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
     for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
         const double    next_s = fmin(until_s, now_s + look_s);
@@ -90,12 +102,14 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     if (single) last = first;
     Status    status  = take_only(&last, o, first);
     int       next    = 0;
+    Pace     *clock   = run->clock;
     const double begun_s = wall_clock_s();
+    *clock = (Pace){begun_s, single ? from_s : frame_grid_s(grid, first), o->speed};
     for (double n = first; n <= last && status == STATUS_OK; n++) {
         const double t_s = single ? from_s : frame_grid_s(grid, n);
         bool         shown;
         if (!wanted(o, &next, n)) continue;
-        pace(begun_s, single ? from_s : frame_grid_s(grid, first), t_s, o->speed);
+        pace(clock, t_s);
         run->stopped = stop_asked();
         if (run->stopped) break;
         status = session_frame(&shown, session, (int)n, t_s);
@@ -183,15 +197,71 @@ static Status open_log(Run *run, DisLog *log)
     return status;
 }
 
+/* ---- Data PDUs -------------------------------------------------------------------------------- */
+
+typedef struct Sending {
+    DisUdp *udp;                     /* NULL: nothing is sent */
+    char    to[dis_network_to_size]; /* for messages */
+} Sending;
+
+static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
+{
+    const Sending *s = user;
+    return dis_udp_send(s->udp, pdu, octets);
+}
+
+/* A replay at the pace of the recording, or a multiple of it, sends what the live node would send; at full speed it
+ * would flood the network. */
+static Status open_sending(Sending *s, Run *run, const DisLog *log)
+{
+    const Options     *o   = &run->options;
+    const DisUdpConfig udp = dis_network(&o->config);
+    if (strcmp(o->config.publish.dis, "off") == 0) return STATUS_OK;
+    if (!isfinite(o->speed)) {
+        log_warn("replay: publish.dis: Data PDUs are not sent at full speed; add --speed 1 to send them at the pace of "
+                 "the recording");
+        return STATUS_OK;
+    }
+    for (int i = 0; i < log->count && !opening_starts(&run->first, &log->datagram[i], &o->config);) i++;
+    dis_network_to(s->to, &udp);
+    const Status status = dis_udp_open_sender(&s->udp, &udp);
+    if (status != STATUS_OK) return status;
+    run->send = send_pdu;
+    run->user = s;
+    log_info("replay: Data PDUs go to %s from %d:%d (publish.dis)", s->to, o->config.node.site,
+             o->config.node.application);
+    return STATUS_OK;
+}
+
+/* A replay that was to send, and could not send one PDU, has failed. */
+static Status close_sending(Sending *s)
+{
+    if (!s->udp) return STATUS_OK;
+    const DisUdpCounters c = dis_udp_counters(s->udp);
+    dis_udp_close(s->udp);
+    s->udp = NULL;
+    if (c.sent == 0 && c.send_failed > 0) {
+        log_error("replay: none of %llu Data PDUs could be sent to %s: %s; see --address and --interface",
+                  (unsigned long long)c.send_failed, s->to, strerror(c.send_error));
+        return STATUS_IO;
+    }
+    log_info("replay: Data PDUs sent %llu, not sent %llu", (unsigned long long)c.sent,
+             (unsigned long long)c.send_failed);
+    return STATUS_OK;
+}
+
 int replay_command(int argc, char **argv)
 {
-    Run         run = {.frames = replay_frames};
+    Pace        clock = {0};
+    Run         run = {.frames = replay_frames, .clock = &clock};
+    Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
     char        name[run_folder_size], log_name[4096];
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
     stop_by_signals();
+    if (isfinite(run.options.speed)) run.wall_s = wall_of;
     if (run.options.sweep) return sweep_replay(&run.options);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);
@@ -201,6 +271,7 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_OK) status = run_prepare(&run);
     if (status == STATUS_OK) status = open_log(&run, &log);
     if (status == STATUS_OK) status = check_hosts(host, &run);
+    if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
     for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
         run_folder(name, &run.options, host[i]);
         status = overwrite_folder("replay", name, run.options.overwrite);
@@ -212,6 +283,8 @@ int replay_command(int argc, char **argv)
         if (one != STATUS_OK) failed = one; /* the others are still rendered */
     }
     if (status == STATUS_OK) status = failed;
+    const Status sent = close_sending(&sending);
+    if (status == STATUS_OK) status = sent;
     if (status == STATUS_NO_MEMORY)
         log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 

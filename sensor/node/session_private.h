@@ -9,6 +9,7 @@
 #include "sensor/node/session.h"
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_queue.h"
+#include "sensor/publish/memory/detections.h"
 
 struct Session {
     const SessionShared *shared;
@@ -32,8 +33,11 @@ struct Session {
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers            consumers;
+    Detections          *detections;    /* received; NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
+    Latency             *latency;       /* NULL: none is kept */
+    double               fed_s;         /* of the last frame in it: player_fed_s */
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
     int                  queues;        /* consumers in threads of their own */
     QueueCounters        written, streamed; /* by the clock: files, streams; when closed */

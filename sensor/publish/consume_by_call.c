@@ -42,8 +42,8 @@ static Status open_call(Consumer **out, const Call *made_of)
 
 Status consume_by_call(Consumer **out, FrameCall *call, void *user)
 {
-    return open_call(out,
-                     &(Call){.consumer = {WANT_TARGETS, put_record, NULL, close_call, "dis"}, .call = call, .user = user});
+    const Call made = {.consumer = {WANT_TARGETS, put_record, NULL, close_call, NULL}, .call = call, .user = user};
+    return open_call(out, &made);
 }
 
 Status consume_hashes(Consumer **out, FrameDone *done, void *user)

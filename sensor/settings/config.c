@@ -4,8 +4,10 @@
 #include "pitviper_channels.h"
 
 #include "dis/pdu.h"
+#include "sensor/settings/memory_choice.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
+#include "sensor/settings/video_choice.h"
 
 #include <errno.h>
 #include <strings.h>
@@ -506,7 +508,8 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
-    return STATUS_OK;
+    const Status status = video_choice_check(config);
+    return status == STATUS_OK ? memory_choice_check(config) : status;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)
