@@ -394,20 +394,16 @@ static void many_targets_and_truth(void **state)
 static void targets_of_truth(void **state)
 {
     (void)state;
-    static SnapshotEntity entity[100];
-    static Target         target[100];
+    static TargetRecord   target[100];
     static KlvTarget      kept[klv_most_targets];
-    Snapshot              snapshot = {.count = 100, .entity = entity};
     KlvTargets            out;
     scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
     for (int k = 0; k < 100; k++) {
-        entity[k].id     = (DisEntityId){1, 3001, (uint16_t)k};
-        entity[k].type   = (DisEntityType){.kind = 1, .domain = 1, .category = 1};
-        memcpy(entity[k].p_ecef, lab.record.p_eye_ecef, sizeof entity[k].p_ecef);
-        target[k] = (Target){.index = k, .pixels = (k * 37) % 100, .box = {1, 2, 3 + k, 9}};
+        target[k] = (TargetRecord){.index = k, .id = {1, 3001, (uint16_t)k}, .pixels = (k * 37) % 100,
+                                   .box = {1, 2, 3 + k, 9}, .class_number = 1};
+        memcpy(target[k].p_ecef, lab.record.p_eye_ecef, sizeof target[k].p_ecef);
     }
     target[99].box[2] = 0; /* hidden */
-    lab.record.snapshot     = &snapshot;
     lab.record.target       = target;
     lab.record.target_count = 100;
     klv_truth_targets(&out, kept, &lab.record);

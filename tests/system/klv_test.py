@@ -135,7 +135,7 @@ def vmti(got, k, line):
     seen = [t for t in line["targets"] if "box_px" in t and t["pixels"] > 0]
     check("VMTI: marked as truth", "truth" in fields["3"].lower() and fields["4"] == 6)
     check("VMTI: time of the packet", fields["2"] == k["2"])
-    check("VMTI: frame number", int(got["other"]["7"], 16) == line["frame"])
+    check("VMTI: frame number", fields["7"] == line["frame"])
     check("VMTI: counts", fields["5"] == len(seen) and fields["6"] == len(got["targets"]) == min(len(seen), 64))
     check("VMTI: frame size", [fields["8"], fields["9"]] == [width, height])
     near("VMTI: field of view", fields["11"], sensor["hfov_deg"], 0.006)
