@@ -260,7 +260,7 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
                                   .user = run->user, .dis = run->send ? &dis : NULL, .save_count = o->save_count,
-                                  .save = o->save};
+                                  .save = o->save, .several = o->host_count > 1};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

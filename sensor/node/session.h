@@ -31,6 +31,7 @@ typedef struct SessionShared {
     const DisOf   *dis;       /* Data PDUs of each frame, its clock being the player; NULL: none */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
+    bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };

@@ -1,6 +1,7 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/pairs.h"
 
 #include <stdlib.h>
@@ -106,6 +107,33 @@ static Status add_dis(Consumers *list, const Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+/* A recogniser's detections, for those who publish them. */
+static Status add_detections(Consumers *list, Session *s)
+{
+    const Config *config   = s->shared->config;
+    Consumer     *consumer = NULL;
+    if (!config->publish.detections_port) return STATUS_OK;
+    Status status = detections_open(&s->detections, config->publish.detections_port, s->shared->bands,
+                                    config->sensor.width_px, config->sensor.height_px);
+    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
+static Status add_memory(Consumers *list, Session *s, bool behind_displays)
+{
+    const SessionShared *shared   = s->shared;
+    const Config        *config   = shared->config;
+    Consumer            *consumer = NULL;
+    const bool           counts   = strcmp(config->publish.memory_planes, "counts") == 0;
+    if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
+    MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+                   .host = shared->several ? s->host_text : NULL};
+    for (int b = 0; b < BAND_COUNT; b++) of.with_sensor |= s->chain[b] ? 1u << b : 0;
+    const Status status = consume_memory(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
 {
     Consumer *consumer = NULL;
@@ -146,13 +174,16 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 {
     const int  threads = pool_threads(s->shared->pool);
     const bool behind  = threads > 1;
-    Consumers  files = {0}, all = {0};
+    Consumers  first = {0}, files = {0}, all = {0};
     Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
     Pool      *pool   = behind ? s->publish_pool : s->shared->pool;
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
     if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
-    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&files));
+    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
+    if (status == STATUS_OK) status = add_all(&all, &first);
     if (status == STATUS_OK) status = add_all(&all, &files);
     if (status == STATUS_OK) status = behind ? add_queue(s, &all, QUEUE_WAIT, NULL) : add_all(&s->consumers, &all);
+    if (status != STATUS_OK) consumers_close(&first);
     if (status != STATUS_OK) consumers_close(&files);
     if (status != STATUS_OK) consumers_close(&all);
     return status;
@@ -166,6 +197,7 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     const bool    live   = s->shared->live;
     Consumers     first = {0}, files = {0}, sent = {0};
     Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
     if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
     if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
     if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
@@ -191,6 +223,8 @@ Status session_consumers(Session *s, FrameDone *done)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
+    if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
+    if (status == STATUS_OK) status = add_detections(&s->consumers, s);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);

@@ -4,6 +4,7 @@
 #include "pitviper_channels.h"
 
 #include "dis/pdu.h"
+#include "sensor/settings/memory_choice.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
 
@@ -504,7 +505,7 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
-    return STATUS_OK;
+    return memory_choice_check(config);
 }
 
 void config_text(char *out, size_t out_size, const Config *config)
