@@ -149,6 +149,10 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
+    if (s->wants & WANT_FOOTPRINT) {
+        footprint_of_view(f->footprint, shared->world, &eye.view);
+        f->record.footprint = f->footprint;
+    }
     if (s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;
     if (shared->world->landscape) {

@@ -1,8 +1,10 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/pairs.h"
+#include "sensor/publish/video/consume_video.h"
 
 #include <stdlib.h>
 
@@ -40,6 +42,18 @@ static Status add_latest(Consumers *list, Session *s)
 {
     Consumer    *consumer = NULL;
     const Status status   = consume_latest(&consumer, s->out, s->shared->live);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* to: VideoTo, of those configured. patient: a failure ends nothing. */
+static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
+{
+    const SessionShared *shared = s->shared;
+    const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
+                                   .rate_hz = s->plan.rate_hz, .patient = patient};
+    Consumer            *consumer = NULL;
+    if (!(to & video_wanted(shared->config))) return STATUS_OK;
+    const Status status = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -88,22 +102,17 @@ static Status add_coco(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static Status add_klv(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_klv(&consumer, &(KlvFiles){s->out, s->shared->config, s->shared->bands, s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_call(Consumers *list, const SessionShared *shared)
 {
     Consumer    *consumer = NULL;
     const Status status   = consume_by_call(&consumer, shared->publish, shared->user);
-    return status == STATUS_OK ? consumers_add(list, consumer) : status;
-}
-
-static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
-
-static Status add_dis(Consumers *list, const Session *s)
-{
-    Consumer    *consumer = NULL;
-    DisOf        of       = *s->shared->dis;
-    of.arrival_s          = arrival_s;
-    of.clock              = s->player;
-    const Status status   = consume_dis(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -134,6 +143,18 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+static Status add_dis(Consumers *list, const Session *s)
+{
+    Consumer    *consumer = NULL;
+    DisOf        of       = *s->shared->dis;
+    of.arrival_s          = arrival_s;
+    of.clock              = s->player;
+    const Status status   = consume_dis(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCounters *counters)
 {
     Consumer *consumer = NULL;
@@ -157,14 +178,17 @@ static Status add_all(Consumers *list, Consumers *others)
 
 /* ---- what a session's frames go to -------------------------------------------------------------- */
 
-/* Files of a replay: nothing is dropped, a slow disk delays it. */
+/* Files of a replay: nothing is dropped, a slow disk delays it. A stream by the clock is not among them. */
 static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *pool, unsigned raw)
 {
     const Config *config = s->shared->config;
     Status        status = config->publish.files ? add_pictures(list, s, pool) : STATUS_OK;
     if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
+    if (status == STATUS_OK)
+        status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
     if (status == STATUS_OK) status = add_truth_lines(list, s);
     if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
+    if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
     if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
     return status == STATUS_OK ? add_hashes(list, s, done) : status;
 }
@@ -202,7 +226,9 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
     if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
     if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
+    if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
     if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
+    if (status == STATUS_OK) status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
     if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
     if (status == STATUS_OK) status = add_all(&s->consumers, &first);

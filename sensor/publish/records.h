@@ -9,23 +9,12 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
 #include "sensor/truth/frame_error.h"
 #include "terrain/earth/sun.h"
 
 #include <stdio.h>
-
-/* Where a line of sight meets the ground. */
-typedef struct GroundPoint {
-    bool   known;                /* false: it does not, within the terrain */
-    double lat_rad, lon_rad, height_m; /* WGS 84, above the ellipsoid */
-    double range_m;              /* from the sensor */
-} GroundPoint;
-/* The boresight, then the image's corners. */
-typedef enum FootprintPoint {
-    FOOTPRINT_CENTRE, FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT, FOOTPRINT_LOWER_LEFT,
-    FOOTPRINT_COUNT
-} FootprintPoint;
 
 typedef struct FrameRecord {
     int                   frame;

@@ -13,13 +13,12 @@ static void fill_target(PitviperMemoryTarget *out, const TargetRecord *t)
     *out = (PitviperMemoryTarget){
         .site = t->id.site, .application = t->id.application, .entity = t->id.entity,
         .class_number = (uint16_t)t->class_number, .plane_value = (uint32_t)t->plane_value,
-        .flags = (uint32_t)t->occluder, .range_m = t->range_m,
+        .flags = t->occluder == OCCLUDER_ENTITY ? 2 : t->occluder == OCCLUDER_GROUND, .range_m = t->range_m,
         .closing_mps = t->closing_mps, .aspect_rad = t->aspect_rad, .depression_rad = t->depression_rad,
         .los_az_rad = t->los_az_rad, .los_el_rad = t->los_el_rad, .pixels = t->pixels,
-        .visible_fraction = t->visible_fraction, .age_s = t->age_s,
-        .position_error_m = t->position_error_m};
+        .visible_fraction = t->visible_fraction, .age_s = t->age_s, .position_error_m = t->position_error_m};
     snprintf(out->class_name, sizeof out->class_name, "%s", target_class_name(t->class_number));
-    memcpy(out->marking, t->marking, strnlen(t->marking, sizeof t->marking));
+    memcpy(out->marking, t->marking, strlen(t->marking));
     snprintf(out->type, sizeof out->type, "%s", type);
     for (int k = 0; k < 4; k++) out->box[k] = t->box[k];
     memcpy(out->amodal_box, t->amodal_box, sizeof out->amodal_box);
