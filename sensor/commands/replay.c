@@ -27,11 +27,22 @@ static void show_progress(double n, double first, double last, double begun_s)
     log_status(text);
 }
 
-/* Waits until the log's own clock, times speed, has reached t_s, or a signal. */
-static void pace(double begun_s, double first_s, double t_s, double speed)
+/* The log's own clock, times speed. */
+typedef struct Pace {
+    double begun_s, first_s, speed; /* wall clock; exercise time then; INFINITY: as fast as possible */
+} Pace;
+
+static double wall_of(void *clock, double t_s)
 {
-    if (!isfinite(speed)) return;
-    const double    until_s = begun_s + (t_s - first_s) / speed;
+    const Pace *p = clock;
+    return p->begun_s + (t_s - p->first_s) / p->speed;
+}
+
+/* Waits until that clock has reached t_s, or a signal. */
+static void pace(Pace *p, double t_s)
+{
+    if (!isfinite(p->speed)) return;
+    const double    until_s = wall_of(p, t_s);
     static const double look_s = 0.1; /* a signal that comes just before a wait does not end it */
     for (double now_s = wall_clock_s(); now_s < until_s && !stop_asked(); now_s = wall_clock_s()) {
         const double    next_s = fmin(until_s, now_s + look_s);
@@ -91,12 +102,14 @@ static Status replay_frames(Run *run, Session *session, Player *player, const Ho
     if (single) last = first;
     Status    status  = take_only(&last, o, first);
     int       next    = 0;
+    Pace     *clock   = run->clock;
     const double begun_s = wall_clock_s();
+    *clock = (Pace){begun_s, single ? from_s : frame_grid_s(grid, first), o->speed};
     for (double n = first; n <= last && status == STATUS_OK; n++) {
         const double t_s = single ? from_s : frame_grid_s(grid, n);
         bool         shown;
         if (!wanted(o, &next, n)) continue;
-        pace(begun_s, single ? from_s : frame_grid_s(grid, first), t_s, o->speed);
+        pace(clock, t_s);
         run->stopped = stop_asked();
         if (run->stopped) break;
         status = session_frame(&shown, session, (int)n, t_s);
@@ -239,7 +252,8 @@ static Status close_sending(Sending *s)
 
 int replay_command(int argc, char **argv)
 {
-    Run         run = {.frames = replay_frames};
+    Pace        clock = {0};
+    Run         run = {.frames = replay_frames, .clock = &clock};
     Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
@@ -247,6 +261,7 @@ int replay_command(int argc, char **argv)
     const int   stop = options_parse(&run.options, COMMAND_REPLAY, argc, argv);
     if (stop) return stop - 1;
     stop_by_signals();
+    if (isfinite(run.options.speed)) run.wall_s = wall_of;
     if (run.options.sweep) return sweep_replay(&run.options);
 
     snprintf(log_name, sizeof log_name, "%s", run.options.log);

@@ -135,7 +135,7 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .at_limit = result->at_limit,
               .effects = result->effects, .render = result->counters, .stage_count = session_stages,
               .stage = session_stage_name,
-              .stage_ms = stage_ms};
+              .stage_ms = stage_ms, .latency = run->wall_s ? &result->latency : NULL};
     const Status status = record_write_run(path, &record);
     free(hash);
     return status;
@@ -259,8 +259,9 @@ Status run_host(Run *run, const DisEntityId *host)
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN,
                                   .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
-                                  .user = run->user, .dis = run->send ? &dis : NULL, .save_count = o->save_count,
-                                  .save = o->save, .several = o->host_count > 1};
+                                  .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
+                                  .clock = run->clock, .save_count = o->save_count, .save = o->save,
+                                  .several = o->host_count > 1};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

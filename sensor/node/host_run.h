@@ -40,6 +40,8 @@ struct Run {
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
     DisSend  *send;              /* sends the Data PDUs of publish.dis; NULL: they are not sent */
     void     *user;              /* of these three */
+    double  (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
+    void     *clock;
 };
 
 /* Bands, sensors, hash of the configuration: before anything is received. */

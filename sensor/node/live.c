@@ -1,6 +1,7 @@
 /* sensor/node/live.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the clock. */
 #include "sensor/node/live.h"
 
+#include "dis/steady_clock.h"
 #include "sensor/publish/frame_files.h"
 #include "sensor/node/dis_network.h"
 #include "sensor/node/health.h"
@@ -216,6 +217,14 @@ static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
 
+/* Exercise time as the time of arrival that it stands for, on the clock of wall_clock_s. */
+static double wall_of(void *user, double t_s)
+{
+    const Live           *l  = user;
+    const struct timespec at = steady_clock_monotonic(dis_unix_ns_until(player_arrival_s(l->player, t_s)));
+    return (double)at.tv_sec + 1e-9 * (double)at.tv_nsec;
+}
+
 static Status feed(Live *l, Player *player, int64_t until_ns)
 {
     DisDatagram datagram;
@@ -429,6 +438,8 @@ int run_command(int argc, char **argv)
     l->run.user                  = l;
     l->run.publish               = count_frame;
     if (publishes(l)) l->run.send = send_pdu;
+    l->run.wall_s                = wall_of;
+    l->run.clock                 = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);
     if (*name) l->run.log_name = basename(name);
     l->latency_s = NAN;

@@ -40,6 +40,7 @@ struct Player {
     size_t         octets_used, octets_capacity;
     ExerciseClock *clock;
     double         tie_s, latest_s; /* exercise time - arrival time; of the latest arrival */
+    double         fed_s;           /* counts_s of the newest event fed */
     DisCounters    counters;
     DisPdu         pdu;                          /* the PDU being fed */
     Aimed          aimed[shots_kept];            /* rings: the latest */
@@ -56,6 +57,7 @@ Status player_create(Player **out, int exercise, bool causal)
     player->causal   = causal;
     player->tie_s    = NAN;
     player->latest_s = -INFINITY;
+    player->fed_s    = -INFINITY;
     const Status status = exercise_clock_create(&player->clock);
     if (status == STATUS_OK) *out = player;
     else player_destroy(player);
@@ -210,8 +212,10 @@ void player_feed(Player *player, EntityTable *table, double t_s)
     if (!player->sorted && !player->causal && player->count > 1)
         qsort(player->event, (size_t)player->count, sizeof *player->event, compare_events);
     player->sorted = true; /* arrivals are ordered already */
-    for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++)
+    for (; player->next < player->count && player->event[player->next].counts_s <= t_s; player->next++) {
         feed_event(player, table, &player->event[player->next]);
+        player->fed_s = player->event[player->next].counts_s;
+    }
     if (player->causal && player->next == player->count) { /* of a live node only datagrams not yet fed take memory */
         player->next = player->count = 0;
         player->octets_used          = 0;
@@ -222,6 +226,7 @@ void player_feed(Player *player, EntityTable *table, double t_s)
 
 double player_time_s(const Player *player, double capture_s) { return capture_s + player->tie_s; }
 double player_last_s(const Player *player) { return player->latest_s; }
+double player_fed_s(const Player *player) { return player->fed_s; }
 
 double player_arrival_s(const Player *player, double t_s)
 {

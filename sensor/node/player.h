@@ -29,6 +29,8 @@ void   player_feed(Player *player, EntityTable *table, double t_s);
 double player_time_s(const Player *player, double capture_s);
 /* Everything that counts at t_s arrived at or before this Unix time, to the last bit. */
 double player_arrival_s(const Player *player, double t_s);
+/* The exercise time from which the newest PDU that was fed counts; -INFINITY: none yet. */
+double player_fed_s(const Player *player);
 double player_last_s(const Player *player); /* exercise time of the latest arrival; -inf before the first */
 
 enum { munition_still_mps = 1 }; /* an unguided munition slower than this is at rest, as mines of any category are */

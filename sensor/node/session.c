@@ -130,6 +130,7 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     f->provenance.begun_s = wall_clock_s();
     Status status = entity_table_snapshot(&f->seen.snapshot, s->table, t_s, f->arena);
     if (status != STATUS_OK || !session_eye(&eye, s, &f->seen.snapshot, t_s)) return status;
+    f->times.posed_s = wall_clock_s();
     *left_out  = f->seen.snapshot.left_out;
     f->number  = number;
     f->time_s  = t_s;
@@ -162,6 +163,8 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     f->provenance = (Provenance){.version = PITVIPER_VERSION, .config_sha256 = shared->config_sha256,
                                  .seed = shared->config->seed, .datagrams = player_counters(s->player)->datagrams,
                                  .begun_s = f->provenance.begun_s, .posed_s = posed_s, .rendered_s = wall_clock_s()};
+    f->times.render_s   = posed_s;
+    f->times.rendered_s = f->provenance.rendered_s;
     *shown = true;
     return save_frame(s, f, &eye);
 }
@@ -239,6 +242,7 @@ Status session_open(Session **out, const SessionShared *shared, const HostPlan *
     Session *s = calloc(1, sizeof *s);
     if (!s) return STATUS_NO_MEMORY;
     s->shared = shared;
+    s->fed_s  = -INFINITY;
     s->plan   = *plan;
     s->player = player;
     Status status = STATUS_OK;
@@ -320,6 +324,19 @@ static void report_crowd(Session *s, int left_out)
     if (left_out > s->result.most_left_out) s->result.most_left_out = left_out;
 }
 
+/* The frame into the ledger, before its consumers get it. */
+static void begin_latency(Session *s, Frame *f)
+{
+    const SessionShared *shared = s->shared;
+    const double         fed_s  = player_fed_s(s->player);
+    if (!s->latency) return;
+    f->times.arrived_s = isfinite(fed_s) ? shared->wall_s(shared->clock, fed_s) : 0;
+    f->times.fresh     = fed_s > s->fed_s;
+    s->fed_s           = fed_s;
+    f->latency         = s->latency;
+    f->latency_key     = latency_begin(s->latency, &f->times);
+}
+
 Status session_frame(bool *shown, Session *s, int number, double t_s)
 {
     int    left_out = 0;
@@ -329,7 +346,10 @@ Status session_frame(bool *shown, Session *s, int number, double t_s)
     if (session_host_is_there(s)) { /* otherwise nothing is extrapolated for it */
         Frame *frame = frame_pool_take(s->frames);
         status       = make_frame(shown, &left_out, frame, s, number, t_s);
-        if (status == STATUS_OK && *shown) status = consumers_put(&s->consumers, frame);
+        if (status == STATUS_OK && *shown) {
+            begin_latency(s, frame);
+            status = consumers_put(&s->consumers, frame);
+        }
         frame_release(frame);
     }
     report_crowd(s, left_out);
@@ -355,6 +375,8 @@ Status session_close(Session *s, SessionResult *result)
     player_forgotten(&s->result.shots_forgotten, &s->result.munitions_forgotten, s->player);
     if (s->table) s->result.entities = *entity_table_counters(s->table);
     if (s->table) s->result.effects = *entity_table_effect_counters(s->table);
+    if (s->latency) latency_summary(&s->result.latency, s->latency);
+    latency_destroy(s->latency);
     if (result) *result = s->result;
     else session_result_free(&s->result);
     for (int b = 0; b < BAND_COUNT; b++) chain_destroy(s->chain[b]);

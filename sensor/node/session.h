@@ -29,6 +29,9 @@ typedef struct SessionShared {
     void         (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
     void          *user;
     const DisOf   *dis;       /* Data PDUs of each frame, its clock being the player; NULL: none */
+    double       (*wall_s)(void *clock, double t_s); /* wall_clock_s at which exercise time t_s arrives here; NULL: no
+                                                    * latency ledger is kept */
+    void          *clock;     /* of wall_s */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
     bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
@@ -50,6 +53,7 @@ typedef struct SessionResult {
     int   (*number);                  /* [listed] */
     char  (*hash)[sha256_text_size];  /* [listed] */
     double (*stage_ms)[session_stages]; /* [listed] */
+    LatencySummary latency;           /* when closed; of a session with a ledger */
     RenderCounters counters;
     EntityCounters entities;
     EffectCounters effects;

@@ -159,6 +159,7 @@ static Status add_queue(Session *s, Consumers *behind, QueueRule rule, QueueCoun
 {
     Consumer *consumer = NULL;
     if (behind->count == 0) return STATUS_OK;
+    consumers_expect(behind, s->latency);
     const Status status = frame_queue_open(&consumer, behind, rule, counters);
     if (status == STATUS_OK) s->queues++;
     return status == STATUS_OK ? consumers_add(&s->consumers, consumer) : status;
@@ -231,8 +232,8 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK) status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
     if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
+    if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
     if (status == STATUS_OK) status = add_all(&s->consumers, &first);
-    if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed);
     if (status == STATUS_OK) status = add_queue(s, &files, live ? QUEUE_LEAVE_OUT : QUEUE_WAIT, &s->written);
     if (status != STATUS_OK) consumers_close(&files);
     if (status != STATUS_OK) consumers_close(&sent);
@@ -249,11 +250,13 @@ Status session_consumers(Session *s, FrameDone *done)
         if (s->chain[b] && config->detector.raw && config->publish.files) raw |= 1u << b;
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
+    if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK) status = add_detections(&s->consumers, s);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
+    consumers_expect(&s->consumers, s->latency);
     s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
     /* the one being rendered, and of each queue the one that waits and the one being published */
     return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;

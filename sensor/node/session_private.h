@@ -36,6 +36,8 @@ struct Session {
     Detections          *detections;    /* received; NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
+    Latency             *latency;       /* NULL: none is kept */
+    double               fed_s;         /* of the last frame in it: player_fed_s */
     Pool                *publish_pool;  /* of the publishing thread; NULL: publishing is done in this one */
     int                  queues;        /* consumers in threads of their own */
     QueueCounters        written, streamed; /* by the clock: files, streams; when closed */

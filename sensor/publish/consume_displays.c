@@ -24,7 +24,9 @@ static Status put(Consumer *consumer, Frame *frame)
     const DisplaysOf of = {.config = m->config, .picture = &frame->seen.picture, .chain = m->chains.band,
                            .level = m->level, .frame = frame->number, .time_s = frame->time_s,
                            .rate_px_s = {frame->rate_px_s[0], frame->rate_px_s[1]}, .counts = m->counts};
-    return displays_make(frame->display, &of, frame->request.bands, m->pool, frame->arena);
+    const Status status = displays_make(frame->display, &of, frame->request.bands, m->pool, frame->arena);
+    if (frame->latency) latency_displayed(frame->latency, frame->latency_key, frame->times.rendered_s);
+    return status;
 }
 
 static Status close_displays(Consumer *consumer)
@@ -42,7 +44,7 @@ Status consume_displays(Consumer **out, const Config *config, Pool *pool, Chains
         chains_destroy(chains);
         return STATUS_NO_MEMORY;
     }
-    *m = (DisplayMaker){.consumer = {WANT_CELLS, put, NULL, close_displays, "display"}, .config = config,
+    *m = (DisplayMaker){.consumer = {WANT_CELLS, put, NULL, close_displays, NULL}, .config = config,
                         .pool = pool, .counts = counts, .chains = *chains};
     *chains = (Chains){{NULL}};
     *out    = &m->consumer;

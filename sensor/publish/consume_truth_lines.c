@@ -1,8 +1,18 @@
-/* sensor/publish/consume_truth_lines.c: the consumer that writes truth.jsonl. */
+/* sensor/publish/consume_truth_lines.c: the consumer that writes truth.jsonl.
+ *
+ * Where a latency ledger is kept, a line waits as text until all consumers are done with its frame, or two further
+ * frames were put: at most three are held. */
 #include "sensor/publish/consumers.h"
 
 #include <errno.h>
 #include <stdlib.h>
+
+enum { held_max = 3 };
+
+typedef struct HeldLine {
+    char    *text;
+    uint64_t key;
+} HeldLine;
 
 typedef struct TruthLines {
     Consumer consumer;
@@ -10,7 +20,31 @@ typedef struct TruthLines {
     bool     patient;
     RetryBackoff patience;
     int     *failed;
+    Latency *latency;        /* of the frames; NULL: none is kept */
+    int      held;
+    HeldLine line[held_max]; /* [held], the oldest first */
 } TruthLines;
+
+static Status write_line(TruthLines *t, const char *text, const LatencyLine *latency)
+{
+    if (!t->patient) return record_write_text(t->file, text, latency);
+    Status     status = STATUS_OK;
+    const bool due    = retry_due(&t->patience);
+    if (due) status = record_write_text(t->file, text, latency);
+    retry_done(&t->patience, due, due ? status : STATUS_IO);
+    clearerr(t->file);
+    return status == STATUS_IO ? STATUS_OK : status;
+}
+
+static Status write_oldest(TruthLines *t)
+{
+    LatencyLine latency;
+    latency_line(&latency, t->latency, t->line[0].key);
+    const Status status = write_line(t, t->line[0].text, &latency);
+    free(t->line[0].text);
+    memmove(t->line, t->line + 1, (size_t)--t->held * sizeof *t->line);
+    return status;
+}
 
 static Status put(Consumer *consumer, Frame *frame)
 {
@@ -19,19 +53,29 @@ static Status put(Consumer *consumer, Frame *frame)
     Status      status = frame_sha256(&frame->seen);
     if (status != STATUS_OK) return status;
     record.frame_sha256 = frame->seen.sha256;
-    if (!t->patient) return record_write_frame(t->file, &record);
-
-    const bool due = retry_due(&t->patience);
-    if (due) status = record_write_frame(t->file, &record);
-    retry_done(&t->patience, due, due ? status : STATUS_IO);
-    clearerr(t->file);
-    return status == STATUS_IO ? STATUS_OK : status;
+    char *text = record_frame_text(&record);
+    if (!text) return STATUS_NO_MEMORY;
+    t->latency = frame->latency;
+    if (!t->latency) {
+        status = write_line(t, text, NULL);
+        free(text);
+        return status;
+    }
+    t->line[t->held++] = (HeldLine){text, frame->latency_key};
+    while (status == STATUS_OK && t->held > 0 &&
+           (t->held == held_max || latency_complete(t->latency, t->line[0].key)))
+        status = write_oldest(t);
+    return status;
 }
 
 static Status close_lines(Consumer *consumer)
 {
     TruthLines *t      = (TruthLines *)consumer;
     Status      status = STATUS_OK;
+    while (t->held > 0) {
+        const Status one = write_oldest(t);
+        if (status == STATUS_OK) status = one;
+    }
     if (t->failed) *t->failed = t->patience.lacking;
     if (t->file && fclose(t->file) != 0) {
         log_error("session: cannot write truth.jsonl: %s", strerror(errno));
@@ -46,8 +90,9 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
     char        path[frame_path_size];
     TruthLines *t = calloc(1, sizeof *t);
     if (!t) return STATUS_NO_MEMORY;
-    *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256, put, NULL, close_lines, "truth_lines"}, .patient = patient,
-                      .patience = {.what = "lines in truth.jsonl"}, .failed = failed};
+    *t = (TruthLines){.consumer = {WANT_TARGETS | WANT_ERROR | WANT_SHA256 | WANT_LATENCY, put, NULL, close_lines,
+                                  "truth_lines"},
+                      .patient = patient, .patience = {.what = "lines in truth.jsonl"}, .failed = failed};
     const bool fits = snprintf(path, sizeof path, "%s/truth.jsonl", folder) < (int)sizeof path;
     if (!fits) errno = ENAMETOOLONG;
     t->file = fits ? fopen(path, "w") : NULL;

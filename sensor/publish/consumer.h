@@ -18,6 +18,7 @@ typedef enum FrameWant {
     WANT_DISPLAY = 1 << 6, /* frame.display: behind the detector, with gain and level */
     WANT_COUNTS  = 1 << 7, /* frame.display.counts: raw counts of the bands with a sensor */
     WANT_FOOTPRINT = 1 << 8, /* record.footprint: where the boresight and the corners meet the ground */
+    WANT_LATENCY = 1 << 9, /* when other consumers are done with the frame: closed after those that do not want it */
 } FrameWant;
 
 typedef struct Consumer Consumer;
@@ -44,6 +45,10 @@ Status   consumers_add(Consumers *list, Consumer *consumer);
 unsigned consumers_wants(const Consumers *list);
 /* The frame to each in turn; the first failure ends it. */
 Status   consumers_put(const Consumers *list, Frame *frame);
+/* The frame was rendered and is put to none of them. */
+void     consumers_left_out(const Consumers *list, const Frame *frame);
+/* Their names into the ledger. NULL: none is kept. */
+void     consumers_expect(const Consumers *list, Latency *latency);
 /* Closes all of them; returns the first failure. */
 Status   consumers_close(Consumers *list);
 /* The planes that a request must contain. Whether the error budget is on is up to the caller. */

@@ -7,6 +7,7 @@
 #define SENSOR_PUBLISH_FRAME_H
 
 #include "sensor/publish/display.h"
+#include "sensor/publish/latency.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
 
@@ -66,6 +67,9 @@ struct Frame {
     Provenance        provenance;
     bool              buried;            /* the sensor was below the ground */
     double            publish_begun_s;   /* wall_clock_s; set when the first consumer receives it */
+    LatencyTimes      times;
+    Latency          *latency;           /* the run's ledger; NULL: none is kept */
+    uint64_t          latency_key;
     Arena            *arena;
     struct FramePool *pool;
     int               holds;             /* protected by the pool's lock */

@@ -58,8 +58,7 @@ static Status put(Consumer *consumer, Frame *frame)
     pthread_mutex_unlock(&q->lock);
     if (status != STATUS_OK) return status;
     if (older) {
-        for (int i = 0; i < q->list.count; i++)
-            if (q->list.consumer[i]->left_out) q->list.consumer[i]->left_out(q->list.consumer[i], older);
+        consumers_left_out(&q->list, older);
         frame_release(older);
         q->counters.left_out++; /* used by this thread alone until it is joined */
     }

@@ -169,7 +169,7 @@ static json_t *error_json(const FrameRecord *r)
     return error;
 }
 
-Status record_write_frame(FILE *file, const FrameRecord *r)
+char *record_frame_text(const FrameRecord *r)
 {
     json_t *line = json_object(), *sun = json_object(), *sensors = json_array(), *targets = json_array();
     json_object_set_new(line, "frame", json_integer(r->frame));
@@ -187,11 +187,42 @@ Status record_write_frame(FILE *file, const FrameRecord *r)
 
     char *text = json_dumps(line, JSON_COMPACT | JSON_REAL_PRECISION(15));
     json_decref(line);
-    if (!text) return STATUS_NO_MEMORY;
-    const bool ok = fprintf(file, "%s\n", text) > 0 && fflush(file) == 0;
-    free(text);
+    return text;
+}
+
+/* To the microsecond. */
+static void set_ms(json_t *object, const char *key, double ms) { set_number(object, key, round(1e3 * ms) * 1e-3); }
+
+static char *latency_text(const LatencyLine *l)
+{
+    json_t *latency = json_object(), *consumers = json_object();
+    for (int i = 0; i < LATENCY_STAGE_COUNT; i++) set_ms(latency, latency_stage_name[i], l->stage_ms[i]);
+    for (int i = 0; i < l->consumers; i++) set_ms(consumers, l->name[i], l->done_ms[i]);
+    json_object_set_new(latency, "consumers", consumers);
+    char *text = json_dumps(latency, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    json_decref(latency);
+    return text;
+}
+
+Status record_write_text(FILE *file, const char *text, const LatencyLine *latency)
+{
+    char *more = latency ? latency_text(latency) : NULL;
+    if (latency && !more) return STATUS_NO_MEMORY;
+    const int  length = (int)strlen(text) - 1; /* the object is still open: without its last brace */
+    const bool ok     = (more ? fprintf(file, "%.*s,\"latency_ms\":%s}\n", length, text, more)
+                              : fprintf(file, "%s\n", text)) > 0 && fflush(file) == 0;
+    free(more);
     if (!ok) log_error("records: cannot write truth.jsonl: %s", strerror(errno));
     return ok ? STATUS_OK : STATUS_IO;
+}
+
+Status record_write_frame(FILE *file, const FrameRecord *r)
+{
+    char *text = record_frame_text(r);
+    if (!text) return STATUS_NO_MEMORY;
+    const Status status = record_write_text(file, text, NULL);
+    free(text);
+    return status;
 }
 
 /* ---- run.json ------------------------------------------------------------------------------- */
@@ -325,6 +356,34 @@ static json_t *tables_json(const RunRecord *r)
     return tables;
 }
 
+static json_t *figures_json(const LatencyFigures *f, bool consumer)
+{
+    json_t *figures = json_object(), *histogram = json_array();
+    set_ms(figures, "median", f->median_ms);
+    set_ms(figures, "p95", f->p95_ms);
+    set_ms(figures, "p99", f->p99_ms);
+    set_ms(figures, "max", f->max_ms);
+    set_count(figures, "count", f->count);
+    if (consumer) set_count(figures, "left_out", f->left_out);
+    for (int i = 0; i <= latency_edges; i++)
+        json_array_append_new(histogram, json_integer((json_int_t)f->histogram[i]));
+    json_object_set_new(figures, "histogram", histogram);
+    return figures;
+}
+
+static json_t *latency_json(const LatencySummary *l)
+{
+    json_t *latency = json_object(), *consumers = json_object();
+    json_object_set_new(latency, "edges_ms", numbers(l->edge_ms, latency_edges));
+    for (int i = 0; i < LATENCY_STAGE_COUNT; i++)
+        if (l->stage[i].count > 0)
+            json_object_set_new(latency, latency_stage_name[i], figures_json(&l->stage[i], false));
+    for (int i = 0; i < l->consumers; i++)
+        json_object_set_new(consumers, l->name[i], figures_json(&l->consumer[i], true));
+    json_object_set_new(latency, "consumers", consumers);
+    return latency;
+}
+
 Status record_write_run(const char *path, const RunRecord *r)
 {
     json_t *run = json_object(), *timings = json_object();
@@ -358,6 +417,7 @@ Status record_write_run(const char *path, const RunRecord *r)
         json_object_set_new(timings, r->stage[i], stage);
     }
     json_object_set_new(run, "timings_ms", timings);
+    if (r->latency) json_object_set_new(run, "latency_ms", latency_json(r->latency));
 
     snprintf(part, sizeof part, "%s.part", path);
     const bool ok = json_dump_file(run, part, JSON_INDENT(1)) == 0 && rename(part, path) == 0;

@@ -11,6 +11,7 @@
 #include "entities/effects/effects_history.h"
 #include "sensor/truth/footprint.h"
 #include "sensor/publish/target_record.h"
+#include "sensor/publish/latency.h"
 #include "sensor/truth/frame_error.h"
 #include "terrain/earth/sun.h"
 
@@ -39,6 +40,10 @@ typedef struct FrameRecord {
 
 /* One line, flushed. STATUS_IO when it cannot be written. */
 Status record_write_frame(FILE *file, const FrameRecord *record);
+/* The same in two steps: the line as text, freed by the caller with free, NULL when out of memory; then written, with
+ * `latency_ms` when latency is not NULL. */
+char  *record_frame_text(const FrameRecord *record);
+Status record_write_text(FILE *file, const char *text, const LatencyLine *latency);
 
 /* Counters of a live node only. */
 typedef struct LiveCounters {
@@ -75,6 +80,7 @@ typedef struct RunRecord {
     int         stage_count;          /* timings */
     const char *const *stage;
     double (*stage_ms)[3];            /* median, p95, max */
+    const LatencySummary *latency;    /* NULL: no ledger was kept */
 } RunRecord;
 
 /* The complete file, atomically. */

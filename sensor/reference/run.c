@@ -1,5 +1,5 @@
 /* sensor/reference/run.c: fields of run.json. */
-#include "sensor/reference/reference.h"
+#include "sensor/reference/words.h"
 
 #include "dis/pdu.h"
 #include "render/scene/skip.h"
@@ -9,6 +9,8 @@ static const char *drop(int i) { return i < DIS_DROP_COUNT ? dis_drop_name((DisD
 static const char *skip(int i) { return i < SKIP_COUNT ? skip_name((Skip)i) : NULL; }
 static const char *what_skip(int i) { return skip_what((Skip)i); }
 static const char *stage(int i) { return i < session_stages ? session_stage_name[i] : NULL; }
+
+static const char *latency(int i) { return i < LATENCY_STAGE_COUNT ? latency_stage_name[i] : NULL; }
 
 static const ReferenceField fields[] = {
     {"pitviper", "string", "", "", "", "version of the program"},
@@ -98,6 +100,28 @@ static const ReferenceField fields[] = {
     {"timings_ms.STAGE.median", "number", "ms", "", "", "median over the frames"},
     {"timings_ms.STAGE.p95", "number", "ms", "", "", "95th percentile"},
     {"timings_ms.STAGE.max", "number", "ms", "", "", "maximum"},
+    {"latency_ms", "object", "", "", "in a replay at full speed",
+     "latency_ms of truth.jsonl over all frames; of a run and of replay --speed X"},
+    {"latency_ms.edges_ms", "list of 31 numbers", "ms", "ascending", "",
+     "edges of the histograms' bins, five a decade, 0.01 ms .. 10 s"},
+    {"latency_ms.LATENCY", "object", "", "", "when no frame has it",
+     "one step; arrival_to_pose: only of frames that used a datagram which no earlier frame used"},
+    {"latency_ms.LATENCY.median", "number", "ms", "", "", "median, at most 2.4 % above the exact one"},
+    {"latency_ms.LATENCY.p95", "number", "ms", "", "", "95th percentile, likewise"},
+    {"latency_ms.LATENCY.p99", "number", "ms", "", "", "99th percentile, likewise"},
+    {"latency_ms.LATENCY.max", "number", "ms", "", "", "maximum"},
+    {"latency_ms.LATENCY.count", "integer", "", "", "", "number of frames"},
+    {"latency_ms.LATENCY.histogram", "list of 32 integers", "", "below the first edge, between edges, above the last",
+     "", "number of frames by latency"},
+    {"latency_ms.consumers", "object", "", "", "", "by consumer: from the end of rendering until it was done"},
+    {"latency_ms.consumers.CONSUMER", "object", "", "", "", "one consumer"},
+    {"latency_ms.consumers.CONSUMER.median", "number", "ms", "", "when it was done with no frame", "as above"},
+    {"latency_ms.consumers.CONSUMER.p95", "number", "ms", "", "when it was done with no frame", "as above"},
+    {"latency_ms.consumers.CONSUMER.p99", "number", "ms", "", "when it was done with no frame", "as above"},
+    {"latency_ms.consumers.CONSUMER.max", "number", "ms", "", "when it was done with no frame", "as above"},
+    {"latency_ms.consumers.CONSUMER.count", "integer", "", "", "", "frames that it was done with"},
+    {"latency_ms.consumers.CONSUMER.left_out", "integer", "", "", "", "frames that it was not given, for lack of time"},
+    {"latency_ms.consumers.CONSUMER.histogram", "list of 32 integers", "", "as above", "", "number of frames by latency"},
 };
 
 static const ReferenceWord words[] = {
@@ -108,6 +132,8 @@ static const ReferenceWord words[] = {
     {"REASON", "one of", drop, NULL},
     {"SKIP", "one of", skip, what_skip},
     {"STAGE", "one of", stage, NULL},
+    {"LATENCY", "one of", latency, NULL},
+    REFERENCE_WORD_CONSUMER,
 };
 
 const Reference reference_run = {

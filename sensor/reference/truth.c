@@ -14,6 +14,7 @@ const Reference reference_products = {
         "    frames/truth/NNNNNN.exr          help exr       range, entity, part, material, temperature, normal\n"
         "    frames/BAND/NNNNNN.png           help png       display images; absent with --no-png\n"
         "    frames/truth/NNNNNN.png          help png       the truth for viewing\n"
+        "    latest/BAND.png                  help png       the newest display image; --latest\n"
         "    raw/BAND/NNNNNN.png              help raw       counts of the detector; with sensor.preset or "
         "sensor.table\n"
         "    profiles/radar/NNNNNN.csv        help profile   radar power over range\n"
@@ -152,15 +153,27 @@ static const ReferenceField fields[] = {
     {"error.BAND.table_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.dead_reckoning_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
     {"error.BAND.total_k", "number", "K, apparent", "", "in optical and radar", "the same in temperature"},
+    {"latency_ms", "object", "", "", "in a replay at full speed",
+     "when each step of the frame was done; of a run and of replay --speed X"},
+    {"latency_ms.arrival_to_pose", "number", "ms", "", "before the first datagram",
+     "from the arrival of the newest datagram that the frame used until the sensor's pose was sampled"},
+    {"latency_ms.pose_to_render", "number", "ms", "", "", "from then until rendering began"},
+    {"latency_ms.render", "number", "ms", "", "", "rendering, with the truth of targets where it is requested"},
+    {"latency_ms.display", "number", "ms", "after the end of rendering",
+     "when no consumer takes displays, or not done two frames later", "displays made: the detector, gain and level"},
+    {"latency_ms.consumers", "object", "", "", "", "by consumer of the frame"},
+    {"latency_ms.consumers.CONSUMER", "number", "ms", "after the end of rendering",
+     "when it was not given the frame, or not done two frames later", "the consumer was done with the frame"},
 };
 
-static const ReferenceWord words[] = {REFERENCE_WORD_BAND};
+static const ReferenceWord words[] = {REFERENCE_WORD_BAND, REFERENCE_WORD_CONSUMER};
 
 const Reference reference_truth = {
     .topic = "truth",
     .file  = "truth.jsonl",
     .title = "targets in the image, their position and signal: a line of JSON per frame",
-    .about = "JSON Lines: each line is one object. A line is appended when its frame is complete.",
+    .about = "JSON Lines: each line is one object. A line is appended when its frame is complete; with latency_ms, when\n"
+             "all its consumers are done with the frame, at the latest two frames later.",
     .field = REFERENCE_FIELDS(fields),
     .word  = REFERENCE_FIELDS(words),
     .python =

@@ -292,11 +292,12 @@ def take_run(topics, out, lines_of):
         take_exr(topics["exr"], path, path.split("/")[-2] + "/", "")
     for name, parent in (("png", "frames"), ("raw", "raw")):
         for path in glob.glob(f"{out}/**/{parent}/*/*.png", recursive=True): take_png(topics[name], path, path.split("/")[-2])
+    for path in glob.glob(f"{out}/latest/*.png"): take_png(topics["png"], path, path.split("/")[-1][:-4])
     for path in glob.glob(f"{out}/profiles/radar/*.csv"):
         take_table(topics["profile"], open(path).read().splitlines(), ",", True)
     for name, file in (("pairs", "pairs.jsonl"), ("coco", "coco.json")):
         if os.path.exists(f"{out}/{file}"): take_json(topics[name], f"{out}/{file}")
-    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
+    known = r"(pairs/\w+/)?(frames|raw|profiles)/\w+/\d{6}\.(exr|png|csv)|latest/\w+\.png|(truth|pairs)\.jsonl|(run|coco|variant)\.json|settings\.yaml|log\.txt|thumbnail\.png"
     for path in glob.glob(f"{out}/**", recursive=True):
         if os.path.isfile(path): check(re.fullmatch(known, os.path.relpath(path, out)), path, "is no product of the reference")
     meaning_of_truth(out)

@@ -26,7 +26,7 @@ command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
 for kind in truth sensor; do
     free_port
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
-        --set publish.stream=udp://127.0.0.1:$((port + 20000)) \
+        --set publish.stream=udp://127.0.0.1:$((port + 20000)) --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
     heard_by $kind 'listening on' 10
     "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
