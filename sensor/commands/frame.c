@@ -130,13 +130,15 @@ static Status write_truth(const char *out, const FrameFile *file, const FrameSce
                           .host = host >= 0 ? &s->snapshot.entity[host] : NULL, .request = &file->request,
                           .hfov_rad = s->config.sensor.hfov_deg * rad_per_deg, .gimbal_at_limit = file->at_limit,
                           .scene_rate_px_s = {file->rate_px_s[0], file->rate_px_s[1]}, .sun = &again->sun,
-                          .target = target, .frame_sha256 = again->made.sha256};
+                          .frame_sha256 = again->made.sha256};
     memcpy(record.p_eye_ecef, file->eye.p_ecef, sizeof record.p_eye_ecef);
     memcpy(record.v_eye_mps, file->eye.v_ecef_mps, sizeof record.v_eye_mps);
     memcpy(record.r_ecef_from_body, file->r_ecef_from_body, sizeof record.r_ecef_from_body);
     memcpy(record.r_ecef_from_cam, file->eye.r_ecef_from_cam, sizeof record.r_ecef_from_cam);
     record.target_count =
         truth_targets(target, &again->picture, &s->world, &s->snapshot, &file->request, &file->eye, noise);
+    record.target = target_records(target, record.target_count, &s->snapshot, s->catalog, arena);
+    if (!record.target) return STATUS_NO_MEMORY;
     if (frame_error(&error, &again->picture, &s->world, &s->snapshot, &file->request, target, record.target_count,
                     s->config.models.sag_m, file->all_on_ground))
         record.error = &error;

@@ -2,6 +2,7 @@
 #include "sensor/commands/replay.h"
 
 #include "sensor/publish/frame_files.h"
+#include "sensor/node/dis_network.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
@@ -196,10 +197,64 @@ static Status open_log(Run *run, DisLog *log)
     return status;
 }
 
+/* ---- Data PDUs -------------------------------------------------------------------------------- */
+
+typedef struct Sending {
+    DisUdp *udp;                     /* NULL: nothing is sent */
+    char    to[dis_network_to_size]; /* for messages */
+} Sending;
+
+static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
+{
+    const Sending *s = user;
+    return dis_udp_send(s->udp, pdu, octets);
+}
+
+/* A replay at the pace of the recording, or a multiple of it, sends what the live node would send; at full speed it
+ * would flood the network. */
+static Status open_sending(Sending *s, Run *run, const DisLog *log)
+{
+    const Options     *o   = &run->options;
+    const DisUdpConfig udp = dis_network(&o->config);
+    if (strcmp(o->config.publish.dis, "off") == 0) return STATUS_OK;
+    if (!isfinite(o->speed)) {
+        log_warn("replay: publish.dis: Data PDUs are not sent at full speed; add --speed 1 to send them at the pace of "
+                 "the recording");
+        return STATUS_OK;
+    }
+    for (int i = 0; i < log->count && !opening_starts(&run->first, &log->datagram[i], &o->config);) i++;
+    dis_network_to(s->to, &udp);
+    const Status status = dis_udp_open_sender(&s->udp, &udp);
+    if (status != STATUS_OK) return status;
+    run->send = send_pdu;
+    run->user = s;
+    log_info("replay: Data PDUs go to %s from %d:%d (publish.dis)", s->to, o->config.node.site,
+             o->config.node.application);
+    return STATUS_OK;
+}
+
+/* A replay that was to send, and could not send one PDU, has failed. */
+static Status close_sending(Sending *s)
+{
+    if (!s->udp) return STATUS_OK;
+    const DisUdpCounters c = dis_udp_counters(s->udp);
+    dis_udp_close(s->udp);
+    s->udp = NULL;
+    if (c.sent == 0 && c.send_failed > 0) {
+        log_error("replay: none of %llu Data PDUs could be sent to %s: %s; see --address and --interface",
+                  (unsigned long long)c.send_failed, s->to, strerror(c.send_error));
+        return STATUS_IO;
+    }
+    log_info("replay: Data PDUs sent %llu, not sent %llu", (unsigned long long)c.sent,
+             (unsigned long long)c.send_failed);
+    return STATUS_OK;
+}
+
 int replay_command(int argc, char **argv)
 {
     Pace        clock = {0};
     Run         run = {.frames = replay_frames, .clock = &clock};
+    Sending     sending = {0};
     DisLog      log = {0};
     DisEntityId host[options_hosts_max];
     char        name[run_folder_size], log_name[4096];
@@ -216,6 +271,7 @@ int replay_command(int argc, char **argv)
     if (status == STATUS_OK) status = run_prepare(&run);
     if (status == STATUS_OK) status = open_log(&run, &log);
     if (status == STATUS_OK) status = check_hosts(host, &run);
+    if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
     for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
         run_folder(name, &run.options, host[i]);
         status = overwrite_folder("replay", name, run.options.overwrite);
@@ -227,6 +283,8 @@ int replay_command(int argc, char **argv)
         if (one != STATUS_OK) failed = one; /* the others are still rendered */
     }
     if (status == STATUS_OK) status = failed;
+    const Status sent = close_sending(&sending);
+    if (status == STATUS_OK) status = sent;
     if (status == STATUS_NO_MEMORY)
         log_error("replay: out of memory; smaller pictures (--size), fewer bands (--bands) or more memory");
 

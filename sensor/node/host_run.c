@@ -260,12 +260,17 @@ Status run_host(Run *run, const DisEntityId *host)
     }
 
     run_folder(out, o, plan.host);
+    const DisOf dis = {.config = &o->config, .bands = run->bands, .version = run->first.version,
+                       .exercise = (uint8_t)(run->exercise >= 0 ? run->exercise : run->first.exercise),
+                       .send = run->send, .user = run->user};
     const SessionShared shared = {.config = &o->config, .survey = &run->survey, .catalog = run->catalog,
                                   .world = &run->world, .pool = run->pool, .unix_s = unix_s, .bands = run->bands,
                                   .no_skip = o->no_skip, .live = o->command == COMMAND_RUN,
                                   .paced = o->command == COMMAND_REPLAY && isfinite(o->speed), .sensors = &run->sensors,
                                   .contact = contact, .config_sha256 = run->config_sha256, .publish = run->publish,
-                                  .user = run->user, .wall_s = run->wall_s, .clock = run->clock, .save_count = o->save_count, .save = o->save};
+                                  .user = run->user, .dis = run->send ? &dis : NULL, .wall_s = run->wall_s,
+                                  .clock = run->clock, .save_count = o->save_count, .save = o->save,
+                                  .several = o->host_count > 1};
     const FrameGrid     grid = {ceil(plan.start_s * plan.rate_hz - 1e-9), plan.rate_hz};
     status = session_open(&session, &shared, &plan, player, out);
     if (status != STATUS_OK) goto done;

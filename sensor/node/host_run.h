@@ -27,6 +27,7 @@ struct Run {
     char      config_sha256[sha256_text_size], log_sha256[sha256_text_size];
     unsigned  bands;
     int       exercise;          /* -1: all */
+    DisHeader first;             /* of the first usable Entity State: version and exercise of what is sent */
     Survey    survey;
     Catalog  *catalog;
     World     world;
@@ -37,7 +38,8 @@ struct Run {
     /* Renders the frames. */
     Status  (*frames)(Run *run, Session *session, Player *player, const HostPlan *plan, const FrameGrid *grid);
     void    (*publish)(void *user, const FrameRecord *frame); /* may be NULL */
-    void     *user;              /* of both */
+    DisSend  *send;              /* sends the Data PDUs of publish.dis; NULL: they are not sent */
+    void     *user;              /* of these three */
     double  (*wall_s)(void *clock, double t_s); /* SessionShared.wall_s: frames are rendered by the clock; NULL: not */
     void     *clock;
 };

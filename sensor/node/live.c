@@ -1,10 +1,9 @@
 /* sensor/node/live.c: `pitviper run`: receives, makes the choices, then renders frame after frame by the clock. */
 #include "sensor/node/live.h"
 
-#include "dis/exercise_clock.h"
 #include "dis/steady_clock.h"
-#include "dis/udp.h"
 #include "sensor/publish/frame_files.h"
+#include "sensor/node/dis_network.h"
 #include "sensor/node/health.h"
 #include "sensor/node/host_run.h"
 #include "sensor/node/live_recording.h"
@@ -14,7 +13,6 @@
 #include "sensor/quality/quality.h"
 #include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
-#include "sensor/publish/dis_records.h"
 
 #include <libgen.h>
 #include <stdio.h>
@@ -35,11 +33,10 @@ typedef struct Live {
     Health       health;
     double       health_s;          /* when it was last checked */
     char         host[dis_id_text_size]; /* at the end */
-    char         to[dis_udp_address_size + 16]; /* destination, for messages */
+    char         to[dis_network_to_size]; /* destination, for messages */
     /* datagrams received before the choices, each with its own memory */
     DisDatagram *heard;
     int          received_count, received_capacity;
-    DisHeader    first;             /* of the first usable Entity State */
     const Player *player;           /* once there is one */
     /* wall clock, s */
     double       begun_s, flushed_s, shown_s;
@@ -47,6 +44,9 @@ typedef struct Live {
     int64_t      due_ns;            /* Unix time of the present frame */
     double       latency_s;         /* from then until it was rendered, the worst since shown_s; NaN: none */
 } Live;
+
+/* Whether it is to send Data PDUs. */
+static bool publishes(const Live *l) { return strcmp(l->run.options.config.publish.dis, "off") != 0; }
 
 /* ---- when to stop ------------------------------------------------------------------------------ */
 
@@ -176,7 +176,7 @@ static Status listen_first(bool *heard, Live *l)
             const Status status = store_received(l, &datagram);
             if (status != STATUS_OK) return status;
             if (until_ns < INT64_MAX) continue;
-            if (opening_starts(&l->first, &datagram, config)) {
+            if (opening_starts(&l->run.first, &datagram, config)) {
                 l->run.until_s = opening_until_s(&datagram, config);
                 until_ns       = dis_unix_ns_until(l->run.until_s);
                 if (l->received_count > opening_before + 1) drop_received(l, l->received_count - opening_before - 1);
@@ -201,23 +201,18 @@ static Status listen_first(bool *heard, Live *l)
 
 /* ---- publishing -------------------------------------------------------------------------------- */
 
-/* Every frame rendered: counted, and sent if configured. */
-static void publish_frame(void *user, const FrameRecord *frame)
+/* Every frame rendered is counted, before it is sent. */
+static void count_frame(void *user, const FrameRecord *frame)
 {
-    Live         *l      = user;
-    const Config *config = &l->run.options.config;
-    uint8_t       pdu[dis_smallest_mtu];
+    Live *l      = user;
     l->latency_s = fmax(l->latency_s, 1e-9 * (double)(dis_udp_now_ns() - l->due_ns));
     health_frame(&l->health, frame, wall_clock_s());
-    if (strcmp(config->publish.dis, "off") == 0) return;
-    const bool    truth = strcmp(config->publish.dis, "truth") == 0;
-    const DisRecordSender sender = {.version = l->first.version,
-                                    .exercise = (uint8_t)(l->run.exercise >= 0 ? l->run.exercise : l->first.exercise),
-                                    .site = (uint16_t)config->node.site,
-                                    .application = (uint16_t)config->node.application,
-                                    .timestamp = dis_timestamp(player_arrival_s(l->player, frame->time_s), false)};
-    for (int b = 0; b < BAND_COUNT; b++)
-        if (l->run.bands >> b & 1) dis_udp_send(l->udp, pdu, dis_record_frame(pdu, &sender, frame, (Band)b, truth));
+}
+
+static Status send_pdu(void *user, const uint8_t *pdu, size_t octets)
+{
+    const Live *l = user;
+    return dis_udp_send(l->udp, pdu, octets);
 }
 
 /* ---- frame after frame ------------------------------------------------------------------------- */
@@ -327,20 +322,15 @@ static Status live_frames(Run *run, Session *session, Player *player, const Host
 static Status open_network(Live *l)
 {
     Config      *config = &l->run.options.config;
-    DisUdpConfig udp    = dis_udp_default_config();
+    DisUdpConfig udp;
     char         comment[dis_udp_where_size + 40];
     if (config->exercise.port == dis_port_any) {
         log_error("run: exercise.port: 0 is any port, for a recording; a node listens on one, 1 .. 65535");
         return STATUS_BAD_VALUE;
     }
-    if (config->exercise.port != dis_port_default) udp.port = config->exercise.port;
-    _Static_assert(sizeof udp.address == sizeof config->network.address, "one address");
-    memcpy(udp.address, config->network.address, sizeof udp.address);
-    memcpy(udp.interface, config->network.interface, sizeof udp.interface);
-    udp.ttl          = config->network.ttl;
-    udp.queue_octets = config->network.queue_mb << 20;
+    udp = dis_network(config);
     dis_udp_where(l->where, &udp);
-    snprintf(l->to, sizeof l->to, "%s port %d", *udp.address ? udp.address : "255.255.255.255", udp.port);
+    dis_network_to(l->to, &udp);
     Status status = dis_udp_open(&l->udp, &udp);
     if (status != STATUS_OK || !*config->record.path) return status;
     snprintf(comment, sizeof comment, "pitviper run: %s", l->where);
@@ -422,7 +412,7 @@ static Status run_node(Live *l)
     if (status != STATUS_OK) return status;
     l->begun_s = l->shown_s = wall_clock_s();
     health_begin(&l->health, l->begun_s);
-    l->health.sample.publishes = strcmp(l->run.options.config.publish.dis, "off") != 0;
+    l->health.sample.publishes = publishes(l);
     log_info("run: listening on %s; Ctrl-C ends it", l->where);
     status = listen_first(&heard, l);
     log_status(NULL);
@@ -446,7 +436,8 @@ int run_command(int argc, char **argv)
     l->run.options.config.causal = true;
     l->run.live                  = &l->counters;
     l->run.user                  = l;
-    l->run.publish               = publish_frame;
+    l->run.publish               = count_frame;
+    if (publishes(l)) l->run.send = send_pdu;
     l->run.wall_s                = wall_of;
     l->run.clock                 = l;
     memcpy(name, l->run.options.config.record.path, sizeof name);

@@ -85,9 +85,10 @@ static Status know_targets(Frame *f, const Session *s, const Eye *eye)
     TruthNoise           noise;
     if (!target) return STATUS_NO_MEMORY;
     frame_expose(&noise, s->chain, &seen->picture, shared->config);
-    r->target       = target;
     r->target_count = truth_targets(target, &seen->picture, shared->world, &seen->snapshot, &f->request, &eye->state,
                                     &noise);
+    r->target       = target_records(target, r->target_count, &seen->snapshot, shared->catalog, f->arena);
+    if (!r->target) return STATUS_NO_MEMORY;
     if (s->wants & WANT_ERROR && frame_error(&f->error, &seen->picture, shared->world, &seen->snapshot, &f->request,
                                              target, r->target_count, shared->config->models.sag_m,
                                              shared->contact == GROUND_CONTACT_ALL))
@@ -149,6 +150,10 @@ static Status make_frame(bool *shown, int *left_out, Frame *f, Session *s, int n
     if (status != STATUS_OK) return status;
     if (f->seen.picture.range_m) rate_of_scene(f->rate_px_s, &eye, &f->seen.picture);
     fill_record(f, s, &eye);
+    if (s->wants & WANT_FOOTPRINT) {
+        footprint_of_view(f->footprint, shared->world, &eye.view);
+        f->record.footprint = f->footprint;
+    }
     if (s->wants & WANT_TARGETS) status = know_targets(f, s, &eye);
     if (status != STATUS_OK) return status;
     if (shared->world->landscape) {
@@ -362,6 +367,7 @@ const char          *session_host(const Session *s) { return s->host_text; }
 Status session_close(Session *s, SessionResult *result)
 {
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
+    detections_close(s->detections);
     if (status == STATUS_OK) status = s->listed;
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;

@@ -6,6 +6,7 @@
 #include "render/frame/render.h"
 #include "sensor/node/choices.h"
 #include "sensor/node/player.h"
+#include "sensor/publish/consume_dis.h"
 #include "sensor/settings/sensors.h"
 #include "sensor/publish/plane_hash.h"
 #include "sensor/publish/records.h"
@@ -25,13 +26,15 @@ typedef struct SessionShared {
     bool           paced;     /* a replay by the clock: streams are left out when late, as live */
     const char    *config_sha256;
     const Sensors *sensors;
-    void         (*publish)(void *user, const FrameRecord *frame); /* every frame; NULL: not published */
+    void         (*publish)(void *user, const FrameRecord *frame); /* called for each frame; NULL: not */
     void          *user;
+    const DisOf   *dis;       /* Data PDUs of each frame, its clock being the player; NULL: none */
     double       (*wall_s)(void *clock, double t_s); /* wall_clock_s at which exercise time t_s arrives here; NULL: no
                                                     * latency ledger is kept */
     void          *clock;     /* of wall_s */
     int            save_count; /* frames that are also written as frame files, ascending */
     const int     *save;       /* [save_count] */
+    bool           several;    /* hosts, one after the other: what has a name of its own gets the host's too */
 } SessionShared;
 
 enum { session_stages = 6, session_frames_kept = 1000000, session_hosts_kept = 64 };

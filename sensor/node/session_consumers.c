@@ -1,7 +1,10 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
+#include "sensor/publish/klv/consume_klv.h"
+#include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/pairs.h"
+#include "sensor/publish/video/consume_video.h"
 
 #include <stdlib.h>
 
@@ -39,6 +42,18 @@ static Status add_latest(Consumers *list, Session *s)
 {
     Consumer    *consumer = NULL;
     const Status status   = consume_latest(&consumer, s->out, s->shared->live);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* to: VideoTo, of those configured. patient: a failure ends nothing. */
+static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
+{
+    const SessionShared *shared = s->shared;
+    const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
+                                   .rate_hz = s->plan.rate_hz, .patient = patient};
+    Consumer            *consumer = NULL;
+    if (!(to & video_wanted(shared->config))) return STATUS_OK;
+    const Status status = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -88,12 +103,56 @@ static Status add_coco(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+static Status add_klv(Consumers *list, Session *s)
+{
+    Consumer    *consumer = NULL;
+    const Status status   = consume_klv(&consumer, &(KlvFiles){s->out, s->shared->config, s->shared->bands, s->shared->live});
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
 static Status add_call(Consumers *list, const SessionShared *shared)
 {
+    Consumer    *consumer = NULL;
+    const Status status   = consume_by_call(&consumer, shared->publish, shared->user, shared->config->publish.truth);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* A recogniser's detections, for those who publish them. */
+static Status add_detections(Consumers *list, Session *s)
+{
+    const Config *config   = s->shared->config;
     Consumer     *consumer = NULL;
-    const Config *config   = shared->config;
-    const bool    targets  = config->publish.truth || strcmp(config->publish.dis, "off") != 0;
-    const Status  status   = consume_by_call(&consumer, shared->publish, shared->user, targets);
+    if (!config->publish.detections_port) return STATUS_OK;
+    Status status = detections_open(&s->detections, config->publish.detections_port, s->shared->bands,
+                                    config->sensor.width_px, config->sensor.height_px);
+    if (status == STATUS_OK) status = consume_detections(&consumer, s->detections);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+/* Shared memory never waits: before all other consumers, but for raw counts behind the displays that they belong to. */
+static Status add_memory(Consumers *list, Session *s, bool behind_displays)
+{
+    const SessionShared *shared   = s->shared;
+    const Config        *config   = shared->config;
+    Consumer            *consumer = NULL;
+    const bool           counts   = strcmp(config->publish.memory_planes, "counts") == 0;
+    if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
+    MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
+                   .host = shared->several ? s->host_text : NULL};
+    for (int b = 0; b < BAND_COUNT; b++) of.with_sensor |= s->chain[b] ? 1u << b : 0;
+    const Status status = consume_memory(&consumer, &of);
+    return status == STATUS_OK ? consumers_add(list, consumer) : status;
+}
+
+static double arrival_s(const void *player, double t_s) { return player_arrival_s(player, t_s); }
+
+static Status add_dis(Consumers *list, const Session *s)
+{
+    Consumer    *consumer = NULL;
+    DisOf        of       = *s->shared->dis;
+    of.arrival_s          = arrival_s;
+    of.clock              = s->player;
+    const Status status   = consume_dis(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -133,14 +192,17 @@ static unsigned further_wants(const Session *s, unsigned wants)
 
 /* ---- what a session's frames go to -------------------------------------------------------------- */
 
-/* Files of a replay: nothing is dropped, a slow disk delays it. */
+/* Files of a replay: nothing is dropped, a slow disk delays it. A stream by the clock is not among them. */
 static Status replay_files(Consumers *list, Session *s, FrameDone *done, Pool *pool, unsigned raw)
 {
     const Config *config = s->shared->config;
     Status        status = config->publish.files ? add_pictures(list, s, pool) : STATUS_OK;
     if (status == STATUS_OK && config->publish.latest) status = add_latest(list, s);
+    if (status == STATUS_OK)
+        status = add_video(list, s, s->shared->paced ? VIDEO_TO_FILE : VIDEO_TO_FILE | VIDEO_TO_STREAM, false);
     if (status == STATUS_OK) status = add_truth_lines(list, s);
     if (status == STATUS_OK && config->publish.coco) status = add_coco(list, s);
+    if (status == STATUS_OK && config->publish.klv_files) status = add_klv(list, s);
     if (status == STATUS_OK && strcmp(config->publish.pairs, "off") != 0) status = add_pairs(list, s, pool, raw);
     return status == STATUS_OK ? add_hashes(list, s, done) : status;
 }
@@ -150,13 +212,16 @@ static Status for_replay(Session *s, FrameDone *done, unsigned raw)
 {
     const int  threads = pool_threads(s->shared->pool);
     const bool behind  = threads > 1;
-    Consumers  files = {0}, all = {0};
+    Consumers  first = {0}, files = {0}, all = {0};
     Status     status = behind ? pool_create(&s->publish_pool, threads) : STATUS_OK;
     Pool      *pool   = behind ? s->publish_pool : s->shared->pool;
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
     if (status == STATUS_OK) status = replay_files(&files, s, done, pool, raw);
-    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&files));
+    if (status == STATUS_OK) status = add_displays(&all, s, pool, consumers_wants(&first) | consumers_wants(&files));
+    if (status == STATUS_OK) status = add_all(&all, &first);
     if (status == STATUS_OK) status = add_all(&all, &files);
     if (status == STATUS_OK) status = behind ? add_queue(s, &all, QUEUE_WAIT, NULL) : add_all(&s->consumers, &all);
+    if (status != STATUS_OK) consumers_close(&first);
     if (status != STATUS_OK) consumers_close(&files);
     if (status != STATUS_OK) consumers_close(&all);
     return status;
@@ -170,11 +235,14 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     const bool    live   = s->shared->live;
     Consumers     first = {0}, files = {0}, sent = {0};
     Status        status = pool_create(&s->publish_pool, live ? 1 : pool_threads(s->shared->pool));
+    if (status == STATUS_OK) status = add_memory(&first, s, true);
     if (status == STATUS_OK && live) status = add_truth_lines(&first, s);
     if (status == STATUS_OK && live) status = add_hashes(&first, s, done);
     if (status == STATUS_OK && live && config->publish.files) status = add_pictures(&files, s, s->publish_pool);
     if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
+    if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
     if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
+    if (status == STATUS_OK) status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
     if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
     if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
@@ -196,7 +264,10 @@ Status session_consumers(Session *s, FrameDone *done)
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
-    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared); /* before the disk */
+    if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
+    if (status == STATUS_OK) status = add_detections(&s->consumers, s);
+    if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
+    if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = further_wants(s, consumers_wants(&s->consumers));

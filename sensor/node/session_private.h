@@ -9,6 +9,7 @@
 #include "sensor/node/session.h"
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_queue.h"
+#include "sensor/publish/memory/detections.h"
 
 struct Session {
     const SessionShared *shared;
@@ -32,6 +33,7 @@ struct Session {
     Chain               *chain[BAND_COUNT]; /* of the bands with a sensor of etc/sensors.csv: noise figures for
                                              * targets */
     Consumers            consumers;
+    Detections          *detections;    /* received; NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Latency             *latency;       /* NULL: none is kept */

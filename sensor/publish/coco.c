@@ -51,27 +51,27 @@ static json_t *image_json(const Coco *c, const FrameRecord *r, Band band, long l
 }
 
 /* Too little visible to be asked of a recogniser. An unknown share fits no limit. */
-static bool ignored(const CocoLimits *limits, const MaskExtent *extent, const Target *t)
+static bool ignored(const CocoLimits *limits, const MaskExtent *extent, const TargetRecord *t)
 {
     return extent->pixels < limits->min_pixels ||
            (limits->min_visible > 0 && !(t->visible_fraction >= limits->min_visible));
 }
 
-static json_t *annotation_json(const Coco *c, const FrameRecord *r, const Target *t, long long image)
+static json_t *annotation_json(const Coco *c, const FrameRecord *r, const TargetRecord *t, long long image)
 {
-    const SnapshotEntity *entity = &r->snapshot->entity[t->index];
-    const MaskExtent     *extent = &c->extent[t->index];
-    const int            *box    = extent->box, crowd = ignored(&c->limits, extent, t);
-    char                  name[dis_id_text_size], type[dis_type_text_size];
-    dis_entity_id_text(name, entity->id);
-    dis_entity_type_text(type, entity->type);
+    const MaskExtent *extent = &c->extent[t->index];
+    const int         crowd = ignored(&c->limits, extent, t);
+    int               box[4];
+    char              name[dis_id_text_size], type[dis_type_text_size];
+    box_coco(box, extent->box);
+    dis_entity_id_text(name, t->id);
+    dis_entity_type_text(type, t->type);
     json_t *out = json_pack("{s:I,s:I,s:i,s:[i,i,i,i],s:I,s:i,s:i,s:s,s:i,s:s,s:s,s:f,s:{s:[i,i],s:s}}", "id",
                             (json_int_t)c->file.annotations + 1, "image_id", (json_int_t)image, "category_id",
-                            target_class(entity->type), "bbox", box[0], box[1], box[2] - box[0], box[3] - box[1],
-                            "area", (json_int_t)extent->pixels, "iscrowd", crowd, "ignore", crowd, "entity", name,
-                            "plane_value", t->index + 1, "type", type, "model",
-                            catalog_model(r->catalog, entity->model)->name, "pixels", t->pixels, "segmentation", "size",
-                            r->request->view.height, r->request->view.width, "counts", c->text);
+                            t->class_number, "bbox", box[0], box[1], box[2], box[3], "area",
+                            (json_int_t)extent->pixels, "iscrowd", crowd, "ignore", crowd, "entity", name,
+                            "plane_value", t->plane_value, "type", type, "model", t->model, "pixels", t->pixels,
+                            "segmentation", "size", r->request->view.height, r->request->view.width, "counts", c->text);
     if (!out) return NULL;
     set_number(out, "range_m", t->range_m);
     set_number(out, "aspect_deg", t->aspect_rad / rad_per_deg);
@@ -112,10 +112,10 @@ Status coco_frame(Coco *c, const FrameRecord *r, const uint32_t *entity)
         const long long image = (long long)r->frame * BAND_COUNT + b + 1;
         status = coco_file_image(&c->file, image_json(c, r, (Band)b, image));
         for (int i = 0; i < r->target_count && status == STATUS_OK; i++) {
-            const Target     *t      = &r->target[i];
-            const MaskExtent *extent = &c->extent[t->index];
+            const TargetRecord *t      = &r->target[i];
+            const MaskExtent   *extent = &c->extent[t->index];
             if (extent->pixels == 0) continue;
-            mask_text(c->text, entity, (uint32_t)t->index + 1, width, height, extent);
+            mask_text(c->text, entity, (uint32_t)t->plane_value, width, height, extent);
             status = coco_file_annotation(&c->file, annotation_json(c, r, t, image));
         }
     }

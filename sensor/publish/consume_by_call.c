@@ -43,8 +43,9 @@ static Status open_call(Consumer **out, const Call *made_of)
 
 Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets)
 {
-    return open_call(out, &(Call){.consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, "dis"},
-                                  .call = call, .user = user});
+    const Call made = {.consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, NULL},
+                       .call = call, .user = user};
+    return open_call(out, &made);
 }
 
 Status consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes)

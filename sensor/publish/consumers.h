@@ -39,7 +39,7 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
 /* OUT/coco.json. */
 Status consume_coco(Consumer **out, const char *folder, const Config *config, const char *config_sha256);
 
-/* Each frame's record, passed to a function: DIS records of a live node, tests. targets: with its targets. */
+/* Each frame's record, passed to a function: health of a live node, tests. targets: with its targets. */
 typedef void FrameCall(void *user, const FrameRecord *record);
 Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
 

@@ -2,6 +2,7 @@
 #include "sensor/publish/dis_records.h"
 
 #include "dis/reader.h"
+#include "sensor/publish/stream_url.h"
 
 #include <stdlib.h>
 
@@ -45,7 +46,9 @@ static void put_id(Octets *o, DisEntityId id)
 
 static void put_box(Octets *o, const int box[4])
 {
-    for (int k = 0; k < 4; k++) put(o, (uint64_t)clamp(box[k], 0, UINT16_MAX), 2);
+    uint16_t edge[4];
+    box_u16(edge, box);
+    for (int k = 0; k < 4; k++) put(o, edge[k], 2);
 }
 
 static void add_fixed(DisData *pdu, uint32_t id, uint32_t value)
@@ -60,7 +63,7 @@ static void add_variable(DisData *pdu, uint32_t id, const Octets *o, size_t from
                                                               .value = o->at + from};
 }
 
-static void put_seen(Octets *o, const Target *t, Band band)
+static void put_seen(Octets *o, const TargetRecord *t, Band band)
 {
     const bool thermal = band == BAND_MWIR || band == BAND_LWIR;
     put_box(o, t->box);
@@ -73,9 +76,9 @@ static void put_seen(Octets *o, const Target *t, Band band)
     put_f32(o, band == BAND_RADAR ? t->closing_mps : NAN);
 }
 
-static void put_truth(Octets *o, const Target *t, const Snapshot *snapshot, Band band)
+static void put_truth(Octets *o, const TargetRecord *t, Band band)
 {
-    put_id(o, snapshot->entity[t->index].id);
+    put_id(o, t->id);
     put_box(o, t->box);
     put_f32(o, t->pixels);
     put_f32(o, t->visible_fraction);
@@ -111,7 +114,7 @@ static void add_targets(DisData *pdu, Octets *o, const FrameRecord *r, Band band
     for (int i; count < most && room >= one && (i = next_largest(r, chosen, count, truth)) >= 0; room -= one) {
         const size_t from = o->used;
         chosen[count++]   = i;
-        if (truth) put_truth(o, &r->target[i], r->snapshot, band);
+        if (truth) put_truth(o, &r->target[i], band);
         else put_seen(o, &r->target[i], band);
         add_variable(pdu, truth ? datum_truth : datum_target_measured, o, from);
     }
@@ -134,35 +137,87 @@ static void put_camera(Octets *o, const double r_ecef_from_cam[9])
     put_f64(o, phi_rad);
 }
 
+/* What all PDUs begin with. */
+static DisData data_pdu(const DisRecordSender *sender)
+{
+    enum { simulation_management = 5 };
+    return (DisData){.header = {.version = sender->version, .exercise = sender->exercise, .type = dis_pdu_data,
+                                .family = simulation_management, .timestamp = sender->timestamp},
+                     .originating = {sender->site, sender->application, 0}, .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+}
+
+static void add_image(DisData *pdu, const FrameRecord *r)
+{
+    const View *view = &r->request->view;
+    add_fixed(pdu, datum_raster, (uint32_t)view->width << 16 | (uint32_t)view->height);
+    add_fixed(pdu, datum_hfov, f32_bits(r->hfov_rad));
+    add_fixed(pdu, datum_vfov, f32_bits(2 * atan(0.5 * view->height / view->focal_px)));
+}
+
+static void add_time(DisData *pdu, Octets *o, const FrameRecord *r)
+{
+    const size_t from = o->used;
+    put_f64(o, r->time_s);
+    add_variable(pdu, datum_time, o, from);
+}
+
+static void add_host(DisData *pdu, Octets *o, const FrameRecord *r)
+{
+    const size_t from = o->used;
+    put_id(o, r->host ? r->host->id : (DisEntityId){0});
+    add_variable(pdu, datum_host, o, from);
+}
+
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, Band band,
                         bool truth)
 {
-    enum { simulation_management = 5 };
-    const View *view = &r->request->view;
-    Octets      o    = {.used = 0};
-    size_t      from;
-    DisData     pdu  = {.header = {.version = sender->version, .exercise = sender->exercise, .type = dis_pdu_data,
-                                   .family = simulation_management, .timestamp = sender->timestamp},
-                        .originating = {sender->site, sender->application, 0}, .receiving = {0xFFFF, 0xFFFF, 0xFFFF}};
+    Octets  o = {.used = 0};
+    size_t  from;
+    DisData pdu = data_pdu(sender);
     add_fixed(&pdu, datum_frame, (uint32_t)r->frame);
     add_fixed(&pdu, datum_band, (uint32_t)band);
     add_fixed(&pdu, datum_kind, truth ? datum_kind_truth : datum_kind_sensor);
-    add_fixed(&pdu, datum_raster, (uint32_t)view->width << 16 | (uint32_t)view->height);
-    add_fixed(&pdu, datum_hfov, f32_bits(r->hfov_rad));
-    add_fixed(&pdu, datum_vfov, f32_bits(2 * atan(0.5 * view->height / view->focal_px)));
-
-    from = o.used;
-    put_f64(&o, r->time_s);
-    add_variable(&pdu, datum_time, &o, from);
+    add_image(&pdu, r);
+    add_time(&pdu, &o, r);
     from = o.used;
     for (int k = 0; k < 3; k++) put_f64(&o, r->p_eye_ecef[k]);
     add_variable(&pdu, datum_sensor_position, &o, from);
     from = o.used;
     put_camera(&o, r->r_ecef_from_cam);
     add_variable(&pdu, datum_camera, &o, from);
-    from = o.used;
-    put_id(&o, r->host ? r->host->id : (DisEntityId){0});
-    add_variable(&pdu, datum_host, &o, from);
+    add_host(&pdu, &o, r);
     add_targets(&pdu, &o, r, band, truth);
+    return dis_encode_data(out, dis_smallest_mtu, &pdu);
+}
+
+/* Number of a word in a list that ends with NULL, from 0; 0: not in it. */
+static uint32_t number_of(const char *word, const char *const *list)
+{
+    for (uint32_t i = 0; list[i]; i++)
+        if (strcmp(word, list[i]) == 0) return i;
+    return 0;
+}
+
+size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *r, Band band,
+                         const Config *config, int stream)
+{
+    static const char *const codec[] = {"", "h264", "h264-10", "hevc-12", "ffv1", NULL};
+    static const char *const klv[] = {"off", "async", "sync", NULL}, *const targets[] = {"off", "atr", "truth", NULL};
+    const bool no_klv = strcmp(config->publish.klv, "off") == 0; /* then it has no targets either */
+    char       url[stream_url_size];
+    Octets     o   = {.used = 0};
+    DisData    pdu = data_pdu(sender);
+    if (!stream_url(url, config->publish.stream, stream)) return 0;
+    add_fixed(&pdu, datum_band, (uint32_t)band);
+    add_fixed(&pdu, datum_kind, datum_kind_stream);
+    add_image(&pdu, r);
+    add_fixed(&pdu, datum_stream_codec, number_of(config->publish.video_codec, codec));
+    add_fixed(&pdu, datum_stream_klv, number_of(config->publish.klv, klv));
+    add_fixed(&pdu, datum_stream_targets, no_klv ? 0 : number_of(config->publish.vmti, targets));
+    add_time(&pdu, &o, r);
+    add_host(&pdu, &o, r);
+    const size_t from = o.used;
+    for (const char *at = url; *at; at++) put(&o, (uint8_t)*at, 1);
+    add_variable(&pdu, datum_stream_url, &o, from);
     return dis_encode_data(out, dis_smallest_mtu, &pdu);
 }

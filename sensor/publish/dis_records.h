@@ -31,18 +31,33 @@
  *                       28 f32 closing speed, m/s 32 f32 aspect, rad, 0 nose on   36 f32 line of sight, azimuth from
  *                       40 f32 its elevation, rad                                    north, rad
  *                       44 f32 boresight error right, rad                         48 f32 the same up, rad
- *                       52 f32 signal to noise */
+ *                       52 f32 signal to noise
+ *
+ * The announcement of a video stream, one PDU per band and stream, has the datums 600002, 600004 .. 600006, 600101,
+ * 600104 and these; no 600001:
+ *
+ *     fixed, 32 bits
+ *     600003  kind, u32: 3 stream
+ *     600009  codec, u32: 1 H.264, 8 bits; 2 H.264, 10 bits; 3 HEVC, 12 bits; 4 FFV1, 16 bits. In MPEG-TS
+ *     600010  KLV in it (MISB ST 0601), u32: 0 none, 1 asynchronous, 2 synchronous
+ *     600011  its targets (MISB ST 0903), u32: 0 none, 1 detections of a recogniser, 2 truth
+ *
+ *     variable
+ *     600301  8 bits per character: address of the stream, ASCII, udp://HOST:PORT */
 #ifndef SENSOR_PUBLISH_DIS_RECORDS_H
 #define SENSOR_PUBLISH_DIS_RECORDS_H
 
 #include "dis/data.h"
 #include "sensor/publish/records.h"
+#include "sensor/settings/config.h"
 
 enum {
     datum_frame = 600001, datum_band, datum_kind, datum_raster, datum_hfov, datum_vfov, datum_targets, datum_left_out,
+    datum_stream_codec, datum_stream_klv, datum_stream_targets,
     datum_time = 600101, datum_sensor_position, datum_camera, datum_host,
     datum_target_measured = 600201, datum_truth,
-    datum_kind_sensor = 1, datum_kind_truth = 2,
+    datum_stream_url = 600301,
+    datum_kind_sensor = 1, datum_kind_truth = 2, datum_kind_stream = 3,
 };
 
 typedef struct DisRecordSender {
@@ -54,5 +69,9 @@ typedef struct DisRecordSender {
 /* One frame's PDU of one band. Returns its size in octets, at most dis_smallest_mtu. */
 size_t dis_record_frame(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
                         Band band, bool truth);
+/* The announcement of the band's video stream, which is number `stream` of the run's, from 0, by publish.stream,
+ * video_codec, klv and vmti. 0: there is no such stream. */
+size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *sender, const FrameRecord *frame,
+                         Band band, const Config *config, int stream);
 
 #endif

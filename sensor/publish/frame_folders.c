@@ -150,7 +150,8 @@ bool frame_files_earlier(char found[frame_path_size], const char *out)
 void frame_files_clear(const char *out)
 {
     /* a run leaves truth.jsonl from its first moment, run.json at its end */
-    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {"pairs", "pairs.jsonl", "coco.json"};
+    static const char *const marks[] = {"run.json", "truth.jsonl"}, *const beside[] = {
+        "pairs", "pairs.jsonl", "coco.json", "optical.klv", "mwir.klv", "lwir.klv", "radar.klv"};
     char path[path_size];
     bool earlier = false;
     if (too_long(out)) return;
@@ -166,7 +167,7 @@ void frame_files_clear(const char *out)
         clear_products(path);
         rmdir(path);
     }
-    for (int i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof beside / sizeof *beside; i++) {
         snprintf(path, sizeof path, "%s/%s", out, beside[i]);
         remove(path); /* a folder: only if it is empty otherwise */
     }

@@ -91,7 +91,7 @@ static json_t *sensor_json(const FrameRecord *r)
     return sensor;
 }
 
-static json_t *bands_json(const Target *t)
+static json_t *bands_json(const TargetRecord *t)
 {
     json_t *bands = json_object();
     for (int b = 0; b < BAND_COUNT; b++) {
@@ -112,19 +112,18 @@ static json_t *bands_json(const Target *t)
     return bands;
 }
 
-static json_t *target_json(const FrameRecord *r, const Target *t)
+static json_t *target_json(const TargetRecord *t)
 {
-    const SnapshotEntity *entity = &r->snapshot->entity[t->index];
-    json_t               *target = json_object();
-    char                  type[dis_type_text_size];
+    json_t *target = json_object();
+    char    type[dis_type_text_size];
 
-    set_id(target, "entity", entity->id);
-    set_text(target, "marking", entity->marking, strnlen(entity->marking, 11));
-    dis_entity_type_text(type, entity->type);
+    set_id(target, "entity", t->id);
+    set_text(target, "marking", t->marking, strnlen(t->marking, 11));
+    dis_entity_type_text(type, t->type);
     json_object_set_new(target, "type", json_string(type));
-    json_object_set_new(target, "class", json_string(target_class_name(target_class(entity->type))));
-    json_object_set_new(target, "plane_value", json_integer(t->index + 1));
-    json_object_set_new(target, "model", json_string(catalog_model(r->catalog, entity->model)->name));
+    json_object_set_new(target, "class", json_string(target_class_name(t->class_number)));
+    json_object_set_new(target, "plane_value", json_integer(t->plane_value));
+    json_object_set_new(target, "model", json_string(t->model));
     set_number(target, "range_m", t->range_m);
     set_number(target, "closing_mps", t->closing_mps);
     set_number(target, "aspect_deg", t->aspect_rad / rad_per_deg);
@@ -135,18 +134,18 @@ static json_t *target_json(const FrameRecord *r, const Target *t)
     json_object_set_new(target, "boresight_error_deg", pair_deg(t->boresight_error_rad));
     set_number(target, "pixels", t->pixels);
     set_number(target, "visible_fraction", t->visible_fraction);
-    if (t->box[2] > 0) {
+    if (!box_is_empty(t->box)) {
         json_t *box = json_array();
         for (int k = 0; k < 4; k++) json_array_append_new(box, json_integer(t->box[k]));
         json_object_set_new(target, "box_px", box);
     }
     json_object_set_new(target, "amodal_box_px", numbers(t->amodal_box, 4));
-    if (t->occluder && t->occluder_index >= 0)
-        set_id(target, "occluded_by", r->snapshot->entity[t->occluder_index].id);
-    else if (t->occluder)
-        json_object_set_new(target, "occluded_by", json_string(t->occluder));
-    set_number(target, "age_s", entity->age_s);
-    set_number(target, "position_error_m", entity->position_error_m);
+    if (!dis_entity_id_is_none(t->occluder_id))
+        set_id(target, "occluded_by", t->occluder_id);
+    else if (t->occluder != OCCLUDER_NONE)
+        json_object_set_new(target, "occluded_by", json_string(t->occluder == OCCLUDER_GROUND ? "ground" : "entity"));
+    set_number(target, "age_s", t->age_s);
+    set_number(target, "position_error_m", t->position_error_m);
     json_object_set_new(target, "bands", bands_json(t));
     return target;
 }
@@ -182,7 +181,7 @@ char *record_frame_text(const FrameRecord *r)
     json_object_set_new(line, "sun", sun);
     json_array_append_new(sensors, sensor_json(r));
     json_object_set_new(line, "sensors", sensors);
-    for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(r, &r->target[i]));
+    for (int i = 0; i < r->target_count; i++) json_array_append_new(targets, target_json(&r->target[i]));
     json_object_set_new(line, "targets", targets);
     if (r->error) json_object_set_new(line, "error", error_json(r));
 

@@ -9,24 +9,13 @@
 
 #include "entities/motion/dead_reckoning.h"
 #include "entities/effects/effects_history.h"
+#include "sensor/truth/footprint.h"
+#include "sensor/publish/target_record.h"
 #include "sensor/publish/latency.h"
 #include "sensor/truth/frame_error.h"
-#include "sensor/truth/truth.h"
 #include "terrain/earth/sun.h"
 
 #include <stdio.h>
-
-/* Where a line of sight meets the ground. */
-typedef struct GroundPoint {
-    bool   known;                /* false: it does not, within the terrain */
-    double lat_rad, lon_rad, height_m; /* WGS 84, above the ellipsoid */
-    double range_m;              /* from the sensor */
-} GroundPoint;
-/* The boresight, then the image's corners. */
-typedef enum FootprintPoint {
-    FOOTPRINT_CENTRE, FOOTPRINT_UPPER_LEFT, FOOTPRINT_UPPER_RIGHT, FOOTPRINT_LOWER_RIGHT, FOOTPRINT_LOWER_LEFT,
-    FOOTPRINT_COUNT
-} FootprintPoint;
 
 typedef struct FrameRecord {
     int                   frame;
@@ -42,7 +31,7 @@ typedef struct FrameRecord {
     bool                  gimbal_at_limit;
     double                scene_rate_px_s[2]; /* column, row: image motion of a stationary point at the centre */
     const Sun            *sun;
-    const Target         *target;
+    const TargetRecord   *target;
     int                   target_count;
     const char           *frame_sha256; /* NULL: not given */
     const FrameError     *error;        /* NULL: not given */

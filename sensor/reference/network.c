@@ -1,4 +1,4 @@
-/* sensor/reference/network.c: Data PDUs sent by a live node, and the table of PDUs written by inspect. */
+/* sensor/reference/network.c: Data PDUs sent by a node, of frames and of streams; the table of PDUs of inspect. */
 #include "sensor/reference/reference.h"
 
 static const ReferenceField data_fields[] = {
@@ -44,9 +44,9 @@ const Reference reference_data_pdu = {
     .topic = "data-pdu",
     .file  = "Data PDU",
     .title = "what the seeker sees, as Data PDUs (type 20), one per frame and band",
-    .about = "Sent by `pitviper run` with --set publish.dis=sensor (datum 600201 per visible target) or truth (datum "
-             "600202\n"
-             "per target in the field of view), the largest first. From node.site:node.application:0 to all (0xFFFF),\n"
+    .about = "Sent by `pitviper run`, and by `pitviper replay --speed X`, with --set publish.dis=sensor (datum 600201 per\n"
+             "visible target) or truth (datum 600202 per target in the field of view), the largest first. A replay sends\n"
+             "the octets that the node sent which made the recording, with the time stamps of the recorded hour. From node.site:node.application:0 to all (0xFFFF),\n"
              "request 0, at most 1400 octets. The ids of the datums are experimental: defined by this program, not\n"
              "registered.",
     .notation = "Field: `fixed ID`, a fixed datum of 32 bits; `variable ID+OFFSET`, octets within a variable datum. "
@@ -71,6 +71,48 @@ const Reference reference_data_pdu = {
         "            site, application, entity = struct.unpack('>3H', value[:6])\n"
         "            range_m, closing_mps = struct.unpack('>2f', value[24:32])\n"
         "            print(datum[600001], datum[600002], (site, application, entity), range_m, flush=True)\n",
+};
+
+static const ReferenceField stream_fields[] = {
+    {"fixed 600002", "u32", "", "0 optical, 1 mwir, 2 lwir, 3 radar", "", "band"},
+    {"fixed 600003", "u32", "", "3 stream", "", "kind"},
+    {"fixed 600004", "u16[2]", "px", "columns, rows", "", "size of the image"},
+    {"fixed 600005", "f32", "rad", "", "", "horizontal field of view"},
+    {"fixed 600006", "f32", "rad", "", "", "vertical field of view"},
+    {"fixed 600009", "u32", "", "1 H.264, 8 bits; 2 H.264, 10 bits; 3 HEVC, 12 bits; 4 FFV1, 16 bits", "",
+     "codec (publish.video_codec)"},
+    {"fixed 600010", "u32", "", "0 none, 1 asynchronous, 2 synchronous", "", "MISB ST 0601 metadata (publish.klv)"},
+    {"fixed 600011", "u32", "", "0 none, 1 detections of a recogniser, 2 truth", "",
+     "MISB ST 0903 targets in them (publish.vmti)"},
+    {"variable 600101+0", "f64", "s", "exercise time", "", "instant of the frame that it is sent with"},
+    {"variable 600104+0", "u16[4]", "", "site, application, entity, 0", "", "the host; 0:0:0: an observer"},
+    {"variable 600301+0", "text", "", "ASCII, udp://HOST:PORT", "", "address of the stream"},
+};
+
+const Reference reference_stream_pdu = {
+    .topic = "stream-pdu",
+    .file  = "Stream PDU",
+    .title = "where the video streams are, as Data PDUs (type 20), one per band every 5 s of exercise time",
+    .about = "Sent with those of data-pdu where publish.stream is set: before the first frame's, and before those of the "
+             "first\n"
+             "frame of each 5 s of exercise time. Without datum 600001; else as those. The streams are MPEG-TS over UDP.",
+    .notation = "Field and type: as in data-pdu; text: one octet per character, as many as the datum has.",
+    .field = REFERENCE_FIELDS(stream_fields),
+    .python =
+        "import socket, struct\n"
+        "listen = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)\n"
+        "listen.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)\n"
+        "listen.bind(('', 3000))               # a multicast group: add IP_ADD_MEMBERSHIP\n"
+        "while True:\n"
+        "    pdu = listen.recv(65536)\n"
+        "    if len(pdu) < 40 or pdu[2] != 20: continue\n"
+        "    fixed, variable = struct.unpack('>II', pdu[32:40])\n"
+        "    datum, at = dict(struct.unpack('>II', pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed)), 40 + 8 * fixed\n"
+        "    if datum.get(600003) != 3: continue   # a frame's, or of another program\n"
+        "    for _ in range(variable):\n"
+        "        kind, bits = struct.unpack('>II', pdu[at:at + 8])\n"
+        "        value, at = pdu[at + 8:at + 8 + bits // 8], at + 8 + (bits + 63) // 64 * 8\n"
+        "        if kind == 600301: print(datum[600002], value.decode('ascii'), flush=True)\n",
 };
 
 static const ReferenceField pdu_fields[] = {

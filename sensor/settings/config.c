@@ -4,8 +4,10 @@
 #include "pitviper_channels.h"
 
 #include "dis/pdu.h"
+#include "sensor/settings/memory_choice.h"
 #include "sensor/settings/plane_choice.h"
 #include "sensor/settings/span.h"
+#include "sensor/settings/video_choice.h"
 
 #include <errno.h>
 #include <strings.h>
@@ -174,6 +176,8 @@ static const Setting keys[] = {
      "MISB ST 0601 metadata in streams and .ts files: asynchronous, synchronous (stream type 0x15), or none"},
     {"publish.vmti", SETTING_TEXT, AT(publish.vmti), 0, 0, "atr|truth|off", "",
      "MISB ST 0903 targets in that metadata: detections received (publish.detections_port); truth, marked so; or none"},
+    {"publish.klv_files", SETTING_BOOL, AT(publish.klv_files), 0, 1, NULL, "",
+     "write the metadata also into BAND.klv, without video"},
     {"publish.memory", SETTING_TEXT, AT(publish.memory), 0, 0, NULL, "",
      "name of a shared-memory ring of frames for a recogniser on this machine, /dev/shm/NAME; empty: none"},
     {"publish.memory_planes", SETTING_TEXT, AT(publish.memory_planes), 0, 0, "float|counts", "",
@@ -508,7 +512,8 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
-    return STATUS_OK;
+    const Status status = video_choice_check(config);
+    return status == STATUS_OK ? memory_choice_check(config) : status;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)

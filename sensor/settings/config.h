@@ -81,6 +81,7 @@ typedef struct Config {
         char   stream[128];        /* udp://HOST:PORT; empty: none */
         char   klv[8];             /* async, sync or off */
         char   vmti[8];            /* atr, truth or off */
+        bool   klv_files;          /* OUT/BAND.klv */
         char   memory[64];         /* name of the shared memory; empty: none */
         char   memory_planes[8];   /* float or counts */
         char   memory_record[8];   /* sensor or truth */

@@ -27,7 +27,9 @@ static const struct Row {
     {"address", KEY, IN_RUN, "network.address", "ADDRESS",
      "numeric address of the exercise: multicast group, broadcast or host\n"
      "(default: receive on all, send to 255.255.255.255)"},
-    {"interface", KEY, IN_RUN, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
+    {"address", KEY, IN_REPLAY, "network.address", "ADDRESS",
+     "with --speed and publish.dis: where Data PDUs are sent, numeric\n(default: 255.255.255.255)"},
+    {"interface", KEY, IN_BOTH, "network.interface", "NAME", "for example eth0 (default: the system's choice)"},
     {"port", KEY, IN_BOTH, "exercise.port", "N", "UDP port of the exercise (default: 3000)"},
     {"out", OUT, IN_BOTH, NULL, "DIR", "folder for the products (default: out)"},
     {"overwrite", OVERWRITE, IN_BOTH, NULL, NULL,

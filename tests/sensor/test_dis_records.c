@@ -3,7 +3,10 @@
 #include "tests/check.h"
 
 #include "dis/decode.h"
-#include "sensor/publish/dis_records.h"
+#include "sensor/publish/consume_dis.h"
+#include "sensor/publish/stream_url.h"
+
+#include <stdlib.h>
 
 static uint64_t big(const uint8_t *at, int octets)
 {
@@ -52,7 +55,7 @@ static const uint8_t *variable(uint32_t *bits, const uint8_t *pdu, size_t octets
 }
 
 enum { most_targets = 60 };
-static Target         target[most_targets];
+static TargetRecord   target[most_targets];
 static SnapshotEntity entity[most_targets + 1];
 static Snapshot       snapshot = {.entity = entity};
 static RenderRequest  request = {.bands = 15, .view = {.width = 720, .height = 486, .focal_px = 6868.6}};
@@ -63,8 +66,8 @@ static FrameRecord frame_of(int targets, int hidden)
 {
     for (int i = 0; i < targets; i++) {
         entity[i].id = (DisEntityId){1, 2, (uint16_t)(100 + i)};
-        target[i]    = (Target){.index = i, .range_m = 1000 + i, .closing_mps = 200, .aspect_rad = 0.5,
-                                .los_az_rad = 1.25, .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
+        target[i]    = (TargetRecord){.index = i, .id = entity[i].id, .range_m = 1000 + i, .closing_mps = 200,
+                                .aspect_rad = 0.5, .los_az_rad = 1.25, .los_el_rad = -0.125, .boresight_error_rad = {0.015625, -0.03125},
                                 .pixels = i < hidden ? 0 : 10 * (i + 1), .visible_fraction = 0.75,
                                 .box = {i, 2, i + 3, 4}};
         for (int b = 0; b < BAND_COUNT; b++)
@@ -182,6 +185,143 @@ static void what_has_no_room_is_counted_the_smallest_first(void **state)
         }
 }
 
+/* ---- a consumer ---- */
+
+enum { most_sent = 64 };
+typedef struct Sent {
+    int     count;
+    uint8_t pdu[most_sent][dis_smallest_mtu];
+    size_t  octets[most_sent];
+    Status  result;
+} Sent;
+
+static Status take(void *user, const uint8_t *pdu, size_t octets)
+{
+    Sent *sent = user;
+    CHECK(sent->count < most_sent && octets > 0);
+    memcpy(sent->pdu[sent->count], pdu, octets);
+    sent->octets[sent->count++] = octets;
+    return sent->result;
+}
+
+static double half_a_minute_later(const void *clock, double t_s)
+{
+    CHECK(clock == &sun);
+    return t_s + 30;
+}
+
+/* Frames at these times, two bands. */
+static Sent *send_frames(Config *config, const double *time_s, int count, Status result)
+{
+    Sent     *sent = calloc(1, sizeof *sent);
+    Consumer *consumer;
+    CHECK(sent);
+    sent->result   = result;
+    const DisOf of = {.config = config, .bands = 1u << BAND_OPTICAL | 1u << BAND_LWIR, .version = 6, .exercise = 9,
+                      .send = take, .user = sent, .arrival_s = half_a_minute_later, .clock = &sun};
+    CHECK(consume_dis(&consumer, &of) == STATUS_OK && consumer->wants == WANT_TARGETS);
+    for (int i = 0; i < count; i++) {
+        Frame frame = {.record = frame_of(3, 0)};
+        frame.record.frame  = i;
+        frame.record.time_s = time_s[i];
+        CHECK(consumer->put(consumer, &frame) == STATUS_OK); /* also when nothing can be sent */
+    }
+    CHECK(consumer->close(consumer) == STATUS_OK);
+    return sent;
+}
+
+static void a_consumer_sends_each_frame_and_band(void **state)
+{
+    (void)state;
+    static const double time_s[2] = {100, 100.5};
+    Config              config = config_default();
+    for (int truth = 0; truth <= 1; truth++) {
+        strcpy(config.publish.dis, truth ? "truth" : "sensor");
+        Sent *sent = send_frames(&config, time_s, 2, truth ? STATUS_IO : STATUS_OK);
+        CHECK(sent->count == 4);
+        for (int i = 0; i < 4; i++) {
+            const uint8_t *pdu = sent->pdu[i];
+            uint8_t        want[dis_smallest_mtu];
+            CHECK(fixed(pdu, 600001) == (uint32_t)i / 2 && fixed(pdu, 600002) == (i % 2 ? 2u : 0u));
+            CHECK(fixed(pdu, 600003) == (truth ? 2u : 1u) && pdu[0] == 6 && pdu[1] == 9);
+            /* past the hour, in steps of an hour / 2^31; relative: the lowest bit is 0 */
+            CHECK_NEAR((double)(big(pdu + 4, 4) >> 1) * 3600 / 2147483648.0, time_s[i / 2] + 30, 2e-6);
+            CHECK((pdu[7] & 1) == 0);
+            const DisRecordSender node = {6, 9, 4711, 1, (uint32_t)big(pdu + 4, 4)};
+            FrameRecord           r = frame_of(3, 0);
+            r.frame  = i / 2;
+            r.time_s = time_s[i / 2];
+            CHECK(dis_record_frame(want, &node, &r, i % 2 ? BAND_LWIR : BAND_OPTICAL, truth) == sent->octets[i]);
+            CHECK(memcmp(want, pdu, sent->octets[i]) == 0);
+        }
+        free(sent);
+    }
+}
+
+/* With the first frame, then with the first one of each 5 s of exercise time; before the frame's own. */
+static void streams_are_announced(void **state)
+{
+    (void)state;
+    static const double time_s[] = {1353.5, 1354.9, 1355, 1359.99, 1366, 1366.5, 1370};
+    static const bool   due[] = {true, false, true, false, true, false, true};
+    enum { frames = sizeof due / sizeof *due };
+    Config   config = config_default();
+    uint32_t bits;
+    strcpy(config.publish.dis, "sensor");
+    strcpy(config.publish.stream, "udp://[ff15::7]:5004");
+    strcpy(config.publish.video_codec, "hevc-12");
+    strcpy(config.publish.klv, "sync");
+    strcpy(config.publish.vmti, "atr");
+    Sent *sent = send_frames(&config, time_s, frames, STATUS_OK);
+    int   at   = 0;
+    for (int i = 0; i < frames; i++) {
+        for (int k = 0; due[i] && k < 2; k++, at++) {
+            static const char *const url[2] = {"udp://[ff15::7]:5004", "udp://[ff15::7]:5006"};
+            const uint8_t *pdu = sent->pdu[at], *text;
+            CHECK(big(pdu + 8, 2) == sent->octets[at]);
+            CHECK(big(pdu + 32, 4) == 8 && fixed(pdu, 600002) == (k ? 2u : 0u) && fixed(pdu, 600003) == 3);
+            CHECK(fixed(pdu, 600004) == (720u << 16 | 486));
+            CHECK(fixed(pdu, 600009) == 3 && fixed(pdu, 600010) == 2 && fixed(pdu, 600011) == 1);
+            CHECK_NEAR(f64(variable(&bits, pdu, sent->octets[at], 600101, 0)), time_s[i], 0);
+            CHECK(big(variable(&bits, pdu, sent->octets[at], 600104, 0), 8) == 0x0007000800090000);
+            text = variable(&bits, pdu, sent->octets[at], 600301, 0);
+            CHECK(text && bits == 8 * strlen(url[k]) && memcmp(text, url[k], bits / 8) == 0);
+            DisPdu back;
+            CHECK(dis_decode(&back, pdu, sent->octets[at]) == STATUS_OK && back.type == dis_pdu_data);
+        }
+        for (int k = 0; k < 2; k++, at++) CHECK(fixed(sent->pdu[at], 600001) == (uint32_t)i);
+    }
+    CHECK(at == sent->count);
+    free(sent);
+    strcpy(config.publish.klv, "off"); /* so there are no targets either */
+    sent = send_frames(&config, time_s, 1, STATUS_OK);
+    CHECK(fixed(sent->pdu[0], 600010) == 0 && fixed(sent->pdu[0], 600011) == 0);
+    free(sent);
+    strcpy(config.publish.stream, "udp://10.0.0.1:65534"); /* the second would be at 65536 */
+    sent = send_frames(&config, time_s, 1, STATUS_OK);
+    CHECK(sent->count == 3);
+    free(sent);
+}
+
+static void addresses_of_streams(void **state)
+{
+    (void)state;
+    static const struct { const char *url; int n; const char *want; } list[] = {
+        {"udp://239.1.2.3:5004", 0, "udp://239.1.2.3:5004"}, {"udp://239.1.2.3:5004", 3, "udp://239.1.2.3:5010"},
+        {"udp://[fe80::1]:1", 1, "udp://[fe80::1]:3"}, {"udp://h:65535", 0, "udp://h:65535"}, {"udp://h:65535", 1, NULL},
+        {"udp://h:0", 0, NULL}, {"udp://h:", 0, NULL}, {"udp://h", 0, NULL}, {"udp://:5004", 0, NULL},
+        {"udp://h:5004/x", 0, NULL}, {"udp://h:123456", 0, NULL}, {"rtp://h:5004", 0, NULL}, {"", 0, NULL},
+    };
+    char url[stream_url_size], most[stream_url_size + 8] = "udp://";
+    for (size_t i = 0; i < sizeof list / sizeof *list; i++) {
+        const bool good = stream_url(url, list[i].url, list[i].n);
+        CHECK(good == (list[i].want != NULL) && strcmp(url, list[i].want ? list[i].want : "") == 0);
+    }
+    memset(most + 6, 'h', sizeof most - 6);
+    strcpy(most + stream_url_size - 4, ":99"); /* it just fits, and :101 does not */
+    CHECK(stream_url(url, most, 0) && !stream_url(url, most, 1) && !*url);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -189,6 +329,9 @@ int main(void)
         cmocka_unit_test(a_seeker_tells_no_names),
         cmocka_unit_test(truth_tells_all),
         cmocka_unit_test(what_has_no_room_is_counted_the_smallest_first),
+        cmocka_unit_test(a_consumer_sends_each_frame_and_band),
+        cmocka_unit_test(streams_are_announced),
+        cmocka_unit_test(addresses_of_streams),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

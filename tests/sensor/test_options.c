@@ -12,6 +12,7 @@ static const char *const samples[][2] = {
     {"port", "3001"}, {"out", "elsewhere"}, {"bands", "lwir"}, {"size", "64x48"}, {"rate", "2"}, {"from", "3"},
     {"from", "+12"}, {"to", "4"}, {"planes", "range,entity"},
     {"only", "3,7,12"}, {"only", "9"}, {"save-frame", "9,2"}, {"host", "1:2:3"}, {"host", "observer"},
+    {"address", "127.0.0.1"}, {"interface", "lo"},
     {"samples", "2"}, {"config", "FILE"}, {"set", "detector.smear=false"}, {"set", "publish.coco_min_pixels=9"},
     {"threads", "3"}, {"seed", "7"}, {"speed", "2.5"},
     {"isa", "sse4.2"}, {"pairs", "target"}, {"sweep", "some.yaml"},

@@ -154,14 +154,18 @@ def datagrams(path):
             if packet[0] >> 4 == 4 and packet[9] == 17: yield packet[(packet[0] & 15) * 4 + 8:]
         at += size
 
-width_of = {"u16": 2, "u32": 4, "f32": 4, "f64": 8}
+def of_a_stream(pdu):
+    fixed, = struct.unpack(">I", pdu[32:36])
+    return 600001 not in [struct.unpack(">I", pdu[40 + 8 * i:44 + 8 * i])[0] for i in range(fixed)]
+
+width_of = {"u16": 2, "u32": 4, "f32": 4, "f64": 8, "text": None}
 def take_data_pdus(topic, pdus):
     octets = {}
     for row in topic.rows.values():
         kind, many = re.fullmatch(r"(\w+)(?:\[(\d)\])?", row.type).groups()
         where, name = row.path.split(" ")
         number, offset = (name + "+0").split("+")[:2]
-        octets.setdefault((where, int(number)), {})[int(offset)] = (width_of[kind] * int(many or 1), row)
+        octets.setdefault((where, int(number)), {})[int(offset)] = (width_of[kind] and width_of[kind] * int(many or 1), row)
     for pdu in pdus:
         fixed, variable = struct.unpack(">II", pdu[32:40])
         seen, at = [("fixed", *struct.unpack(">I", pdu[40 + 8 * i:44 + 8 * i]), 4) for i in range(fixed)], 40 + 8 * fixed
@@ -175,7 +179,7 @@ def take_data_pdus(topic, pdus):
             check(fields, topic.name, where, number, "is not in the reference")
             for offset in sorted(fields or {}):
                 check(offset == end, topic.name, number, "has a gap at", end)
-                end = offset + fields[offset][0]
+                end = offset + (fields[offset][0] or size - offset)
                 fields[offset][1].found += 1
             check(not fields or end == size, topic.name, number, "is of", size, "octets, the reference of", end)
         for (where, number), fields in octets.items():
@@ -204,7 +208,7 @@ def runs(topic, folder, given="", least=1):
     check(len(said.getvalue().splitlines()) >= least, topic.name, "Python prints", repr(said.getvalue()[:200]))
     return said.getvalue()
 
-def runs_data_pdu(topic, pdus):
+def runs_data_pdu(topic, pdus, prints):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -219,7 +223,7 @@ def runs_data_pdu(topic, pdus):
             said += (child.stdout.read() or b"").decode()
             if said or child.poll() is not None: break
     child.kill()
-    check(re.match(r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+", said), topic.name, "Python prints", repr(said), child.communicate()[1])
+    check(re.match(prints, said), topic.name, "Python prints", repr(said), child.communicate()[1])
 
 # ---- frames, units and index bases, where two products say one thing -----------------------------------
 
@@ -338,10 +342,14 @@ def main():
             take_table(topics["pdus"], open(path).read().splitlines(), "\t", begin)
             runs(topics["pdus"], ".", given=open(path).read())
         elif what == "--capture": pdus += [p for p in datagrams(path) if len(p) > 40 and p[2] == 20]
-        elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], pdus)
+        elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], [p for p in pdus if not of_a_stream(p)])
     if pdus:
-        take_data_pdus(topics["data-pdu"], pdus)
-        runs_data_pdu(topics["data-pdu"], pdus)
+        streams, frames = [p for p in pdus if of_a_stream(p)], [p for p in pdus if not of_a_stream(p)]
+        for name, these, prints in (("data-pdu", frames, r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+"),
+                                    ("stream-pdu", streams, r"\d+ udp://127\.0\.0\.1:\d+\n")):
+            check(these, name, "none is sent")
+            take_data_pdus(topics[name], these)
+            runs_data_pdu(topics[name], pdus, prints)
     rows = [(t, r) for t in topics.values() for r in t.rows.values()]
     # counters of a flood are written when they count: sensor/publish/records.c names them
     source = open("sensor/publish/records.c").read()

@@ -1,0 +1,97 @@
+/* sensor/publish/klv/consume_klv.c: the consumer that writes metadata packets into files, one a band. */
+#include "sensor/publish/klv/consume_klv.h"
+
+#include "sensor/publish/frame_files.h"
+#include "sensor/publish/retry_backoff.h"
+
+#include <errno.h>
+#include <stdlib.h>
+
+typedef struct KlvConsumer {
+    Consumer     consumer;
+    FILE        *file[BAND_COUNT];
+    Geoid        geoid;
+    bool         has_geoid, truth, patient;
+    RetryBackoff patience;
+} KlvConsumer;
+
+static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
+{
+    if (fwrite(octets, 1, count, file) == count && fflush(file) == 0) return STATUS_OK;
+    log_error("klv: cannot write metadata: %s", strerror(errno));
+    return STATUS_IO;
+}
+
+static Status put_band(KlvConsumer *k, Band band, const Frame *frame, const KlvTargets *targets)
+{
+    uint8_t         octets[klv_most_octets];
+    const KlvSource source = {.band = band, .geoid = k->has_geoid ? &k->geoid : NULL};
+    const size_t    count  = klv_frame(octets, &frame->record, frame->unix_s, &source, targets);
+    return count > 0 ? write_packet(k->file[band], octets, count) : STATUS_OK;
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    KlvConsumer *k = (KlvConsumer *)consumer;
+    KlvTarget    kept[klv_most_targets];
+    KlvTargets   targets;
+    Status       status = STATUS_OK;
+    if (k->truth) klv_truth_targets(&targets, kept, &frame->record);
+    const bool due = !k->patient || retry_due(&k->patience);
+    for (int b = 0; b < BAND_COUNT && due && status == STATUS_OK; b++)
+        if (k->file[b]) status = put_band(k, (Band)b, frame, k->truth ? &targets : NULL);
+    if (!k->patient) return status;
+    retry_done(&k->patience, due, due ? status : STATUS_IO);
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (k->file[b]) clearerr(k->file[b]);
+    return STATUS_OK;
+}
+
+static Status close_klv(Consumer *consumer)
+{
+    KlvConsumer *k      = (KlvConsumer *)consumer;
+    Status       status = STATUS_OK;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (k->file[b] && fclose(k->file[b]) != 0 && !k->patient) {
+            log_error("klv: cannot write metadata: %s", strerror(errno));
+            status = STATUS_IO;
+        }
+    if (k->has_geoid) geoid_close(&k->geoid);
+    free(k);
+    return status;
+}
+
+bool klv_geoid_open(Geoid *out, const Config *config)
+{
+    log_suppress(true); /* its message is that of a terrain, which cannot do without */
+    const bool found = geoid_open(out, config->terrain.geoid) == STATUS_OK;
+    log_suppress(false);
+    if (!found)
+        log_info("klv: no grid of the geoid: metadata has heights above the ellipsoid only; install proj-data or set "
+                 "terrain.geoid");
+    return found;
+}
+
+Status consume_klv(Consumer **out, const KlvFiles *of)
+{
+    char         path[frame_path_size];
+    KlvConsumer *k = calloc(1, sizeof *k);
+    if (!k) return STATUS_NO_MEMORY;
+    k->truth    = strcmp(of->config->publish.vmti, "truth") == 0;
+    k->patient  = of->patient;
+    k->patience = (RetryBackoff){.what = "packets in .klv files"};
+    k->consumer = (Consumer){WANT_FOOTPRINT | (k->truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
+    for (int b = 0; b < BAND_COUNT; b++) {
+        if (!(of->bands >> b & 1)) continue;
+        const bool fits = snprintf(path, sizeof path, "%s/%s.klv", of->out, band_name((Band)b)) < (int)sizeof path;
+        if (!fits) errno = ENAMETOOLONG;
+        k->file[b] = fits ? fopen(path, "wb") : NULL;
+        if (k->file[b]) continue;
+        log_error("klv: cannot write %s: %s; choose another place with --out", path, strerror(errno));
+        close_klv(&k->consumer);
+        return STATUS_IO;
+    }
+    k->has_geoid = klv_geoid_open(&k->geoid, of->config);
+    *out         = &k->consumer;
+    return STATUS_OK;
+}

@@ -1,0 +1,17 @@
+/* sensor/publish/klv/klv_private.h: between the encoders. */
+#ifndef SENSOR_PUBLISH_KLV_KLV_PRIVATE_H
+#define SENSOR_PUBLISH_KLV_KLV_PRIVATE_H
+
+#include "sensor/publish/klv/klv.h"
+#include "sensor/publish/klv/klv_writer.h"
+
+/* Names of sensors as they are in both local sets. */
+const char *klv_sensor_name(const KlvSource *source);
+double      klv_vfov_deg(const FrameRecord *record);
+
+/* The VMTI local set as the value of tag 74: without key, length and checksum, which are those of the packet around
+ * it. time_us: of the packet. */
+void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const KlvSource *source,
+              const KlvTargets *targets);
+
+#endif

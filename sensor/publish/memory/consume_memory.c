@@ -1,0 +1,142 @@
+/* sensor/publish/memory/consume_memory.c: the consumer that writes frames into a ring in shared memory. */
+#include "sensor/publish/memory/consume_memory.h"
+
+#include "sensor/publish/memory/memory_record.h"
+#include "sensor/publish/memory/memory_ring.h"
+
+#include <stdlib.h>
+
+/* Targets in a slot, 576 octets each; those in the field of view, so most runs have fewer. */
+enum { target_room = 256 };
+
+typedef struct Memory {
+    Consumer    consumer;
+    MemoryRing *ring;
+    bool        counts;
+    int         room;   /* for targets; 0: kind sensor */
+    int         plane_count;
+    Band        band[pitviper_memory_planes_most]; /* of each plane */
+    int         width, height;
+} Memory;
+
+/* ---- the planes, before there is a frame ---------------------------------------------------------- */
+
+/* The list that frame_planes gives for such a run: of a picture whose planes have no values yet. */
+static int radiance_planes(FrameArray plane[frame_max_planes], const MemoryOf *of)
+{
+    static float        none;
+    const RenderRequest request = {.bands = of->bands, .optical = config_optical(of->config)};
+    const Picture       picture = {.width = of->config->sensor.width_px, .height = of->config->sensor.height_px,
+                                   .optical = {&none, request.optical == OPTICAL_RGB ? &none : NULL,
+                                               request.optical == OPTICAL_RGB ? &none : NULL},
+                                   .mwir = &none, .lwir = &none, .radar = &none};
+    return frame_planes(plane, &picture, &request);
+}
+
+static Band band_of(const char *group)
+{
+    Band band = BAND_OPTICAL;
+    while (band < BAND_COUNT - 1 && strcmp(band_name(band), group) != 0) band++;
+    return band;
+}
+
+static void describe(MemoryRingOf *ring, Memory *m, const MemoryOf *of)
+{
+    FrameArray plane[frame_max_planes];
+    const int  count = radiance_planes(plane, of);
+    for (int i = 0; i < count; i++) {
+        const Band band = band_of(plane[i].group);
+        if (m->counts && !(of->with_sensor >> band & 1)) continue;
+        PitviperMemoryPlane *p = &ring->plane[ring->plane_count];
+        *p = (PitviperMemoryPlane){.band = (uint32_t)band, .width = (uint32_t)m->width, .height = (uint32_t)m->height,
+                                   .type = m->counts ? PITVIPER_PLANE_UINT16 : PITVIPER_PLANE_FLOAT32,
+                                   .bits = m->counts ? 16 : 0};
+        snprintf(p->band_name, sizeof p->band_name, "%s", plane[i].group);
+        snprintf(p->name, sizeof p->name, "%s", plane[i].name);
+        snprintf(p->unit, sizeof p->unit, "%s", m->counts ? "counts" : plane[i].unit);
+        m->band[ring->plane_count++] = band;
+    }
+    m->plane_count = ring->plane_count;
+}
+
+/* ---- frame by frame --------------------------------------------------------------------------------- */
+
+static int radiance_of(const void *values[pitviper_memory_planes_most], const Memory *m, const Frame *frame)
+{
+    int count = 0;
+    for (int i = 0; i < frame->seen.plane_count; i++) {
+        const FrameArray *p = &frame->seen.plane[i];
+        if (p->kind != PLANE_RADIANCE || p->type != PLANE_F32) continue;
+        if (count == m->plane_count || p->size[0] != m->height || p->size[1] != m->width) return -1;
+        values[count++] = p->values;
+    }
+    return count;
+}
+
+static int counts_of(const void *values[pitviper_memory_planes_most], const Memory *m, const Frame *frame)
+{
+    int count = 0;
+    for (; count < m->plane_count; count++) {
+        const Band          band    = m->band[count];
+        const FrameDisplay *display = &frame->display[band];
+        int                 channel = 0;
+        for (int k = 0; k < count; k++) channel += m->band[k] == band;
+        if (channel >= display->planes || !display->counts[channel]) return -1;
+        values[count] = display->counts[channel];
+    }
+    return count;
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    Memory     *m = (Memory *)consumer;
+    const void *values[pitviper_memory_planes_most];
+    const int   count = m->counts ? counts_of(values, m, frame) : radiance_of(values, m, frame);
+    if (count != m->plane_count) {
+        log_error("memory: frame %d does not have the planes that the ring was made for", frame->number);
+        return STATUS_BAD_VALUE;
+    }
+    memory_record(memory_ring_record(m->ring), memory_ring_targets(m->ring), m->room, frame);
+    memory_ring_put(m->ring, values);
+    return STATUS_OK;
+}
+
+static Status close_memory(Consumer *consumer)
+{
+    Memory *m = (Memory *)consumer;
+    memory_ring_close(m->ring);
+    free(m);
+    return STATUS_OK;
+}
+
+Status consume_memory(Consumer **out, const MemoryOf *of)
+{
+    const Config *config = of->config;
+    char          name[96];
+    Memory       *m = calloc(1, sizeof *m);
+    if (!m) return STATUS_NO_MEMORY;
+    const bool truth = strcmp(config->publish.memory_record, "truth") == 0;
+    m->counts = strcmp(config->publish.memory_planes, "counts") == 0;
+    m->room   = truth ? target_room : 0;
+    m->width  = config->sensor.width_px;
+    m->height = config->sensor.height_px;
+    m->consumer = (Consumer){.wants = (truth ? WANT_TARGETS : 0) | (m->counts ? WANT_COUNTS : 0), .put = put,
+                             .close = close_memory, .name = "memory"};
+    snprintf(name, sizeof name, "%s%s%s", config->publish.memory, of->host ? "-" : "", of->host ? of->host : "");
+    for (char *c = name; *c; c++)
+        if (*c == ':') *c = '-';
+    MemoryRingOf ring = {.name = name, .slots = config->publish.memory_slots, .target_room = m->room, .truth = truth,
+                         .host = of->host, .config_sha256 = of->config_sha256,
+                         .detections_port = config->publish.detections_port};
+    describe(&ring, m, of);
+    Status status = STATUS_BAD_VALUE;
+    if (m->plane_count > 0) status = memory_ring_create(&m->ring, &ring);
+    else log_error("memory: publish.memory_planes: counts: no band has a sensor; choose one with sensor.preset");
+    if (status == STATUS_OK) *out = &m->consumer;
+    else free(m);
+    if (status == STATUS_OK)
+        log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; etc/examples/read_memory.py %s shows "
+                  "it\n", name, m->plane_count, m->width, m->height, ring.slots, 1e-6 * (double)memory_ring_size(m->ring),
+                  name);
+    return status;
+}

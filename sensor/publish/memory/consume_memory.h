@@ -1,0 +1,21 @@
+/* sensor/publish/memory/consume_memory.h: the consumer that writes each frame into a ring in shared memory, for
+ * recognisers on this machine (etc/reference/memory.md). It never waits, so it belongs in the rendering thread, before
+ * the other consumers. */
+#ifndef SENSOR_PUBLISH_MEMORY_CONSUME_MEMORY_H
+#define SENSOR_PUBLISH_MEMORY_CONSUME_MEMORY_H
+
+#include "sensor/publish/consumer.h"
+#include "sensor/settings/config.h"
+
+typedef struct MemoryOf {
+    const Config *config;        /* publish.memory..., the image's size; outlives the consumer */
+    const char   *config_sha256;
+    unsigned      bands;         /* of the run */
+    unsigned      with_sensor;   /* bands with a detector: those with raw counts */
+    const char   *host;          /* of several hosts of one run: its id, or `observer`; NULL: one alone */
+} MemoryOf;
+
+/* STATUS_BAD_VALUE, STATUS_IO, logged with what to do: the name is in use; no room in /dev/shm. */
+Status consume_memory(Consumer **out, const MemoryOf *of);
+
+#endif

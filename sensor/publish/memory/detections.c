@@ -1,0 +1,198 @@
+/* sensor/publish/memory/detections.c: receives detections on loopback and keeps the newest of each band. */
+#include "sensor/publish/memory/detections.h"
+
+#include <arpa/inet.h>
+#include <errno.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pthread.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+
+typedef struct KnownFrame {
+    int    frame;
+    double time_s, unix_s;
+} KnownFrame;
+
+struct Detections {
+    int             socket, stop; /* stop: an eventfd */
+    int             port, width, height;
+    unsigned        bands;
+    bool            running;
+    pthread_t       thread;
+    pthread_mutex_t lock;         /* of what follows */
+    KnownFrame      known[detections_frames_kept];
+    int             known_count, known_next;
+    bool            has[BAND_COUNT];
+    DetectionSet    newest[BAND_COUNT];
+    uint64_t        count[DETECTIONS_REASONS];
+};
+
+/* ---- one datagram -------------------------------------------------------------------------- */
+
+static const KnownFrame *known(const Detections *d, int frame)
+{
+    for (int i = 0; i < d->known_count; i++)
+        if (d->known[i].frame == frame) return &d->known[i];
+    return NULL;
+}
+
+/* A well-formed one. With the lock held. */
+static DetectionsReason keep(Detections *d, const PitviperDetections *one)
+{
+    DetectionSet     *set   = &d->newest[one->band];
+    const KnownFrame *frame = known(d, one->frame);
+    if (!frame) return DETECTIONS_FRAME;
+    if (d->has[one->band] && frame->time_s < set->time_s) return DETECTIONS_LATE;
+    set->frame      = one->frame;
+    set->band       = (Band)one->band;
+    set->time_s     = frame->time_s;
+    set->unix_s     = frame->unix_s;
+    set->received_s = wall_clock_s();
+    set->count      = (int)one->count;
+    memcpy(set->detection, one->detection, sizeof set->detection);
+    d->has[one->band] = true;
+    return DETECTIONS_GOOD;
+}
+
+static void receive(Detections *d)
+{
+    uint8_t            bytes[sizeof(PitviperDetections) + 1]; /* one more: a longer datagram is seen as longer */
+    PitviperDetections one;
+    const ssize_t      size = recv(d->socket, bytes, sizeof bytes, MSG_DONTWAIT);
+    if (size < 0) return; /* nothing there, or a passing error: poll decides again */
+    DetectionsReason reason = detections_parse(&one, bytes, (size_t)size, d->bands, d->width, d->height);
+    pthread_mutex_lock(&d->lock);
+    if (reason == DETECTIONS_GOOD) reason = keep(d, &one);
+    d->count[reason]++;
+    pthread_mutex_unlock(&d->lock);
+}
+
+static void *work(void *user)
+{
+    Detections   *d       = user;
+    struct pollfd ready[2] = {{.fd = d->socket, .events = POLLIN}, {.fd = d->stop, .events = POLLIN}};
+    for (;;) {
+        const int count = poll(ready, 2, -1);
+        if (count < 0 && errno != EINTR) return NULL;
+        if (count > 0 && ready[1].revents) return NULL;
+        if (count > 0 && ready[0].revents) receive(d);
+    }
+}
+
+/* ---- open and close ------------------------------------------------------------------------- */
+
+static Status open_socket(Detections *d)
+{
+    const struct sockaddr_in own = {.sin_family = AF_INET, .sin_port = htons((uint16_t)d->port),
+                                    .sin_addr.s_addr = htonl(INADDR_LOOPBACK)};
+    d->stop   = eventfd(0, EFD_CLOEXEC);
+    d->socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (d->stop >= 0 && d->socket >= 0 && bind(d->socket, (const struct sockaddr *)&own, sizeof own) == 0)
+        return STATUS_OK;
+    log_error("detections: cannot receive on 127.0.0.1 port %d: %s; choose another publish.detections_port", d->port,
+              strerror(errno));
+    return STATUS_IO;
+}
+
+Status detections_open(Detections **out, int port, unsigned bands, int width, int height)
+{
+    Detections *d = calloc(1, sizeof *d);
+    if (!d) return STATUS_NO_MEMORY;
+    *d = (Detections){.socket = -1, .stop = -1, .port = port, .width = width, .height = height, .bands = bands};
+    pthread_mutex_init(&d->lock, NULL);
+    Status status = open_socket(d);
+    if (status == STATUS_OK) {
+        sigset_t all, before; /* signals are for the main thread */
+        sigfillset(&all);
+        pthread_sigmask(SIG_SETMASK, &all, &before);
+        d->running = pthread_create(&d->thread, NULL, work, d) == 0;
+        pthread_sigmask(SIG_SETMASK, &before, NULL);
+        if (!d->running) status = STATUS_NO_MEMORY;
+    }
+    if (status == STATUS_OK) *out = d;
+    else detections_close(d);
+    return status;
+}
+
+static void report(const Detections *d)
+{
+    char   text[400];
+    size_t used = 0;
+    *text       = 0;
+    for (int i = DETECTIONS_GOOD + 1; i < DETECTIONS_REASONS; i++)
+        if (d->count[i] && used < sizeof text)
+            used += (size_t)snprintf(text + used, sizeof text - used, ", %s %llu", detections_reason_name[i],
+                                     (unsigned long long)d->count[i]);
+    if (*text) log_warn("detections: %llu datagrams taken; refused%s", (unsigned long long)d->count[0], text + 1);
+    else log_info("detections: %llu datagrams taken", (unsigned long long)d->count[0]);
+}
+
+void detections_close(Detections *d)
+{
+    if (!d) return;
+    if (d->running) {
+        eventfd_write(d->stop, 1);
+        pthread_join(d->thread, NULL);
+        report(d);
+    }
+    if (d->socket >= 0) close(d->socket);
+    if (d->stop >= 0) close(d->stop);
+    pthread_mutex_destroy(&d->lock);
+    free(d);
+}
+
+/* ---- frames and results ---------------------------------------------------------------------- */
+
+void detections_frame(Detections *d, int frame, double time_s, double unix_s)
+{
+    pthread_mutex_lock(&d->lock);
+    d->known[d->known_next] = (KnownFrame){frame, time_s, unix_s};
+    d->known_next           = (d->known_next + 1) % detections_frames_kept;
+    if (d->known_count < detections_frames_kept) d->known_count++;
+    pthread_mutex_unlock(&d->lock);
+}
+
+bool detections_latest(Detections *d, Band band, DetectionSet *out)
+{
+    pthread_mutex_lock(&d->lock);
+    const bool has = d->has[band];
+    if (has) *out = d->newest[band];
+    pthread_mutex_unlock(&d->lock);
+    return has;
+}
+
+void detections_counters(Detections *d, uint64_t count[DETECTIONS_REASONS])
+{
+    pthread_mutex_lock(&d->lock);
+    memcpy(count, d->count, sizeof d->count);
+    pthread_mutex_unlock(&d->lock);
+}
+
+typedef struct DetectionsConsumer {
+    Consumer    consumer;
+    Detections *detections;
+} DetectionsConsumer;
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    detections_frame(((DetectionsConsumer *)consumer)->detections, frame->number, frame->time_s, frame->unix_s);
+    return STATUS_OK;
+}
+
+static Status close_consumer(Consumer *consumer)
+{
+    free(consumer);
+    return STATUS_OK;
+}
+
+Status consume_detections(Consumer **out, Detections *detections)
+{
+    DetectionsConsumer *c = malloc(sizeof *c);
+    if (!c) return STATUS_NO_MEMORY;
+    *c   = (DetectionsConsumer){{.put = put, .close = close_consumer}, detections};
+    *out = &c->consumer;
+    return STATUS_OK;
+}

@@ -1,0 +1,293 @@
+/* sensor/publish/video/consume_video.c: the consumer that publishes videos and streams. */
+#include "sensor/publish/video/consume_video.h"
+
+#include "sensor/publish/display.h"
+#include "sensor/publish/frame_files.h"
+#include "sensor/publish/video/video_names.h"
+#include "sensor/publish/video/video_output.h"
+
+#include <stdlib.h>
+
+static const int64_t key_interval_90k = 90000;
+
+/* A video: one band, or several side by side; encoded once for its outputs. */
+typedef struct Channel {
+    unsigned     bands;
+    VideoOutput *output[3];
+    int          outputs;
+    bool         klv;      /* of its one band, for some output */
+    Encoder     *encoder;  /* NULL: not yet, or not at present */
+    RetryBackoff retry;    /* of the encoder */
+    char         what[48]; /* in its messages */
+    int64_t      last_90k, key_90k; /* of the last frame and key frame; INT64_MIN: none yet */
+} Channel;
+
+typedef struct Video {
+    Consumer  consumer;
+    VideoOf   of;
+    unsigned  to;     /* VideoTo: those of `of` that are configured */
+    KlvMode   klv;
+    int       channels;
+    Channel   channel[BAND_COUNT + 1];
+    uint8_t  *image, *tile; /* for the largest frame so far */
+    size_t    image_octets;
+} Video;
+
+/* ---- one frame ---------------------------------------------------------------------------------- */
+
+static Status make_room(Video *v, size_t octets)
+{
+    if (octets <= v->image_octets) return STATUS_OK;
+    free(v->image);
+    free(v->tile);
+    v->image        = malloc(octets);
+    v->tile         = malloc(octets);
+    v->image_octets = v->image && v->tile ? octets : 0;
+    return v->image_octets ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+/* One band's tile into a column of the image. */
+static void put_tile(uint8_t *image, const uint8_t *tile, const EncoderConfig *c, int column, int width, int planes)
+{
+    const size_t octets = encoder_bits(c->codec) == 8 ? 1 : 2, values = c->colour ? 3 : 1;
+    for (int y = 0; y < c->height; y++) {
+        uint8_t       *to   = image + ((size_t)y * (size_t)c->width + (size_t)column) * values * octets;
+        const uint8_t *from = tile + (size_t)y * (size_t)width * (size_t)planes * octets;
+        if ((int)values == planes) {
+            memcpy(to, from, (size_t)width * values * octets);
+            continue;
+        }
+        for (size_t x = 0; x < (size_t)width; x++)
+            for (size_t p = 0; p < values; p++) memcpy(to + (x * values + p) * octets, from + x * octets, octets);
+    }
+}
+
+/* The image of a channel, and its form. A band without a display is black. */
+static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Frame *frame)
+{
+    const int width = frame->seen.picture.width, height = frame->seen.picture.height;
+    const int tiles = __builtin_popcount(c->bands);
+    *form = (EncoderConfig){.codec = video_codec(v->of.config), .width = tiles * width, .height = height,
+                            .rate_hz = v->of.rate_hz};
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
+    const int    bits   = encoder_bits(form->codec);
+    const size_t octets = (size_t)form->width * (size_t)height * (form->colour ? 3 : 1) * (bits == 8 ? 1 : 2);
+    const Status status = make_room(v, octets);
+    if (status != STATUS_OK) return status;
+    for (int b = 0, column = 0; b < BAND_COUNT; b++) {
+        const FrameDisplay *display = &frame->display[b];
+        const int           planes  = display->planes ? display->planes : 1;
+        if (!(c->bands >> b & 1)) continue;
+        if (display->planes) frame_display_quantise(v->tile, display, (size_t)width * (size_t)height, bits);
+        else memset(v->tile, 0, (size_t)width * (size_t)height * (bits == 8 ? 1 : 2));
+        put_tile(v->image, v->tile, form, column, width, planes);
+        column += width;
+    }
+    return STATUS_OK;
+}
+
+/* Returns the packet's octets; 0: there is none. */
+static size_t make_klv(uint8_t out[klv_most_octets], const Video *v, const Channel *c, const Frame *frame)
+{
+    const Band        band   = (Band)__builtin_ctz(c->bands);
+    const KlvSource   source = {.band = band, .geoid = v->of.geoid};
+    const bool        truth  = strcmp(v->of.config->publish.vmti, "truth") == 0;
+    const bool        atr    = strcmp(v->of.config->publish.vmti, "atr") == 0;
+    const KlvTargets *targets = NULL;
+    KlvTarget         kept[klv_most_targets];
+    KlvTargets        of_truth;
+    if (truth) {
+        klv_truth_targets(&of_truth, kept, &frame->record);
+        targets = &of_truth;
+    } else if (atr && v->of.detections) {
+        targets = v->of.detections(v->of.user, frame, band);
+    }
+    return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
+}
+
+/* Later than the last one, whatever the clock of the exercise does. */
+static int64_t time_of(const Channel *c, double unix_s)
+{
+    const int64_t at = (int64_t)llround(unix_s * 90000);
+    return at > c->last_90k ? at : c->last_90k + 1;
+}
+
+static bool key_is_due(const Channel *c, int64_t pts_90k)
+{
+    bool due = c->key_90k == INT64_MIN || pts_90k - c->key_90k >= key_interval_90k;
+    for (int i = 0; i < c->outputs; i++) due = due || video_output_needs_key(c->output[i]);
+    return due;
+}
+
+static Status encode(VideoPacket *packet, Video *v, Channel *c, const EncoderConfig *form, int64_t pts_90k)
+{
+    const EncoderConfig *had = c->encoder ? encoder_config(c->encoder) : NULL;
+    if (had && (had->width != form->width || had->height != form->height || had->colour != form->colour)) {
+        log_error("video: %s: the image's size or its colours changed during the run", c->what);
+        return STATUS_UNSUPPORTED;
+    }
+    Status status = had ? STATUS_OK : encoder_open(&c->encoder, form);
+    if (status == STATUS_OK) status = encoder_encode(packet, c->encoder, v->image, key_is_due(c, pts_90k));
+    if (status == STATUS_OK) return STATUS_OK;
+    encoder_close(c->encoder);
+    c->encoder = NULL;
+    return status;
+}
+
+static Status put_channel(Video *v, Channel *c, const Frame *frame)
+{
+    EncoderConfig form;
+    VideoPacket   packet;
+    uint8_t       klv[klv_most_octets];
+    const int64_t pts_90k = time_of(c, frame->unix_s);
+    const bool    due     = !v->of.patient || retry_due(&c->retry);
+    Status        status  = due ? compose(&form, v, c, frame) : STATUS_IO;
+    if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k);
+    if (v->of.patient) retry_done(&c->retry, due, status);
+    if (status != STATUS_OK) return v->of.patient ? STATUS_OK : status;
+    const size_t klv_count = c->klv ? make_klv(klv, v, c, frame) : 0;
+    c->last_90k = pts_90k;
+    if (packet.key) c->key_90k = pts_90k;
+    for (int i = 0; i < c->outputs; i++) {
+        const Status one = video_output_put(c->output[i], c->encoder, &packet, pts_90k, klv, klv_count);
+        if (status == STATUS_OK) status = one;
+    }
+    return status;
+}
+
+static Status put(Consumer *consumer, Frame *frame)
+{
+    Video *v      = (Video *)consumer;
+    Status status = STATUS_OK;
+    for (int i = 0; i < v->channels && status == STATUS_OK; i++) status = put_channel(v, &v->channel[i], frame);
+    return status;
+}
+
+/* ---- its channels ------------------------------------------------------------------------------- */
+
+static Status close_video(Consumer *consumer)
+{
+    Video *v      = (Video *)consumer;
+    Status status = STATUS_OK;
+    for (int i = 0; i < v->channels; i++) {
+        Channel *c = &v->channel[i];
+        for (int k = 0; k < c->outputs; k++) {
+            const Status one = video_output_close(c->output[k]);
+            if (status == STATUS_OK) status = one;
+            free(c->output[k]);
+        }
+        encoder_close(c->encoder);
+    }
+    free(v->image);
+    free(v->tile);
+    free(v);
+    return status;
+}
+
+static Channel *add_channel(Video *v, unsigned bands)
+{
+    Channel *c = &v->channel[v->channels++];
+    *c         = (Channel){.bands = bands, .last_90k = INT64_MIN, .key_90k = INT64_MIN};
+    if (bands & (bands - 1)) snprintf(c->what, sizeof c->what, "the video of all bands");
+    else snprintf(c->what, sizeof c->what, "the video of %.16s", band_name((Band)__builtin_ctz(bands)));
+    c->retry.what = c->what;
+    return c;
+}
+
+static Status add_output(VideoOutput **out, Video *v, Channel *c, VideoKind kind)
+{
+    VideoOutput *o    = calloc(1, sizeof *o);
+    const bool   one  = (c->bands & (c->bands - 1)) == 0;
+    const Band   band = (Band)__builtin_ctz(c->bands);
+    if (!o) return STATUS_NO_MEMORY;
+    c->output[c->outputs++] = o;
+    o->kind                 = kind;
+    o->klv                  = kind == VIDEO_TS && one ? v->klv : KLV_NONE;
+    o->patient              = v->of.patient;
+    o->needs_key            = true;
+    o->retry.what           = o->path;
+    c->klv                  = c->klv || o->klv != KLV_NONE;
+    snprintf(o->title, sizeof o->title, "%s", one ? band_name(band) : "all bands");
+    *out = o;
+    return STATUS_OK;
+}
+
+static Status add_stream(Video *v, Channel *c)
+{
+    const Config *config = v->of.config;
+    StreamUrl     url;
+    VideoOutput  *o;
+    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, (Band)__builtin_ctz(c->bands))) return STATUS_OK;
+    const Status status = add_output(&o, v, c, VIDEO_TS);
+    return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
+                               : status;
+}
+
+static Status add_file(Video *v, Channel *c, VideoKind kind)
+{
+    VideoOutput *o;
+    const Status status = add_output(&o, v, c, kind);
+    if (status != STATUS_OK) return status;
+    return video_path(o->path, v->of.config, v->of.host_folder, (Band)__builtin_ctz(c->bands), kind) ? STATUS_OK
+                                                                                                  : STATUS_BAD_VALUE;
+}
+
+static Status add_channels(Video *v)
+{
+    const Config   *config = v->of.config;
+    const VideoKind asked  = v->to & VIDEO_TO_FILE ? video_kind(config->publish.video) : VIDEO_NONE;
+    const unsigned  bands  = v->of.bands;
+    const bool      single = asked > VIDEO_FOLDER, alone = (bands & (bands - 1)) == 0;
+    VideoKind       kind[2];
+    const int       kinds  = asked == VIDEO_FOLDER ? video_folder_kinds(kind, config) : 0;
+    Status          status = STATUS_OK;
+    for (int b = 0; b < BAND_COUNT && status == STATUS_OK; b++) {
+        if (!(bands >> b & 1) || (!kinds && !(v->to & VIDEO_TO_STREAM))) continue;
+        Channel *c = add_channel(v, 1u << b);
+        status     = add_stream(v, c);
+        for (int k = 0; k < kinds && status == STATUS_OK; k++) status = add_file(v, c, kind[k]);
+        if (single && alone && status == STATUS_OK) status = add_file(v, c, asked);
+    }
+    if (single && status == STATUS_OK && !(alone && v->channels)) status = add_file(v, add_channel(v, bands), asked);
+    return status;
+}
+
+static Status make_folder(const VideoOf *of)
+{
+    char path[video_path_size];
+    if (video_kind(of->config->publish.video) != VIDEO_FOLDER) return STATUS_OK;
+    const Status status = frame_files_folder(of->config->publish.video);
+    if (status != STATUS_OK || !of->host_folder) return status;
+    if (snprintf(path, sizeof path, "%s/%s", of->config->publish.video, of->host_folder) >= (int)sizeof path)
+        return STATUS_BAD_VALUE;
+    return frame_files_folder(path);
+}
+
+Status consume_video(Consumer **out, const VideoOf *of)
+{
+    const unsigned to     = of->to & video_wanted(of->config);
+    const bool     single = to & VIDEO_TO_FILE && video_kind(of->config->publish.video) > VIDEO_FOLDER;
+    if (of->host_folder && (single || to & VIDEO_TO_STREAM)) {
+        log_error("video: several hosts do not fit into one %s; choose one --host, or --video FOLDER",
+                  single ? "file" : "stream");
+        return STATUS_UNSUPPORTED;
+    }
+    Video *v = calloc(1, sizeof *v);
+    if (!v) return STATUS_NO_MEMORY;
+    v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
+    v->of       = *of;
+    v->to       = to;
+    v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
+                  : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS
+                                                                 : KLV_NONE;
+    Status status = to & VIDEO_TO_FILE ? make_folder(of) : STATUS_OK;
+    if (status == STATUS_OK) status = add_channels(v);
+    for (int i = 0; i < v->channels; i++)
+        if (v->channel[i].klv) v->consumer.wants |= WANT_FOOTPRINT;
+    if (v->consumer.wants & WANT_FOOTPRINT && strcmp(of->config->publish.vmti, "truth") == 0)
+        v->consumer.wants |= WANT_TARGETS;
+    if (status == STATUS_OK) *out = &v->consumer;
+    else close_video(&v->consumer);
+    return status;
+}

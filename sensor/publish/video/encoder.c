@@ -1,0 +1,178 @@
+/* sensor/publish/video/encoder.c: images to packets of compressed video, through libavcodec. */
+#include "sensor/publish/video/encoder.h"
+
+#include "sensor/publish/video/video_pixels.h"
+
+#include <libavcodec/avcodec.h>
+#include <libavutil/opt.h>
+#include <stdlib.h>
+
+struct Encoder {
+    EncoderConfig   config;
+    PixelLayout     layout;
+    AVCodecContext *context;
+    AVFrame        *frame;
+    AVPacket       *packet;
+    int64_t         count; /* images so far */
+};
+
+/* Per codec: bits, its encoder, and the library's formats by layout. Quality (CRF; lower is better): such that an image
+ * with noise of 2 in 256 levels comes back with a smaller error than that, and a smaller one with more bits
+ * (tests/sensor/test_video_encoder.c). */
+static const struct Form {
+    int                bits;
+    const char        *library, *quality;
+    enum AVPixelFormat format[4];
+} forms[] = {
+    {8, "libx264", "16", {AV_PIX_FMT_GRAY8, AV_PIX_FMT_YUV420P, AV_PIX_FMT_YUV444P, AV_PIX_FMT_NONE}},
+    {10, "libx264", "10", {AV_PIX_FMT_GRAY10LE, AV_PIX_FMT_YUV420P10LE, AV_PIX_FMT_YUV444P10LE, AV_PIX_FMT_NONE}},
+    {12, "libx265", "8", {AV_PIX_FMT_GRAY12LE, AV_PIX_FMT_YUV420P12LE, AV_PIX_FMT_YUV444P12LE, AV_PIX_FMT_NONE}},
+    {16, "ffv1", NULL, {AV_PIX_FMT_GRAY16LE, AV_PIX_FMT_NONE, AV_PIX_FMT_NONE, AV_PIX_FMT_RGB48LE}},
+};
+
+int encoder_bits(VideoCodec codec) { return forms[codec].bits; }
+
+const EncoderConfig *encoder_config(const Encoder *encoder) { return &encoder->config; }
+
+static void library_message(void *from, int level, const char *format, va_list arguments)
+{
+    char text[256];
+    (void)from;
+    if (level > AV_LOG_ERROR) return;
+    vsnprintf(text, sizeof text, format, arguments);
+    text[strcspn(text, "\n")] = 0;
+    log_detail("video: library: %s", text);
+}
+
+void video_quiet_libraries(void) { av_log_set_callback(library_message); }
+
+static PixelLayout layout_of(const EncoderConfig *c)
+{
+    const bool odd = c->width % 2 || c->height % 2;
+    if (c->codec == VIDEO_FFV1) return c->colour ? PIXELS_RGB : PIXELS_GREY;
+    return !odd ? PIXELS_420 : c->colour ? PIXELS_444 : PIXELS_GREY;
+}
+
+enum { ffv1_slices = 4 };
+
+/* Key frames come by request alone, once a second of exercise time. */
+static bool set_options(AVDictionary **out, const EncoderConfig *c)
+{
+    static const char *const options[][3][2] = {
+        {{"x264-params", "repeat-headers=1:force-cfr=1:scenecut=0"}},
+        {{"x264-params", "repeat-headers=1:force-cfr=1:scenecut=0"}},
+        {{"x265-params", "repeat-headers=1:log-level=none:info=0:pools=none:frame-threads=1:wpp=0:keyint=-1:scenecut=0:"
+                         "bframes=0:rc-lookahead=0"}},
+        {{"coder", "range_def"}, {"slices", "4"}, {"slicecrc", "1"}},
+    };
+    bool good = true;
+    for (int i = 0; i < 3 && options[c->codec][i][0]; i++)
+        good = good && av_dict_set(out, options[c->codec][i][0], options[c->codec][i][1], 0) >= 0;
+    if (c->codec == VIDEO_FFV1) return good;
+    return good && av_dict_set(out, "preset", "ultrafast", 0) >= 0 && av_dict_set(out, "tune", "zerolatency", 0) >= 0 &&
+           av_dict_set(out, "forced-idr", "1", 0) >= 0 && av_dict_set(out, "crf", forms[c->codec].quality, 0) >= 0;
+}
+
+static Status open_context(Encoder *e)
+{
+    const EncoderConfig *c       = &e->config;
+    const AVCodec       *codec   = avcodec_find_encoder_by_name(forms[c->codec].library);
+    AVDictionary        *options = NULL;
+    if (!codec) {
+        log_error("video: FFmpeg's libraries here have no encoder %s; choose another publish.video_codec",
+                  forms[c->codec].library);
+        return STATUS_UNSUPPORTED;
+    }
+    AVCodecContext *x = e->context = avcodec_alloc_context3(codec);
+    if (!x) return STATUS_NO_MEMORY;
+    x->width        = c->width;
+    x->height       = c->height;
+    x->pix_fmt      = forms[c->codec].format[e->layout];
+    x->framerate    = av_d2q(c->rate_hz, 1000000);
+    x->time_base    = av_inv_q(x->framerate);
+    x->gop_size     = c->codec == VIDEO_FFV1 ? 1 : 1 << 20;
+    x->max_b_frames = 0;
+    x->thread_count = c->codec == VIDEO_FFV1 ? ffv1_slices : 1; /* a thread each; the bytes depend on slices alone */
+    x->thread_type  = FF_THREAD_SLICE;
+    x->level        = c->codec == VIDEO_FFV1 ? 3 : FF_LEVEL_UNKNOWN;
+    x->flags        = AV_CODEC_FLAG_GLOBAL_HEADER; /* for .mp4 and .mkv; MPEG-TS uses those in the key frames */
+    x->color_range            = AVCOL_RANGE_JPEG;
+    x->colorspace             = e->layout == PIXELS_RGB ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
+    x->color_primaries        = AVCOL_PRI_BT709;
+    x->color_trc              = AVCOL_TRC_IEC61966_2_1;
+    x->chroma_sample_location = e->layout == PIXELS_420 ? AVCHROMA_LOC_LEFT : AVCHROMA_LOC_UNSPECIFIED;
+    const bool good   = set_options(&options, c);
+    const int  opened = good ? avcodec_open2(x, codec, &options) : AVERROR(ENOMEM);
+    av_dict_free(&options);
+    if (opened < 0) {
+        log_error("video: the encoder %s refuses images of %d x %d: %s; choose another size or publish.video_codec",
+                  codec->name, c->width, c->height, av_err2str(opened));
+        return STATUS_UNSUPPORTED;
+    }
+    return STATUS_OK;
+}
+
+static Status open_frame(Encoder *e)
+{
+    e->frame  = av_frame_alloc();
+    e->packet = av_packet_alloc();
+    if (!e->frame || !e->packet) return STATUS_NO_MEMORY;
+    e->frame->width       = e->config.width;
+    e->frame->height      = e->config.height;
+    e->frame->format      = e->context->pix_fmt;
+    e->frame->color_range = e->context->color_range;
+    return av_frame_get_buffer(e->frame, 0) == 0 ? STATUS_OK : STATUS_NO_MEMORY;
+}
+
+Status encoder_open(Encoder **out, const EncoderConfig *config)
+{
+    Encoder *e = calloc(1, sizeof *e);
+    if (!e) return STATUS_NO_MEMORY;
+    video_quiet_libraries();
+    e->config = *config;
+    e->layout = layout_of(config);
+    Status status = open_context(e);
+    if (status == STATUS_OK) status = open_frame(e);
+    if (status == STATUS_OK) *out = e;
+    else encoder_close(e);
+    return status;
+}
+
+void encoder_close(Encoder *e)
+{
+    if (!e) return;
+    avcodec_free_context(&e->context);
+    av_frame_free(&e->frame);
+    av_packet_free(&e->packet);
+    free(e);
+}
+
+Status encoder_encode(VideoPacket *out, Encoder *e, const void *image, bool key)
+{
+    int failed = av_frame_make_writable(e->frame);
+    if (failed == 0) {
+        VideoPlanes planes = {.layout = e->layout, .width = e->config.width, .height = e->config.height,
+                              .bits = forms[e->config.codec].bits};
+        for (int p = 0; p < 3; p++) {
+            planes.at[p]     = e->frame->data[p];
+            planes.stride[p] = e->frame->linesize[p];
+        }
+        video_pixels(&planes, image, e->config.colour);
+        e->frame->pict_type = key || e->count == 0 ? AV_PICTURE_TYPE_I : AV_PICTURE_TYPE_NONE;
+        e->frame->pts       = e->count++;
+        av_packet_unref(e->packet);
+        failed = avcodec_send_frame(e->context, e->frame);
+    }
+    if (failed == 0) failed = avcodec_receive_packet(e->context, e->packet);
+    if (failed < 0) {
+        log_error("video: the encoder %s failed: %s", forms[e->config.codec].library, av_err2str(failed));
+        return STATUS_IO;
+    }
+    *out = (VideoPacket){e->packet->data, (size_t)e->packet->size, e->packet->flags & AV_PKT_FLAG_KEY};
+    return STATUS_OK;
+}
+
+Status encoder_parameters(struct AVCodecParameters *out, const Encoder *e)
+{
+    return avcodec_parameters_from_context(out, e->context) >= 0 ? STATUS_OK : STATUS_NO_MEMORY;
+}

@@ -1,0 +1,48 @@
+/* sensor/publish/video/encoder.h: images to packets of compressed video, one packet for each image, at once.
+ *
+ * No B frames, no look-ahead, one thread: the bytes depend on the images and on the version of the libraries alone.
+ * Constant quality, whatever the bit rate. Parameter sets are in each key frame, so that a receiver may join there.
+ *
+ * Grey levels are full range, 0 .. 2^bits - 1, and flagged so: luma is the image's value. The chroma of grey images is
+ * neutral: 4:2:0 is what hardware decoders, browsers and GStreamer display; 4:0:0 is not. Colour is BT.709, 4:2:0,
+ * chroma sited left as H.264's default. Images with an odd side, which 4:2:0 cannot have, are 4:0:0 and 4:4:4. FFV1 is
+ * lossless: gray16, rgb48. */
+#ifndef SENSOR_PUBLISH_VIDEO_ENCODER_H
+#define SENSOR_PUBLISH_VIDEO_ENCODER_H
+
+#include "sensor/settings/video_choice.h"
+
+typedef struct EncoderConfig {
+    VideoCodec codec;
+    int        width, height;
+    bool       colour;
+    double     rate_hz; /* nominal: of players that show it; real times are the muxer's */
+} EncoderConfig;
+
+/* Valid until the next call. */
+typedef struct VideoPacket {
+    const uint8_t *bytes;
+    size_t         count;
+    bool           key;
+} VideoPacket;
+
+typedef struct Encoder Encoder;
+
+/* STATUS_UNSUPPORTED: the libraries lack the encoder, or it refuses the size. Logged. */
+Status encoder_open(Encoder **out, const EncoderConfig *config);
+void   encoder_close(Encoder *encoder); /* NULL is valid */
+int    encoder_bits(VideoCodec codec);  /* of an image's values: 8, 10, 12, 16 */
+/* image: grey, or R G B interleaved; uint8_t for 8 bits, else uint16_t. key: decodable by itself; the first is anyway.
+ * STATUS_IO: the encoder failed, logged; open another one. */
+Status encoder_encode(VideoPacket *out, Encoder *encoder, const void *image, bool key);
+
+const EncoderConfig *encoder_config(const Encoder *encoder);
+/* What a container records of the codec. */
+struct AVCodecParameters;
+Status encoder_parameters(struct AVCodecParameters *out, const Encoder *encoder);
+
+/* One line of the libraries' own messages for each of ours, at most: `pitviper -v` shows them. Called by encoder_open
+ * and transport_open. */
+void   video_quiet_libraries(void);
+
+#endif

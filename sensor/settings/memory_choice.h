@@ -1,0 +1,12 @@
+/* sensor/settings/memory_choice.h: the settings of shared memory: publish.memory and those that belong to it. */
+#ifndef SENSOR_SETTINGS_MEMORY_CHOICE_H
+#define SENSOR_SETTINGS_MEMORY_CHOICE_H
+
+#include "sensor/settings/config.h"
+
+/* Whether a name may be that of a ring: it becomes a file's name under /dev/shm. */
+bool   memory_name_good(const char *name);
+/* STATUS_BAD_VALUE, logged with what to do. */
+Status memory_choice_check(const Config *config);
+
+#endif

@@ -1,0 +1,75 @@
+"""Data PDUs as sensor/publish/dis_records.h describes them, read from recordings: used by test_replay_publishes.sh and
+test_five_records.sh.
+
+    data_pdus.py receive ADDRESS PORT FILE     datagrams to ADDRESS:PORT into FILE, a line of hex each, until a line
+                                               comes in on standard input, or that is closed; says when it listens
+    data_pdus.py same LIVE.pcapng FILE LEAST   the Data PDUs of FILE against those of the recording, by frame and band
+"""
+import collections, select, socket, struct, sys
+
+def datagrams(path):
+    """UDP payloads of a pcapng written by Pitviper, over IPv4."""
+    data, at, link = open(path, "rb").read(), 0, 0
+    while at + 12 <= len(data):
+        kind, size = struct.unpack_from("<II", data, at)
+        if kind == 1: link, = struct.unpack_from("<H", data, at + 8)
+        if kind == 6:
+            kept, = struct.unpack_from("<I", data, at + 20)
+            packet = data[at + 28:at + 28 + kept][{1: 14, 101: 0, 228: 0, 113: 16}[link]:]
+            if packet[0] >> 4 == 4 and packet[9] == 17: yield packet[(packet[0] & 15) * 4 + 8:]
+        at += size
+
+def data_pdus(payloads): return [p for p in payloads if len(p) >= 40 and p[2] == 20 and p[3] == 5]
+
+def datums(pdu):
+    """{id: value} of the fixed datums, and [(id, octets)] of the variable ones."""
+    fixed, variable = struct.unpack(">II", pdu[32:40])
+    values, at, records = dict(struct.unpack(">II", pdu[40 + 8 * i:48 + 8 * i]) for i in range(fixed)), 40 + 8 * fixed, []
+    for _ in range(variable):
+        number, bits = struct.unpack(">II", pdu[at:at + 8])
+        records.append((number, pdu[at + 8:at + 8 + bits // 8]))
+        at += 8 + (bits + 63) // 64 * 8
+    assert at == len(pdu), "it does not end where its records do"
+    return values, records
+
+def receive(address, port, path):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear, open(path, "w") as to:
+        ear.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 21)
+        ear.bind((address, int(port)))
+        print("listening", flush=True)
+        for _ in range(300):  # at most 60 s
+            ready, _, _ = select.select([ear, sys.stdin], [], [], 0.2)
+            if ear in ready: to.write(ear.recv(65536).hex() + "\n")
+            elif sys.stdin in ready: break
+
+def stream(pdu):
+    values, records = datums(pdu)
+    text = dict(records)[600301].decode("ascii")
+    return values[600002], values[600003], values[600004], values[600009], values[600010], values[600011], text
+
+def same(live_path, path, least):
+    live, replayed = data_pdus(datagrams(live_path)), data_pdus(bytes.fromhex(line) for line in open(path))
+    frames = [collections.Counter(), collections.Counter()]
+    octets = [{}, {}]
+    told = [[], []]
+    for k, pdus in enumerate((live, replayed)):
+        for pdu in pdus:
+            values, _ = datums(pdu)
+            if 600001 not in values: told[k].append(stream(pdu)); continue
+            frames[k][values[600001], values[600002]] += 1
+            octets[k][values[600001], values[600002]] = pdu
+    both = octets[0].keys() & octets[1].keys()
+    assert len(both) >= int(least), f"only {len(both)} of {len(octets[0])} PDUs of the node are among {len(octets[1])} of the replay"
+    assert octets[0].keys() <= octets[1].keys(), f"the replay lacks {sorted(octets[0].keys() - octets[1].keys())}"
+    assert max(frames[1].values()) == 1, "a frame is sent twice"
+    for key in sorted(both):
+        a, b = octets[0][key], octets[1][key]
+        first = next((i for i in range(min(len(a), len(b))) if a[i] != b[i]), min(len(a), len(b)))
+        assert a == b, f"frame and band {key}: octet {first} of {len(a)} differs"
+    assert any(struct.unpack(">I", p[32:36])[0] and dict([d for d in datums(p)[1]]).get(600202) for p in octets[1].values()), "no target in any"
+    assert told[0] and set(told[0]) == set(told[1]), f"streams: {told}"
+    print(len(both), "PDUs are the same;", len(told[0]), "and", len(told[1]), "announcements")
+    for each in sorted(set(told[1])): print("stream", *each)
+
+if __name__ == "__main__":
+    {"receive": receive, "same": same}[sys.argv[1]](*sys.argv[2:])

@@ -1,0 +1,160 @@
+"""The boxes of a frame's targets in five formats: used by test_five_records.sh.
+
+    five_records.py watch RING FILE     targets of every frame in shared memory, a line of JSON each, until the node ends
+    five_records.py compare FOLDER      FOLDER/out, pdus, memory.jsonl, lwir.klv: all formats that are there
+
+Each reader gives {frame: {entity: numbers as read}}; the table FORMATS has what turns them into half-open pixels from 0.
+A format is one function and one row."""
+import json, os, sys
+
+sys.path[:0] = [os.path.dirname(__file__), "etc/examples"]
+LEFT_OUT = []
+
+def frames_of(folder): return [json.loads(line) for line in open(f"{folder}/out/truth.jsonl")]
+
+# ---- readers: None when what they need is not here -----------------------------------------------------
+
+def truth(folder):
+    return {f["frame"]: {t["entity"]: t["box_px"] for t in f["targets"] if "box_px" in t} for f in frames_of(folder)}
+
+def coco(folder):
+    """pycocotools; also that the box is that of the mask, to the pixel."""
+    try:
+        import contextlib, io
+        from pycocotools.coco import COCO
+    except ImportError: return None
+    with contextlib.redirect_stdout(io.StringIO()): c = COCO(f"{folder}/out/coco.json")
+    found = {image["frame"]: {} for image in c.dataset["images"]}
+    for a in c.loadAnns(c.getAnnIds()):
+        rows, columns = c.annToMask(a).nonzero()
+        mask = [columns.min(), rows.min(), columns.max() + 1 - columns.min(), rows.max() + 1 - rows.min()]
+        assert a["bbox"] == mask and a["area"] == len(rows), (a["bbox"], mask)
+        found[c.imgs[a["image_id"]]["frame"]][a["entity"]] = a["bbox"]
+    return found
+
+def data_pdu(folder):
+    """opendis reads the PDU and its datums; the octets of a datum are this program's own, as dis_records.h has them."""
+    try: from opendis.PduFactory import createPdu
+    except ImportError: return None
+    found = {}
+    for line in open(f"{folder}/pdus"):
+        pdu = createPdu(bytes.fromhex(line))
+        assert pdu.pduType == 20
+        fixed = {d.fixedDatumID: d.fixedDatumValue for d in pdu.fixedDatumRecords}
+        targets = found.setdefault(fixed[600001], {})
+        for d in pdu.variableDatumRecords:
+            if d.variableDatumID != 600202: continue
+            assert d.variableDatumLength == 448
+            u16 = [d.variableData[k] << 8 | d.variableData[k + 1] for k in range(0, 16, 2)]
+            if any(u16[4:]): targets["%d:%d:%d" % tuple(u16[:3])] = u16[4:] # 0 0 0 0: hidden
+    return found
+
+def st0903(folder):
+    """stanag4609 or tstrans, through klv_decode.py: pixel numbers of the first, the last and the central pixel."""
+    path = f"{folder}/lwir.klv"
+    if not os.path.exists(path): return None
+    import klv_decode
+    readers = klv_decode.readers(["stanag4609"])
+    if not readers: return None
+    found = {}
+    for packet in klv_decode.decode(open(path, "rb").read(), readers):
+        vmti = packet["stanag4609"]["vmti"]
+        targets = found.setdefault(vmti["fields"]["7"], {})
+        for t in vmti["targets"]:
+            name = "%d:%d:%d" % (t["id"] >> 32, t["id"] >> 16 & 65535, t["id"] & 65535)
+            targets[name] = [t["2"], t["3"], t["1"]]
+    return found
+
+def memory(folder):
+    path = f"{folder}/memory.jsonl"
+    if not os.path.exists(path): return None
+    return {f["frame"]: {e: b for e, b in f["box"].items() if any(b)} for f in map(json.loads, open(path))}
+
+def watch(ring, path):
+    import read_memory
+    with open(path, "w") as to:
+        for frame in read_memory.Ring(ring, wait_s=30).frames(in_order=True):
+            box = {f"{t.site}:{t.application}:{t.entity}": list(t.box) for t in frame.targets}
+            to.write(json.dumps({"frame": frame.record.frame, "box": box}) + "\n")
+
+# ---- to half-open pixels from 0 --------------------------------------------------------------------------
+
+def as_it_is(numbers, width): return list(numbers)
+
+def of_xywh(numbers, width):
+    x, y, w, h = map(int, numbers)
+    return [x, y, x + w, y + h]
+
+def of_pixel_numbers(numbers, width):
+    (x0, y0), (x1, y1), centre = (((n - 1) % width, (n - 1) // width) for n in numbers)
+    if centre != ((x0 + x1 + 1) // 2, (y0 + y1 + 1) // 2): return None
+    return [x0, y0, x1 + 1, y1 + 1]
+
+FORMATS = {"truth.jsonl": (truth, as_it_is), "coco.json": (coco, of_xywh), "Data PDU": (data_pdu, as_it_is),
+           "ST 0903": (st0903, of_pixel_numbers), "shared memory": (memory, as_it_is)}
+
+# ---- the same box ------------------------------------------------------------------------------------------
+
+def within(a, b): return a[0] >= b[0] and a[1] >= b[1] and a[2] <= b[2] and a[3] <= b[3]
+
+def differences(read, frames):
+    """Of every format that was read, as text; and how many boxes are the same, and of COCO's smaller or absent."""
+    wrong, met = [], {"same": 0, "smaller": 0, "absent": 0}
+    want = read["truth.jsonl"]
+    for name, found in read.items():
+        if sorted(found) != sorted(want): wrong.append(f"{name}: frames {sorted(found)}, not {sorted(want)}")
+        for f in frames:
+            boxes, width = found.get(f["frame"], {}), f["sensors"][0]["width_px"]
+            of_target = {t["entity"]: t for t in f["targets"]}
+            for entity in sorted(boxes.keys() | want[f["frame"]].keys()):
+                box, got = want[f["frame"]].get(entity), boxes.get(entity)
+                got = got and FORMATS[name][1](got, width)
+                where = f"{name}, frame {f['frame']}, {entity}"
+                if got == box:
+                    met["same"] += 1
+                elif name != "coco.json" or not box:
+                    wrong.append(f"{where}: {got}, not {box}")
+                elif entity not in boxes: # no pixel is its own: it fills none by more than half
+                    met["absent"] += 1
+                    whole = (box[2] - box[0]) * (box[3] - box[1])
+                    if of_target[entity]["pixels"] >= 0.5 * whole: wrong.append(f"{where} is absent")
+                else: # of pixels that it fills in part: within, and the target is small or hidden in part
+                    met["smaller"] += 1
+                    small = max(box[2] - box[0], box[3] - box[1]) <= 16
+                    part = of_target[entity]["visible_fraction"] < 1 or small
+                    if not within(got, box) or not part: wrong.append(f"{where}: {got} of {box}")
+    return wrong, met
+
+def spoilt(read, frames):
+    """With one number of one box off by one, in each format: what goes unnoticed."""
+    unnoticed = []
+    for name in read:
+        frame = frames[0]["frame"]
+        # of COCO one whose box is that of the others: the largest
+        area = {t["entity"]: t["pixels"] for t in frames[0]["targets"]}
+        entity = max(read[name][frame], key=area.get)
+        for k in range(len(read[name][frame][entity])):
+            for step in (-1, 1):
+                numbers = list(read[name][frame][entity])
+                numbers[k] += step
+                other = {**read, name: {**read[name], frame: {**read[name][frame], entity: numbers}}}
+                if not differences(other, frames)[0]: unnoticed.append(f"{name}, number {k}, off by {step}")
+    return unnoticed
+
+def compare(folder):
+    frames, read = frames_of(folder), {}
+    for name, (reader, _) in FORMATS.items():
+        found = reader(folder)
+        if found is None: print(f"skipped in part: {name} is not written, or has no reader here")
+        else: read[name] = found
+    wrong, met = differences(read, frames)
+    # what is wrong hides what is spoilt
+    if not wrong: wrong = [f"unnoticed: {u}" for u in spoilt(read, frames)]
+    for what, count in met.items():
+        if count == 0: wrong.append(f"no box is {what}: the scene shows nothing")
+    print(len(read), "of 5 formats:", ", ".join(read), "-", met)
+    for line in wrong[:40]: print("FAILED:", line)
+    sys.exit(bool(wrong))
+
+if __name__ == "__main__":
+    {"watch": watch, "compare": compare}[sys.argv[1]](*sys.argv[2:])

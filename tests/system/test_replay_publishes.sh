@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# `replay --causal --speed X` of a node's recording sends the Data PDUs that the node sent, octet for octet, time stamps
+# included, and the same announcements of its streams; at full speed it sends nothing, and says so. labels: small
+. "$(dirname "$0")/common.sh"
+. "$(dirname "$0")/live.sh"
+command -v python3 >/dev/null || { echo "skipped: no python3"; exit 77; }
+pdus=(python3 tests/system/data_pdus.py)
+
+few=(--size 32x24 --bands optical,lwir --rate 10 --no-files --threads 1 --set exercise.listen_s=0.3 --set publish.dis=truth
+    --set publish.vmti=truth)
+free_port; stream=$port
+free_port
+few+=(--set publish.stream=udp://127.0.0.1:$stream --address 127.0.0.1 --port $port)
+node live "${few[@]}" --frames 5 --for 30 --record "$tmp/live.pcapng"
+check "it listens" heard_by live 'listening on' 10
+sender demo --send 127.0.0.1:$port
+ended live 30
+end_sender
+check "the node ends well" [ $code = 0 ] || tail -n 5 "$tmp/live.out"
+
+coproc receiver { "${pdus[@]}" receive 127.0.0.1 $port "$tmp/replayed"; }
+read -r -t 10 listening <&"${receiver[0]}"
+check "a receiver listens" [ "${listening:-}" = listening ]
+again() { run replay "$tmp/live.pcapng" --out "$tmp/again" --overwrite --causal --to "$(time_of "$tmp/live" '$')" "${few[@]}" "$@"; }
+again
+check "at full speed: exit code" [ $code = 0 ]
+check "at full speed: nothing is sent, and how it would be" complained 'Data PDUs are not sent at full speed; add --speed 1'
+again --speed 4
+check "at a speed: exit code" [ $code = 0 ]
+check "at a speed: says to where, and how many" said "Data PDUs go to 127.0.0.1 port $port from 4711:1"
+sent=$(grep -oE 'Data PDUs sent [0-9]+, not sent 0' "$tmp/stderr" | grep -oE '[0-9]+' | head -n 1)
+echo "end" >&"${receiver[1]}"
+wait "$receiver_PID" 2>/dev/null
+check "all of them arrive, none of the replay at full speed: ${sent:-none}" [ "$(wc -l <"$tmp/replayed")" = "${sent:-none}" ]
+check "the same images" part_of "$tmp/live" "$tmp/again" 3
+# those that the node received from itself are in its recording, and are not played
+heard=$(run_json "$tmp/live" | grep -oE '"own":[0-9]+')
+check "its own PDUs are recorded, and not played: $heard" [ "$heard" != '"own":0' -a "$heard" = "$(run_json "$tmp/again" | grep -oE '"own":[0-9]+')" ]
+check "the same octets" "${pdus[@]}" same "$tmp/live.pcapng" "$tmp/replayed" 6 >"$tmp/same" || cat "$tmp/same"
+# band, kind, raster, codec, klv, its targets, address: per band, two ports apart
+check "the stream of the first band" grep -qx "stream 0 3 $((32 << 16 | 24)) 1 1 2 udp://127.0.0.1:$stream" "$tmp/same"
+check "the stream of the second" grep -qx "stream 2 3 $((32 << 16 | 24)) 1 1 2 udp://127.0.0.1:$((stream + 2))" "$tmp/same"
+cat "$tmp/same"
+[ "$failures" = 0 ] || { tail -n 12 "$tmp/live.out"; cat "$tmp/stderr"; }
+finish
