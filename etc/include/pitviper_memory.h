@@ -129,7 +129,7 @@ typedef struct PitviperMemoryRecord {
     /* Steady clock (CLOCK_MONOTONIC), ns, for latency; 0: not known. */
     int64_t  arrived_ns;           /* 336 the newest datagram that the frame shows */
     int64_t  begun_ns;             /* 344 work on the frame began */
-    int64_t  posed_ns;             /* 352 poses sampled, rendering began */
+    int64_t  posed_ns;             /* 352 the poses were sampled */
     int64_t  rendered_ns;          /* 360 */
     int64_t  written_ns;           /* 368 the frame is complete in this slot */
     int64_t  seed;                 /* 376 of all random numbers */
