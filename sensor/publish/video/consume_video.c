@@ -177,6 +177,7 @@ static Status close_video(Consumer *consumer)
             free(c->output[k]);
         }
         encoder_close(c->encoder);
+        retry_end(&c->retry);
     }
     free(v->image);
     free(v->tile);
