@@ -34,8 +34,8 @@ tif=$data/terrain/autzen/autzen_dtm_1m.tif
 if [ -r "$tif" ]; then
     exercise demo "$tmp/real.pcap" place.lat_deg=44.0565 place.lon_deg=-123.0690 place.height_m=106
     # --pairs all: a range plane of the ground alone
-    replay "$tmp/real.pcap" "$tmp/real" --set "terrain.elevation=$(realpath "$tif")" --host observer --rate 0.05 --size 63x47 \
-        --samples 1 --bands lwir --no-png --pairs all --set publish.klv_files=true --set publish.planes=range \
+    replay "$tmp/real.pcap" "$tmp/real" --set "terrain.elevation=$(realpath "$tif")" --host observer --rate 0.05 \
+        --size 63x47 --samples 1 --bands lwir --no-png --pairs all --set publish.klv_files=true --set publish.planes=range \
         --set observer.range_m=2600 --set observer.height_m=1500
     check "a replay over real ground" [ "$code" = 0 ]
     judged+=(ground "$tmp/real" "$tif" EPSG:26910+5773)
