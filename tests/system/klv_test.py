@@ -3,12 +3,13 @@
 
 samples DATA        the readers themselves, on packets that others made (folder data/klv)
 pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
+atr OUT             a recogniser's detections as ST 0903; sent meanwhile by: klv_test.py send PORT COMMAND...
 ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that
                     is in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. The range plane too
 
 Prints what failed; exit 0: nothing; 77: a reader or a tool is missing.
 """
-import json, math, os, shutil, subprocess, sys, tempfile
+import json, math, os, shutil, socket, struct, subprocess, sys, tempfile, time
 
 import klv_decode
 
@@ -172,6 +173,40 @@ def both(a, b):
           [[t[n] for n in names] for t in a["targets"]] == [[t["id"], t.get("2"), t.get("3")] for t in b["targets"]])
 
 
+# ---- a recogniser's detections --------------------------------------------------------------------------
+
+def send(port, command):
+    """Runs a command; meanwhile two detections in every frame, as etc/include/pitviper_memory.h has them. Its code."""
+    child = subprocess.Popen(command)
+    to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    one = struct.pack("=5fI16s2I", 3, 4, 20.5, 10, 0.75, 9, b"tank", 0, 0)
+    two = struct.pack("=5fI16s2I", 1, 1, 5, 5, 0.5, 0, b"truck", 0, 0)
+    while child.poll() is None:
+        for frame in range(40):
+            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 1, 48, frame, 2, 2, 0) + one + two,
+                      ("127.0.0.1", int(port)))
+        time.sleep(0.03)
+    return child.returncode
+
+
+def atr(out, found):
+    if "stanag4609" not in found:
+        return print("skipped in part: no stanag4609")
+    truth = truth_lines(out)
+    width = truth[0]["sensors"][0]["width_px"]
+    made = [p["stanag4609"] for p in packets(out + "/lwir.klv", found)]
+    with_targets = [p["vmti"] for p in made if "vmti" in p]
+    check("detections are in most packets: %d of %d" % (len(with_targets), len(made)), 2 * len(with_targets) > len(made))
+    for v in with_targets:
+        fields, t = v["fields"], v["targets"][0]
+        check("detections: no truth", fields["3"] == "Pitviper ATR" and not any("truth" in str(o) for o in v["ontologies"]))
+        check("detections: counts", fields["5"] == fields["6"] == 2)
+        check("detections: of the frame they were found in", fields["2"] == made[fields["7"]]["2"])
+        check("detections: id, box and confidence",
+              [t["id"], t["2"], t["3"], t["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
+        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck"])
+
+
 # ---- on the ground --------------------------------------------------------------------------------
 
 def transform(points, source, target):
@@ -296,11 +331,13 @@ def ready(what):
 
 
 def main(arguments):
+    if arguments[0] == "send":
+        return send(arguments[1], arguments[2:])
     found = klv_decode.readers()
     if "klvdata" not in found or len(found) < 2:
         print("skipped in part: no klvdata, or neither stanag4609 nor tstrans")
         return 77
-    checks = {"samples": samples, "pose": pose, "ground": ground}
+    checks = {"samples": samples, "pose": pose, "atr": atr, "ground": ground}
     starts = [i for i, a in enumerate(arguments) if a in checks]
     for start, end in zip(starts, starts[1:] + [len(arguments)]):
         if ready(arguments[start]):
