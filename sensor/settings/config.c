@@ -514,14 +514,10 @@ Status config_check(const Config *config)
     }
     const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
                               config->sensor.bands);
-    if (status != STATUS_OK) return status;
-    static const char *const of_memory[] = {"publish.memory_planes", "publish.memory_record", "publish.memory_slots"};
-    MemoryChoice memory = {.name   = config->publish.memory,
-                           .counts = strcmp(config->publish.memory_planes, "counts") == 0,
-                           .sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config)};
-    for (int i = 0; i < 3; i++)
-        if (config_given(config, of_memory[i])) memory.given = of_memory[i];
-    return memory_choice_check(&memory);
+    const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
+    return status == STATUS_OK
+               ? memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor)
+               : status;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)
