@@ -9,7 +9,10 @@
 #include "sensor/node/session.h"
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_queue.h"
+#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
+
+enum { session_klv_makers = 3 };
 
 struct Session {
     const SessionShared *shared;
@@ -34,6 +37,9 @@ struct Session {
                                              * targets */
     Consumers            consumers;
     Detections          *detections;    /* received; NULL: none */
+    KlvDetections       *klv_detections[session_klv_makers]; /* of each consumer that makes metadata */
+    int                  klv_makers;
+    Geoid                geoid;         /* for metadata; n_m NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Latency             *latency;       /* NULL: none is kept */
