@@ -34,6 +34,13 @@ echo "end" >&"${receiver[1]}"
 wait "$receiver_PID" 2>/dev/null
 check "all of them arrive, none of the replay at full speed: ${sent:-none}" [ "$(wc -l <"$tmp/replayed")" = "${sent:-none}" ]
 check "the same images" part_of "$tmp/live" "$tmp/again" 3
+# no network: said, with a next step, and a failure
+if unshare -rn true 2>/dev/null; then
+    unshare -rn "$pitviper" replay "$tmp/live.pcapng" --out "$tmp/alone" --causal --to "$(time_of "$tmp/live" 1)" "${few[@]}" \
+        --address 239.1.2.3 --speed 100 >"$tmp/stdout" 2>"$tmp/stderr"
+    check "no network: exit code" [ $? = 1 ]
+    check "no network: said" complained 'none of [24] Data PDUs could be sent to 239.1.2.3 port [0-9]+: Network is unreachable; see --address'
+fi
 # those that the node received from itself are in its recording, and are not played
 heard=$(run_json "$tmp/live" | grep -oE '"own":[0-9]+')
 check "its own PDUs are recorded, and not played: $heard" [ "$heard" != '"own":0' -a "$heard" = "$(run_json "$tmp/again" | grep -oE '"own":[0-9]+')" ]
