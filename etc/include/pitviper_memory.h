@@ -255,13 +255,13 @@ typedef struct PitviperMemory {
     PitviperMemoryPlane  plane[pitviper_memory_planes_most]; /* [header.plane_count] */
     PitviperMemoryRecord record;   /* of the frame taken last */
     uint64_t             taken;    /* its sequence; 0: none */
-    uint64_t             missed;   /* frames that were never taken since it was opened */
+    uint64_t             missed;   /* frames never taken since the first one */
     uint64_t             torn;     /* copies discarded because the slot was rewritten meanwhile */
     /* for the functions below */
     const unsigned char *at;
     uint64_t             size;
     unsigned char       *copy;     /* [header.slot_size] */
-    int                  file;
+    int                  file, begun;
 } PitviperMemory;
 
 static inline const char *pitviper_memory_error(int result)
@@ -366,7 +366,7 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
     }
     m->copy = (unsigned char *)malloc((size_t)h->slot_size);
     if (!m->copy) return PITVIPER_MEMORY_SYSTEM;
-    m->taken = h->newest > 0 ? h->newest - 1 : 0; /* the newest frame that is there is the first one taken */
+    m->taken = h->newest > h->slot_count ? h->newest - h->slot_count : 0; /* in order: from the oldest that is there */
     return 0;
 }
 
@@ -488,7 +488,8 @@ static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
         if (!in_order) least = newest;
         else if (newest - least >= slots) least = newest - slots + 1;
         if (pitviper_memory_copy_frame_(m, least)) {
-            m->missed += least - m->taken - 1;
+            if (m->begun) m->missed += least - m->taken - 1;
+            m->begun = 1;
             m->taken = least;
             return 1;
         }
@@ -497,8 +498,9 @@ static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
     return 0;
 }
 
-/* 1: a frame that was not taken before is in m->record, and its planes and targets can be had; 0: there is none. The
- * first one skips what is older than the newest; the second one takes frames in order, as long as the ring holds them. */
+/* 1: a frame that was not taken before is in m->record, and its planes and targets can be had; 0: there is none.
+ * take_newest skips what is older than the newest; take_next begins with the oldest that the ring holds and takes frames
+ * in order, except those that are overwritten before. m->missed counts what was skipped from the first one on. */
 static inline int pitviper_memory_take_newest(PitviperMemory *m) { return pitviper_memory_take_(m, 0); }
 static inline int pitviper_memory_take_next(PitviperMemory *m) { return pitviper_memory_take_(m, 1); }
 

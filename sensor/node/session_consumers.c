@@ -139,7 +139,8 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
     MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
                    .host = shared->several ? s->host_text : NULL};
-    for (int b = 0; b < BAND_COUNT; b++) of.with_sensor |= s->chain[b] ? 1u << b : 0;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(s->chain[b]) + 1));
     const Status status = consume_memory(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
@@ -264,8 +265,8 @@ Status session_consumers(Session *s, FrameDone *done)
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
+    if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
-    if (status == STATUS_OK) status = add_detections(&s->consumers, s);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);

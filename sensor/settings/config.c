@@ -512,7 +512,8 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
-    const Status status = video_choice_check(config);
+    const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
+                              config->sensor.bands);
     return status == STATUS_OK ? memory_choice_check(config) : status;
 }
 

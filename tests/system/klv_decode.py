@@ -141,9 +141,11 @@ def read_klvdata():
 
 
 def vmti_of_stanag4609(vmti):
-    return {"fields": {str(f.tag): plain(f.value) for f in vmti.fields if f.tag < 100},
-            "other": {str(i.tag): plain(i.value) for i in vmti.local_set.items
-                      if i.tag not in [f.tag for f in vmti.fields]},
+    fields = {str(f.tag): plain(f.value) for f in vmti.fields if f.tag < 100}
+    for item in vmti.local_set.items:
+        if item.tag == 7:  # frame number: not in the sixth edition, so its octets
+            fields["7"] = int.from_bytes(item.value, "big")
+    return {"fields": fields,
             "targets": [dict({"id": t.target_id}, **{str(f.tag): plain(f.value) for f in t.fields}) for t in vmti.targets],
             "algorithms": [plain(a) for a in vmti.algorithms], "ontologies": [plain(o) for o in vmti.ontologies]}
 

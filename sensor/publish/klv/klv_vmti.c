@@ -34,12 +34,6 @@ static void name_target(int *class_id, int *algorithm_id, Names *names, const Kl
     }
 }
 
-/* Pixels are numbered from 1 at the upper left, along rows; columns and rows from 0 here. */
-static uint64_t pixel_number(const View *view, int column, int row)
-{
-    return (uint64_t)column + (uint64_t)row * (uint64_t)view->width + 1;
-}
-
 static bool has_box(const View *view, const int box[4])
 {
     return box[0] >= 0 && box[1] >= 0 && box[0] < box[2] && box[1] < box[3] && box[2] <= view->width &&
@@ -63,9 +57,11 @@ static void put_target(KlvWriter *w, const View *view, const KlvTarget *t, int c
     double percent = 0;
     if (has_box(view, t->box)) {
         const double area_px = (double)(t->box[2] - t->box[0]) * (t->box[3] - t->box[1]);
-        klv_item_short(w, 1, pixel_number(view, (t->box[0] + t->box[2]) / 2, (t->box[1] + t->box[3]) / 2));
-        klv_item_short(w, 2, pixel_number(view, t->box[0], t->box[1]));
-        klv_item_short(w, 3, pixel_number(view, t->box[2] - 1, t->box[3] - 1));
+        uint64_t number[2];
+        box_pixel_numbers(number, t->box, view->width);
+        klv_item_short(w, 1, box_centre_number(t->box, view->width));
+        klv_item_short(w, 2, number[0]);
+        klv_item_short(w, 3, number[1]);
         if (t->pixels > 0) percent = clamp(floor(100 * t->pixels / area_px + 0.5), 1, 100);
     }
     if (t->confidence >= 0 && t->confidence <= 1) klv_item_number(w, 5, (uint64_t)(100 * t->confidence + 0.5), 1);

@@ -3,7 +3,6 @@
 
 #include "sensor/publish/display.h"
 #include "sensor/publish/frame_files.h"
-#include "sensor/publish/video/video_names.h"
 #include "sensor/publish/video/video_output.h"
 
 #include <stdlib.h>
@@ -67,8 +66,8 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 {
     const int width = frame->seen.picture.width, height = frame->seen.picture.height;
     const int tiles = __builtin_popcount(c->bands);
-    *form = (EncoderConfig){.codec = video_codec(v->of.config), .width = tiles * width, .height = height,
-                            .rate_hz = v->of.rate_hz};
+    *form = (EncoderConfig){.codec = video_codec(v->of.config->publish.video_codec), .width = tiles * width,
+                            .height = height, .rate_hz = v->of.rate_hz};
     for (int b = 0; b < BAND_COUNT; b++)
         if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
     const int    bits   = encoder_bits(form->codec);
@@ -219,7 +218,8 @@ static Status add_stream(Video *v, Channel *c)
     const Config *config = v->of.config;
     StreamUrl     url;
     VideoOutput  *o;
-    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, (Band)__builtin_ctz(c->bands))) return STATUS_OK;
+    const Band    band = (Band)__builtin_ctz(c->bands);
+    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
     return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
@@ -230,8 +230,8 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
     VideoOutput *o;
     const Status status = add_output(&o, v, c, kind);
     if (status != STATUS_OK) return status;
-    return video_path(o->path, v->of.config, v->of.host_folder, (Band)__builtin_ctz(c->bands), kind) ? STATUS_OK
-                                                                                                  : STATUS_BAD_VALUE;
+    const Band band = (Band)__builtin_ctz(c->bands);
+    return video_path(o->path, v->of.config, v->of.host_folder, band, kind) ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
 static Status add_channels(Video *v)

@@ -1,0 +1,441 @@
+/* Metadata packets octet by octet, against hand values and the worked example of ST 0601.
+ * tests/system/test_klv.sh has readers that are not ours decode them. */
+#include "tests/check.h"
+
+#include "sensor/publish/klv/klv.h"
+#include "sensor/publish/klv/klv_writer.h"
+
+static KlvWriter writer_on(uint8_t *octets, size_t room)
+{
+    memset(octets, 0xEE, room);
+    return (KlvWriter){.octet = octets, .room = room};
+}
+
+#define CHECK_OCTETS(w, ...)                                                                        \
+    do {                                                                                            \
+        const uint8_t want_[] = {__VA_ARGS__};                                                      \
+        CHECK(!(w).full);                                                                           \
+        assert_int_equal((w).used, sizeof want_);                                                   \
+        assert_memory_equal((w).octet, want_, sizeof want_);                                        \
+        (w).used = 0;                                                                               \
+    } while (0)
+
+static void lengths_and_tags(void **state)
+{
+    (void)state;
+    uint8_t   octets[64];
+    KlvWriter w = writer_on(octets, sizeof octets);
+    klv_put_length(&w, 0);
+    CHECK_OCTETS(w, 0);
+    klv_put_length(&w, 127);
+    CHECK_OCTETS(w, 0x7F);
+    klv_put_length(&w, 128);
+    CHECK_OCTETS(w, 0x81, 0x80);
+    klv_put_length(&w, 256);
+    CHECK_OCTETS(w, 0x82, 0x01, 0x00);
+    klv_put_length(&w, 65536);
+    CHECK_OCTETS(w, 0x83, 0x01, 0x00, 0x00);
+    klv_put_oid(&w, 0);
+    CHECK_OCTETS(w, 0);
+    klv_put_oid(&w, 127);
+    CHECK_OCTETS(w, 0x7F);
+    klv_put_oid(&w, 128);
+    CHECK_OCTETS(w, 0x81, 0x00);
+    klv_put_oid(&w, 16384);
+    CHECK_OCTETS(w, 0x81, 0x80, 0x00);
+    klv_put_oid(&w, UINT64_MAX);
+    CHECK_OCTETS(w, 0x81, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0x7F);
+    klv_item_short(&w, 5, 0);
+    CHECK_OCTETS(w, 5, 1, 0);
+    klv_item_short(&w, 5, 0x10000);
+    CHECK_OCTETS(w, 5, 3, 1, 0, 0);
+    klv_item_text(&w, 3, "  a\nb \xC3\xA9 ", 63);
+    CHECK_OCTETS(w, 3, 2, 'a', 'b');
+    klv_item_text(&w, 3, "abcdef", 4);
+    CHECK_OCTETS(w, 3, 4, 'a', 'b', 'c', 'd');
+    klv_item_text(&w, 3, " \t", 4);
+    klv_item_text(&w, 3, NULL, 4);
+    assert_int_equal(w.used, 0);
+    assert_int_equal(klv_checksum((const uint8_t[]){1, 2, 3}, 3), 0x0402);
+}
+
+/* The worked example of ST 0601: values and octets. */
+static void maps(void **state)
+{
+    (void)state;
+    uint8_t   octets[64];
+    KlvWriter w = writer_on(octets, sizeof octets);
+    klv_item_unsigned(&w, 5, 2, 0, 360, 159.974365);
+    CHECK_OCTETS(w, 5, 2, 0x71, 0xC2);
+    klv_item_signed(&w, 6, 2, 20, -0.431531724);
+    CHECK_OCTETS(w, 6, 2, 0xFD, 0x3D);
+    klv_item_signed(&w, 7, 2, 50, 3.40586566);
+    CHECK_OCTETS(w, 7, 2, 0x08, 0xB8);
+    klv_item_signed(&w, 13, 4, 90, 60.1768229669783);
+    CHECK_OCTETS(w, 13, 4, 0x55, 0x95, 0xB6, 0x6D);
+    klv_item_signed(&w, 14, 4, 180, 128.426759042045);
+    CHECK_OCTETS(w, 14, 4, 0x5B, 0x53, 0x60, 0xC4);
+    klv_item_unsigned(&w, 15, 2, -900, 19000, 14190.7195);
+    CHECK_OCTETS(w, 15, 2, 0xC2, 0x21);
+    klv_item_unsigned(&w, 18, 4, 0, 360, 160.719211474396);
+    CHECK_OCTETS(w, 18, 4, 0x72, 0x4A, 0x0A, 0x20);
+    klv_item_signed(&w, 19, 4, 180, -168.79232483394);
+    CHECK_OCTETS(w, 19, 4, 0x87, 0xF8, 0x4B, 0x86);
+    klv_item_unsigned(&w, 21, 4, 0, 5e6, 68590.98329874477);
+    CHECK_OCTETS(w, 21, 4, 0x03, 0x83, 0x09, 0x26);
+    /* the ends; the error indicator 0x8000 is never reached */
+    klv_item_signed(&w, 79, 2, 327, -327);
+    CHECK_OCTETS(w, 79, 2, 0x80, 0x01);
+    klv_item_signed(&w, 79, 2, 327, 327);
+    CHECK_OCTETS(w, 79, 2, 0x7F, 0xFF);
+    klv_item_unsigned(&w, 18, 4, 0, 360, 360);
+    CHECK_OCTETS(w, 18, 4, 0xFF, 0xFF, 0xFF, 0xFF);
+    klv_put_imapb(&w, 2, -900, 19000, -900);
+    klv_put_imapb(&w, 2, -900, 19000, 0);
+    klv_put_imapb(&w, 2, -900, 19000, 10000);
+    CHECK_OCTETS(w, 0, 0, 0x03, 0x84, 0x2A, 0x94);
+    klv_put_imapb(&w, 2, 0, 180, 180);
+    CHECK_OCTETS(w, 0x5A, 0x00);
+    static const double unknown[] = {NAN, INFINITY, -INFINITY, 1e300, -180.0001};
+    for (int k = 0; k < 5; k++) {
+        klv_item_unsigned(&w, 5, 2, 0, 360, unknown[k]);
+        klv_item_signed(&w, 19, 4, 180, unknown[k]);
+        klv_item_imapb(&w, 11, 2, 0, 180, unknown[k]);
+    }
+    assert_int_equal(w.used, 0);
+}
+
+static void never_beyond_the_buffer(void **state)
+{
+    (void)state;
+    uint8_t octets[16];
+    for (size_t room = 0; room < 8; room++) {
+        KlvWriter w = writer_on(octets, sizeof octets);
+        w.room      = room;
+        klv_item_number(&w, 2, 0x0102030405060708, 8);
+        klv_put_number(&w, 1, 1);
+        CHECK(w.full && w.used <= room);
+        for (size_t i = room; i < sizeof octets; i++) assert_int_equal(octets[i], 0xEE);
+    }
+}
+
+/* ---- packets ------------------------------------------------------------------------------------ */
+
+static struct {
+    uint8_t        octets[klv_most_octets];
+    size_t         used;
+    RenderRequest  request;
+    SnapshotEntity host;
+    GroundPoint    footprint[FOOTPRINT_COUNT];
+    FrameRecord    record;
+} lab;
+
+static const KlvSource lwir = {.band = BAND_LWIR, .mission = "Exercise 1"};
+
+typedef struct Value {
+    const uint8_t *at; /* NULL: absent */
+    size_t         count;
+} Value;
+
+/* Of a tag of a local set. */
+static Value find(Value set, unsigned tag)
+{
+    const uint8_t *at = set.at, *end = set.at + set.count;
+    while (at < end) {
+        const unsigned found  = *at++;
+        size_t         length = *at++;
+        if (length & 0x80) {
+            int octets = (int)(length & 0x7F);
+            for (length = 0; octets > 0; octets--) length = length << 8 | *at++;
+        }
+        if (found == tag) return (Value){at, length};
+        at += length;
+    }
+    return (Value){0};
+}
+
+static Value tag_of(unsigned tag)
+{
+    const size_t head = lab.octets[16] < 128 ? 17 : 17 + (lab.octets[16] & 0x7Fu);
+    return find((Value){lab.octets + head, lab.used - head}, tag);
+}
+
+static bool has(unsigned tag) { return tag_of(tag).at != NULL; }
+
+static bool is_text(Value value, const char *text)
+{
+    return value.at && value.count == strlen(text) && memcmp(value.at, text, value.count) == 0;
+}
+
+static double number(Value v, bool is_signed)
+{
+    if (!v.at) fail_msg("an absent tag");
+    uint64_t value = is_signed && v.at[0] & 0x80 ? UINT64_MAX : 0;
+    for (size_t i = 0; i < v.count; i++) value = value << 8 | v.at[i];
+    return is_signed ? (double)(int64_t)value : (double)value;
+}
+
+static double unsigned_of(unsigned tag, double low, double high)
+{
+    const Value value = tag_of(tag);
+    if (!value.at) fail_msg("no tag %u", tag);
+    return low + (high - low) * number(value, false) / (ldexp(1, 8 * (int)value.count) - 1);
+}
+
+static double signed_of(unsigned tag, double high)
+{
+    const Value value = tag_of(tag);
+    if (!value.at) fail_msg("no tag %u", tag);
+    return high * number(value, true) / (ldexp(1, 8 * (int)value.count - 1) - 1);
+}
+
+/* Axes forward, right, down as columns. */
+static void turn(double r[9], double yaw_deg, double pitch_deg, double roll_deg)
+{
+    const double y = yaw_deg * rad_per_deg, p = pitch_deg * rad_per_deg, x = roll_deg * rad_per_deg;
+    const double rz[9] = {cos(y), -sin(y), 0, sin(y), cos(y), 0, 0, 0, 1};
+    const double ry[9] = {cos(p), 0, sin(p), 0, 1, 0, -sin(p), 0, cos(p)};
+    const double rx[9] = {1, 0, 0, 0, cos(x), -sin(x), 0, sin(x), cos(x)};
+    double       rzy[9];
+    m3_mul(rzy, rz, ry);
+    m3_mul(r, rzy, rx);
+}
+
+/* A sensor at a place on a platform that flies east; the camera is turned on it. */
+static void scene(const Geodetic *place, const double platform_deg[3], const double sensor_deg[3])
+{
+    double r_ecef_from_enu[9], r_ecef_from_ned[9], r_ned_from_body[9], r_body_from_sensor[9], r_ecef_from_sensor[9];
+    memset(&lab, 0, sizeof lab);
+    lab.request.view = (View){.width = 640, .height = 480, .focal_px = view_focal_px(640, 6 * rad_per_deg)};
+    memcpy(lab.host.marking, "MSL 1", 6);
+    lab.record = (FrameRecord){.frame = 300, .host = &lab.host, .request = &lab.request, .hfov_rad = 6 * rad_per_deg,
+                               .footprint = lab.footprint};
+    assert_int_equal(ecef_from_geodetic(lab.record.p_eye_ecef, r_ecef_from_enu, place), STATUS_OK);
+    const double v_enu_mps[3] = {200, -30, 5};
+    m3_mul_v3(lab.record.v_eye_mps, r_ecef_from_enu, v_enu_mps);
+    for (int k = 0; k < 3; k++) {
+        r_ecef_from_ned[3 * k]     = r_ecef_from_enu[3 * k + 1];
+        r_ecef_from_ned[3 * k + 1] = r_ecef_from_enu[3 * k];
+        r_ecef_from_ned[3 * k + 2] = -r_ecef_from_enu[3 * k + 2];
+    }
+    turn(r_ned_from_body, platform_deg[0], platform_deg[1], platform_deg[2]);
+    turn(r_body_from_sensor, sensor_deg[0], sensor_deg[1], sensor_deg[2]);
+    m3_mul(lab.record.r_ecef_from_body, r_ecef_from_ned, r_ned_from_body);
+    m3_mul(r_ecef_from_sensor, lab.record.r_ecef_from_body, r_body_from_sensor);
+    for (int k = 0; k < 3; k++) { /* right, down, forward */
+        lab.record.r_ecef_from_cam[3 * k]     = r_ecef_from_sensor[3 * k + 1];
+        lab.record.r_ecef_from_cam[3 * k + 1] = r_ecef_from_sensor[3 * k + 2];
+        lab.record.r_ecef_from_cam[3 * k + 2] = r_ecef_from_sensor[3 * k];
+    }
+}
+
+static void encode(const KlvTargets *targets)
+{
+    lab.used = klv_frame(lab.octets, &lab.record, 1750000000.25, &lwir, targets);
+    CHECK(lab.used > 0);
+}
+
+static const Geodetic somewhere = {48.25 * rad_per_deg, -11.5 * rad_per_deg, 2345};
+
+static void pose_of_platform_and_sensor(void **state)
+{
+    (void)state;
+    scene(&somewhere, (double[3]){91.5, 4, -12}, (double[3]){-30, -10.5, 3});
+    lab.footprint[FOOTPRINT_CENTRE] = (GroundPoint){true, 48.2 * rad_per_deg, -11.4 * rad_per_deg, 415, 12345.6};
+    lab.footprint[FOOTPRINT_LOWER_RIGHT] = (GroundPoint){true, 48.1 * rad_per_deg, 179.9999 * rad_per_deg, 400, 13000};
+    encode(NULL);
+    const Value time = tag_of(2);
+    CHECK(time.at == lab.octets + 21 - (lab.octets[16] == 0x81 ? 1 : 0) && time.count == 8);
+    CHECK(number(time, false) == 1750000000250000);
+    CHECK_NEAR(unsigned_of(5, 0, 360), 91.5, 0.0028);
+    CHECK_NEAR(signed_of(6, 20), 4, 0.00031);
+    CHECK_NEAR(signed_of(7, 50), -12, 0.00077);
+    CHECK_NEAR(signed_of(90, 90), 4, 1e-7);
+    CHECK_NEAR(signed_of(91, 90), -12, 1e-7);
+    CHECK_NEAR(signed_of(13, 90), 48.25, 3e-8);
+    CHECK_NEAR(signed_of(14, 180), -11.5, 5e-8);
+    CHECK_NEAR(unsigned_of(75, -900, 19000), 2345, 0.16);
+    CHECK_NEAR(unsigned_of(16, 0, 180), 6, 0.0014);
+    CHECK_NEAR(unsigned_of(17, 0, 180), 2 * atan(0.75 * tan(3 * rad_per_deg)) / rad_per_deg, 0.0014);
+    CHECK_NEAR(unsigned_of(18, 0, 360), 330, 1e-7);
+    CHECK_NEAR(signed_of(19, 180), -10.5, 1e-7);
+    CHECK_NEAR(unsigned_of(20, 0, 360), 3, 1e-7);
+    CHECK_NEAR(unsigned_of(21, 0, 5e6), 12345.6, 0.0007);
+    CHECK_NEAR(unsigned_of(22, 0, 1e4), 2 * 12345.6 * tan(3 * rad_per_deg), 0.08);
+    CHECK_NEAR(signed_of(23, 90), 48.2, 3e-8);
+    CHECK_NEAR(signed_of(24, 180), -11.4, 5e-8);
+    CHECK_NEAR(unsigned_of(78, -900, 19000), 415, 0.16);
+    CHECK_NEAR(unsigned_of(56, 0, 255), hypot(200, 30), 0.51);
+    CHECK_NEAR(signed_of(79, 327), -30, 0.006);
+    CHECK_NEAR(signed_of(80, 327), 200, 0.006);
+    CHECK_NEAR(signed_of(86, 90), 48.1, 3e-8);
+    CHECK_NEAR(signed_of(87, 180), 179.9999, 5e-8);
+    CHECK(!has(82) && !has(83) && !has(84) && !has(88) && !has(89)); /* corners that are not on the ground */
+    CHECK(!has(15) && !has(25) && !has(74) && !has(104)); /* no geoid, no targets, not that high */
+    CHECK(is_text(tag_of(3), "Exercise 1") && is_text(tag_of(10), "platform") && is_text(tag_of(11), "IR LWIR"));
+    CHECK(is_text(tag_of(12), "Geodetic WGS84") && is_text(tag_of(59), "MSL 1"));
+    CHECK(number(tag_of(65), false) == 19 && number(tag_of(77), false) == 3);
+    const Value sum = tag_of(1);
+    CHECK(sum.at + 2 == lab.octets + lab.used && number(sum, false) == klv_checksum(lab.octets, lab.used - 2));
+    CHECK(lab.used < 600);
+}
+
+static void what_is_beyond_a_range_is_absent(void **state)
+{
+    (void)state;
+    scene(&(Geodetic){0, 0, 25000}, (double[3]){0, 80, 100}, (double[3]){0, 0, 0});
+    lab.footprint[FOOTPRINT_CENTRE] = (GroundPoint){true, NAN, 0, 0, INFINITY};
+    for (int k = 0; k < 3; k++) lab.record.v_eye_mps[k] *= 4;
+    encode(NULL);
+    CHECK(!has(6) && !has(7) && !has(91) && !has(56) && !has(80) && !has(75) && !has(15)); /* 80 degrees, 800 m/s */
+    CHECK_NEAR(signed_of(90, 90), 80, 1e-7);
+    CHECK(has(79) && has(78) && !has(21) && !has(22) && !has(23) && !has(24));
+    CHECK(tag_of(104).count == 3);
+    CHECK_NEAR(number(tag_of(104), false) / 128 - 900, 25000, 0.008); /* IMAPB(-900, 40000, 3): 2^(23 - 16) a metre */
+
+    /* an observer that is no entity is its own platform */
+    scene(&somewhere, (double[3]){350, -20, 0}, (double[3]){0, 0, 0});
+    lab.record.host      = NULL;
+    lab.record.footprint = NULL;
+    memset(lab.record.r_ecef_from_body, 0, sizeof lab.record.r_ecef_from_body);
+    encode(NULL);
+    CHECK_NEAR(unsigned_of(5, 0, 360), 350, 0.0028);
+    CHECK_NEAR(signed_of(90, 90), -20, 1e-7);
+    CHECK_NEAR(signed_of(19, 180), 0, 1e-7);
+    CHECK(!has(59) && !has(21) && is_text(tag_of(10), "observer"));
+
+    static const double bad[] = {NAN, INFINITY, -1, 1e11};
+    for (int k = 0; k < 4; k++) CHECK(klv_frame(lab.octets, &lab.record, bad[k], &lwir, NULL) == 0);
+}
+
+/* ---- targets -------------------------------------------------------------------------------------- */
+
+static KlvTarget some_target(uint64_t id)
+{
+    return (KlvTarget){.id = id, .box = {10, 20, 30, 24}, .confidence = 0.874, .pixels = 40, .located = true,
+                       .place = {48 * rad_per_deg, 11 * rad_per_deg, 100}, .class_name = "tank", .algorithm = "yolo",
+                       .algorithm_version = "8"};
+}
+
+static void a_target(void **state)
+{
+    (void)state;
+    const KlvTarget  target  = some_target(200);
+    const KlvTargets targets = {.count = 1, .total = 7, .target = &target};
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    encode(&targets);
+    const Value set = tag_of(74), series = find(set, 101), algorithms = find(set, 102);
+    CHECK(number(find(set, 2), false) == 1750000000250000);
+    CHECK(is_text(find(set, 3), "Pitviper ATR"));
+    CHECK(number(find(set, 4), false) == 6);
+    CHECK(number(find(set, 5), false) == 7 && number(find(set, 6), false) == 1);
+    CHECK(number(find(set, 7), false) == 300);
+    CHECK(number(find(set, 8), false) == 640 && number(find(set, 9), false) == 480);
+    CHECK(number(find(set, 11), false) == 6 * 128); /* IMAPB(0, 180, 2): 2^(15 - 8) a degree */
+    static const uint8_t want[] = {
+        0x81, 0x48,                    /* id 200 */
+        1, 2, 0x37, 0x15,              /* column 20, row 22, from 0: 22 * 640 + 20 + 1 */
+        2, 2, 0x32, 0x0B,              /* column 10, row 20 */
+        3, 2, 0x39, 0x9E,              /* column 29, row 23: within the box */
+        5, 1, 87, 7, 1, 50,            /* confidence; 40 of 80 pixels */
+        17, 10, 0x45, 0, 0, 0, 0x2F, 0xC0, 0, 0, 0x03, 0xE8, /* 138 * 2^23; 191 * 2^22; 1000 */
+        22, 1, 1, 107, 4, 3, 3, 1, 1,
+    };
+    assert_int_equal(series.count, 1 + sizeof want);
+    assert_int_equal(series.at[0], sizeof want);
+    assert_memory_equal(series.at + 1, want, sizeof want);
+    static const uint8_t algorithm[] = {12, 1, 1, 1, 2, 4, 'y', 'o', 'l', 'o', 3, 1, '8'};
+    assert_int_equal(algorithms.count, sizeof algorithm);
+    assert_memory_equal(algorithms.at, algorithm, sizeof algorithm);
+    CHECK(memmem(set.at, set.count, "urn:pitviper:detected:tank", 26) && !memmem(set.at, set.count, "truth", 5));
+}
+
+static void many_targets_and_truth(void **state)
+{
+    (void)state;
+    static KlvTarget target[300];
+    static char      name[18][60]; /* longer than any packet holds as a whole, and different at the start */
+    for (int k = 0; k < 18; k++) snprintf(name[k], sizeof name[k], "%c and so on, with a long name beyond all limits", 'a' + k);
+    for (int k = 0; k < 300; k++) {
+        target[k]            = some_target(UINT64_MAX - (unsigned)k / 2); /* each id twice */
+        target[k].class_name = name[k % 18];
+        target[k].algorithm = target[k].algorithm_version = name[k % 7];
+    }
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    lab.request.view.width = lab.request.view.height = 4096;
+    for (int k = 0; k < 300; k++) target[k].box[2] = target[k].box[3] = 4096;
+    encode(&(KlvTargets){.truth = true, .count = 300, .total = 100000, .target = target});
+    Value set = tag_of(74);
+    CHECK(number(find(set, 5), false) == 100000 && number(find(set, 6), false) == klv_most_targets);
+    CHECK(is_text(find(set, 3), "Pitviper truth"));
+    CHECK(memmem(set.at, set.count, "urn:pitviper:truth:a-and-so-on--with-a-long-name-be", 50) && !memmem(set.at, set.count, "detected", 8));
+    CHECK(lab.used > 4800 && lab.used < klv_most_octets); /* nearly the largest packet */ /* the largest packet */
+    encode(&(KlvTargets){.truth = true});
+    set = tag_of(74);
+    CHECK(number(find(set, 5), false) == 0 && number(find(set, 6), false) == 0 && !find(set, 101).at);
+
+    /* an id once */
+    const KlvTarget two[2] = {some_target(5), some_target(5)};
+    encode(&(KlvTargets){.count = 2, .target = two});
+    set = tag_of(74);
+    CHECK(number(find(set, 5), false) == 2 && number(find(set, 6), false) == 1);
+
+    /* no box outside of the image, no place outside of the range */
+    KlvTarget odd = some_target(1);
+    odd.box[0] = -1;
+    odd.place.h_m = 20000;
+    odd.confidence = NAN;
+    odd.algorithm = odd.class_name = NULL;
+    encode(&(KlvTargets){.count = 1, .target = &odd}); /* nothing is left of it */
+    set = tag_of(74);
+    CHECK(number(find(set, 5), false) == 1 && number(find(set, 6), false) == 0);
+}
+
+static void targets_of_truth(void **state)
+{
+    (void)state;
+    static TargetRecord   target[100];
+    static KlvTarget      kept[klv_most_targets];
+    KlvTargets            out;
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    for (int k = 0; k < 100; k++) {
+        target[k] = (TargetRecord){.index = k, .id = {1, 3001, (uint16_t)k}, .pixels = (k * 37) % 100,
+                                   .box = {1, 2, 3 + k, 9}, .class_number = 1};
+        memcpy(target[k].p_ecef, lab.record.p_eye_ecef, sizeof target[k].p_ecef);
+    }
+    target[99].box[2] = 0; /* hidden */
+    lab.record.target       = target;
+    lab.record.target_count = 100;
+    klv_truth_targets(&out, kept, &lab.record);
+    CHECK(out.truth && out.total == 98 && out.count == klv_most_targets && out.target == kept);
+    for (int k = 1; k < out.count; k++) CHECK(kept[k - 1].pixels > kept[k].pixels);
+    CHECK(kept[0].pixels == 99 && kept[0].id == ((uint64_t)1 << 32 | (uint64_t)3001 << 16 | 27));
+    CHECK(kept[0].located && isnan(kept[0].confidence) && strcmp(kept[0].algorithm, "truth") == 0);
+    CHECK_NEAR(kept[0].place.h_m, 2345, 1e-6);
+    assert_string_equal(kept[0].class_name, "tank");
+}
+
+static void access_unit(void **state)
+{
+    (void)state;
+    uint8_t header[klv_au_octets];
+    CHECK(klv_au_header(header, 258, 0x1234));
+    assert_memory_equal(header, ((const uint8_t[]){0, 2, 0xDF, 0x12, 0x34}), klv_au_octets);
+    CHECK(!klv_au_header(header, 0, 65536));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lengths_and_tags),
+        cmocka_unit_test(maps),
+        cmocka_unit_test(never_beyond_the_buffer),
+        cmocka_unit_test(pose_of_platform_and_sensor),
+        cmocka_unit_test(what_is_beyond_a_range_is_absent),
+        cmocka_unit_test(a_target),
+        cmocka_unit_test(many_targets_and_truth),
+        cmocka_unit_test(targets_of_truth),
+        cmocka_unit_test(access_unit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

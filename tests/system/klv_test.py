@@ -1,0 +1,307 @@
+#!/usr/bin/env python3
+"""What test_klv.sh checks of metadata: klv_test.py (CHECK ARGUMENT...)... Values come from klv_decode's readers.
+
+samples DATA        the readers themselves, on packets that others made (folder data/klv)
+pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
+ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that is
+                    in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. And the range plane
+
+Prints what failed; exit 0: nothing; 77: a reader or a tool is missing.
+"""
+import json, math, os, shutil, subprocess, sys, tempfile
+
+import klv_decode
+
+failures = []
+
+
+def check(what, ok):
+    if not ok:
+        failures.append(what)
+        print("FAILED: " + what)
+
+
+def near(what, got, want, tolerance):
+    check("%s: %r, want %r +- %g" % (what, got, want, tolerance),
+          got is not None and want is not None and abs(got - want) <= tolerance)
+
+
+def packets(path, found, lax=False):
+    with open(path, "rb") as file:
+        return list(klv_decode.decode(file.read(), found, lax))
+
+
+# ---- the readers ----------------------------------------------------------------------------------
+
+# The standard's worked example: tag, value as printed there.
+EXAMPLE = {"5": 159.97436, "6": -0.43153, "7": 3.40586, "13": 60.176822967, "14": 128.426759042, "15": 14190.7195,
+           "16": 144.571298, "17": 152.643626, "18": 160.7192114, "19": -168.7923248, "21": 68590.98, "22": 722.8199,
+           "23": -10.5423886, "24": 29.1578901, "25": 3216.0372}
+
+
+def samples(data, found):
+    with open(data + "/st0601-dynamic-constant.klv", "rb") as file:
+        octets = file.read()
+    # its checksum is that of the example before some of its values were changed
+    octets = octets[:-2] + klv_decode.checksum(octets[:-2]).to_bytes(2, "big")
+    one = list(klv_decode.decode(octets, found))
+    check("the worked example is one packet", len(one) == 1)
+    for tag, value in EXAMPLE.items():
+        for name in ("klvdata", "stanag4609"):
+            if name in found:
+                near("worked example, %s, tag %s" % (name, tag), one[0][name][tag], value, 1e-6 * abs(value) + 1e-5)
+    series = packets(data + "/st0903-jmisb.bin", found, True)
+    check("ST 0903 samples: five packets", len(series) == 5)
+    if "tstrans" in found:
+        first = series[0]["tstrans"]["vmti"]
+        check("ST 0903 sample: its frame", [first["frame_width"], first["frame_height"]] == [1000, 600])
+        check("ST 0903 sample: its targets", [t["centroid_pixel"] for t in first["targets"]] == [387602, 352205])
+        near("worked example, tstrans", one[0]["tstrans"]["sensor_rel_az_deg"], EXAMPLE["18"], 1e-4)
+
+
+# ---- pose and targets -------------------------------------------------------------------------------
+
+def matrix(yaw, pitch, roll):
+    """Axes forward, right, down (columns) in the frame that they are turned in."""
+    (cy, sy), (cp, sp), (cr, sr) = ((math.cos(math.radians(a)), math.sin(math.radians(a))) for a in (yaw, pitch, roll))
+    return [[cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
+            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [-sp, cp * sr, cp * cr]]
+
+
+def times(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)] for i in range(3)]
+
+
+def ecef(lat, lon, h):
+    a, f = 6378137.0, 1 / 298.257223563
+    e2, s, c = f * (2 - f), math.sin(math.radians(lat)), math.cos(math.radians(lat))
+    n = a / math.sqrt(1 - e2 * s * s)
+    return [(n + h) * c * math.cos(math.radians(lon)), (n + h) * c * math.sin(math.radians(lon)), (n * (1 - e2) + h) * s]
+
+
+def camera(k):
+    """Place, and axes of the sensor (forward, right, down: columns) in ECEF, from tags 5, 90, 91, 13, 14, 75, 18 .. 20."""
+    lat, lon = math.radians(k["13"]), math.radians(k["14"])
+    ned = [[-math.sin(lat) * math.cos(lon), -math.sin(lon), -math.cos(lat) * math.cos(lon)],
+           [-math.sin(lat) * math.sin(lon), math.cos(lon), -math.cos(lat) * math.sin(lon)],
+           [math.cos(lat), 0, -math.sin(lat)]]
+    platform = times(ned, matrix(k["5"], k["90"], k["91"]))
+    return ecef(k["13"], k["14"], k["75"]), times(platform, matrix(k["18"], k["19"], k["20"]))
+
+
+def truth_lines(out):
+    with open(out + "/truth.jsonl") as file:
+        return [json.loads(line) for line in file]
+
+
+def some_klv(out):
+    return sorted(out + "/" + name for name in os.listdir(out) if name.endswith(".klv"))
+
+
+def pose(out, found):
+    truth = truth_lines(out)
+    boxes = 0
+    for path in some_klv(out):
+        made = packets(path, found)
+        check("%s: a packet for each frame" % path, len(made) == len(truth) > 0)
+        times_us = [p["klvdata"]["2"] for p in made]
+        for i in range(1, len(made)):
+            near("time stamps follow exercise time", times_us[i] - times_us[0],
+                 1e6 * (truth[i]["time_s"] - truth[0]["time_s"]), 2)
+        for p, line in zip(made, truth):
+            k, sensor = p["klvdata"], line["sensors"][0]
+            place, axes = camera(k)
+            near("sensor position", math.dist(place, line["host"]["ecef_m"]), 0, 0.2)
+            near("sensor height above the ellipsoid", k["75"], line["host"]["height_m"], 0.16)
+            m = sensor["ecef_from_cam"]  # columns right, down, forward
+            for name, want, got in (("right", 0, 1), ("down", 1, 2), ("forward", 2, 0)):
+                turned = sum(m[3 * i + want] * axes[i][got] for i in range(3))
+                near("axis %s: angle in degrees" % name, math.degrees(math.acos(min(1, turned))), 0, 0.006)
+            near("horizontal field of view", k["16"], sensor["hfov_deg"], 0.0014)
+            near("vertical field of view", k["17"], sensor["vfov_deg"], 0.0014)
+            check("platform, call sign, mode", k["59"] == line["host"]["marking"] and k["77"] == "\x03")
+            if "stanag4609" in p:
+                boxes += vmti(p["stanag4609"]["vmti"], p["klvdata"], line)
+            if "tstrans" in p and "stanag4609" in p:
+                both(p["tstrans"]["vmti"], p["stanag4609"]["vmti"])
+    check("targets were compared", boxes > 0 or "stanag4609" not in found)
+
+
+def vmti(got, k, line):
+    """Of one packet against one line of truth; how many boxes."""
+    fields, sensor = got["fields"], line["sensors"][0]
+    width, height = sensor["width_px"], sensor["height_px"]
+    seen = [t for t in line["targets"] if "box_px" in t and t["pixels"] > 0]
+    check("VMTI: marked as truth", "truth" in fields["3"].lower() and fields["4"] == 6)
+    check("VMTI: time of the packet", fields["2"] == k["2"])
+    check("VMTI: frame number", fields["7"] == line["frame"])
+    check("VMTI: counts", fields["5"] == len(seen) and fields["6"] == len(got["targets"]) == min(len(seen), 64))
+    check("VMTI: frame size", [fields["8"], fields["9"]] == [width, height])
+    near("VMTI: field of view", fields["11"], sensor["hfov_deg"], 0.006)
+    ids = {(int(s) << 32) + (int(a) << 16) + int(e): t for t in seen for s, a, e in [t["entity"].split(":")]}
+    sizes = []
+    for t in got["targets"]:
+        want = ids[t["id"]]
+        left, top, right, bottom = want["box_px"]
+        first, last = divmod(t["2"] - 1, width), divmod(t["3"] - 1, width)
+        check("VMTI: box of %s" % want["entity"], [first[1], first[0], last[1] + 1, last[0] + 1] == want["box_px"])
+        row, column = divmod(t["1"] - 1, width)
+        check("VMTI: centroid", column == (left + right) // 2 and row == (top + bottom) // 2)
+        percent = 100 * want["pixels"] / ((right - left) * (bottom - top))
+        near("VMTI: percentage", t["7"], min(100, max(1, percent)), 0.51)
+        check("VMTI: no confidence in truth", "5" not in t)
+        label = [o["label"] for o in got["ontologies"] if o["ontology_id"] == t["107"][0]["ontology_id"]]
+        check("VMTI: class", label == [want["class"]])
+        iri = [o["entity_iri"] for o in got["ontologies"] if o["label"] == want["class"]]
+        check("VMTI: ontology says truth", iri == ["urn:pitviper:truth:" + want["class"]])
+        check("VMTI: algorithm says truth", [a["name"] for a in got["algorithms"]] == ["truth"] and t["22"] == 1)
+        place = t["17"]
+        distance = math.dist(ecef(place["latitude"], place["longitude"], place["hae"]), line["host"]["ecef_m"])
+        near("VMTI: distance of its location", distance, want["range_m"], 4)
+        sizes.append(want["pixels"])
+    check("VMTI: largest first", sizes == sorted(sizes, reverse=True))
+    return len(sizes)
+
+
+def both(a, b):
+    """Two readers of ST 0903 agree."""
+    check("VMTI: readers agree", [(t["target_id"], t["bbox_top_left_pixel"], t["bbox_bottom_right_pixel"]) for t in a["targets"]]
+          == [(t["id"], t.get("2"), t.get("3")) for t in b["targets"]])
+
+
+# ---- on the ground --------------------------------------------------------------------------------
+
+def transform(points, source, target):
+    text = "\n".join("%.9f %.9f %.6f" % tuple(p) for p in points)
+    said = subprocess.run(["gdaltransform", "-s_srs", source, "-t_srs", target], input=text, capture_output=True, text=True,
+                          check=True).stdout
+    return [[float(x) for x in line.split()] for line in said.splitlines()]
+
+
+class Raster:
+    def __init__(self, path):
+        import numpy
+        with tempfile.TemporaryDirectory() as folder:
+            subprocess.run(["gdal_translate", "-q", "-of", "ENVI", "-ot", "Float32", path, folder + "/x"], check=True)
+            info = json.loads(subprocess.run(["gdalinfo", "-json", folder + "/x"], capture_output=True, check=True).stdout)
+            self.width, self.height = info["size"]
+            self.values = numpy.fromfile(folder + "/x", "<f4").reshape(self.height, self.width)
+        self.x0, self.dx, _, self.y0, _, self.dy = info["geoTransform"]
+
+    def at(self, x, y):
+        """Bilinear between the centres of pixels; None: outside."""
+        c, r = (x - self.x0) / self.dx - 0.5, (y - self.y0) / self.dy - 0.5
+        i, j = math.floor(c), math.floor(r)
+        if not (0 <= i < self.width - 1 and 0 <= j < self.height - 1):
+            return None
+        u, v, z = c - i, r - j, self.values
+        return float((z[j, i] * (1 - u) + z[j, i + 1] * u) * (1 - v) + (z[j + 1, i] * (1 - u) + z[j + 1, i + 1] * u) * v)
+
+
+def marches(rays, raster, crs, step):
+    """Of rays (origin ECEF, unit direction, near, far): where each first meets the raster: (x, y, height, range) or None."""
+    points, lengths = [], []
+    for origin, direction, low, high in rays:
+        lengths.append([low + step * n for n in range(int((high - low) / step))])
+        points += [[o + t * d for o, d in zip(origin, direction)] for t in lengths[-1]]
+    placed, out = iter(transform(points, "EPSG:4978", crs)), []
+    for ranges in lengths:
+        before, hit = None, None
+        for t in ranges:
+            x, y, z = next(placed)
+            ground = raster.at(x, y)
+            above = None if ground is None else z - ground
+            if hit is None and above is not None and above <= 0 and before:
+                share = before[1] / (before[1] - above)
+                hit = [b + share * (a - b) for a, b in zip((x, y, z, t), before[2])]
+            before = None if above is None else (t, above, (x, y, z, t))
+        out.append(hit)
+    return out
+
+
+def plane_at(path, column, row):
+    said = subprocess.run(["oiiotool", path, "--cut", "1x1+%d+%d" % (column, row), "--printstats"], capture_output=True,
+                          text=True, check=True).stdout
+    return float(said.split("Stats Avg:")[1].split()[0])
+
+
+def ground(out, tif, crs, found):
+    raster, worst, worst_exact, worst_range, compared = Raster(tif), 0, 0, 0, 0
+    truth = truth_lines(out)
+    made = packets(some_klv(out)[0], found)
+    for p, line in zip(made, truth):
+        k = p["klvdata"]
+        sensor = line["sensors"][0]
+        names = ["centre", "upper left", "upper right", "lower right", "lower left"]
+        tags = [("23", "24"), ("82", "83"), ("84", "85"), ("86", "87"), ("88", "89")]
+        near("slant range of the frame", k["21"], 3000, 300)
+        origin, axes = camera(k)
+        m = sensor["ecef_from_cam"]
+        exact = [[m[3 * i + 2], m[3 * i], m[3 * i + 1]] for i in range(3)]
+        across, down = math.tan(math.radians(k["16"] / 2)), math.tan(math.radians(k["17"] / 2))
+        tan_exact = [math.tan(math.radians(sensor[f] / 2)) for f in ("hfov_deg", "vfov_deg")]
+        rays, rays_exact = [], []
+        for right, below in ((0, 0), (-1, -1), (1, -1), (1, 1), (-1, 1)):
+            for list_, a, o, t in ((rays, axes, origin, (across, down)), (rays_exact, exact, line["host"]["ecef_m"], tan_exact)):
+                d = [a[i][0] + right * t[0] * a[i][1] + below * t[1] * a[i][2] for i in range(3)]
+                n = math.sqrt(sum(x * x for x in d))
+                # 400 m before its end the ray is some 200 m above the highest ground of the file
+                list_.append((o, [x / n for x in d], k["21"] - 400, k["21"] + 400))
+        hits = marches(rays + rays_exact, raster, crs, 2)
+        claimed = transform([[k[lon], k[lat], 0] for lat, lon in tags], "EPSG:4979", crs)
+        for n in range(5):
+            for hit, what in ((hits[n], "from the metadata"), (hits[5 + n], "from the pose")):
+                if hit is None:
+                    check("%s %s: the ray meets the file's ground" % (names[n], what), False)
+                    continue
+                error = math.dist(hit[:2], claimed[n][:2])
+                if what == "from the pose":
+                    worst_exact = max(worst_exact, error)
+                else:
+                    worst = max(worst, error)
+                near("%s, marched %s: metres apart" % (names[n], what), error, 0, 1)
+        near("height of the frame centre above sea level", k["25"], hits[0][2], 0.6)
+        near("slant range", k["21"], hits[5][3], 1)
+        # the centre pixel of an odd size: its middle is the boresight
+        path = "%s/pairs/background/frames/truth/%06d.exr" % (out, line["frame"])
+        if shutil.which("oiiotool"):
+            check("range plane %s" % path, os.path.exists(path))
+            ranged = plane_at(path, sensor["width_px"] // 2, sensor["height_px"] // 2)
+            worst_range = max(worst_range, abs(ranged - k["21"]))
+            near("range plane at the centre", ranged, k["21"], 0.01)
+            compared += 1
+    if not compared:
+        print("skipped in part: no oiiotool")
+    print("%d frames: %.2f m from rays marched with the metadata's pose, %.2f m with the exact one; range plane %.4f m"
+          % (len(made), worst, worst_exact, worst_range))
+
+
+def ready(what):
+    if what != "ground":
+        return True
+    missing = [t for t in ("gdaltransform", "gdal_translate", "gdalinfo") if not shutil.which(t)]
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        missing.append("numpy")
+    if missing:
+        print("skipped in part: no %s" % ", ".join(missing))
+    return not missing
+
+
+def main(arguments):
+    found = klv_decode.readers()
+    if "klvdata" not in found or len(found) < 2:
+        print("skipped in part: no klvdata, or neither stanag4609 nor tstrans")
+        return 77
+    checks = {"samples": samples, "pose": pose, "ground": ground}
+    starts = [i for i, a in enumerate(arguments) if a in checks]
+    for start, end in zip(starts, starts[1:] + [len(arguments)]):
+        if ready(arguments[start]):
+            checks[arguments[start]](*arguments[start + 1:end], found)
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
