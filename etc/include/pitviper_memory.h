@@ -17,10 +17,10 @@
  * Every size and offset in the shared memory is checked before use, and a frame is copied out before it is shown. What
  * a reader cannot guard against is a segment made shorter while it is mapped (SIGBUS); a node never does that.
  *
- * How a slot is protected (a sequence lock): PitviperMemoryRecord.lock is 2 n - 1 while frame n is written and 2 n when
- * it is complete. A copy is good if lock was 2 n before it and after it. All words of a slot are stored with release and
- * loaded with acquire semantics: a reader that has met one word of a newer frame meets the newer lock too. These are
- * plain moves on x86-64; no fences are needed, and it is free of data races in the sense of C11. */
+ * How a slot is protected (a sequence lock): PitviperMemoryRecord.lock is 2 n - 1 while frame n is written and 2 n
+ * when it is complete. A copy is good if lock was 2 n before it and after it. All words of a slot are stored with
+ * release and loaded with acquire semantics: a reader that has met one word of a newer frame meets the newer lock too.
+ * These are plain moves on x86-64; no fences are needed, and there are no data races in the sense of C11. */
 #ifndef PITVIPER_MEMORY_H
 #define PITVIPER_MEMORY_H
 
@@ -161,7 +161,7 @@ typedef struct PitviperMemoryTarget {
     char     class_name[24];       /*  16 `tank`, `truck` ... */
     char     marking[16];          /*  40 raw octets */
     char     type[32];             /*  56 entity type, `1.1.222.1.2.0.0` */
-    int32_t  box[4];               /*  88 visible pixels: left, top, right, bottom, the last two beyond it; all 0: none */
+    int32_t  box[4];               /*  88 visible pixels: left, top, right, bottom, the last two beyond; all 0: none */
     double   amodal_box[4];        /* 104 of all of it, hidden parts too, px, not clipped to the image */
     double   range_m, closing_mps; /* 136 */
     double   aspect_rad;           /* 152 0: nose on */
@@ -246,7 +246,7 @@ enum {
 enum {
     PITVIPER_MEMORY_ABSENT = -1,  /* no such ring (yet): try again later */
     PITVIPER_MEMORY_REFUSED = -2, /* not a ring, of another version or byte order, or damaged */
-    PITVIPER_MEMORY_ENDED = -3,   /* the node has closed it, or died: close it and open again to wait for the next one */
+    PITVIPER_MEMORY_ENDED = -3,   /* the node has closed it, or died: close it, and open again for the next one */
     PITVIPER_MEMORY_SYSTEM = -4   /* a call of the operating system failed: errno */
 };
 
@@ -348,7 +348,8 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
 {
     struct stat status;
     if (fstat(m->file, &status) != 0) return PITVIPER_MEMORY_SYSTEM;
-    if (!S_ISREG(status.st_mode) || status.st_size < (off_t)pitviper_memory_header_least) return PITVIPER_MEMORY_REFUSED;
+    if (!S_ISREG(status.st_mode) || status.st_size < (off_t)pitviper_memory_header_least)
+        return PITVIPER_MEMORY_REFUSED;
     m->size     = (uint64_t)status.st_size;
     void *const at = mmap(NULL, (size_t)m->size, PROT_READ, MAP_SHARED, m->file, 0);
     if (at == MAP_FAILED) return PITVIPER_MEMORY_SYSTEM;
@@ -415,8 +416,8 @@ static inline int pitviper_memory_open(PitviperMemory *m, const char *name)
     return PITVIPER_MEMORY_ENDED;
 }
 
-/* One wait for a change of `wake`, at most so long. Where the kernel refuses a futex in memory that is mapped read-only,
- * a short sleep. */
+/* One wait for a change of `wake`, at most so long. Where the kernel refuses a futex in memory that is mapped
+ * read-only, a short sleep. */
 static inline void pitviper_memory_sleep_(const PitviperMemoryHeader *h, uint32_t wake, int64_t ns)
 {
     struct timespec time;
@@ -499,8 +500,8 @@ static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
 }
 
 /* 1: a frame that was not taken before is in m->record, and its planes and targets can be had; 0: there is none.
- * take_newest skips what is older than the newest; take_next begins with the oldest that the ring holds and takes frames
- * in order, except those that are overwritten before. m->missed counts what was skipped from the first one on. */
+ * take_newest skips what is older than the newest; take_next begins with the oldest that the ring holds and takes
+ * frames in order, except those that are overwritten before. m->missed counts what was skipped since the first one. */
 static inline int pitviper_memory_take_newest(PitviperMemory *m) { return pitviper_memory_take_(m, 0); }
 static inline int pitviper_memory_take_next(PitviperMemory *m) { return pitviper_memory_take_(m, 1); }
 

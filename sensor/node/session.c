@@ -368,6 +368,7 @@ Status session_close(Session *s, SessionResult *result)
 {
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
     detections_close(s->detections);
+    geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
     s->result.frames         = s->published;
     s->result.files_failed   = s->written.failed + s->lines_failed;

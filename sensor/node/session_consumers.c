@@ -1,7 +1,6 @@
 /* sensor/node/session_consumers.c: the consumers of a session's frames, from the configuration. */
 #include "sensor/node/session_private.h"
 
-#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/consume_memory.h"
 #include "sensor/publish/pairs.h"
 #include "sensor/publish/video/consume_video.h"
@@ -45,13 +44,21 @@ static Status add_latest(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
+/* For heights above mean sea level in metadata; NULL: there is none. */
+static const Geoid *geoid_of(Session *s)
+{
+    if (!s->geoid.n_m) klv_geoid_open(&s->geoid, s->shared->config);
+    return s->geoid.n_m ? &s->geoid : NULL;
+}
+
 /* to: VideoTo, of those configured. patient: a failure ends nothing. */
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
     const char          *slash  = strrchr(s->out, '/');
     const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
-                                   .rate_hz = s->plan.rate_hz, .patient = patient, .detections = s->detections,
+                                   .rate_hz = s->plan.rate_hz, .patient = patient, .geoid = geoid_of(s),
+                                   .detections = s->detections,
                                    .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
     Consumer            *consumer = NULL;
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
@@ -107,8 +114,10 @@ static Status add_coco(Consumers *list, Session *s)
 
 static Status add_klv(Consumers *list, Session *s)
 {
-    Consumer    *consumer = NULL;
-    const Status status   = consume_klv(&consumer, &(KlvFiles){s->out, s->shared->config, s->shared->bands, s->shared->live});
+    const KlvFiles of = {.out = s->out, .config = s->shared->config, .bands = s->shared->bands,
+                         .patient = s->shared->live, .geoid = geoid_of(s), .detections = s->detections};
+    Consumer      *consumer = NULL;
+    const Status   status   = consume_klv(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 

@@ -9,6 +9,7 @@
 #include "sensor/node/session.h"
 #include "sensor/publish/consumers.h"
 #include "sensor/publish/frame_queue.h"
+#include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
 
 struct Session {
@@ -34,6 +35,7 @@ struct Session {
                                              * targets */
     Consumers            consumers;
     Detections          *detections;    /* received; NULL: none */
+    Geoid                geoid;         /* for metadata; n_m NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;
     Latency             *latency;       /* NULL: none is kept */

@@ -514,7 +514,10 @@ Status config_check(const Config *config)
     }
     const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
                               config->sensor.bands);
-    return status == STATUS_OK ? memory_choice_check(config) : status;
+    const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
+    return status == STATUS_OK
+               ? memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor)
+               : status;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)

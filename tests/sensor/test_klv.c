@@ -2,7 +2,7 @@
  * tests/system/test_klv.sh has readers that are not ours decode them. */
 #include "tests/check.h"
 
-#include "sensor/publish/klv/klv.h"
+#include "sensor/publish/klv/klv_detections.h"
 #include "sensor/publish/klv/klv_writer.h"
 
 static KlvWriter writer_on(uint8_t *octets, size_t room)
@@ -355,7 +355,8 @@ static void many_targets_and_truth(void **state)
     (void)state;
     static KlvTarget target[300];
     static char      name[18][60]; /* longer than any packet holds as a whole, and different at the start */
-    for (int k = 0; k < 18; k++) snprintf(name[k], sizeof name[k], "%c and so on, with a long name beyond all limits", 'a' + k);
+    for (int k = 0; k < 18; k++)
+        snprintf(name[k], sizeof name[k], "%c and so on, with a long name beyond all limits", 'a' + k);
     for (int k = 0; k < 300; k++) {
         target[k]            = some_target(UINT64_MAX - (unsigned)k / 2); /* each id twice */
         target[k].class_name = name[k % 18];
@@ -368,8 +369,9 @@ static void many_targets_and_truth(void **state)
     Value set = tag_of(74);
     CHECK(number(find(set, 5), false) == 100000 && number(find(set, 6), false) == klv_most_targets);
     CHECK(is_text(find(set, 3), "Pitviper truth"));
-    CHECK(memmem(set.at, set.count, "urn:pitviper:truth:a-and-so-on--with-a-long-name-be", 50) && !memmem(set.at, set.count, "detected", 8));
-    CHECK(lab.used > 4800 && lab.used < klv_most_octets); /* nearly the largest packet */ /* the largest packet */
+    CHECK(memmem(set.at, set.count, "urn:pitviper:truth:a-and-so-on--with-a-long-name-be", 50));
+    CHECK(!memmem(set.at, set.count, "detected", 8));
+    CHECK(lab.used > 4800 && lab.used < klv_most_octets); /* nearly the largest packet */
     encode(&(KlvTargets){.truth = true});
     set = tag_of(74);
     CHECK(number(find(set, 5), false) == 0 && number(find(set, 6), false) == 0 && !find(set, 101).at);
@@ -415,6 +417,27 @@ static void targets_of_truth(void **state)
     assert_string_equal(kept[0].class_name, "tank");
 }
 
+static void targets_of_a_recogniser(void **state)
+{
+    (void)state;
+    static KlvTarget    kept[klv_most_targets];
+    static DetectionSet set = {.frame = 250, .unix_s = 1749999999.5, .count = 2};
+    KlvTargets          out;
+    set.detection[0] = (PitviperDetection){10.2f, 20, 29.5f, 23.001f, 0.25f, 7, "tank", {0}};
+    set.detection[1] = (PitviperDetection){1, 2, 3, 4, 1, 0, "", {0}};
+    klv_of_detections(&out, kept, &set);
+    CHECK(!out.truth && out.count == 2 && out.target == kept && kept[0].id == 7 && kept[1].id == 0x100000001);
+    assert_memory_equal(kept[0].box, ((const int[4]){10, 20, 30, 24}), sizeof kept[0].box);
+    assert_memory_equal(kept[1].box, ((const int[4]){1, 2, 3, 4}), sizeof kept[1].box);
+    CHECK_NEAR(kept[0].confidence, 0.25, 0);
+    scene(&somewhere, (double[3]){0, 0, 0}, (double[3]){0, 0, 0});
+    encode(&out);
+    const Value vmti = tag_of(74);
+    CHECK(number(tag_of(2), false) == 1750000000250000 && number(find(vmti, 2), false) == 1749999999500000);
+    CHECK(number(find(vmti, 7), false) == 250);
+    CHECK(number(find(vmti, 5), false) == 2 && number(find(vmti, 6), false) == 2);
+}
+
 static void access_unit(void **state)
 {
     (void)state;
@@ -435,6 +458,7 @@ int main(void)
         cmocka_unit_test(a_target),
         cmocka_unit_test(many_targets_and_truth),
         cmocka_unit_test(targets_of_truth),
+        cmocka_unit_test(targets_of_a_recogniser),
         cmocka_unit_test(access_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,9 +2,9 @@
 """Packets of ST 0601, and of ST 0903 by itself, as JSON lines: klv_decode.py FILE.klv... [--reader NAME]... [--lax]
 
 The values come from readers that are not Pitviper's: PyPI klvdata (ST 0601, also the octets of tag 74), stanag4609 and
-tstrans (ST 0601 and ST 0903). Each line: {"octets": N, "tags": [...], READER: {...}}. A walk over tags and lengths here,
-strict, is a second judge of the structure only: keys, lengths, checksums, first and last tag, no tag twice. With --lax,
-for packets of others, a wrong checksum or what a reader refuses is noted in the line: {"wrong": [...]}.
+tstrans (ST 0601 and ST 0903). Each line: {"octets": N, "tags": [...], READER: {...}}. A walk over tags and lengths
+here, strict, is a second judge of the structure only: keys, lengths, checksums, first and last tag, no tag twice. With
+--lax, for packets of others, a wrong checksum or what a reader refuses is noted in the line: {"wrong": [...]}.
 
 Exit 0: all packets accepted; 1: one was not, said on standard error; 77: no reader is installed.
 """
@@ -98,7 +98,8 @@ def plain(value):
     if isinstance(value, datetime.datetime):
         if value.tzinfo is None:
             value = value.replace(tzinfo=datetime.timezone.utc)
-        return (value - datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)) // datetime.timedelta(microseconds=1)
+        epoch = datetime.datetime(1970, 1, 1, tzinfo=datetime.timezone.utc)
+        return (value - epoch) // datetime.timedelta(microseconds=1)
     if isinstance(value, dict):
         return {str(k): plain(v) for k, v in value.items()}
     if isinstance(value, (list, tuple)):
@@ -112,7 +113,8 @@ def plain(value):
     if hasattr(value, "value") and not hasattr(value, "__dataclass_fields__"):
         return plain(value.value)
     if hasattr(value, "__dataclass_fields__"):
-        return {f: plain(getattr(value, f)) for f in value.__dataclass_fields__ if f not in ("raw", "local_set", "item")}
+        names = [f for f in value.__dataclass_fields__ if f not in ("raw", "local_set", "item")]
+        return {f: plain(getattr(value, f)) for f in names}
     try:
         return float(value)
     except (TypeError, ValueError):
@@ -146,7 +148,7 @@ def vmti_of_stanag4609(vmti):
         if item.tag == 7:  # frame number: not in the sixth edition, so its octets
             fields["7"] = int.from_bytes(item.value, "big")
     return {"fields": fields,
-            "targets": [dict({"id": t.target_id}, **{str(f.tag): plain(f.value) for f in t.fields}) for t in vmti.targets],
+            "targets": [{"id": t.target_id, **{str(f.tag): plain(f.value) for f in t.fields}} for t in vmti.targets],
             "algorithms": [plain(a) for a in vmti.algorithms], "ontologies": [plain(o) for o in vmti.ontologies]}
 
 

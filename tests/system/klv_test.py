@@ -3,12 +3,13 @@
 
 samples DATA        the readers themselves, on packets that others made (folder data/klv)
 pose OUT            the chain of angles against truth.jsonl's camera, and ST 0903 against its targets
-ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that is
-                    in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. And the range plane
+atr OUT             a recogniser's detections as ST 0903; sent meanwhile by: klv_test.py send PORT COMMAND...
+ground OUT TIF CRS  frame centre and corners against rays marched through the elevation file itself, from the pose that
+                    is in the metadata; positions by gdaltransform (PROJ), heights by gdal_translate. The range plane too
 
 Prints what failed; exit 0: nothing; 77: a reader or a tool is missing.
 """
-import json, math, os, shutil, subprocess, sys, tempfile
+import json, math, os, shutil, socket, struct, subprocess, sys, tempfile, time
 
 import klv_decode
 
@@ -77,11 +78,12 @@ def ecef(lat, lon, h):
     a, f = 6378137.0, 1 / 298.257223563
     e2, s, c = f * (2 - f), math.sin(math.radians(lat)), math.cos(math.radians(lat))
     n = a / math.sqrt(1 - e2 * s * s)
-    return [(n + h) * c * math.cos(math.radians(lon)), (n + h) * c * math.sin(math.radians(lon)), (n * (1 - e2) + h) * s]
+    east = math.radians(lon)
+    return [(n + h) * c * math.cos(east), (n + h) * c * math.sin(east), (n * (1 - e2) + h) * s]
 
 
 def camera(k):
-    """Place, and axes of the sensor (forward, right, down: columns) in ECEF, from tags 5, 90, 91, 13, 14, 75, 18 .. 20."""
+    """Place, and axes of the sensor (forward, right, down: columns) in ECEF: tags 5, 90, 91, 13, 14, 75, 18 .. 20."""
     lat, lon = math.radians(k["13"]), math.radians(k["14"])
     ned = [[-math.sin(lat) * math.cos(lon), -math.sin(lon), -math.cos(lat) * math.cos(lon)],
            [-math.sin(lat) * math.sin(lon), math.cos(lon), -math.cos(lat) * math.sin(lon)],
@@ -166,16 +168,51 @@ def vmti(got, k, line):
 
 def both(a, b):
     """Two readers of ST 0903 agree."""
-    check("VMTI: readers agree", [(t["target_id"], t["bbox_top_left_pixel"], t["bbox_bottom_right_pixel"]) for t in a["targets"]]
-          == [(t["id"], t.get("2"), t.get("3")) for t in b["targets"]])
+    names = "target_id", "bbox_top_left_pixel", "bbox_bottom_right_pixel"
+    check("VMTI: readers agree",
+          [[t[n] for n in names] for t in a["targets"]] == [[t["id"], t.get("2"), t.get("3")] for t in b["targets"]])
+
+
+# ---- a recogniser's detections --------------------------------------------------------------------------
+
+def send(port, command):
+    """Runs a command; meanwhile two detections in every frame, as etc/include/pitviper_memory.h has them. Its code."""
+    child = subprocess.Popen(command)
+    to = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    one = struct.pack("=5fI16s2I", 3, 4, 20.5, 10, 0.75, 9, b"tank", 0, 0)
+    two = struct.pack("=5fI16s2I", 1, 1, 5, 5, 0.5, 0, b"truck", 0, 0)
+    while child.poll() is None:
+        for frame in range(40):
+            to.sendto(struct.pack("=8sIHHiIII", b"PVDETECT", 0x01020304, 1, 48, frame, 2, 2, 0) + one + two,
+                      ("127.0.0.1", int(port)))
+        time.sleep(0.03)
+    return child.returncode
+
+
+def atr(out, found):
+    if "stanag4609" not in found:
+        return print("skipped in part: no stanag4609")
+    truth = truth_lines(out)
+    width = truth[0]["sensors"][0]["width_px"]
+    made = [p["stanag4609"] for p in packets(out + "/lwir.klv", found)]
+    with_targets = [p["vmti"] for p in made if "vmti" in p]
+    check("detections are in most packets: %d of %d" % (len(with_targets), len(made)), 2 * len(with_targets) > len(made))
+    for v in with_targets:
+        fields, t = v["fields"], v["targets"][0]
+        check("detections: no truth", fields["3"] == "Pitviper ATR" and not any("truth" in str(o) for o in v["ontologies"]))
+        check("detections: counts", fields["5"] == fields["6"] == 2)
+        check("detections: of the frame they were found in", fields["2"] == made[fields["7"]]["2"])
+        check("detections: id, box and confidence",
+              [t["id"], t["2"], t["3"], t["5"]] == [9, 4 * width + 3 + 1, 9 * width + 20 + 1, 75])
+        check("detections: classes", [o["label"] for o in v["ontologies"]] == ["tank", "truck"])
 
 
 # ---- on the ground --------------------------------------------------------------------------------
 
 def transform(points, source, target):
     text = "\n".join("%.9f %.9f %.6f" % tuple(p) for p in points)
-    said = subprocess.run(["gdaltransform", "-s_srs", source, "-t_srs", target], input=text, capture_output=True, text=True,
-                          check=True).stdout
+    said = subprocess.run(["gdaltransform", "-s_srs", source, "-t_srs", target], input=text, capture_output=True,
+                          text=True, check=True).stdout
     return [[float(x) for x in line.split()] for line in said.splitlines()]
 
 
@@ -184,7 +221,8 @@ class Raster:
         import numpy
         with tempfile.TemporaryDirectory() as folder:
             subprocess.run(["gdal_translate", "-q", "-of", "ENVI", "-ot", "Float32", path, folder + "/x"], check=True)
-            info = json.loads(subprocess.run(["gdalinfo", "-json", folder + "/x"], capture_output=True, check=True).stdout)
+            said = subprocess.run(["gdalinfo", "-json", folder + "/x"], capture_output=True, check=True).stdout
+            info = json.loads(said)
             self.width, self.height = info["size"]
             self.values = numpy.fromfile(folder + "/x", "<f4").reshape(self.height, self.width)
         self.x0, self.dx, _, self.y0, _, self.dy = info["geoTransform"]
@@ -196,11 +234,12 @@ class Raster:
         if not (0 <= i < self.width - 1 and 0 <= j < self.height - 1):
             return None
         u, v, z = c - i, r - j, self.values
-        return float((z[j, i] * (1 - u) + z[j, i + 1] * u) * (1 - v) + (z[j + 1, i] * (1 - u) + z[j + 1, i + 1] * u) * v)
+        north, south = (z[k, i] * (1 - u) + z[k, i + 1] * u for k in (j, j + 1))
+        return float(north * (1 - v) + south * v)
 
 
 def marches(rays, raster, crs, step):
-    """Of rays (origin ECEF, unit direction, near, far): where each first meets the raster: (x, y, height, range) or None."""
+    """Of rays (origin ECEF, unit direction, near, far): where each meets the raster first, (x, y, height, range)."""
     points, lengths = [], []
     for origin, direction, low, high in rays:
         lengths.append([low + step * n for n in range(int((high - low) / step))])
@@ -243,7 +282,8 @@ def ground(out, tif, crs, found):
         tan_exact = [math.tan(math.radians(sensor[f] / 2)) for f in ("hfov_deg", "vfov_deg")]
         rays, rays_exact = [], []
         for right, below in ((0, 0), (-1, -1), (1, -1), (1, 1), (-1, 1)):
-            for list_, a, o, t in ((rays, axes, origin, (across, down)), (rays_exact, exact, line["host"]["ecef_m"], tan_exact)):
+            for list_, a, o, t in ((rays, axes, origin, (across, down)),
+                                   (rays_exact, exact, line["host"]["ecef_m"], tan_exact)):
                 d = [a[i][0] + right * t[0] * a[i][1] + below * t[1] * a[i][2] for i in range(3)]
                 n = math.sqrt(sum(x * x for x in d))
                 # 400 m before its end the ray is some 200 m above the highest ground of the file
@@ -291,11 +331,13 @@ def ready(what):
 
 
 def main(arguments):
+    if arguments[0] == "send":
+        return send(arguments[1], arguments[2:])
     found = klv_decode.readers()
     if "klvdata" not in found or len(found) < 2:
         print("skipped in part: no klvdata, or neither stanag4609 nor tstrans")
         return 77
-    checks = {"samples": samples, "pose": pose, "ground": ground}
+    checks = {"samples": samples, "pose": pose, "atr": atr, "ground": ground}
     starts = [i for i, a in enumerate(arguments) if a in checks]
     for start, end in zip(starts, starts[1:] + [len(arguments)]):
         if ready(arguments[start]):

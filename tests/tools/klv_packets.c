@@ -1,5 +1,5 @@
 /* tests/tools/klv_packets.c: ST 0601 packets of frame records, for decoders that are not ours: klv_packets COUNT SEED
- * writes COUNT packets of random, often absurd records to standard output. What is refused is counted on standard error.
+ * writes COUNT packets of random, often absurd records to standard output, and counts on standard error what is refused.
  * A packet must not be written beyond its length, nor contain anything that differs with what was in the buffer. */
 #include "sensor/publish/klv/klv.h"
 
@@ -73,7 +73,8 @@ static KlvTarget any_target(const View *view, const char *name)
                    .algorithm = algorithm[below((int)(sizeof algorithm / sizeof *algorithm))],
                    .algorithm_version = below(2) ? "1.0" : NULL};
     t.place = (Geodetic){any(2), any(4), any(20000)};
-    for (int k = 0; k < 4; k++) t.box[k] = below(8) ? below(k % 2 ? view->height + 1 : view->width + 1) : below(1 << 30) - (1 << 29);
+    for (int k = 0; k < 4; k++)
+        t.box[k] = below(8) ? below((k % 2 ? view->height : view->width) + 1) : below(1 << 30) - (1 << 29);
     return t;
 }
 
@@ -95,15 +96,15 @@ int main(int argc, char **argv)
         for (int k = 0; k < 100; k++) target[k] = any_target(&request.view, text[below(40)]);
         for (int k = 0; k < FOOTPRINT_COUNT; k++)
             footprint[k] = (GroundPoint){below(3) > 0, any(2), any(4), any(20000), any(1e6)};
-        FrameRecord record = {.frame = below(3) ? n : below(1 << 30), .host = below(2) ? &host : NULL, .request = &request,
-                              .hfov_rad = any(3), .footprint = below(4) ? footprint : NULL};
+        FrameRecord record = {.frame = below(3) ? n : below(1 << 30), .host = below(2) ? &host : NULL,
+                              .request = &request, .hfov_rad = any(3), .footprint = below(4) ? footprint : NULL};
         position(record.p_eye_ecef);
         for (int k = 0; k < 3; k++) record.v_eye_mps[k] = any(400);
         rotation(record.r_ecef_from_body);
         rotation(record.r_ecef_from_cam);
         const KlvSource  source  = {.band = (Band)below(BAND_COUNT), .mission = below(2) ? mission : NULL,
                                     .sensor = below(2) ? text[0] : NULL};
-        const KlvTargets targets = {below(2), below(101), below(100000), target};
+        const KlvTargets targets = {below(2), below(101), below(100000), target, below(2), below(1000), any(2e9)};
         const double     unix_s  = below(8) ? 1.9e9 * uniform() : any(1e10);
 
         size_t octets[2];

@@ -1,5 +1,5 @@
-/* memory_planes OUT RAW: whether the planes that a reader of shared memory has dumped as RAW/FRAME_BAND_NAME.raw are, to
- * the bit, those of the files of the same run: OUT/frames/BAND/FRAME.exr; where OUT/raw/BAND/FRAME.png is, its counts.
+/* memory_planes OUT RAW: whether the planes that a reader of shared memory has dumped as RAW/FRAME_BAND_NAME.raw are,
+ * to the bit, those of the files of the same run: OUT/frames/BAND/FRAME.exr; where OUT/raw/BAND/FRAME.png is, its counts.
  *
  * Prints how many planes are the same. Exit code 0: all are, and there is one at least. */
 #include "sensor/publish/image_file.h"
@@ -26,7 +26,8 @@ static bool same(const char *out, const char *raw, const char *name)
     if (image_info(&info, path) != STATUS_OK) return false;
     const size_t pixels = (size_t)info.width * (size_t)info.height, want = pixels * (counts ? 2 : 4);
     if (size != want || want > sizeof written || (counts && (info.channels != 1 || info.bits != 16))) return false;
-    const Status status = counts ? image_read_png(written, path) : image_read_f32((float *)(void *)written, path, channel);
+    const Status status = counts ? image_read_png(written, path)
+                                 : image_read_f32((float *)(void *)written, path, channel);
     return status == STATUS_OK && memcmp(dumped, written, size) == 0;
 }
 

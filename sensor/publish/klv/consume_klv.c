@@ -10,8 +10,9 @@
 typedef struct KlvConsumer {
     Consumer     consumer;
     FILE        *file[BAND_COUNT];
-    Geoid        geoid;
-    bool         has_geoid, truth, patient;
+    KlvFiles     of;
+    bool         truth, atr;
+    KlvDetections found;
     RetryBackoff patience;
 } KlvConsumer;
 
@@ -24,8 +25,9 @@ static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
 
 static Status put_band(KlvConsumer *k, Band band, const Frame *frame, const KlvTargets *targets)
 {
-    uint8_t         octets[klv_most_octets];
-    const KlvSource source = {.band = band, .geoid = k->has_geoid ? &k->geoid : NULL};
+    uint8_t octets[klv_most_octets];
+    if (k->atr) targets = klv_detections(&k->found, frame, band);
+    const KlvSource source = {.band = band, .geoid = k->of.geoid};
     const size_t    count  = klv_frame(octets, &frame->record, frame->unix_s, &source, targets);
     return count > 0 ? write_packet(k->file[band], octets, count) : STATUS_OK;
 }
@@ -37,10 +39,10 @@ static Status put(Consumer *consumer, Frame *frame)
     KlvTargets   targets;
     Status       status = STATUS_OK;
     if (k->truth) klv_truth_targets(&targets, kept, &frame->record);
-    const bool due = !k->patient || retry_due(&k->patience);
+    const bool due = !k->of.patient || retry_due(&k->patience);
     for (int b = 0; b < BAND_COUNT && due && status == STATUS_OK; b++)
         if (k->file[b]) status = put_band(k, (Band)b, frame, k->truth ? &targets : NULL);
-    if (!k->patient) return status;
+    if (!k->of.patient) return status;
     retry_done(&k->patience, due, due ? status : STATUS_IO);
     for (int b = 0; b < BAND_COUNT; b++)
         if (k->file[b]) clearerr(k->file[b]);
@@ -52,11 +54,10 @@ static Status close_klv(Consumer *consumer)
     KlvConsumer *k      = (KlvConsumer *)consumer;
     Status       status = STATUS_OK;
     for (int b = 0; b < BAND_COUNT; b++)
-        if (k->file[b] && fclose(k->file[b]) != 0 && !k->patient) {
+        if (k->file[b] && fclose(k->file[b]) != 0 && !k->of.patient) {
             log_error("klv: cannot write metadata: %s", strerror(errno));
             status = STATUS_IO;
         }
-    if (k->has_geoid) geoid_close(&k->geoid);
     free(k);
     return status;
 }
@@ -78,7 +79,9 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
     KlvConsumer *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
     k->truth    = strcmp(of->config->publish.vmti, "truth") == 0;
-    k->patient  = of->patient;
+    k->atr      = of->detections && strcmp(of->config->publish.vmti, "atr") == 0;
+    k->of       = *of;
+    k->found    = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
     k->consumer = (Consumer){WANT_FOOTPRINT | (k->truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
     for (int b = 0; b < BAND_COUNT; b++) {
@@ -91,7 +94,6 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
         close_klv(&k->consumer);
         return STATUS_IO;
     }
-    k->has_geoid = klv_geoid_open(&k->geoid, of->config);
-    *out         = &k->consumer;
+    *out = &k->consumer;
     return STATUS_OK;
 }

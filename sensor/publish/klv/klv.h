@@ -34,6 +34,9 @@ typedef struct KlvTargets {
     int              count;     /* those beyond klv_most_targets are left out, and all but the first with an id */
     int              total;     /* detected in the frame, those that are not in the list too; below count: count */
     const KlvTarget *target;
+    bool             elsewhen;  /* found in another frame than the packet's: */
+    int              frame;
+    double           unix_s;    /* of that frame */
 } KlvTargets;
 
 /* What the record does not know. */

@@ -81,8 +81,8 @@ static bool is_printable(const char *text, size_t most)
 
 /* ---- groups of tags, in ascending order --------------------------------------------------------- */
 
-/* 5 .. 7: the platform's attitude in the local axes at the sensor, so that a reader that applies it and then the sensor's
- * own angles gets the camera's direction exactly. 90, 91: the same by wider ranges and in finer steps. */
+/* 5 .. 7: the platform's attitude in the local axes at the sensor, so that a reader that applies it and then the
+ * sensor's own angles gets the camera's direction exactly. 90, 91: the same by wider ranges and in finer steps. */
 static void put_platform(KlvWriter *w, const Attitude *platform)
 {
     klv_item_unsigned(w, 5, 2, 0, 360, turn_deg(platform->yaw_deg));
@@ -170,7 +170,8 @@ static void put_items(KlvWriter *w, const FrameRecord *r, uint64_t time_us, cons
     if (targets) put_vmti(w, r, time_us, source, targets);
     if (place.known) put_height(w, 75, place.at.h_m);
     klv_item_number(w, 77, mode_exercise, 1);
-    if (r->footprint && r->footprint[FOOTPRINT_CENTRE].known) put_height(w, 78, r->footprint[FOOTPRINT_CENTRE].height_m);
+    if (r->footprint && r->footprint[FOOTPRINT_CENTRE].known)
+        put_height(w, 78, r->footprint[FOOTPRINT_CENTRE].height_m);
     if (place.known) {
         klv_item_signed(w, 79, 2, 327, place.v_ned_mps[0]);
         klv_item_signed(w, 80, 2, 327, place.v_ned_mps[1]);
@@ -194,16 +195,24 @@ double klv_vfov_deg(const FrameRecord *r)
     return 2 * atan(0.5 * r->request->view.height / r->request->view.focal_px) / rad_per_deg;
 }
 
+bool klv_time_us(uint64_t *out, double unix_s)
+{
+    static const double latest_s = 7258118400; /* 2200-01-01 */
+    if (!(unix_s >= 0 && unix_s < latest_s)) return false;
+    *out = (uint64_t)floor(unix_s * 1e6 + 0.5);
+    return true;
+}
+
 size_t klv_frame(uint8_t out[klv_most_octets], const FrameRecord *record, double unix_s, const KlvSource *source,
                  const KlvTargets *targets)
 {
-    static const double latest_s = 7258118400; /* 2200-01-01 */
-    uint8_t             octet[klv_most_octets - key_octets - 5 - 4];
-    KlvWriter           items = {.octet = octet, .room = sizeof octet};
-    KlvWriter           w     = {.octet = out, .room = klv_most_octets};
-    if (!(unix_s >= 0 && unix_s < latest_s)) return 0;
+    uint8_t   octet[klv_most_octets - key_octets - 5 - 4];
+    KlvWriter items = {.octet = octet, .room = sizeof octet};
+    KlvWriter w     = {.octet = out, .room = klv_most_octets};
+    uint64_t  time_us;
+    if (!klv_time_us(&time_us, unix_s)) return 0;
 
-    put_items(&items, record, (uint64_t)floor(unix_s * 1e6 + 0.5), source, targets);
+    put_items(&items, record, time_us, source, targets);
     klv_put(&w, uas_key, sizeof uas_key);
     klv_put_length(&w, items.used + 4);
     klv_put(&w, octet, items.used);

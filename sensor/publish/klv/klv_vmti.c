@@ -30,7 +30,8 @@ static void name_target(int *class_id, int *algorithm_id, Names *names, const Kl
             names->version[k]   = version;
             names->algorithms++;
         }
-        if (same_text(names->algorithm[k], t->algorithm) && same_text(names->version[k], version)) *algorithm_id = k + 1;
+        if (same_text(names->algorithm[k], t->algorithm) && same_text(names->version[k], version))
+            *algorithm_id = k + 1;
     }
 }
 
@@ -157,19 +158,21 @@ void klv_vmti(KlvWriter *w, const FrameRecord *record, uint64_t time_us, const K
               const KlvTargets *targets)
 {
     static const uint64_t most = 0xFFFFFF; /* of counts and sizes: three octets */
-    const View *view  = &record->request->view;
-    const int   total = targets->total > targets->count ? targets->total : targets->count;
+    const View *view   = &record->request->view;
+    const int   number = targets->elsewhen ? targets->frame : record->frame;
+    const int   total  = targets->total > targets->count ? targets->total : targets->count;
     uint8_t     octet[klv_most_targets * target_room];
     KlvWriter   series = {.octet = octet, .room = sizeof octet};
     Names       names  = {0};
     const int   count  = put_targets(&series, &names, view, targets);
 
+    if (targets->elsewhen) klv_time_us(&time_us, targets->unix_s);
     klv_item_number(w, 2, time_us, 8);
     klv_item_text(w, 3, targets->truth ? "Pitviper truth" : "Pitviper ATR", name_most);
     klv_item_short(w, 4, klv_vmti_version);
     klv_item_short(w, 5, (uint64_t)total < most ? (uint64_t)total : most);
     klv_item_short(w, 6, (uint64_t)count);
-    if (record->frame >= 0) klv_item_short(w, 7, (uint64_t)record->frame & most);
+    if (number >= 0) klv_item_short(w, 7, (uint64_t)number & most);
     klv_item_short(w, 8, (uint64_t)view->width & most);
     klv_item_short(w, 9, (uint64_t)view->height & most);
     klv_item_text(w, 10, klv_sensor_name(source), text_most);

@@ -1,5 +1,5 @@
-/* sensor/publish/klv/klv_writer.h: tag, length, value (SMPTE ST 336) into a buffer that is never exceeded, and the number
- * formats of ST 0601 (linear) and ST 1201 (IMAPB). */
+/* sensor/publish/klv/klv_writer.h: tag, length, value (SMPTE ST 336) into a buffer that is never exceeded, and the
+ * number formats of ST 0601 (linear) and ST 1201 (IMAPB). */
 #ifndef SENSOR_PUBLISH_KLV_KLV_WRITER_H
 #define SENSOR_PUBLISH_KLV_KLV_WRITER_H
 

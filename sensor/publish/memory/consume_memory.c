@@ -135,8 +135,8 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     if (status == STATUS_OK) *out = &m->consumer;
     else free(m);
     if (status == STATUS_OK)
-        log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; etc/examples/read_memory.py %s shows "
-                  "it\n", name, m->plane_count, m->width, m->height, ring.slots, 1e-6 * (double)memory_ring_size(m->ring),
-                  name);
+        log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; to see them: "
+                  "etc/examples/read_memory.py %s\n", name, m->plane_count, m->width, m->height, ring.slots,
+                  1e-6 * (double)memory_ring_size(m->ring), name);
     return status;
 }

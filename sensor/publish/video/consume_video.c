@@ -30,7 +30,7 @@ typedef struct Video {
     Channel      channel[BAND_COUNT + 1];
     uint8_t     *image, *tile; /* for the largest frame so far */
     size_t       image_octets;
-    VideoTargets found;        /* by a recogniser */
+    KlvDetections found;       /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -101,7 +101,7 @@ static size_t make_klv(uint8_t out[klv_most_octets], Video *v, const Channel *c,
         klv_truth_targets(&of_truth, kept, &frame->record);
         targets = &of_truth;
     } else if (atr && v->of.detections) {
-        targets = video_targets(&v->found, v->of.detections, band, frame->unix_s);
+        targets = klv_detections(&v->found, frame, band);
     }
     return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
 }
@@ -279,6 +279,7 @@ Status consume_video(Consumer **out, const VideoOf *of)
     if (!v) return STATUS_NO_MEMORY;
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
     v->of       = *of;
+    v->found    = (KlvDetections){.from = of->detections};
     v->to       = to;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS

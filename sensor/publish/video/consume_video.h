@@ -10,7 +10,7 @@
 
 #include "sensor/publish/consumer.h"
 #include "sensor/publish/video/video_names.h"
-#include "sensor/publish/video/video_targets.h"
+#include "sensor/publish/klv/klv_detections.h"
 
 typedef struct VideoOf {
     const Config    *config;
