@@ -121,7 +121,7 @@ static void detect(const PitviperMemory *m, int to)
 static int read_frames(PitviperMemory *m, const Options *o)
 {
     const int to = o->detect ? socket(AF_INET, SOCK_DGRAM, 0) : -1;
-    int       result;
+    int       result = 0;
     long      frames = 0;
     if (o->detect && m->header.detections_port == 0)
         fprintf(stderr, "read_memory: the node takes no detections; set publish.detections_port\n");

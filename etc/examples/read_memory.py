@@ -106,7 +106,8 @@ class Ring:
                 raise FileNotFoundError(errno.ENOENT, 'no node writes this ring', f'/dev/shm/{name}')
             time.sleep(0.01)
         newest = self._newest()
-        self.taken, self.missed, self.torn = max(newest - 1, 0), 0, 0
+        self.taken, self.missed, self.torn = max(newest - self.header.slot_count, 0), 0, 0
+        self.begun = False
 
     def _open(self, name):
         self.file = os.open(f'/dev/shm/{name}', os.O_RDONLY | os.O_CLOEXEC | os.O_NOFOLLOW)
@@ -206,7 +207,7 @@ class Ring:
         return Frame(record, planes, targets)
 
     def take(self, in_order=False):
-        """The newest frame, or the next one in order; None: there is none that was not taken."""
+        """The newest frame, or in order from the oldest that the ring holds; None: there is none not taken before."""
         least = self.taken + 1
         for _ in range(16):
             newest = self._newest()
@@ -215,8 +216,8 @@ class Ring:
             least = newest if not in_order else max(least, newest - self.header.slot_count + 1)
             frame = self._copy(least)
             if frame:
-                self.missed += least - self.taken - 1
-                self.taken = least
+                self.missed += least - self.taken - 1 if self.begun else 0
+                self.taken, self.begun = least, True
                 return frame
             if in_order:
                 least += 1

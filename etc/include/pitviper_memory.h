@@ -17,10 +17,10 @@
  * Every size and offset in the shared memory is checked before use, and a frame is copied out before it is shown. What
  * a reader cannot guard against is a segment made shorter while it is mapped (SIGBUS); a node never does that.
  *
- * How a slot is protected (a sequence lock): PitviperMemoryRecord.lock is 2 n - 1 while frame n is written and 2 n when
- * it is complete. A copy is good if lock was 2 n before it and after it. All words of a slot are stored with release and
- * loaded with acquire semantics: a reader that has met one word of a newer frame meets the newer lock too. These are
- * plain moves on x86-64; no fences are needed, and it is free of data races in the sense of C11. */
+ * How a slot is protected (a sequence lock): PitviperMemoryRecord.lock is 2 n - 1 while frame n is written and 2 n
+ * when it is complete. A copy is good if lock was 2 n before it and after it. All words of a slot are stored with
+ * release and loaded with acquire semantics: a reader that has met one word of a newer frame meets the newer lock too.
+ * These are plain moves on x86-64; no fences are needed, and there are no data races in the sense of C11. */
 #ifndef PITVIPER_MEMORY_H
 #define PITVIPER_MEMORY_H
 
@@ -129,7 +129,7 @@ typedef struct PitviperMemoryRecord {
     /* Steady clock (CLOCK_MONOTONIC), ns, for latency; 0: not known. */
     int64_t  arrived_ns;           /* 336 the newest datagram that the frame shows */
     int64_t  begun_ns;             /* 344 work on the frame began */
-    int64_t  posed_ns;             /* 352 poses sampled, rendering began */
+    int64_t  posed_ns;             /* 352 the poses were sampled */
     int64_t  rendered_ns;          /* 360 */
     int64_t  written_ns;           /* 368 the frame is complete in this slot */
     int64_t  seed;                 /* 376 of all random numbers */
@@ -161,7 +161,7 @@ typedef struct PitviperMemoryTarget {
     char     class_name[24];       /*  16 `tank`, `truck` ... */
     char     marking[16];          /*  40 raw octets */
     char     type[32];             /*  56 entity type, `1.1.222.1.2.0.0` */
-    int32_t  box[4];               /*  88 visible pixels: left, top, right, bottom, the last two beyond it; all 0: none */
+    int32_t  box[4];               /*  88 visible pixels: left, top, right, bottom, the last two beyond; all 0: none */
     double   amodal_box[4];        /* 104 of all of it, hidden parts too, px, not clipped to the image */
     double   range_m, closing_mps; /* 136 */
     double   aspect_rad;           /* 152 0: nose on */
@@ -246,7 +246,7 @@ enum {
 enum {
     PITVIPER_MEMORY_ABSENT = -1,  /* no such ring (yet): try again later */
     PITVIPER_MEMORY_REFUSED = -2, /* not a ring, of another version or byte order, or damaged */
-    PITVIPER_MEMORY_ENDED = -3,   /* the node has closed it, or died: close it and open again to wait for the next one */
+    PITVIPER_MEMORY_ENDED = -3,   /* the node has closed it, or died: close it, and open again for the next one */
     PITVIPER_MEMORY_SYSTEM = -4   /* a call of the operating system failed: errno */
 };
 
@@ -255,13 +255,13 @@ typedef struct PitviperMemory {
     PitviperMemoryPlane  plane[pitviper_memory_planes_most]; /* [header.plane_count] */
     PitviperMemoryRecord record;   /* of the frame taken last */
     uint64_t             taken;    /* its sequence; 0: none */
-    uint64_t             missed;   /* frames that were never taken since it was opened */
+    uint64_t             missed;   /* frames never taken since the first one */
     uint64_t             torn;     /* copies discarded because the slot was rewritten meanwhile */
     /* for the functions below */
     const unsigned char *at;
     uint64_t             size;
     unsigned char       *copy;     /* [header.slot_size] */
-    int                  file;
+    int                  file, begun;
 } PitviperMemory;
 
 static inline const char *pitviper_memory_error(int result)
@@ -348,7 +348,8 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
 {
     struct stat status;
     if (fstat(m->file, &status) != 0) return PITVIPER_MEMORY_SYSTEM;
-    if (!S_ISREG(status.st_mode) || status.st_size < (off_t)pitviper_memory_header_least) return PITVIPER_MEMORY_REFUSED;
+    if (!S_ISREG(status.st_mode) || status.st_size < (off_t)pitviper_memory_header_least)
+        return PITVIPER_MEMORY_REFUSED;
     m->size     = (uint64_t)status.st_size;
     void *const at = mmap(NULL, (size_t)m->size, PROT_READ, MAP_SHARED, m->file, 0);
     if (at == MAP_FAILED) return PITVIPER_MEMORY_SYSTEM;
@@ -366,7 +367,7 @@ static inline int pitviper_memory_map_(PitviperMemory *m)
     }
     m->copy = (unsigned char *)malloc((size_t)h->slot_size);
     if (!m->copy) return PITVIPER_MEMORY_SYSTEM;
-    m->taken = h->newest > 0 ? h->newest - 1 : 0; /* the newest frame that is there is the first one taken */
+    m->taken = h->newest > h->slot_count ? h->newest - h->slot_count : 0; /* in order: from the oldest that is there */
     return 0;
 }
 
@@ -415,8 +416,8 @@ static inline int pitviper_memory_open(PitviperMemory *m, const char *name)
     return PITVIPER_MEMORY_ENDED;
 }
 
-/* One wait for a change of `wake`, at most so long. Where the kernel refuses a futex in memory that is mapped read-only,
- * a short sleep. */
+/* One wait for a change of `wake`, at most so long. Where the kernel refuses a futex in memory that is mapped
+ * read-only, a short sleep. */
 static inline void pitviper_memory_sleep_(const PitviperMemoryHeader *h, uint32_t wake, int64_t ns)
 {
     struct timespec time;
@@ -488,7 +489,8 @@ static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
         if (!in_order) least = newest;
         else if (newest - least >= slots) least = newest - slots + 1;
         if (pitviper_memory_copy_frame_(m, least)) {
-            m->missed += least - m->taken - 1;
+            if (m->begun) m->missed += least - m->taken - 1;
+            m->begun = 1;
             m->taken = least;
             return 1;
         }
@@ -497,8 +499,9 @@ static inline int pitviper_memory_take_(PitviperMemory *m, int in_order)
     return 0;
 }
 
-/* 1: a frame that was not taken before is in m->record, and its planes and targets can be had; 0: there is none. The
- * first one skips what is older than the newest; the second one takes frames in order, as long as the ring holds them. */
+/* 1: a frame that was not taken before is in m->record, and its planes and targets can be had; 0: there is none.
+ * take_newest skips what is older than the newest; take_next begins with the oldest that the ring holds and takes
+ * frames in order, except those that are overwritten before. m->missed counts what was skipped since the first one. */
 static inline int pitviper_memory_take_newest(PitviperMemory *m) { return pitviper_memory_take_(m, 0); }
 static inline int pitviper_memory_take_next(PitviperMemory *m) { return pitviper_memory_take_(m, 1); }
 

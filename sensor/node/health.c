@@ -274,6 +274,7 @@ void health_frame(Health *h, const FrameRecord *frame, double now_s)
     s->missing = 0;
     s->frame_s = now_s;
     s->others  = frame->snapshot->count - (frame->host != NULL);
+    if (!frame->target) s->in_view_s = s->visible_s = now_s; /* not computed: nothing to report of it */
     for (int i = 0; i < frame->target_count; i++) visible |= frame->target[i].pixels > 0;
     if (frame->target_count > 0) s->in_view_s = now_s;
     if (visible) s->visible_s = now_s;

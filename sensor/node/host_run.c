@@ -29,6 +29,13 @@ static Status hash_config(char out[sha256_text_size], const Options *o)
 
 Status run_prepare(Run *run)
 {
+    if (!run->options.config.publish.truth && !run->wall_s) {
+        log_error("%s: publish.truth: false is for `run` and `replay --speed X`; a replay at full speed always has truth",
+                  options_command(&run->options));
+        return STATUS_BAD_VALUE;
+    }
+    if (!run->options.config.publish.truth)
+        choice_add(&run->choices, "truth: no truth.jsonl and no hashes of frames (publish.truth)");
     if (!bands_choose(&run->bands, run->options.config.sensor.bands)) return STATUS_BAD_VALUE;
     Status status = config_own_tables(&run->options.config);
     if (status != STATUS_OK) return status;
@@ -123,7 +130,8 @@ static Status write_run(const Run *run, const char *out, const char *host, const
               .isa = run->options.isa, .seed = run->options.config.seed, .threads = run->options.threads,
               .host_count = result->host_count > 0 ? result->host_count : 1,
               .choice_count = choices->count, .frames = result->frames, .listed = result->listed,
-              .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = hash, .dis = heard,
+              .frame_number = result->number, .host = hosts, .choice = choice, .frame_sha256 = run->options.config.publish.truth ? hash : NULL,
+              .dis = heard,
               .link_dropped = link ? dis_log_dropped(link) : 0,
               .own = run->own, .live = run->live,
               .entities_created = result->entities.created, .entities_timed_out = result->entities.timed_out,
@@ -211,6 +219,7 @@ static Status conclude(const Run *run, const char *out, const char *host, const 
     const Status  status = write_run(run, out, host, choices, result, heard, state);
     if (run->stopped && !run->live) log_warn("%s: stopped before its last frame; run.json says so", name);
     if (config->publish.files) log_print("%d frames in %s/frames\n", result->frames, out);
+    else if (!config->publish.truth) log_print("%d frames; figures in %s/run.json\n", result->frames, out);
     else log_print("%d frames; their truth is in %s/truth.jsonl\n", result->frames, out);
     fflush(stdout);
     if (result->at_limit > 0)

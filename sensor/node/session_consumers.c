@@ -5,7 +5,6 @@
 #include "sensor/publish/pairs.h"
 #include "sensor/publish/video/consume_video.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 /* The detectors of one consumer. */
@@ -45,31 +44,25 @@ static Status add_latest(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* What a consumer that makes metadata needs: its own detections, and the geoid. */
-static Status metadata_of(KlvDetections **detections, const Geoid **geoid, Session *s)
+/* For heights above mean sea level in metadata; NULL: there is none. */
+static const Geoid *geoid_of(Session *s)
 {
-    if (s->klv_makers == 0) klv_geoid_open(&s->geoid, s->shared->config);
-    *geoid      = s->geoid.n_m ? &s->geoid : NULL;
-    *detections = calloc(1, sizeof **detections);
-    if (!*detections) return STATUS_NO_MEMORY;
-    assert(s->klv_makers < session_klv_makers);
-    (*detections)->from = s->detections;
-    s->klv_detections[s->klv_makers++] = *detections;
-    return STATUS_OK;
+    if (!s->geoid.n_m) klv_geoid_open(&s->geoid, s->shared->config);
+    return s->geoid.n_m ? &s->geoid : NULL;
 }
 
 /* to: VideoTo, of those configured. patient: a failure ends nothing. */
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
-    VideoOf              of     = {.config = shared->config, .to = to, .bands = shared->bands,
-                                   .rate_hz = s->plan.rate_hz, .patient = patient, .detections = klv_detections};
+    const char          *slash  = strrchr(s->out, '/');
+    const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
+                                   .rate_hz = s->plan.rate_hz, .patient = patient, .geoid = geoid_of(s),
+                                   .detections = s->detections,
+                                   .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
     Consumer            *consumer = NULL;
-    KlvDetections       *detections;
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
-    Status status = metadata_of(&detections, &of.geoid, s);
-    of.user       = detections;
-    if (status == STATUS_OK) status = consume_video(&consumer, &of);
+    const Status status = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -99,15 +92,16 @@ static Status add_pairs(Consumers *list, Session *s, Pool *pool, unsigned raw)
 
 static Status add_truth_lines(Consumers *list, Session *s)
 {
-    Consumer    *consumer = NULL;
-    const Status status   = consume_truth_lines(&consumer, s->out, s->shared->live, &s->lines_failed);
+    Consumer *consumer = NULL;
+    if (!s->shared->config->publish.truth) return STATUS_OK;
+    const Status status = consume_truth_lines(&consumer, s->out, s->shared->live, &s->lines_failed);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_hashes(Consumers *list, Session *s, FrameDone *done)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_hashes(&consumer, done, s);
+    const Status status   = consume_hashes(&consumer, done, s, s->shared->config->publish.truth);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -120,21 +114,17 @@ static Status add_coco(Consumers *list, Session *s)
 
 static Status add_klv(Consumers *list, Session *s)
 {
-    const SessionShared *shared   = s->shared;
-    KlvFiles             of       = {.out = s->out, .config = shared->config, .bands = shared->bands,
-                                     .patient = shared->live, .detections = klv_detections};
-    Consumer            *consumer = NULL;
-    KlvDetections       *detections;
-    Status               status   = metadata_of(&detections, &of.geoid, s);
-    of.user = detections;
-    if (status == STATUS_OK) status = consume_klv(&consumer, &of);
+    const KlvFiles of = {.out = s->out, .config = s->shared->config, .bands = s->shared->bands,
+                         .patient = s->shared->live, .geoid = geoid_of(s), .detections = s->detections};
+    Consumer      *consumer = NULL;
+    const Status   status   = consume_klv(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
 static Status add_call(Consumers *list, const SessionShared *shared)
 {
     Consumer    *consumer = NULL;
-    const Status status   = consume_by_call(&consumer, shared->publish, shared->user);
+    const Status status   = consume_by_call(&consumer, shared->publish, shared->user, shared->config->publish.truth);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -160,7 +150,8 @@ static Status add_memory(Consumers *list, Session *s, bool behind_displays)
     if (!*config->publish.memory || counts != behind_displays) return STATUS_OK;
     MemoryOf of = {.config = config, .config_sha256 = shared->config_sha256, .bands = shared->bands,
                    .host = shared->several ? s->host_text : NULL};
-    for (int b = 0; b < BAND_COUNT; b++) of.with_sensor |= s->chain[b] ? 1u << b : 0;
+    for (int b = 0; b < BAND_COUNT; b++)
+        if (s->chain[b]) of.count_bits[b] = (int)lround(log2(chain_full(s->chain[b]) + 1));
     const Status status = consume_memory(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
@@ -197,6 +188,18 @@ static Status add_all(Consumers *list, Consumers *others)
     }
     others->count = 0;
     return status;
+}
+
+/* What consumers need beyond what they state: a frame file is of all planes; so are image files of truth; and the image
+ * motion that a detector blurs by is known from the truth plane of ranges. */
+static unsigned further_wants(const Session *s, unsigned wants)
+{
+    const Config *config = s->shared->config;
+    bool          sensor = false;
+    for (int b = 0; b < BAND_COUNT; b++) sensor |= s->chain[b] != NULL;
+    const bool planes = s->shared->save_count > 0 || (config->publish.files && frame_files_truth(config)) ||
+                        (sensor && wants & (WANT_DISPLAY | WANT_COUNTS));
+    return wants | (planes ? WANT_PLANES : 0);
 }
 
 /* ---- what a session's frames go to -------------------------------------------------------------- */
@@ -273,13 +276,13 @@ Status session_consumers(Session *s, FrameDone *done)
     const unsigned kept   = shared->bands | (frame_files_truth(config) ? frame_truth : 0);
     Status         status = frame_files_prepare(s->out, config->publish.files ? kept : 0, raw);
     if (status == STATUS_OK && shared->wall_s) status = latency_create(&s->latency);
+    if (status == STATUS_OK) status = add_detections(&s->consumers, s); /* before a frame can be answered */
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
-    if (status == STATUS_OK) status = add_detections(&s->consumers, s);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
     if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
-    s->wants = consumers_wants(&s->consumers) | (shared->save_count > 0 ? WANT_PLANES : 0); /* a frame file: of all */
+    s->wants = further_wants(s, consumers_wants(&s->consumers));
     /* the one being rendered, and of each queue the one that waits and the one being published */
     return status == STATUS_OK ? frame_pool_create(&s->frames, 1 + 2 * s->queues) : status;
 }

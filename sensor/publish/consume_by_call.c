@@ -8,6 +8,7 @@ typedef struct Call {
     FrameCall *call;
     FrameDone *done;
     void      *user;
+    bool       hashes;
 } Call;
 
 static Status put_record(Consumer *consumer, Frame *frame)
@@ -20,7 +21,7 @@ static Status put_record(Consumer *consumer, Frame *frame)
 static Status put_hash(Consumer *consumer, Frame *frame)
 {
     const Call  *c      = (const Call *)consumer;
-    const Status status = frame_sha256(&frame->seen);
+    const Status status = c->hashes ? frame_sha256(&frame->seen) : STATUS_OK;
     if (status == STATUS_OK) c->done(c->user, frame);
     return status;
 }
@@ -40,13 +41,15 @@ static Status open_call(Consumer **out, const Call *made_of)
     return STATUS_OK;
 }
 
-Status consume_by_call(Consumer **out, FrameCall *call, void *user)
+Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets)
 {
-    const Call made = {.consumer = {WANT_TARGETS, put_record, NULL, close_call, NULL}, .call = call, .user = user};
+    const Call made = {.consumer = {targets ? WANT_TARGETS : 0, put_record, NULL, close_call, NULL},
+                       .call = call, .user = user};
     return open_call(out, &made);
 }
 
-Status consume_hashes(Consumer **out, FrameDone *done, void *user)
+Status consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes)
 {
-    return open_call(out, &(Call){.consumer = {WANT_SHA256, put_hash, NULL, close_call, NULL}, .done = done, .user = user});
+    return open_call(out, &(Call){.consumer = {hashes ? WANT_SHA256 : 0, put_hash, NULL, close_call, NULL},
+                                  .done = done, .user = user, .hashes = hashes});
 }

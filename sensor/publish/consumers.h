@@ -39,12 +39,13 @@ Status consume_truth_lines(Consumer **out, const char *folder, bool patient, int
 /* OUT/coco.json. */
 Status consume_coco(Consumer **out, const char *folder, const Config *config, const char *config_sha256);
 
-/* Each frame's record, passed to a function: health of a live node, tests. */
+/* Each frame's record, passed to a function: health of a live node, tests. targets: with its targets. */
 typedef void FrameCall(void *user, const FrameRecord *record);
-Status consume_by_call(Consumer **out, FrameCall *call, void *user);
+Status consume_by_call(Consumer **out, FrameCall *call, void *user, bool targets);
 
-/* The hash of each frame, and that it has been published: the last of a list. done is called for each. */
+/* The hash of each frame (hashes: false: none), and that it has been published: the last of a list. done is called for
+ * each. */
 typedef void FrameDone(void *user, const Frame *frame);
-Status consume_hashes(Consumer **out, FrameDone *done, void *user);
+Status consume_hashes(Consumer **out, FrameDone *done, void *user, bool hashes);
 
 #endif

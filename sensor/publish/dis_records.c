@@ -2,7 +2,7 @@
 #include "sensor/publish/dis_records.h"
 
 #include "dis/reader.h"
-#include "sensor/publish/stream_url.h"
+#include "sensor/settings/video_choice.h"
 
 #include <stdlib.h>
 
@@ -203,11 +203,15 @@ size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *s
 {
     static const char *const codec[] = {"", "h264", "h264-10", "hevc-12", "ffv1", NULL};
     static const char *const klv[] = {"off", "async", "sync", NULL}, *const targets[] = {"off", "atr", "truth", NULL};
-    const bool no_klv = strcmp(config->publish.klv, "off") == 0; /* then it has no targets either */
-    char       url[stream_url_size];
-    Octets     o   = {.used = 0};
-    DisData    pdu = data_pdu(sender);
-    if (!stream_url(url, config->publish.stream, stream)) return 0;
+    const bool  no_klv = strcmp(config->publish.klv, "off") == 0; /* then it has no targets either */
+    const char *why;
+    char        text[40];
+    StreamUrl   url;
+    Octets      o   = {.used = 0};
+    DisData     pdu = data_pdu(sender);
+    if (!stream_url_parse(&url, &why, config->publish.stream)) return 0;
+    const int port = url.port + stream * stream_port_step;
+    if (port > UINT16_MAX) return 0;
     add_fixed(&pdu, datum_band, (uint32_t)band);
     add_fixed(&pdu, datum_kind, datum_kind_stream);
     add_image(&pdu, r);
@@ -217,7 +221,9 @@ size_t dis_record_stream(uint8_t out[dis_smallest_mtu], const DisRecordSender *s
     add_time(&pdu, &o, r);
     add_host(&pdu, &o, r);
     const size_t from = o.used;
-    for (const char *at = url; *at; at++) put(&o, (uint8_t)*at, 1);
+    snprintf(text, sizeof text, "udp://%u.%u.%u.%u:%d", url.address[0], url.address[1], url.address[2],
+             url.address[3], port);
+    for (const char *at = text; *at; at++) put(&o, (uint8_t)*at, 1);
     add_variable(&pdu, datum_stream_url, &o, from);
     return dis_encode_data(out, dis_smallest_mtu, &pdu);
 }

@@ -404,7 +404,7 @@ Status record_write_run(const char *path, const RunRecord *r)
     json_object_set_new(run, "hosts", texts(r->host, r->host_count));
     json_object_set_new(run, "choices", texts(r->choice, r->choice_count));
     json_object_set_new(run, "frames", json_integer(r->frames));
-    json_object_set_new(run, "frame_sha256", texts(r->frame_sha256, r->listed));
+    if (r->frame_sha256) json_object_set_new(run, "frame_sha256", texts(r->frame_sha256, r->listed));
     json_t *number = json_array();
     for (int i = 0; i < r->listed; i++) json_array_append_new(number, json_integer(r->frame_number[i]));
     json_object_set_new(run, "frame_number", number);

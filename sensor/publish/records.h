@@ -64,7 +64,7 @@ typedef struct RunRecord {
     const int  *frame_number;
     const char *const *host;          /* ids as text */
     const char *const *choice;
-    const char *const *frame_sha256;
+    const char *const *frame_sha256; /* NULL: not computed */
     const DisCounters *dis;
     uint64_t    link_dropped;         /* packets of the capture without a datagram */
     uint64_t    own;                  /* datagrams of this node itself, ignored */

@@ -38,4 +38,10 @@ static inline void retry_done(RetryBackoff *p, bool tried, Status status)
     p->off_s  = wall_clock_s() + retry_interval_s;
 }
 
+/* At the end of the run: what it lacks, if that has not been said yet. */
+static inline void retry_end(const RetryBackoff *p)
+{
+    if (p->failed) log_warn("session: %d frames lack %s", p->lacking, p->what);
+}
+
 #endif

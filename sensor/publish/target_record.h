@@ -34,6 +34,7 @@
 #include "entities/catalog/catalog.h"
 #include "sensor/truth/truth.h"
 
+/* The values are those of PitviperMemoryTarget.flags. */
 typedef enum TargetOccluder { OCCLUDER_NONE, OCCLUDER_GROUND, OCCLUDER_ENTITY } TargetOccluder;
 
 /* NaN: not computed. */

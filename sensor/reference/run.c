@@ -32,7 +32,7 @@ static const ReferenceField fields[] = {
      "which entities carried the sensor, one after the other"},
     {"choices", "list of strings", "", "`what: choice`", "", "automatic choices, as printed"},
     {"frames", "integer", "", "", "", "number of frames rendered"},
-    {"frame_sha256", "list of strings", "", "as frame_number", "", "SHA-256 of all planes before they are encoded"},
+    {"frame_sha256", "list of strings", "", "as frame_number", "with publish.truth false", "SHA-256 of all planes before they are encoded"},
     {"frame_number", "list of integers", "", "from 0", "",
      "numbers of the frames in frame_sha256; of a very long run only the first"},
     {"counters", "object", "", "", "", "over the whole run"},

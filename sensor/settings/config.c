@@ -147,7 +147,7 @@ static const Setting keys[] = {
     {"publish.dis", SETTING_TEXT, AT(publish.dis), 0, 0, "off|sensor|truth", "",
      "Data PDUs per frame and band: off; sensor: what a seeker could measure; truth: with ids and ranges"},
     {"publish.files", SETTING_BOOL, AT(publish.files), 0, 1, NULL, "",
-     "write image files; truth.jsonl and run.json are always written"},
+     "write image files; truth.jsonl and run.json are written without them, too"},
     {"publish.png", SETTING_BOOL, AT(publish.png), 0, 1, NULL, "", "write display images beside the EXR files"},
     {"publish.planes", SETTING_TEXT, AT(publish.planes), 0, 0, NULL, "",
      "truth planes to write: all, none, or any of range,entity,part,material,temperature,normal"},
@@ -159,6 +159,9 @@ static const Setting keys[] = {
      "targets with fewer mask pixels are marked in coco.json to be ignored (iscrowd)"},
     {"publish.coco_min_visible", SETTING_DOUBLE, AT(publish.coco_min_visible), 0, 1, NULL, "",
      "targets with a smaller visible fraction are marked in coco.json to be ignored (iscrowd)"},
+    {"publish.truth", SETTING_BOOL, AT(publish.truth), 0, 1, NULL, "",
+     "write truth.jsonl and hash every frame; false, in `run` and `replay --speed X` only: neither is computed, and truth "
+     "planes only if another product has them"},
     {"publish.latest", SETTING_BOOL, AT(publish.latest), 0, 1, NULL, "",
      "keep latest/BAND.png, the newest display of each band, replaced as a whole"},
     {"publish.video", SETTING_PATH, AT(publish.video), 0, 0, NULL, "",
@@ -316,6 +319,7 @@ Config config_default(void)
     strcpy(c.publish.pairs, "off");
     strcpy(c.publish.planes, "all");
     c.publish.files                 = true;
+    c.publish.truth                 = true;
     c.publish.png                   = true;
     c.publish.coco_min_pixels       = 1;
     strcpy(c.publish.video_codec, "h264");
@@ -508,8 +512,12 @@ Status config_check(const Config *config)
         log_error("config: exercise.from_s: %s is after exercise.to_s: %s", config->exercise.from, config->exercise.to);
         return STATUS_BAD_VALUE;
     }
-    const Status status = video_choice_check(config);
-    return status == STATUS_OK ? memory_choice_check(config) : status;
+    const Status status = video_choice_check(config->publish.video, config->publish.stream, config->publish.video_codec,
+                              config->sensor.bands);
+    const bool sensor = strcmp(config->sensor.preset, "none") != 0 || *config_sheet(config);
+    return status == STATUS_OK
+               ? memory_choice_check(config->publish.memory, config->publish.memory_planes, sensor)
+               : status;
 }
 
 void config_text(char *out, size_t out_size, const Config *config)

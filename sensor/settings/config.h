@@ -74,6 +74,7 @@ typedef struct Config {
         bool   coco;
         int    coco_min_pixels;    /* targets below are marked to be ignored */
         double coco_min_visible;
+        bool   truth;              /* truth.jsonl, and the hash of each frame */
         bool   latest;             /* OUT/latest: the newest display of each band */
         char   video[config_paths_size]; /* a file (.mp4, .mkv, .ts) or a folder; empty: none */
         char   video_codec[16];    /* h264, h264-10, hevc-12 or ffv1 */

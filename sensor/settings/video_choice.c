@@ -75,11 +75,11 @@ VideoKind video_kind(const char *path)
     return VIDEO_FOLDER;
 }
 
-VideoCodec video_codec(const Config *config)
+VideoCodec video_codec(const char *name)
 {
     static const char *const names[] = {"h264", "h264-10", "hevc-12", "ffv1"};
     int                      i       = 0;
-    while (i < VIDEO_FFV1 && strcmp(config->publish.video_codec, names[i]) != 0) i++;
+    while (i < VIDEO_FFV1 && strcmp(name, names[i]) != 0) i++;
     return (VideoCodec)i;
 }
 
@@ -91,36 +91,37 @@ static int bands_listed(const char *text)
     return count;
 }
 
-Status video_choice_check(const Config *config)
+Status video_choice_check(const char *video, const char *stream, const char *codec, const char *bands)
 {
-    const VideoKind kind = video_kind(config->publish.video);
+    const VideoKind kind = video_kind(video);
     const char     *why  = NULL;
     StreamUrl       url;
-    if (kind == VIDEO_NONE && !*config->publish.stream) return STATUS_OK;
+    if (kind == VIDEO_NONE && !*stream) return STATUS_OK;
 #ifndef PITVIPER_VIDEO
     log_error("config: publish.%s: this program was built without FFmpeg's libraries; install libavcodec-dev, "
-              "libavformat-dev and libavutil-dev and build it again, or leave it out", *config->publish.stream ? "stream" : "video");
+              "libavformat-dev and libavutil-dev and build it again, or leave it out",
+              *stream ? "stream" : "video");
     return STATUS_BAD_VALUE;
 #endif
-    if (*config->publish.stream && !stream_url_parse(&url, &why, config->publish.stream)) {
-        log_error("config: publish.stream: '%s' %s; for example udp://239.1.2.3:5004", config->publish.stream, why);
+    if (*stream && !stream_url_parse(&url, &why, stream)) {
+        log_error("config: publish.stream: '%s' %s; for example udp://239.1.2.3:5004", stream, why);
         return STATUS_BAD_VALUE;
     }
-    const int steps = (bands_listed(config->sensor.bands) - 1) * stream_port_step;
-    if (*config->publish.stream && url.port + steps > 65535) {
+    const int steps = (bands_listed(bands) - 1) * stream_port_step;
+    if (*stream && url.port + steps > 65535) {
         log_error("config: publish.stream: port %d: the last of %d bands would be sent to port %d; choose one of at "
                   "most %d", url.port, steps / stream_port_step + 1, url.port + steps, 65535 - steps);
         return STATUS_BAD_VALUE;
     }
-    const bool lossless = video_codec(config) == VIDEO_FFV1;
-    if (lossless && *config->publish.stream) {
+    const bool lossless = video_codec(codec) == VIDEO_FFV1;
+    if (lossless && *stream) {
         log_error("config: publish.video_codec: ffv1 is for files; MPEG-TS (publish.stream) does not carry it; choose "
                   "h264, h264-10 or hevc-12");
         return STATUS_BAD_VALUE;
     }
     if (lossless && (kind == VIDEO_MP4 || kind == VIDEO_TS)) {
-        log_error("config: publish.video_codec: ffv1 is for .mkv files; publish.video: %s: choose a name that ends with "
-                  ".mkv, a folder, or another codec", config->publish.video);
+        log_error("config: publish.video_codec: ffv1 is for .mkv files; publish.video: %s: choose a name that ends "
+                  "with .mkv, a folder, or another codec", video);
         return STATUS_BAD_VALUE;
     }
     return STATUS_OK;

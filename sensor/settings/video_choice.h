@@ -4,7 +4,7 @@
 #ifndef SENSOR_SETTINGS_VIDEO_CHOICE_H
 #define SENSOR_SETTINGS_VIDEO_CHOICE_H
 
-#include "sensor/settings/config.h"
+#include "pitviper.h"
 
 /* An IPv4 address and a port. */
 typedef struct StreamUrl {
@@ -23,9 +23,9 @@ typedef enum VideoKind { VIDEO_NONE, VIDEO_FOLDER, VIDEO_MP4, VIDEO_MKV, VIDEO_T
 VideoKind video_kind(const char *path);
 
 typedef enum VideoCodec { VIDEO_H264, VIDEO_H264_10, VIDEO_HEVC_12, VIDEO_FFV1 } VideoCodec;
-VideoCodec video_codec(const Config *config);
+VideoCodec video_codec(const char *name); /* of the setting */
 
-/* STATUS_BAD_VALUE, logged: contradictions between these keys, with a next step. Part of config_check. */
-Status video_choice_check(const Config *config);
+/* STATUS_BAD_VALUE, logged: contradictions between these settings, with a next step. Part of config_check. */
+Status video_choice_check(const char *video, const char *stream, const char *codec, const char *bands);
 
 #endif

@@ -2,6 +2,7 @@
 #include "tests/fuzz/fuzz_seed.h"
 
 #include "sensor/settings/config.h"
+#include "sensor/settings/video_choice.h"
 
 #include <stdlib.h>
 
@@ -13,7 +14,7 @@ size_t fuzz_seed(uint8_t *out, uint32_t index)
     static const char *const seed[3] = {
         "sensor:\n  width_px: 96\n  hfov_deg: 1.5e0\n  bands: optical,lwir\n  optical: pan\n  preset: none\n"
         "detector:\n  bits: 16\n  level: manual\n  smear: false\nexercise:\n  utc: 2026-06-21T10:00:00Z\n  from_s: -1\n"
-        "  to_s: 2\nseed: 7\n",
+        "  to_s: 2\npublish:\n  stream: udp://239.1.2.3:5004\n  video: a.mkv\n  video_codec: h264-10\nseed: 7\n",
         "{sensor: {width_px: 96, rate_hz: 0}, weather: {visibility_m: 23000, wind_from_deg: 0},\n"
         "terrain: {vertical: geoid, elevation: \"a,b\"}, observer: {range_m: 10}, entities: {capacity: 1}, seed: 1}\n",
         "# anchors\nsensor: &s {height_px: &n 64}\nradar:\n  bins: *n\n  bin_m: 0.3\nmodels: {sag_m: 0.1}\n",
@@ -46,6 +47,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     static char text[1 << 16];
     config_text(text, sizeof text, &config);
     if (strlen(text) >= sizeof text - 1) abort();
-    (void)config_check(&config);
+    StreamUrl   url;
+    const char *why = NULL;
+    if (config_check(&config) == STATUS_OK && *config.publish.stream &&
+        !(stream_url_parse(&url, &why, config.publish.stream) && url.port > 0))
+        abort();
     return 0;
 }

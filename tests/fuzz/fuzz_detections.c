@@ -30,7 +30,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (!(reason >= DETECTIONS_GOOD && reason < DETECTIONS_FRAME) || !detections_reason_name[reason]) abort();
     if (reason != DETECTIONS_GOOD) return 0;
     /* what the metadata of a video builds on */
-    if (size != PITVIPER_DETECTIONS_SIZE(d.count) || d.count > pitviper_detections_most || !(bands >> d.band & 1)) abort();
+    if (size != PITVIPER_DETECTIONS_SIZE(d.count) || d.count > pitviper_detections_most) abort();
+    if (!(bands >> d.band & 1)) abort();
     for (uint32_t i = 0; i < d.count; i++) {
         const PitviperDetection *one = &d.detection[i];
         if (!(one->left >= 0 && one->left < one->right && one->right <= width)) abort();

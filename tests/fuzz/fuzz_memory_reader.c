@@ -39,7 +39,8 @@ static unsigned sum(const PitviperMemory *m)
     for (uint32_t k = 0; k < m->header.plane_count; k++) {
         const PitviperMemoryPlane *p      = &m->plane[k];
         const unsigned char       *octets = pitviper_memory_plane(m, k);
-        const uint64_t             size   = (uint64_t)p->width * p->height * (p->type == PITVIPER_PLANE_FLOAT32 ? 4 : 2);
+        const uint64_t             size   = (uint64_t)p->width * p->height *
+                              (p->type == PITVIPER_PLANE_FLOAT32 ? 4 : 2);
         for (uint64_t i = 0; i < size; i++) total += octets[i];
     }
     for (uint32_t i = 0; i < m->record.target_count; i++) {

@@ -5,7 +5,7 @@
 
 #include "sensor/publish/memory/detections.h"
 #include "sensor/publish/memory/memory_ring.h"
-#include "sensor/publish/memory/memory_segment.h"
+#include "sensor/settings/config.h"
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
@@ -97,8 +97,9 @@ static void frames_come_in_order_or_newest_first(void **state)
     for (int n = 3; n < 13; n++) put(ring, n); /* ten, of which four are held */
     CHECK(pitviper_memory_take_next(&m) == 1 && m.record.frame == 9 && whole(&m) && m.missed == 6);
     CHECK(pitviper_memory_take_newest(&m) == 1 && m.record.frame == 12 && whole(&m) && m.missed == 8);
-    open_reader(&late); /* later: begins with the newest that is there */
-    CHECK(pitviper_memory_take_next(&late) == 1 && late.record.frame == 12 && late.missed == 0);
+    open_reader(&late); /* later: begins with the oldest that is there, or the newest */
+    CHECK(pitviper_memory_take_next(&late) == 1 && late.record.frame == 9 && late.missed == 0 && whole(&late));
+    CHECK(pitviper_memory_take_newest(&late) == 1 && late.record.frame == 12 && late.missed == 2);
     pitviper_memory_close(&late);
     pitviper_memory_close(&m);
     memory_ring_close(ring);
@@ -339,6 +340,28 @@ static void headers_that_lie_are_refused(void **state)
     CHECK(write(file, good, 319) == 319 && pitviper_memory_open_file(&m, file) == PITVIPER_MEMORY_REFUSED);
 }
 
+static void settings_are_checked(void **state)
+{
+    (void)state;
+    static const struct { const char *key, *value, *said; } bad[] = {
+        {"publish.memory", "a/b", "letters, digits"}, {"publish.memory", ".hidden", "begins with"},
+        {"publish.memory", "-x", "begins with"}, {"publish.memory", "a b", "letters, digits"}};
+    log_set_sink(check_listen, NULL);
+    for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+        Config config = config_default();
+        CHECK(config_set(&config, bad[i].key, bad[i].value, "test") == STATUS_OK);
+        CHECK(config_check(&config) == STATUS_BAD_VALUE && strstr(check_said, bad[i].said));
+    }
+    Config config = config_default();
+    CHECK(config_set(&config, "publish.memory", "seeker_1.a-b", "test") == STATUS_OK);
+    CHECK(config_check(&config) == STATUS_OK);
+    CHECK(config_set(&config, "publish.memory_planes", "counts", "test") == STATUS_OK);
+    CHECK(config_check(&config) == STATUS_BAD_VALUE && strstr(check_said, "sensor.preset"));
+    CHECK(config_set(&config, "sensor.preset", "staring_lwir", "test") == STATUS_OK);
+    CHECK(config_check(&config) == STATUS_OK);
+    log_set_sink(NULL, NULL);
+}
+
 /* ---- detections --------------------------------------------------------------------------------------------- */
 
 static PitviperDetections detections_of(int frame, uint32_t band, uint32_t count)
@@ -458,6 +481,7 @@ int main(void)
         cmocka_unit_test(no_room_is_said_at_the_start),
         cmocka_unit_test(headers_that_lie_are_refused),
         cmocka_unit_test(many_readers_see_whole_frames),
+        cmocka_unit_test(settings_are_checked),
         cmocka_unit_test(each_octet_of_a_detection_is_checked),
         cmocka_unit_test(the_newest_detections_are_kept),
     };

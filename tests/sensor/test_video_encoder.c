@@ -1,8 +1,9 @@
-/* tests/sensor/test_video_encoder.c: encoded video: a packet for each image at once, the same bytes each time, pixels that
- * come back as they were; addresses of streams. The decoder is libavcodec's own, which shares no code with the encoders
- * of x264 and x265. */
+/* tests/sensor/test_video_encoder.c: encoded video: a packet for each image at once, the same bytes each time, pixels
+ * that come back as they were; addresses of streams. The decoder is libavcodec's own, which shares no code with x264
+ * and x265. */
 #include "tests/check.h"
 
+#include "sensor/settings/config.h"
 #include "sensor/settings/video_choice.h"
 
 #ifdef PITVIPER_VIDEO
@@ -20,7 +21,8 @@ static void draw(uint16_t *out, int w, int h, int planes, int frame, int bits)
         for (int x = 0; x < w; x++)
             for (int p = 0; p < planes; p++) {
                 const bool   square = (x + 3 * frame) / 16 % 4 == p && y / 16 % 2 == 0;
-                const double noise  = random_normal(1, 7, (uint32_t)frame, (uint64_t)((y * w + x) * planes + p)) * 2 / 255;
+                const double at     = random_normal(1, 7, (uint32_t)frame, (uint64_t)((y * w + x) * planes + p));
+                const double noise  = at * 2 / 255;
                 const double level  = square ? 0.9 : 0.1 + 0.6 * ((x + p * 5 + frame) % w) / w;
                 out[(y * w + x) * planes + p] = (uint16_t)lround(clamp(level + noise, 0, 1) * ((1 << bits) - 1));
             }
@@ -81,7 +83,8 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     AVCodecParameters *parameters = avcodec_parameters_alloc();
     assert_int_equal(encoder_parameters(parameters, encoder), STATUS_OK);
     AVCodecContext *decoder = avcodec_alloc_context3(avcodec_find_decoder(parameters->codec_id));
-    if (config->codec == VIDEO_FFV1) avcodec_parameters_to_context(decoder, parameters); /* others: all is in the packets */
+    /* of the others all is in the packets */
+    if (config->codec == VIDEO_FFV1) avcodec_parameters_to_context(decoder, parameters);
     decoder->thread_count = 1;
     decoder->flags        = AV_CODEC_FLAG_LOW_DELAY;
     assert_int_equal(avcodec_open2(decoder, NULL, NULL), 0);
@@ -93,7 +96,8 @@ static void decoded_error(double *rms, double *worst, const EncoderConfig *confi
     for (int f = 0; f < frames; f++) {
         VideoPacket coded;
         draw(wide, config->width, config->height, planes, f, bits);
-        assert_int_equal(encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start), STATUS_OK);
+        assert_int_equal(encoder_encode(&coded, encoder, image_of(narrow, wide, (int)count, bits), f == start),
+                         STATUS_OK);
         if (f < start) continue; /* joins in the middle */
         assert_int_equal(av_new_packet(packet, (int)coded.count), 0);
         memcpy(packet->data, coded.bytes, coded.count);
@@ -149,8 +153,8 @@ static void grey_levels_come_back(void **state)
             const EncoderConfig config = {(VideoCodec)codec, width, height, false, 30};
             double              rms, worst;
             decoded_error(&rms, &worst, &config, start);
-            print_message("codec %d from frame %d: rms %.2f, worst %.0f of %d levels, PSNR %.1f dB\n", codec, start, rms,
-                          worst, 1 << encoder_bits(config.codec),
+            print_message("codec %d from frame %d: rms %.2f, worst %.0f of %d levels, PSNR %.1f dB\n", codec, start,
+                          rms, worst, 1 << encoder_bits(config.codec),
                           20 * log10(((1 << encoder_bits(config.codec)) - 1) / fmax(rms, 1e-9)));
             if(0)if(0)CHECK_NEAR(rms, 0, most_rms[codec]);
         }
@@ -182,13 +186,16 @@ static void colour_conversion_is_bt709(void **state)
             uint8_t        octets[12];
             int            rgb[3];
             for (int p = 0; p < 3; p++)
-                rgb[p] = i < 8 ? (i >> p & 1) * top : (int)(random_uniform(1, 3, (uint32_t)bits, (uint64_t)(3 * i + p)) * top);
+                rgb[p] = i < 8 ? (i >> p & 1) * top
+                               : (int)(random_uniform(1, 3, (uint32_t)bits, (uint64_t)(3 * i + p)) * top);
             for (int k = 0; k < 12; k++) image[k] = (uint16_t)rgb[k % 3];
             const VideoPlanes planes = {.at = {(uint8_t *)plane[0], (uint8_t *)plane[1], (uint8_t *)plane[2]},
-                                        .stride = {4, 4, 4}, .layout = PIXELS_420, .width = 2, .height = 2, .bits = bits};
+                                        .stride = {4, 4, 4}, .layout = PIXELS_420, .width = 2, .height = 2,
+                                        .bits = bits};
             video_pixels(&planes, image_of(octets, image, 12, bits), true);
             const double Y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2], half = 1 << (bits - 1);
-            const double want[3] = {Y, fmin((rgb[2] - Y) / 1.8556 + half, top), fmin((rgb[0] - Y) / 1.5748 + half, top)};
+            const double cb = (rgb[2] - Y) / 1.8556 + half, cr = (rgb[0] - Y) / 1.5748 + half;
+            const double want[3] = {Y, fmin(cb, top), fmin(cr, top)};
             for (int p = 0; p < 3; p++)
                 CHECK_NEAR(bits == 8 ? *(uint8_t *)plane[p] : plane[p][0], want[p], 0.51 + top * 1e-5);
         }

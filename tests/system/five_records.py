@@ -8,7 +8,6 @@ A format is one function and one row."""
 import json, os, sys
 
 sys.path[:0] = [os.path.dirname(__file__), "etc/examples"]
-LEFT_OUT = []
 
 def frames_of(folder): return [json.loads(line) for line in open(f"{folder}/out/truth.jsonl")]
 
@@ -50,19 +49,21 @@ def data_pdu(folder):
     return found
 
 def st0903(folder):
-    """stanag4609 or tstrans, through klv_decode.py: pixel numbers of the first, the last and the central pixel."""
+    """stanag4609 and tstrans, those that are here, through klv_decode.py: numbers of the first, last and central pixel."""
     path = f"{folder}/lwir.klv"
     if not os.path.exists(path): return None
     import klv_decode
-    readers = klv_decode.readers(["stanag4609"])
-    if not readers: return None
-    found = {}
+    keys = {"stanag4609": ("id", "2", "3", "1"),
+            "tstrans": ("target_id", "bbox_top_left_pixel", "bbox_bottom_right_pixel", "centroid_pixel")}
+    readers, found = klv_decode.readers(keys), {}
+    if "stanag4609" not in readers: return None # the one that says the frame's number
     for packet in klv_decode.decode(open(path, "rb").read(), readers):
-        vmti = packet["stanag4609"]["vmti"]
-        targets = found.setdefault(vmti["fields"]["7"], {})
-        for t in vmti["targets"]:
-            name = "%d:%d:%d" % (t["id"] >> 32, t["id"] >> 16 & 65535, t["id"] & 65535)
-            targets[name] = [t["2"], t["3"], t["1"]]
+        frame = found.setdefault(packet["stanag4609"]["vmti"]["fields"]["7"], {})
+        for reader in readers:
+            for t in packet[reader]["vmti"]["targets"]:
+                number, *pixels = (t[k] for k in keys[reader])
+                name = f"{number >> 32}:{number >> 16 & 65535}:{number & 65535}"
+                assert frame.setdefault(name, pixels) == pixels, (reader, name, pixels, frame[name])
     return found
 
 def memory(folder):

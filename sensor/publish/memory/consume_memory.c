@@ -46,11 +46,11 @@ static void describe(MemoryRingOf *ring, Memory *m, const MemoryOf *of)
     const int  count = radiance_planes(plane, of);
     for (int i = 0; i < count; i++) {
         const Band band = band_of(plane[i].group);
-        if (m->counts && !(of->with_sensor >> band & 1)) continue;
+        if (m->counts && !of->count_bits[band]) continue;
         PitviperMemoryPlane *p = &ring->plane[ring->plane_count];
         *p = (PitviperMemoryPlane){.band = (uint32_t)band, .width = (uint32_t)m->width, .height = (uint32_t)m->height,
                                    .type = m->counts ? PITVIPER_PLANE_UINT16 : PITVIPER_PLANE_FLOAT32,
-                                   .bits = m->counts ? 16 : 0};
+                                   .bits = m->counts ? (uint32_t)of->count_bits[band] : 0};
         snprintf(p->band_name, sizeof p->band_name, "%s", plane[i].group);
         snprintf(p->name, sizeof p->name, "%s", plane[i].name);
         snprintf(p->unit, sizeof p->unit, "%s", m->counts ? "counts" : plane[i].unit);
@@ -135,8 +135,8 @@ Status consume_memory(Consumer **out, const MemoryOf *of)
     if (status == STATUS_OK) *out = &m->consumer;
     else free(m);
     if (status == STATUS_OK)
-        log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; etc/examples/read_memory.py %s shows "
-                  "it\n", name, m->plane_count, m->width, m->height, ring.slots, 1e-6 * (double)memory_ring_size(m->ring),
-                  name);
+        log_print("memory: /dev/shm/%s: %d planes of %d x %d, %d slots, %.1f MB; to see them: "
+                  "etc/examples/read_memory.py %s\n", name, m->plane_count, m->width, m->height, ring.slots,
+                  1e-6 * (double)memory_ring_size(m->ring), name);
     return status;
 }

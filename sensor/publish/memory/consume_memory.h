@@ -11,7 +11,7 @@ typedef struct MemoryOf {
     const Config *config;        /* publish.memory..., the image's size; outlives the consumer */
     const char   *config_sha256;
     unsigned      bands;         /* of the run */
-    unsigned      with_sensor;   /* bands with a detector: those with raw counts */
+    int           count_bits[BAND_COUNT]; /* of raw counts; 0: a band without a sensor has none */
     const char   *host;          /* of several hosts of one run: its id, or `observer`; NULL: one alone */
 } MemoryOf;
 

@@ -55,7 +55,8 @@ void memory_record(PitviperMemoryRecord *out, PitviperMemoryTarget *targets, int
         .frame = frame->number, .flags = (r->gimbal_at_limit ? 1u : 0) | (frame->buried ? 2u : 0),
         .time_s = frame->time_s, .unix_us = llround(1e6 * frame->unix_s), .hfov_rad = r->hfov_rad,
         .vfov_rad = 2 * atan(0.5 * view->height / view->focal_px), .focal_px = view->focal_px,
-        .begun_ns = ns(p->begun_s), .posed_ns = ns(p->posed_s), .rendered_ns = ns(p->rendered_s), .seed = p->seed,
+        .arrived_ns = ns(frame->times.arrived_s), .begun_ns = ns(p->begun_s),
+        .posed_ns = ns(frame->times.posed_s), .rendered_ns = ns(p->rendered_s), .seed = p->seed,
         .datagrams = p->datagrams};
     memcpy(out->p_ecef, r->p_eye_ecef, sizeof out->p_ecef);
     memcpy(out->v_ecef, r->v_eye_mps, sizeof out->v_ecef);

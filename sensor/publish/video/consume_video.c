@@ -3,7 +3,6 @@
 
 #include "sensor/publish/display.h"
 #include "sensor/publish/frame_files.h"
-#include "sensor/publish/video/video_names.h"
 #include "sensor/publish/video/video_output.h"
 
 #include <stdlib.h>
@@ -23,14 +22,15 @@ typedef struct Channel {
 } Channel;
 
 typedef struct Video {
-    Consumer  consumer;
-    VideoOf   of;
-    unsigned  to;     /* VideoTo: those of `of` that are configured */
-    KlvMode   klv;
-    int       channels;
-    Channel   channel[BAND_COUNT + 1];
-    uint8_t  *image, *tile; /* for the largest frame so far */
-    size_t    image_octets;
+    Consumer     consumer;
+    VideoOf      of;
+    unsigned     to;           /* VideoTo: those of `of` that are configured */
+    KlvMode      klv;
+    int          channels;
+    Channel      channel[BAND_COUNT + 1];
+    uint8_t     *image, *tile; /* for the largest frame so far */
+    size_t       image_octets;
+    KlvDetections found;       /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -67,8 +67,8 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 {
     const int width = frame->seen.picture.width, height = frame->seen.picture.height;
     const int tiles = __builtin_popcount(c->bands);
-    *form = (EncoderConfig){.codec = video_codec(v->of.config), .width = tiles * width, .height = height,
-                            .rate_hz = v->of.rate_hz};
+    *form = (EncoderConfig){.codec = video_codec(v->of.config->publish.video_codec), .width = tiles * width,
+                            .height = height, .rate_hz = v->of.rate_hz};
     for (int b = 0; b < BAND_COUNT; b++)
         if (c->bands >> b & 1 && frame->display[b].planes == 3) form->colour = true;
     const int    bits   = encoder_bits(form->codec);
@@ -88,7 +88,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 }
 
 /* Returns the packet's octets; 0: there is none. */
-static size_t make_klv(uint8_t out[klv_most_octets], const Video *v, const Channel *c, const Frame *frame)
+static size_t make_klv(uint8_t out[klv_most_octets], Video *v, const Channel *c, const Frame *frame)
 {
     const Band        band   = (Band)__builtin_ctz(c->bands);
     const KlvSource   source = {.band = band, .geoid = v->of.geoid};
@@ -101,7 +101,7 @@ static size_t make_klv(uint8_t out[klv_most_octets], const Video *v, const Chann
         klv_truth_targets(&of_truth, kept, &frame->record);
         targets = &of_truth;
     } else if (atr && v->of.detections) {
-        targets = v->of.detections(v->of.user, frame, band);
+        targets = klv_detections(&v->found, frame, band);
     }
     return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
 }
@@ -178,6 +178,7 @@ static Status close_video(Consumer *consumer)
             free(c->output[k]);
         }
         encoder_close(c->encoder);
+        retry_end(&c->retry);
     }
     free(v->image);
     free(v->tile);
@@ -218,7 +219,8 @@ static Status add_stream(Video *v, Channel *c)
     const Config *config = v->of.config;
     StreamUrl     url;
     VideoOutput  *o;
-    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, (Band)__builtin_ctz(c->bands))) return STATUS_OK;
+    const Band    band = (Band)__builtin_ctz(c->bands);
+    if (!(v->to & VIDEO_TO_STREAM) || !video_stream_url(&url, config, v->of.bands, band)) return STATUS_OK;
     const Status status = add_output(&o, v, c, VIDEO_TS);
     return status == STATUS_OK ? udp_video_open(&o->udp, &url, config->network.interface, config->network.ttl)
                                : status;
@@ -229,8 +231,8 @@ static Status add_file(Video *v, Channel *c, VideoKind kind)
     VideoOutput *o;
     const Status status = add_output(&o, v, c, kind);
     if (status != STATUS_OK) return status;
-    return video_path(o->path, v->of.config, v->of.host_folder, (Band)__builtin_ctz(c->bands), kind) ? STATUS_OK
-                                                                                                  : STATUS_BAD_VALUE;
+    const Band band = (Band)__builtin_ctz(c->bands);
+    return video_path(o->path, v->of.config, v->of.host_folder, band, kind) ? STATUS_OK : STATUS_BAD_VALUE;
 }
 
 static Status add_channels(Video *v)
@@ -277,6 +279,7 @@ Status consume_video(Consumer **out, const VideoOf *of)
     if (!v) return STATUS_NO_MEMORY;
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
     v->of       = *of;
+    v->found    = (KlvDetections){.from = of->detections};
     v->to       = to;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS

@@ -179,7 +179,15 @@ Status transport_put(Transport *t, const VideoPacket *packet, int64_t pts_90k, c
     p->duration     = t->video->avg_frame_rate.num > 0
                           ? av_rescale(90000, t->video->avg_frame_rate.den, t->video->avg_frame_rate.num) : 0;
     av_packet_rescale_ts(p, (AVRational){1, 90000}, t->video->time_base);
+    if (result >= 0 && packet->key && t->config.container == VIDEO_MKV) result = av_write_frame(t->format, NULL);
     if (result >= 0) result = av_write_frame(t->format, p);
+    avio_flush(t->io);
+    return sink_status(t, result);
+}
+
+Status transport_flush(Transport *t)
+{
+    const int result = av_write_frame(t->format, NULL);
     avio_flush(t->io);
     return sink_status(t, result);
 }

@@ -1,12 +1,12 @@
 /* sensor/publish/video/transport.h: packets of video, and of KLV metadata, into a container: MPEG-TS, MP4, Matroska.
  *
- * MPEG-TS: the video's PID is 0x100, the metadata's 0x101. Times are exercise time in 90 kHz, 33 bits that wrap. Program
- * tables every 0.1 s or with every frame if those are rarer, so that a receiver may join at any key frame. Metadata
- * comes just before its frame.
+ * MPEG-TS: the video's PID is 0x100, the metadata's 0x101. Times are exercise time in 90 kHz, 33 bits that wrap.
+ * Program tables every 0.1 s or with every frame if those are rarer, so that a receiver may join at any key frame.
+ * Metadata comes just before its frame.
  *     asynchronous   stream type 0x06, registered as KLVA, stream id 0xBD, no time stamp (MISB ST 1402)
  *     synchronous    stream type 0x15, stream id 0xFC, the frame's time stamp, metadata AU cells
- * MP4 is fragmented, a fragment for each key frame: what a run that was killed leaves behind can be played. MP4 and
- * Matroska start at 0; they carry no metadata. */
+ * MP4 is fragmented, a fragment for each key frame, and Matroska begins a cluster there: what a run that was killed
+ * leaves behind can be played. Both start at 0, and carry no metadata. */
 #ifndef SENSOR_PUBLISH_VIDEO_TRANSPORT_H
 #define SENSOR_PUBLISH_VIDEO_TRANSPORT_H
 
@@ -35,10 +35,12 @@ typedef struct Transport Transport;
 
 /* Logged failures: STATUS_UNSUPPORTED: the container does not take this video; STATUS_IO: the sink's. */
 Status transport_open(Transport **out, const TransportConfig *config, const Encoder *encoder);
-/* One frame at once: when this returns the sink has all of it (MP4: with the next key frame). klv may be NULL, count
- * klv_octets_most at most. pts_90k increases. STATUS_IO: the sink failed; nothing is logged. */
+/* One frame at once: when this returns the sink has all of it (MP4 and Matroska: with the next key frame). klv may be
+ * NULL, count klv_octets_most at most. pts_90k increases. STATUS_IO: the sink failed; nothing is logged. */
 Status transport_put(Transport *transport, const VideoPacket *packet, int64_t pts_90k, const uint8_t *klv,
                      size_t klv_count);
+/* What the container still keeps goes to the sink. STATUS_IO as above. */
+Status transport_flush(Transport *transport);
 /* Ends the file and frees it; finish false: frees it without a further byte. STATUS_IO as above. NULL is valid. */
 Status transport_close(Transport *transport, bool finish);
 /* The sink lost bytes that it had reported as written: do not record positions at the end. */

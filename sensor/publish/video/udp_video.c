@@ -64,7 +64,8 @@ Status udp_video_open(UdpVideo **out, const StreamUrl *to, const char *interface
     if (u->socket < 0) failed = "open a socket for";
     else if (group && *interface && !choose_interface(u, interface)) failed = "use network.interface for";
     else if (!set_flag(u->socket, IPPROTO_IP, IP_MULTICAST_TTL, ttl) ||
-             !set_flag(u->socket, IPPROTO_IP, IP_MULTICAST_LOOP, 1) || !set_flag(u->socket, SOL_SOCKET, SO_BROADCAST, 1))
+             !set_flag(u->socket, IPPROTO_IP, IP_MULTICAST_LOOP, 1) ||
+             !set_flag(u->socket, SOL_SOCKET, SO_BROADCAST, 1))
         failed = "set the options of";
     else if (!connect_to(u)) failed = "connect to";
     if (failed) {

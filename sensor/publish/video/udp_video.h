@@ -1,4 +1,4 @@
-/* sensor/publish/video/udp_video.h: sends MPEG-TS over UDP: datagrams of at most 7 packets, to a host or a multicast group.
+/* sensor/publish/video/udp_video.h: sends MPEG-TS over UDP: datagrams of at most 7 packets, to a host or a group.
  *
  * Never waits: what the kernel does not take at once is lost and counted. A receiver that is absent or vanishes is
  * reported once, and once more when it is back. */

@@ -17,11 +17,16 @@ unsigned video_wanted(const Config *config)
     return 0;
 }
 
-bool video_earlier(char found[video_found_size], const Config *config, unsigned bands, const char *host_folder)
+bool video_earlier(char found[video_path_size], const Config *config, unsigned bands, const char *host_folder)
 {
     (void)config, (void)bands, (void)host_folder;
     found[0] = 0;
     return false;
+}
+
+void video_watch_print(const Config *config, unsigned bands)
+{
+    (void)config, (void)bands;
 }
 
 void video_watch_lines(char *out, size_t out_size, const Config *config, unsigned bands)

@@ -1,6 +1,7 @@
 /* sensor/publish/video/video_file.h: a video's file, which survives a disk that is full for a while.
  *
- * What is written between two marks is there as a whole or not at all: after a failure the file ends at the last mark. */
+ * What is written between two marks is there as a whole or not at all: after a failure the file ends at the last
+ * mark. */
 #ifndef SENSOR_PUBLISH_VIDEO_VIDEO_FILE_H
 #define SENSOR_PUBLISH_VIDEO_VIDEO_FILE_H
 

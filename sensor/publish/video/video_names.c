@@ -1,13 +1,11 @@
 /* sensor/publish/video/video_names.c: paths and addresses of a run's videos, and the commands that show its streams. */
 #include "sensor/publish/video/video_names.h"
 
-#include "sensor/publish/video/consume_video.h"
-
 #include <sys/stat.h>
 
 int video_folder_kinds(VideoKind kind[2], const Config *config)
 {
-    const bool lossless = video_codec(config) == VIDEO_FFV1;
+    const bool lossless = video_codec(config->publish.video_codec) == VIDEO_FFV1;
     kind[0]             = lossless ? VIDEO_MKV : VIDEO_TS;
     kind[1]             = VIDEO_MP4;
     return lossless ? 1 : 2;
@@ -40,25 +38,25 @@ unsigned video_wanted(const Config *config)
     return (*config->publish.stream ? VIDEO_TO_STREAM : 0u) | (*config->publish.video ? VIDEO_TO_FILE : 0u);
 }
 
-static bool exists(char found[video_found_size], const char *path)
+static bool exists(char found[video_path_size], const char *path)
 {
     struct stat about;
     if (stat(path, &about) != 0 || !S_ISREG(about.st_mode) || about.st_size == 0) return false;
-    snprintf(found, video_found_size, "%s", path);
+    snprintf(found, video_path_size, "%s", path);
     return true;
 }
 
-bool video_earlier(char found[video_found_size], const Config *config, unsigned bands, const char *host_folder)
+bool video_earlier(char found[video_path_size], const Config *config, unsigned bands, const char *host_folder)
 {
     char            path[video_path_size];
     VideoKind       kind[2];
     const VideoKind asked = video_kind(config->publish.video);
     if (asked == VIDEO_NONE) return false;
     const int kinds = asked == VIDEO_FOLDER ? video_folder_kinds(kind, config) : 1;
+    if (asked != VIDEO_FOLDER) kind[0] = asked;
     for (int b = 0; b < BAND_COUNT; b++)
         for (int k = 0; k < kinds; k++)
-            if (bands >> b & 1 && video_path(path, config, host_folder, (Band)b, asked == VIDEO_FOLDER ? kind[k] : asked) &&
-                exists(found, path))
+            if (bands >> b & 1 && video_path(path, config, host_folder, (Band)b, kind[k]) && exists(found, path))
                 return true;
     return false;
 }
@@ -75,10 +73,18 @@ void video_watch_lines(char *out, size_t out_size, const Config *config, unsigne
                  url.address[3], url.port);
         const char *colon = strchr(address, ':');
         const int   n     = snprintf(out + used, out_size - used,
-                                     "  %-8s ffplay -fflags nobuffer -flags low_delay udp://%s   or   vlc udp://@%s\n",
-                                     band_name((Band)b), address, stream_url_multicast(&url) ? address : colon);
+                                     "  %-8s ffplay -analyzeduration 1500000 -fflags nobuffer -flags low_delay udp://%s"
+                                     "   or   vlc udp://@%s\n", band_name((Band)b), address,
+                                     stream_url_multicast(&url) ? address : colon);
         if (n < 0 || (size_t)n >= out_size - used) break;
         used += (size_t)n;
     }
     out[used] = 0;
+}
+
+void video_watch_print(const Config *config, unsigned bands)
+{
+    char text[1024];
+    video_watch_lines(text, sizeof text, config, bands);
+    if (*text) log_print("streams can be watched with:\n%s", text);
 }

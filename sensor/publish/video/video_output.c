@@ -45,6 +45,8 @@ static Status put(VideoOutput *o, const Encoder *encoder, const VideoPacket *pac
     Status status = o->transport ? STATUS_OK : open_output(o, encoder);
     if (status != STATUS_OK) return status;
     status = transport_put(o->transport, packet, pts_90k, klv, klv_count);
+    /* after a failure: whether the disk takes it is known at once */
+    if (status == STATUS_OK && o->file && o->needs_key) status = transport_flush(o->transport);
     if (o->file && !video_file_mark(o->file)) status = STATUS_IO;
     o->needs_key = status != STATUS_OK;
     if (status != STATUS_OK && o->file) {

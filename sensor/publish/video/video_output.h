@@ -9,8 +9,7 @@
 #include "sensor/publish/video/transport.h"
 #include "sensor/publish/video/udp_video.h"
 #include "sensor/publish/video/video_file.h"
-
-enum { video_path_size = 4096 };
+#include "sensor/publish/video/video_names.h"
 
 typedef struct VideoOutput {
     VideoKind    kind;

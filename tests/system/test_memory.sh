@@ -1,0 +1,122 @@
+#!/usr/bin/env bash
+# Frames in shared memory, and readers with no build step beyond cc: each takes exactly the planes of the files while
+# the node runs; one is killed, one is stopped and continued, and the run's frames stay the same. A name in use is
+# refused, a ring that a killed node left is replaced, no room is an error at the start; at the end nothing is left.
+. "$(dirname "$0")/common.sh"
+
+[ -w /dev/shm ] || { echo "skipped: no writable /dev/shm"; exit 77; }
+name=pitviper-test-$$
+ring=/dev/shm/$name
+started=()
+trap 'for p in "${started[@]}"; do kill -KILL "$p" 2>/dev/null; done; rm -f "$ring"* "/dev/shm/.pitviper-$name"*; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
+python=$(command -v python3) && "$python" -c 'import numpy' 2>/dev/null || python=
+[ -n "$python" ] || echo "without the Python reader: no numpy"
+cc=$(command -v cc || command -v gcc || command -v clang) || { echo "skipped: no C compiler"; exit 77; }
+check "the example is built by cc alone" "$cc" -std=c99 -O1 -Wall -Wextra -Werror -I etc/include etc/examples/read_memory.c -o "$tmp/read_memory"
+if cxx=$(command -v c++); then
+    printf '#include <pitviper_memory.h>\nint main() { PitviperMemory m; return pitviper_memory_open(&m, "") == 0; }\n' >"$tmp/a.cpp"
+    check "the header is C++ too" "$cxx" -std=c++11 -Wall -Wextra -Werror -fsyntax-only -I etc/include "$tmp/a.cpp"
+fi
+
+# reader NAME COMMAND...: in the background, what it says in $tmp/NAME.said, its process in ${reader[NAME]}
+declare -A reader
+reader() {
+    local who=$1; shift
+    "$@" >"$tmp/$who.said" 2>&1 &
+    reader[$who]=$!
+    started+=($!)
+}
+lines() { grep -c '^frame' "$tmp/$1.said"; }
+has_read() { # NAME COUNT: until it has read so many frames
+    local i
+    for ((i = 0; i < 300; i++)); do
+        [ "$(lines "$1")" -ge "$2" ] && return 0
+        sleep 0.05
+    done
+    return 1
+}
+ended_well() { wait "${reader[$1]}" || { tail -n 3 "$tmp/$1.said"; return 1; }; }
+# node NAME options: a paced replay in the background; its process in $node
+node() {
+    local out=$1; shift
+    "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/$out" --size 64x48 --threads 2 --bands lwir --memory "$name" \
+        --set publish.memory_slots=32 "$@" >"$tmp/$out.said" 2>&1 &
+    node=$!
+    started+=($!)
+}
+
+exercise demo "$tmp/demo.pcap"
+few=(--rate 2 --from +12 --to +18)
+run replay "$tmp/demo.pcap" --out "$tmp/plain" --size 64x48 --threads 2 --bands lwir --no-files "${few[@]}"
+frames=$(wc -l <"$tmp/plain/truth.jsonl")
+[ "$code" = 0 ] && [ "$frames" -ge 10 ] || { fail "a run to compare with"; cat "$tmp/stderr"; finish; }
+
+# ---- four readers of one run: C, Python, one that is killed, one that is stopped for a while -------------------------
+port=$((20000 + $$ % 20000))
+mkdir "$tmp/raw_c" "$tmp/raw_python"
+reader c "$tmp/read_memory" "$name" --wait 30 --in-order --raw "$tmp/raw_c" --detect
+[ -z "$python" ] || reader python "$python" etc/examples/read_memory.py "$name" --wait 30 --in-order --raw "$tmp/raw_python"
+reader killed "$tmp/read_memory" "$name" --wait 30
+reader stopped "$tmp/read_memory" "$name" --wait 30
+node taken --speed 4 --set publish.memory_record=truth --set publish.detections_port="$port" "${few[@]}"
+has_read stopped 1 && kill -STOP "${reader[stopped]}"
+has_read killed 2 && kill -KILL "${reader[killed]}"
+wait "${reader[killed]}" 2>/dev/null
+check "the killed one is dead" [ $? = 137 ]
+has_read c 6
+kill -CONT "${reader[stopped]}"
+wait "$node"
+check "the node ends well" [ $? = 0 ]
+check "its frames are those of a run without readers" same_hashes "$tmp/plain" "$tmp/taken"
+truth() { sed 's/,"latency_ms":.*/}/' "$1/truth.jsonl"; } # of a paced replay: times of the wall clock, at the end
+check "its truth is, too" cmp -s <(truth "$tmp/plain") <(truth "$tmp/taken")
+for who in c stopped ${python:+python}; do check "the reader $who ends with the node" ended_well "$who"; done
+for who in c ${python:+python}; do
+    check "the reader $who has every frame" grep -q "^$frames frames read, 0 missed, 0 copies torn" "$tmp/$who.said"
+    check "the planes of the reader $who are those of the files" eval '"$build/tests/memory_planes" "$tmp/taken" "$tmp/raw_$who" | grep -q "^$frames planes"'
+done
+check "the stopped one has missed some, and counts them" eval \
+    'sed -n "s/ frames read, / /; s/ missed.*//p" "$tmp/stopped.said" | { read -r got missed; [ "$missed" -ge 2 ] && [ $((got + missed)) -le "$frames" ]; }'
+boxes() { grep -oE '"box_px":\[[0-9,]*\]' "$1" | tr -d '"a-z_:[]' | tr ',' ' '; }
+check "targets have the boxes of the truth" eval \
+    '[ "$(boxes "$tmp/taken/truth.jsonl")" = "$(grep "^frame" "$tmp/c.said" | grep -oE "box [0-9 ]*[0-9]" | cut -c5- | grep -v "^0 0 0 0")" ]'
+[ -z "$python" ] || check "both readers say the same of targets" cmp -s <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/c.said") \
+    <(grep -oE '  [a-z_]+ [0-9:]+ box .*' "$tmp/python.said")
+check "the reader's detections are taken" grep -qE "^detections: ($frames|$((frames - 1))) datagrams taken$" "$tmp/taken.said"
+check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
+
+# ---- a node that is killed; the next one replaces its ring, with raw counts ---------------------------------------------
+rm "$tmp"/*.said
+reader widow "$tmp/read_memory" "$name" --wait 30
+node dead --speed 0.01 --no-files "${few[@]}"
+has_read widow 1
+run replay "$tmp/demo.pcap" --out "$tmp/clash" --size 64x48 --bands lwir --memory "$name"
+check "a name in use is refused, with the next step" eval '[ $code != 0 ] && complained "in use by a living node, process $node; choose another name"'
+check "for its user alone" [ "$(stat -c %a "$ring")" = 600 ]
+kill -KILL "$node"
+wait "$node" 2>/dev/null >&2
+check "a reader notices that the node died" ended_well widow
+check "its ring is still there" [ -e "$ring" ]
+rm -r "$tmp/raw_c" && mkdir "$tmp/raw_c"
+reader c "$tmp/read_memory" "$name" --wait 30 --in-order --raw "$tmp/raw_c"
+sample=$(sed -n '/^```python/,/^```/{/^```/d;p}' etc/reference/memory.md) # as a reader of the manual has it
+[ -z "$python" ] || reader python "$python" -c "${sample//seeker/$name}"
+node counts --set publish.memory_planes=counts --set sensor.preset=staring_lwir --set detector.raw=true --rate 1 --from +14 --to +16 --set publish.detections_port="$port"
+wait "$node"
+check "a node with raw counts ends well" [ $? = 0 ]
+check "the dead node's ring was replaced, and it says so" grep -q "memory: replaced '$name', left behind by process" "$tmp/counts.said"
+for who in c ${python:+python}; do check "its reader $who ends with it" ended_well "$who"; done
+[ -z "$python" ] || check "detections from Python are taken" grep -qE "^detections: [1-3] datagrams taken$" "$tmp/counts.said"
+check "raw counts are those of the files" eval '"$build/tests/memory_planes" "$tmp/counts" "$tmp/raw_c" >/dev/null'
+check "nothing is left in /dev/shm" [ -z "$(find /dev/shm -name "*$name*")" ]
+
+# ---- several hosts; no room ------------------------------------------------------------------------------------------------
+run replay "$tmp/demo.pcap" --out "$tmp/two" --size 64x48 --threads 2 --bands lwir --memory "$name" --no-files --rate 1 \
+    --from +15 --to +15.5 --host 1:3001:41 --host observer
+check "each host has a ring of its own" eval '[ $code = 0 ] && said "/dev/shm/$name-1-3001-41:" && said "/dev/shm/$name-observer:"'
+(trap '' XFSZ; ulimit -f 4096; "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/full" --size 640x480 --memory "$name" --bands lwir \
+    >"$tmp/stdout" 2>"$tmp/stderr")
+code=$?
+check "no room is an error at the start, with the next step" eval '[ $code != 0 ] && complained "no room for .* MB in /dev/shm.*publish.memory_slots"'
+check "and leaves nothing" [ -z "$(find /dev/shm -name "*$name*")" ]
+finish

@@ -1,0 +1,141 @@
+#!/usr/bin/env bash
+# --stream and --video: independent programs (ffmpeg, GStreamer, tshark) receive what is sent while it is sent, by multicast and by
+# unicast, and join in the middle: pictures equal to the PNG files within the codec's error, metadata to the bit.
+. "$(dirname "$0")/common.sh"
+run replay "$tmp/none.pcap" --out "$tmp/none" --video "$tmp/none.mp4"
+if said "built without FFmpeg"; then echo "skipped: built without FFmpeg's libraries"; exit 77; fi
+command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }
+python3 -c 'import numpy, PIL' 2>/dev/null || { echo "skipped: no python3 with numpy and PIL"; exit 77; }
+group=239.77.$((RANDOM % 200 + 10)).9 port=$((20000 + RANDOM % 10000 * 4))
+exercise demo "$tmp/demo.pcap"
+
+# receive PROGRAM ARGUMENTS: in the background until finish_receivers; its pid in $pids
+pids=()
+receive() { local name=$1; shift; "$@" >"$tmp/$name.out" 2>"$tmp/$name.err" & pids+=($!); }
+# they finish their files; ffmpeg, while it waits for a datagram, at a second signal. Without one they end by themselves
+finish_receivers() {
+    sleep 0.3; kill -INT "${pids[@]}" 2>/dev/null
+    sleep 0.2; kill -INT "${pids[@]}" 2>/dev/null
+    wait "${pids[@]}"; pids=()
+}
+# bound PORT N: until N sockets are
+bound() {
+    local i
+    for i in $(seq 100); do
+        [ "$(awk -v p="$(printf ':%04X' "$1")" 'index($2, p) == 9' /proc/net/udp | wc -l)" -ge "$2" ] && return
+        sleep 0.05
+    done
+    fail "the receivers did not start"
+}
+live=(--bands lwir --from 1366 --rate 20 --planes none --set sensor.antialias=off --set quality.budget=off)
+watch() { receive "$1" ffmpeg -v info -y -analyzeduration 1200000 -copyts -i "$2" -map 0:v -fps_mode passthrough -vf showinfo -f rawvideo -pix_fmt gray -flush_packets 1 "$tmp/$1.gray" -map 0:d -c copy -flush_packets 1 -f data "$tmp/$1.klv"; }
+
+# ---- multicast, asynchronous metadata; targets of truth; the file beside it has every frame
+gst=no tshark=no sockets=1
+watch group "udp://$group:$port?localaddr=127.0.0.1&timeout=20000000"
+if command -v gst-launch-1.0 >/dev/null && gst-inspect-1.0 avdec_h264 >/dev/null 2>&1; then
+    gst=yes sockets=2
+    receive gst timeout 60 gst-launch-1.0 -e udpsrc multicast-group="$group" port="$port" multicast-iface=lo ! tsdemux name=d d. ! queue ! h264parse ! \
+        avdec_h264 ! videoconvert ! video/x-raw,format=GRAY8 ! filesink sync=false location="$tmp/gst.gray" d. ! queue ! meta/x-klv ! filesink \
+        sync=false async=false buffer-mode=unbuffered location="$tmp/gst.klv"
+fi
+if command -v tshark >/dev/null && timeout 5 tshark -i lo -a duration:0 -w /dev/null >/dev/null 2>&1; then
+    tshark=yes
+    receive tshark tshark -i lo -a duration:60 -f "udp port $port" -w "$tmp/group.pcap"
+fi
+bound "$port" $sockets
+replay "$tmp/demo.pcap" "$tmp/a" "${live[@]}" --to 1368 --speed 2 --video "$tmp/a.ts" --stream "udp://$group:$port" \
+    --set network.interface=lo --set publish.vmti=truth
+check "the replay that streams" [ "$code" = 0 ]
+finish_receivers
+
+# ---- unicast, synchronous metadata; the receiver joins while it is being sent, and leaves before the end
+"$pitviper" replay "$tmp/demo.pcap" --out "$tmp/b" --size 96x64 --threads 2 "${live[@]}" --to 1369 --speed 2 --video "$tmp/b" \
+    --stream "udp://127.0.0.1:$port" --set publish.klv=sync >"$tmp/b.out" 2>&1 &
+sender=$!
+for _ in $(seq 200); do [ -s "$tmp/b/truth.jsonl" ] && break; sleep 0.05; done
+watch host "udp://127.0.0.1:$port?timeout=20000000"
+bound "$port" 1
+wait $sender
+check "the replay that streams without a receiver at first" [ $? = 0 ]
+check "that is reported once" [ "$(grep -c 'no program receives it' "$tmp/b.out")" = 1 ]
+finish_receivers
+
+cat >"$tmp/check.py" <<'PY'
+import glob, json, os, re, subprocess, sys
+import numpy as np
+from PIL import Image
+tmp, gst = sys.argv[1], sys.argv[2] == "yes"
+KEY = bytes.fromhex("060e2b34020b01010e01030101000000")
+def packets(octets):  # a KLV file: key, BER length, value
+    out, at = [], 0
+    while at + 17 < len(octets):
+        assert octets[at:at + 16] == KEY, (at, octets[at:at + 16].hex())
+        n, head = octets[at + 16], 17
+        if n & 128: n, head = int.from_bytes(octets[at + 17:at + 17 + (n & 127)], "big"), 17 + (n & 127)
+        out.append(octets[at:at + head + n])
+        at += head + n
+    assert at == len(octets), "a packet is cut off"
+    return out
+def read(name): return open(f"{tmp}/{name}", "rb").read()
+def klv_of(ts):
+    subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", f"{tmp}/{ts}", "-map", "0:d", "-c", "copy", "-f", "data", f"{tmp}/x.klv"], check=True)
+    return packets(read("x.klv"))
+def probe(ts, stream): 
+    text = subprocess.run(["ffprobe", "-v", "error", "-select_streams", stream, "-show_entries", "packet=pts", "-of", "csv=p=0", f"{tmp}/{ts}"],
+                          check=True, capture_output=True, text=True).stdout
+    return [w.strip(",") for w in text.split()]
+def pngs(out): return [np.array(Image.open(p)).astype(float) for p in sorted(glob.glob(f"{tmp}/{out}/frames/lwir/*.png"))]
+def error(a, b): return float(np.sqrt(np.mean((a - b) ** 2)))
+def pictures(name, like): return np.frombuffer(read(name), np.uint8).reshape(-1, *like.shape).astype(float)
+def unix_us(packet):  # ST 0601 tag 2 stands first
+    at = 17 + (packet[16] & 127 if packet[16] & 128 else 0)
+    assert packet[at] == 2 and packet[at + 1] == 8
+    return int.from_bytes(packet[at + 2:at + 10], "big")
+def is_some_of(part, whole):  # in order
+    at = iter(whole)
+    return all(p in at for p in part)
+most = 2.0  # of 256 levels, rms: tests/sensor/test_video_encoder.c
+for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "host", 61)):
+    png, klv, pts = pngs(out), klv_of(ts), [int(p) for p in probe(ts, "v")]
+    assert len(png) == len(klv) == len(pts) == all_of, (len(png), len(klv), len(pts))
+    assert [round(b - a) for a, b in zip(pts, pts[1:])] == [4500] * (all_of - 1), "time stamps: 20 Hz of exercise time"
+    # exercise time, modulo 33 bits, in both
+    assert all(abs((unix_us(k) * 9 // 100 - p + 45) % 2**33 - 45) <= 2 for k, p in zip(klv, pts)), "metadata's time is the picture's"
+    of_klv = probe(ts, "d")
+    assert of_klv == (["N/A"] * all_of if out == "a" else [str(p) for p in pts]), of_klv[:3]
+    # as it was sent
+    shown = [int(n) for n in re.findall(r"n: *\d+ pts: *(\d+)", read(f"{name}.err").decode(errors="replace"))]
+    seen = pictures(f"{name}.gray", png[0])
+    assert 12 <= len(seen) <= len(shown) and set(shown) <= set(pts) and shown == sorted(shown), (name, len(seen), len(shown))
+    if out == "b": assert shown[0] > pts[0], "it was to join in the middle"
+    errors = [error(s, png[pts.index(t)]) for s, t in zip(seen, shown)]
+    print(f"{name}: {len(seen)} of {all_of} pictures received and decoded, error {max(errors):.2f} levels rms at most, PSNR {20 * np.log10(255 / max(errors)):.1f} dB")
+    assert max(errors) <= most, errors
+    got = packets(read(f"{name}.klv"))
+    assert len(got) >= 12 and is_some_of(got, klv), (name, len(got))
+mp4 = subprocess.run(["ffmpeg", "-v", "error", "-i", f"{tmp}/b/lwir.mp4", "-f", "rawvideo", "-pix_fmt", "gray", "-"], check=True, capture_output=True).stdout
+mp4 = np.frombuffer(mp4, np.uint8).reshape(-1, *png[0].shape).astype(float)
+assert len(mp4) == 61 and max(error(a, b) for a, b in zip(mp4, png)) <= most, "mp4"
+if gst:
+    png, klv = pngs("a"), klv_of("a.ts")
+    seen = pictures("gst.gray", png[0])
+    best = [min(range(41), key=lambda i: error(s, png[i])) for s in seen]
+    assert len(seen) >= 20 and best == sorted(best) and max(error(s, png[i]) for s, i in zip(seen, best)) <= most, ("gst", len(seen))
+    got = packets(read("gst.klv"))
+    print(f"GStreamer: {len(seen)} pictures, {len(got)} metadata packets")
+    assert len(got) >= 20 and is_some_of(got, klv), ("gst", len(got))
+PY
+check "what was received" python3 "$tmp/check.py" "$tmp" $gst
+
+if [ $tshark = yes ]; then
+    tshark -r "$tmp/group.pcap" -d "udp.port==$port,mp2t" -V >"$tmp/dissected" 2>/dev/null
+    check "tshark: program tables" [ "$(grep -c 'Program Map Table' "$tmp/dissected")" -ge 20 ]
+    check "tshark: H.264 and private data registered as KLVA" grep -q "Stream type: AVC video" "$tmp/dissected"
+    check "tshark: private data" grep -qi "Stream type:.*(0x06)" "$tmp/dissected"
+    # a column each: octets of the datagram, continuity lost, malformed
+    tshark -r "$tmp/group.pcap" -d "udp.port==$port,mp2t" -T fields -e udp.length -e mp2t.cc.drop -e _ws.malformed >"$tmp/columns" 2>/dev/null
+    check "tshark: datagrams" [ "$(wc -l <"$tmp/columns")" -ge 40 ]
+    check "tshark: continuous, well formed, whole packets" [ -z "$(awk '($1 - 8) % 188 || $1 > 1324 || NF > 1' "$tmp/columns")" ]
+fi
+finish
