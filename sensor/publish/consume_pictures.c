@@ -37,7 +37,7 @@ Status consume_pictures(Consumer **out, const PictureFiles *made_of)
     Pictures *p = calloc(1, sizeof *p);
     if (!p) return STATUS_NO_MEMORY;
     const Config *config = made_of->config;
-    *p = (Pictures){.consumer = {0, put, NULL, close_pictures, "pictures"}, .of = *made_of,
+    *p = (Pictures){.consumer = {0, put, NULL, close_pictures, "image_files"}, .of = *made_of,
                     .retry = {.what = "picture files"}};
     if (frame_files_truth(config)) p->consumer.wants |= WANT_PLANES;
     if (config->publish.png) p->consumer.wants |= WANT_DISPLAY;
