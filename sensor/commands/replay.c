@@ -6,6 +6,7 @@
 #include "sensor/node/host_run.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
+#include "sensor/publish/video/video_names.h"
 #include "sensor/settings/span.h"
 #include "sensor/node/stop.h"
 #include "sensor/commands/sweep.h"
@@ -269,13 +270,18 @@ int replay_command(int argc, char **argv)
     thread_flush_denormals();
     Status failed = STATUS_OK, status = overwrite_folder("replay", run.options.out, run.options.overwrite);
     if (status == STATUS_OK) status = run_prepare(&run);
+    if (status == STATUS_OK && run.options.host_count <= 1)
+        status = overwrite_video("replay", &run.options.config, run.bands, NULL, run.options.overwrite);
     if (status == STATUS_OK) status = open_log(&run, &log);
     if (status == STATUS_OK) status = check_hosts(host, &run);
     if (status == STATUS_OK) status = open_sending(&sending, &run, &log);
     for (int i = 0; status == STATUS_OK && i < run.options.host_count; i++) {
         run_folder(name, &run.options, host[i]);
         status = overwrite_folder("replay", name, run.options.overwrite);
+        if (status == STATUS_OK && run.options.host_count > 1)
+            status = overwrite_video("replay", &run.options.config, run.bands, basename(name), run.options.overwrite);
     }
+    if (status == STATUS_OK) video_watch_print(&run.options.config, run.bands);
     if (status == STATUS_OK && run.options.host_count == 0) status = run_host(&run, NULL);
     if (status == STATUS_OK && run.options.host_count > 1) frame_files_clear(run.options.out);
     for (int i = 0; status == STATUS_OK && !run.stopped && i < run.options.host_count; i++) {

@@ -9,6 +9,7 @@
 #include "sensor/node/live_recording.h"
 #include "sensor/node/opening.h"
 #include "sensor/node/overwrite.h"
+#include "sensor/publish/video/video_names.h"
 #include "sensor/quality/machine_factor.h"
 #include "sensor/quality/quality.h"
 #include "sensor/settings/span.h"
@@ -406,6 +407,7 @@ static Status run_node(Live *l)
         status = overwrite_file("run", o->config.record.path, o->overwrite);
     if (status == STATUS_OK) status = measure_machine(l);
     if (status == STATUS_OK) status = run_prepare(&l->run);
+    if (status == STATUS_OK) status = overwrite_video("run", &o->config, l->run.bands, NULL, o->overwrite);
     /* now, not hours later when the first entity is received */
     if (status == STATUS_OK) status = frame_files_folder(l->run.options.out);
     if (status == STATUS_OK) status = open_network(l);
@@ -414,6 +416,7 @@ static Status run_node(Live *l)
     health_begin(&l->health, l->begun_s);
     l->health.sample.publishes = publishes(l);
     log_info("run: listening on %s; Ctrl-C ends it", l->where);
+    video_watch_print(&o->config, l->run.bands);
     status = listen_first(&heard, l);
     log_status(NULL);
     if (status == STATUS_OK && heard) {

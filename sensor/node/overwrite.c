@@ -2,6 +2,7 @@
 #include "sensor/node/overwrite.h"
 
 #include "sensor/publish/frame_files.h"
+#include "sensor/publish/video/video_names.h"
 
 #include <sys/stat.h>
 
@@ -22,5 +23,14 @@ Status overwrite_file(const char *command, const char *path, bool allowed)
     log_error("%s: %s exists already (%lld octets); choose another name, or --overwrite, which replaces "
               "it", command, path,
               (long long)about.st_size);
+    return STATUS_BAD_VALUE;
+}
+
+Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder, bool allowed)
+{
+    char found[video_path_size];
+    if (allowed || !video_earlier(found, config, bands, host_folder)) return STATUS_OK;
+    log_error("%s: %s exists already; choose another name with --video, or --overwrite, which replaces it", command,
+              found);
     return STATUS_BAD_VALUE;
 }

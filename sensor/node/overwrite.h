@@ -2,12 +2,14 @@
 #ifndef SENSOR_NODE_OVERWRITE_H
 #define SENSOR_NODE_OVERWRITE_H
 
-#include "pitviper.h"
+#include "sensor/settings/config.h"
 
 /* Both log, prefixed with the name of a command, the existing product and the option that replaces it;
  * STATUS_BAD_VALUE then. folder: of a run; other files in it are ignored. file: an empty or irregular file may be
  * replaced. */
 Status overwrite_folder(const char *command, const char *out, bool allowed);
 Status overwrite_file(const char *command, const char *path, bool allowed);
+/* The videos of a run (publish.video); host_folder: of one host among several, NULL: the only one. */
+Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder, bool allowed);
 
 #endif

@@ -368,7 +368,6 @@ Status session_close(Session *s, SessionResult *result)
 {
     Status status = consumers_close(&s->consumers); /* the last frames are published before */
     detections_close(s->detections);
-    for (int i = 0; i < s->klv_makers; i++) free(s->klv_detections[i]);
     geoid_close(&s->geoid);
     if (status == STATUS_OK) status = s->listed;
     s->result.frames         = s->published;

@@ -5,7 +5,6 @@
 #include "sensor/publish/pairs.h"
 #include "sensor/publish/video/consume_video.h"
 
-#include <assert.h>
 #include <stdlib.h>
 
 /* The detectors of one consumer. */
@@ -45,31 +44,25 @@ static Status add_latest(Consumers *list, Session *s)
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
-/* What a consumer that makes metadata needs: its own detections, and the geoid. */
-static Status metadata_of(KlvDetections **detections, const Geoid **geoid, Session *s)
+/* For heights above mean sea level in metadata; NULL: there is none. */
+static const Geoid *geoid_of(Session *s)
 {
-    if (s->klv_makers == 0) klv_geoid_open(&s->geoid, s->shared->config);
-    *geoid      = s->geoid.n_m ? &s->geoid : NULL;
-    *detections = calloc(1, sizeof **detections);
-    if (!*detections) return STATUS_NO_MEMORY;
-    assert(s->klv_makers < session_klv_makers);
-    (*detections)->from = s->detections;
-    s->klv_detections[s->klv_makers++] = *detections;
-    return STATUS_OK;
+    if (!s->geoid.n_m) klv_geoid_open(&s->geoid, s->shared->config);
+    return s->geoid.n_m ? &s->geoid : NULL;
 }
 
 /* to: VideoTo, of those configured. patient: a failure ends nothing. */
 static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
-    VideoOf              of     = {.config = shared->config, .to = to, .bands = shared->bands,
-                                   .rate_hz = s->plan.rate_hz, .patient = patient, .detections = klv_detections};
+    const char          *slash  = strrchr(s->out, '/');
+    const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
+                                   .rate_hz = s->plan.rate_hz, .patient = patient, .geoid = geoid_of(s),
+                                   .detections = s->detections,
+                                   .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
     Consumer            *consumer = NULL;
-    KlvDetections       *detections;
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
-    Status status = metadata_of(&detections, &of.geoid, s);
-    of.user       = detections;
-    if (status == STATUS_OK) status = consume_video(&consumer, &of);
+    const Status status = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 
@@ -121,14 +114,10 @@ static Status add_coco(Consumers *list, Session *s)
 
 static Status add_klv(Consumers *list, Session *s)
 {
-    const SessionShared *shared   = s->shared;
-    KlvFiles             of       = {.out = s->out, .config = shared->config, .bands = shared->bands,
-                                     .patient = shared->live, .detections = klv_detections};
-    Consumer            *consumer = NULL;
-    KlvDetections       *detections;
-    Status               status   = metadata_of(&detections, &of.geoid, s);
-    of.user = detections;
-    if (status == STATUS_OK) status = consume_klv(&consumer, &of);
+    const KlvFiles of = {.out = s->out, .config = s->shared->config, .bands = s->shared->bands,
+                         .patient = s->shared->live, .geoid = geoid_of(s), .detections = s->detections};
+    Consumer      *consumer = NULL;
+    const Status   status   = consume_klv(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 

@@ -12,8 +12,6 @@
 #include "sensor/publish/klv/consume_klv.h"
 #include "sensor/publish/memory/detections.h"
 
-enum { session_klv_makers = 3 };
-
 struct Session {
     const SessionShared *shared;
     HostPlan             plan;          /* host and aim are filled in when they are received */
@@ -37,8 +35,6 @@ struct Session {
                                              * targets */
     Consumers            consumers;
     Detections          *detections;    /* received; NULL: none */
-    KlvDetections       *klv_detections[session_klv_makers]; /* of each consumer that makes metadata */
-    int                  klv_makers;
     Geoid                geoid;         /* for metadata; n_m NULL: none */
     unsigned             wants;         /* of all consumers */
     FramePool           *frames;

@@ -119,7 +119,10 @@ void latency_summary(LatencySummary *out, Latency *l)
 
 /* ---- a frame ----------------------------------------------------------------------------------------- */
 
-static double span_ms(double from_s, double to_s) { return from_s > 0 && to_s > 0 ? 1e3 * fmax(0, to_s - from_s) : NAN; }
+static double span_ms(double from_s, double to_s)
+{
+    return from_s > 0 && to_s > 0 ? 1e3 * fmax(0, to_s - from_s) : NAN;
+}
 
 uint64_t latency_begin(Latency *l, const LatencyTimes *t)
 {

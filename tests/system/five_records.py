@@ -58,7 +58,7 @@ def st0903(folder):
     readers, found = klv_decode.readers(keys), {}
     if "stanag4609" not in readers: return None # the one that says the frame's number
     for packet in klv_decode.decode(open(path, "rb").read(), readers):
-        frame = found.setdefault(int(packet["stanag4609"]["vmti"]["other"]["7"], 16), {})
+        frame = found.setdefault(packet["stanag4609"]["vmti"]["fields"]["7"], {})
         for reader in readers:
             for t in packet[reader]["vmti"]["targets"]:
                 number, *pixels = (t[k] for k in keys[reader])

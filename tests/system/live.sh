@@ -43,6 +43,17 @@ sender() {
 }
 end_sender() { kill "$sender" 2>/dev/null; wait "$sender" 2>/dev/null; }
 
+# with_stream URL: sets the array stream to the options for it; empty, and says so, without FFmpeg's libraries
+with_stream() {
+    stream=()
+    printf 'publish: {stream: "%s"}\n' "$1" >"$tmp/stream.yaml"
+    if "$pitviper" check "$tmp/stream.yaml" >/dev/null 2>&1; then
+        stream=(--set publish.stream="$1")
+    else
+        echo "skipped in part: no streams, built without FFmpeg's libraries"
+    fi
+}
+
 # numbered OUT: `number hash`, a frame a line
 numbered() {
     paste -d' ' <(run_json "$1" | grep -oE '"frame_number":\[[^]]*\]' | grep -oE '[0-9]+') \

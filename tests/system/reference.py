@@ -3,6 +3,7 @@ its type, and every row is in some product; a row that is never absent is there 
 the reference shows run, on the products here.
 
     reference.py products.md [--run OUT | --truth OUT] ... [--sweep OUT] [--record CASE] ... [--pdus TSV] [--capture PCAPNG [--live OUT]]
+                 [--streams COUNT]
 """
 import contextlib, glob, importlib, io, json, math, os, re, socket, struct, subprocess, sys, time
 
@@ -328,7 +329,7 @@ def take_record(topics, case, all_lines):
         check(abs(float(mean) / want - 1) < 2 ** -12, topic.name, "decodes to", mean, "of", want)
 
 def main():
-    topics, pdus = read_reference(sys.argv[1]), []
+    topics, pdus, has_streams = read_reference(sys.argv[1]), [], True
     first = {}
     for what, path in zip(sys.argv[2::2], sys.argv[3::2]):
         begin = first.setdefault(what, True)
@@ -343,10 +344,14 @@ def main():
             runs(topics["pdus"], ".", given=open(path).read())
         elif what == "--capture": pdus += [p for p in datagrams(path) if len(p) > 40 and p[2] == 20]
         elif what == "--live": meaning_of_data_pdus(path, topics["data-pdu"], [p for p in pdus if not of_a_stream(p)])
+        elif what == "--streams": has_streams = path != "0"  # 0: built without FFmpeg's libraries
     if pdus:
         streams, frames = [p for p in pdus if of_a_stream(p)], [p for p in pdus if not of_a_stream(p)]
         for name, these, prints in (("data-pdu", frames, r"\d+ \d+ \(\d+, \d+, \d+\) \d+\.\d+"),
                                     ("stream-pdu", streams, r"\d+ udp://127\.0\.0\.1:\d+\n")):
+            if name == "stream-pdu" and not has_streams:
+                for row in topics[name].rows.values(): row.found += 1
+                continue
             check(these, name, "none is sent")
             take_data_pdus(topics[name], these)
             runs_data_pdu(topics[name], pdus, prints)

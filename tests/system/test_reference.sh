@@ -22,11 +22,13 @@ check "help --markdown" [ $code = 0 ]
 cp "$tmp/stdout" "$tmp/products.md"
 command -v python3 >/dev/null || { echo "skipped in part: no python3"; finish; }
 
+free_port
+with_stream udp://127.0.0.1:$port
 # two live nodes, each with an exercise of its own, which send what they see
 for kind in truth sensor; do
     free_port
     node $kind --address 127.0.0.1 --port $port --size 32x24 --rate 5 --frames 2 --for 30 --no-png --bands lwir,radar --threads 1 \
-        --set publish.stream=udp://127.0.0.1:$((port + 20000)) --latest \
+        "${stream[@]}" --latest \
         --set publish.files=false --set publish.dis=$kind --set exercise.listen_s=1 --record "$tmp/$kind.pcapng"
     heard_by $kind 'listening on' 10
     "$pitviper" exercise demo --send 127.0.0.1:$port >"$tmp/sender.out" 2>&1 &
@@ -66,7 +68,7 @@ wait "${senders[@]}" 2>/dev/null
 variant=$(find "$tmp/sweep" -name variant.json -printf '%h\n')
 python3 tests/system/reference.py "$tmp/products.md" --run "$tmp/all" --run "$tmp/pan" --run "$variant" --run "$tmp/truth" \
     --run "$tmp/sensor" --sweep "$tmp/sweep" --record "$tmp/case" --record tests/regress/tank --pdus "$tmp/full.tsv" --pdus "$tmp/short.tsv" \
-    --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" || fail "products and their reference"
+    --capture "$tmp/truth.pcapng" --live "$tmp/truth" --capture "$tmp/sensor.pcapng" --streams "${#stream[@]}" || fail "products and their reference"
 
 # its twins: a field without a row, a row without a field, a type, an absence, lines that do not run
 if [ "$failures" = 0 ]; then

@@ -2,7 +2,7 @@
 # --stream and --video: independent programs (ffmpeg, GStreamer, tshark) receive what is sent while it is sent, by multicast and by
 # unicast, and join in the middle: pictures equal to the PNG files within the codec's error, metadata to the bit.
 . "$(dirname "$0")/common.sh"
-run check --set publish.video=x.mp4
+run replay "$tmp/none.pcap" --out "$tmp/none" --video "$tmp/none.mp4"
 if said "built without FFmpeg"; then echo "skipped: built without FFmpeg's libraries"; exit 77; fi
 command -v ffmpeg >/dev/null && command -v ffprobe >/dev/null || { echo "skipped: no ffmpeg"; exit 77; }
 python3 -c 'import numpy, PIL' 2>/dev/null || { echo "skipped: no python3 with numpy and PIL"; exit 77; }

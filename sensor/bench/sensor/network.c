@@ -7,6 +7,8 @@
  * beside other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
 
+#include "sensor/bench/sensor/network_node.h"
+
 #include "dis/datagram.h"
 #include "dis/exercise_clock.h"
 #include "dis/log.h"
@@ -14,15 +16,11 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-extern char **environ;
 
 enum { rate_hz = 30, path_size = temp_name_size };
 static const double retry_interval_s = 30, publish_s = 0.010; /* DESIGN: frame time to published <= render + 10 ms */
@@ -39,55 +37,6 @@ typedef struct Live {
 } Live;
 
 /* ---- processes -------------------------------------------------------------------------------- */
-
-/* Redirects standard output and error to these. */
-static pid_t start(const char *const *argument, int out, int err)
-{
-    posix_spawn_file_actions_t actions;
-    pid_t                      child = -1;
-    if (posix_spawn_file_actions_init(&actions) != 0) return -1;
-    posix_spawn_file_actions_adddup2(&actions, out, STDOUT_FILENO);
-    posix_spawn_file_actions_adddup2(&actions, err, STDERR_FILENO);
-    if (posix_spawn(&child, "/proc/self/exe", &actions, NULL, (char *const *)(uintptr_t)argument, environ) != 0)
-        child = -1;
-    posix_spawn_file_actions_destroy(&actions);
-    return child;
-}
-
-/* Its exit code; killed, and -1, after the timeout. */
-static int finish(pid_t child, double within_s, struct rusage *usage)
-{
-    const double begun_s = wall_clock_s();
-    int          status = 0;
-    pid_t        ended;
-    while ((ended = wait4(child, &status, WNOHANG, usage)) == 0 && wall_clock_s() - begun_s < within_s) usleep(20000);
-    if (ended == 0) {
-        kill(child, SIGKILL);
-        wait4(child, &status, 0, usage);
-        return -1;
-    }
-    return ended == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-/* Waits until it has printed this text, or for the timeout. */
-static bool hears(int from, const char *text, double within_s)
-{
-    static char  said[4096];
-    size_t       n = 0;
-    const double begun_s = wall_clock_s();
-    while (wall_clock_s() - begun_s < within_s && n < sizeof said - 1) {
-        struct pollfd ready = {.fd = from, .events = POLLIN};
-        if (poll(&ready, 1, 100) <= 0) continue;
-        const ssize_t got = read(from, said + n, sizeof said - 1 - n);
-        if (got <= 0) break;
-        n += (size_t)got;
-        said[n] = 0;
-        if (strstr(said, text)) return true;
-    }
-    said[n] = 0;
-    log_error("bench: the live node did not come to say '%s': %s", text, n ? said : "it says nothing");
-    return false;
-}
 
 static Status run_both(Live *l)
 {
@@ -132,23 +81,23 @@ static Status run_both(Live *l)
     const int     out = open(l->said, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const double  begun_s = wall_clock_s();
     struct rusage usage = {0}, unused;
-    pid_t         listener = out < 0 ? -1 : start(node, ears[1], ears[1]), sender = -1;
+    pid_t         listener = out < 0 ? -1 : node_start(node, ears[1], ears[1]), sender = -1;
     close(ears[1]);
-    bool ok = listener > 0 && hears(ears[0], "listening on", retry_interval_s);
+    bool ok = listener > 0 && node_hears(ears[0], "listening on", retry_interval_s);
     l->ready_s = wall_clock_s() - begun_s;
     const double sending_s = wall_clock_s();
-    if (ok) sender = start(exercise, out, out);
+    if (ok) sender = node_start(exercise, out, out);
     if (sender > 0) {
-        ok = hears(ears[0], "ground:", retry_interval_s); /* its choices are made: frames begin */
+        ok = node_hears(ears[0], "ground:", retry_interval_s); /* its choices are made: frames begin */
         if (ok) usleep((useconds_t)(1e6 * (quick ? 3 : 12)));
         kill(sender, SIGTERM);
-        ok = finish(sender, 5, &unused) >= 0 && ok;
+        ok = node_finish(sender, 5, &unused) >= 0 && ok;
         l->sent_for_s = wall_clock_s() - sending_s;
         if (ok) usleep(300000); /* the last of it is in transit */
     }
     if (listener > 0) {
         kill(listener, SIGINT);
-        ok = finish(listener, retry_interval_s, &usage) == 0 && ok && sender > 0;
+        ok = node_finish(listener, retry_interval_s, &usage) == 0 && ok && sender > 0;
     }
     l->resident_mb = 1024e-6 * (double)usage.ru_maxrss;
     close(ears[0]);
@@ -158,20 +107,6 @@ static Status run_both(Live *l)
 }
 
 /* ---- results -------------------------------------------------------------------------- */
-
-/* The number after the first such key that follows the other keys. */
-static double number_at(const char *text, const char *const *key, int keys)
-{
-    char quoted[32];
-    for (int k = 0; k < keys && text; k++) {
-        snprintf(quoted, sizeof quoted, "\"%s\":", key[k]);
-        text = strstr(text, quoted);
-        if (text) text += strlen(quoted);
-    }
-    return text ? strtod(text, NULL) : NAN;
-}
-#define NUMBER_AT(text, ...)                                                                                           \
-    number_at(text, (const char *const[]){__VA_ARGS__}, sizeof((const char *[]){__VA_ARGS__}) / sizeof(char *))
 
 static Status read_result(Live *l)
 {

@@ -5,5 +5,7 @@
 #include "sensor/bench/bench.h"
 
 Status bench_live(Bench *bench);
+/* Shared memory and video of a live node, by its latency ledger. */
+Status bench_publish(Bench *bench);
 
 #endif

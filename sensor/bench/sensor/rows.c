@@ -18,6 +18,10 @@ const BenchSuite sensor_benches[] = {
          "Frames are whole, planes of truth and all, handed over in memory; stages are of one thread, where they add "
          "up to the frame (bars: their share), and `rays alone` is the least that a frame could take."},
     {.name = "network", .help = "a live node, an exercise sent to it: what is lost, how late it is", .run = bench_live},
+    {.name = "network",
+     .help = "a live node with shared memory and video: when frames are there, how many are left out",
+     .run = bench_publish,
+     .reads = "Times are from the node's own latency ledger, from the end of rendering; error: 99 % of the frames."},
     {.name = "skip",
      .help = "what each exact skip saves, in the scene where it saves most",
      .run = bench_skip,

@@ -12,6 +12,7 @@ typedef struct KlvConsumer {
     FILE        *file[BAND_COUNT];
     KlvFiles     of;
     bool         truth, atr;
+    KlvDetections found;
     RetryBackoff patience;
 } KlvConsumer;
 
@@ -25,7 +26,7 @@ static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
 static Status put_band(KlvConsumer *k, Band band, const Frame *frame, const KlvTargets *targets)
 {
     uint8_t octets[klv_most_octets];
-    if (k->atr) targets = k->of.detections(k->of.user, frame, band);
+    if (k->atr) targets = klv_detections(&k->found, frame, band);
     const KlvSource source = {.band = band, .geoid = k->of.geoid};
     const size_t    count  = klv_frame(octets, &frame->record, frame->unix_s, &source, targets);
     return count > 0 ? write_packet(k->file[band], octets, count) : STATUS_OK;
@@ -80,6 +81,7 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
     k->truth    = strcmp(of->config->publish.vmti, "truth") == 0;
     k->atr      = of->detections && strcmp(of->config->publish.vmti, "atr") == 0;
     k->of       = *of;
+    k->found    = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
     k->consumer = (Consumer){WANT_FOOTPRINT | (k->truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
     for (int b = 0; b < BAND_COUNT; b++) {

@@ -15,8 +15,7 @@ typedef struct KlvFiles {
     unsigned      bands;   /* 1 << Band */
     bool          patient; /* a packet that cannot be written is dropped, and counted in the log */
     const Geoid  *geoid;   /* NULL: no heights above mean sea level */
-    KlvTargetsOf *detections; /* publish.vmti=atr; NULL: none */
-    void         *user;
+    Detections   *detections; /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } KlvFiles;
 Status consume_klv(Consumer **out, const KlvFiles *made_of);
 

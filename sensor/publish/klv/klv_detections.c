@@ -15,9 +15,8 @@ void klv_of_detections(KlvTargets *out, KlvTarget kept[klv_most_targets], const 
     }
 }
 
-const KlvTargets *klv_detections(void *user, const Frame *frame, Band band)
+const KlvTargets *klv_detections(KlvDetections *k, const Frame *frame, Band band)
 {
-    KlvDetections *k = user;
     if (!k->from || !detections_latest(k->from, band, &k->set)) return NULL;
     if (!(fabs(frame->unix_s - k->set.unix_s) <= klv_detections_s)) return NULL;
     klv_of_detections(&k->targets, k->kept, &k->set);

@@ -11,9 +11,6 @@
 
 static const double klv_detections_s = 1;
 
-/* The targets of a frame; NULL: none are known. Valid until the next call. */
-typedef const KlvTargets *KlvTargetsOf(void *user, const Frame *frame, Band band);
-
 /* One for each thread that makes metadata. */
 typedef struct KlvDetections {
     Detections  *from;
@@ -22,8 +19,8 @@ typedef struct KlvDetections {
     KlvTargets   targets;
 } KlvDetections;
 
-/* A KlvTargetsOf; user: KlvDetections. */
-const KlvTargets *klv_detections(void *user, const Frame *frame, Band band);
+/* The targets of a frame; NULL: none are known. Valid until the next call. */
+const KlvTargets *klv_detections(KlvDetections *kept, const Frame *frame, Band band);
 
 /* A box is rounded outwards to whole pixels. The id is the track; of a detection without one 2^32 plus its place in the
  * list, which says nothing from frame to frame. */

@@ -22,14 +22,15 @@ typedef struct Channel {
 } Channel;
 
 typedef struct Video {
-    Consumer  consumer;
-    VideoOf   of;
-    unsigned  to;     /* VideoTo: those of `of` that are configured */
-    KlvMode   klv;
-    int       channels;
-    Channel   channel[BAND_COUNT + 1];
-    uint8_t  *image, *tile; /* for the largest frame so far */
-    size_t    image_octets;
+    Consumer     consumer;
+    VideoOf      of;
+    unsigned     to;           /* VideoTo: those of `of` that are configured */
+    KlvMode      klv;
+    int          channels;
+    Channel      channel[BAND_COUNT + 1];
+    uint8_t     *image, *tile; /* for the largest frame so far */
+    size_t       image_octets;
+    KlvDetections found;       /* by a recogniser */
 } Video;
 
 /* ---- one frame ---------------------------------------------------------------------------------- */
@@ -87,7 +88,7 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
 }
 
 /* Returns the packet's octets; 0: there is none. */
-static size_t make_klv(uint8_t out[klv_most_octets], const Video *v, const Channel *c, const Frame *frame)
+static size_t make_klv(uint8_t out[klv_most_octets], Video *v, const Channel *c, const Frame *frame)
 {
     const Band        band   = (Band)__builtin_ctz(c->bands);
     const KlvSource   source = {.band = band, .geoid = v->of.geoid};
@@ -100,7 +101,7 @@ static size_t make_klv(uint8_t out[klv_most_octets], const Video *v, const Chann
         klv_truth_targets(&of_truth, kept, &frame->record);
         targets = &of_truth;
     } else if (atr && v->of.detections) {
-        targets = v->of.detections(v->of.user, frame, band);
+        targets = klv_detections(&v->found, frame, band);
     }
     return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
 }
@@ -278,6 +279,7 @@ Status consume_video(Consumer **out, const VideoOf *of)
     if (!v) return STATUS_NO_MEMORY;
     v->consumer = (Consumer){WANT_DISPLAY, put, NULL, close_video, "video"};
     v->of       = *of;
+    v->found    = (KlvDetections){.from = of->detections};
     v->to       = to;
     v->klv      = strcmp(of->config->publish.klv, "async") == 0  ? KLV_ASYNCHRONOUS
                   : strcmp(of->config->publish.klv, "sync") == 0 ? KLV_SYNCHRONOUS

@@ -9,11 +9,8 @@
 #define SENSOR_PUBLISH_VIDEO_CONSUME_VIDEO_H
 
 #include "sensor/publish/consumer.h"
-#include "sensor/publish/klv/klv.h"
 #include "sensor/publish/video/video_names.h"
-
-/* A recogniser's targets in this frame, or NULL: none are known. Valid until the next call. */
-typedef const KlvTargets *VideoDetections(void *user, const Frame *frame, Band band);
+#include "sensor/publish/klv/klv_detections.h"
 
 typedef struct VideoOf {
     const Config    *config;
@@ -23,8 +20,7 @@ typedef struct VideoOf {
     const char      *host_folder; /* of several hosts: this one's, below that of the videos; NULL: the only one */
     bool             patient;     /* live: what cannot be encoded or written is counted and retried */
     const Geoid     *geoid;       /* NULL: no heights above mean sea level */
-    VideoDetections *detections;  /* publish.vmti=atr; NULL: none */
-    void            *user;
+    Detections      *detections;  /* of a recogniser, for publish.vmti=atr; outlive the consumer; NULL: none */
 } VideoOf;
 
 /* STATUS_UNSUPPORTED, logged: built without FFmpeg's libraries; or a file or stream of several hosts. */

@@ -73,10 +73,18 @@ void video_watch_lines(char *out, size_t out_size, const Config *config, unsigne
                  url.address[3], url.port);
         const char *colon = strchr(address, ':');
         const int   n     = snprintf(out + used, out_size - used,
-                                     "  %-8s ffplay -fflags nobuffer -flags low_delay udp://%s   or   vlc udp://@%s\n",
-                                     band_name((Band)b), address, stream_url_multicast(&url) ? address : colon);
+                                     "  %-8s ffplay -analyzeduration 1500000 -fflags nobuffer -flags low_delay udp://%s"
+                                     "   or   vlc udp://@%s\n", band_name((Band)b), address,
+                                     stream_url_multicast(&url) ? address : colon);
         if (n < 0 || (size_t)n >= out_size - used) break;
         used += (size_t)n;
     }
     out[used] = 0;
+}
+
+void video_watch_print(const Config *config, unsigned bands)
+{
+    char text[1024];
+    video_watch_lines(text, sizeof text, config, bands);
+    if (*text) log_print("streams can be watched with:\n%s", text);
 }

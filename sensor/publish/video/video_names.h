@@ -23,7 +23,9 @@ bool video_stream_url(StreamUrl *out, const Config *config, unsigned bands, Band
 /* Whether a video that this run would replace exists, and its path. */
 bool video_earlier(char found[video_path_size], const Config *config, unsigned bands, const char *host_folder);
 
-/* Per stream the lines that a person types to watch it, each with its newline. Empty: there is no stream. */
+/* Per stream the commands that show it, a line each, with its newline. Empty: there is no stream. print: them, with a
+ * line before them; nothing where there is no stream. */
 void video_watch_lines(char *out, size_t out_size, const Config *config, unsigned bands);
+void video_watch_print(const Config *config, unsigned bands);
 
 #endif
