@@ -8,6 +8,7 @@ const char *reference_band(int i); /* optical ...; NULL at the end */
 
 #define REFERENCE_WORD_BAND {"BAND", "one of", reference_band, NULL}
 
-#define REFERENCE_WORD_CONSUMER {"CONSUMER", "a consumer of the frame: image_files, truth_lines, dis and so on", NULL, NULL}
+#define REFERENCE_WORD_CONSUMER                                                                                        \
+    {"CONSUMER", "what the frame went to: image_files, truth_lines, dis, memory, video and so on", NULL, NULL}
 
 #endif

@@ -101,11 +101,24 @@ def some_klv(out):
     return sorted(out + "/" + name for name in os.listdir(out) if name.endswith(".klv"))
 
 
+def minimum(path):
+    """ST 0902, the minimum set, but for what is the operator's: security (48) and the core identifier (94)."""
+    from stanag4609.st0601 import decode_uas_local_set
+    from stanag4609.st0902 import validate_mismms_current_state as validate
+    with open(path, "rb") as file:
+        for _, whole, items in klv_decode.packets(file.read()):
+            if 21 in [tag for tag, _ in items]:  # the centre is on the ground
+                issues = validate(decode_uas_local_set(whole), require_security=False, require_miis=False)
+                check("minimum metadata: %s" % [i.message for i in issues], not issues)
+
+
 def pose(out, found):
     truth = truth_lines(out)
     boxes = 0
     for path in some_klv(out):
         made = packets(path, found)
+        if "stanag4609" in found:
+            minimum(path)
         check("%s: a packet for each frame" % path, len(made) == len(truth) > 0)
         times_us = [p["klvdata"]["2"] for p in made]
         for i in range(1, len(made)):

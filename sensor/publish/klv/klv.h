@@ -42,7 +42,7 @@ typedef struct KlvTargets {
 /* What the record does not know. */
 typedef struct KlvSource {
     Band         band;
-    const char  *mission;       /* NULL: none */
+    const char  *mission;       /* NULL: "Exercise" */
     const char  *sensor;        /* NULL: after the band */
     const Geoid *geoid;         /* for heights above mean sea level; NULL: they are absent */
 } KlvSource;

@@ -157,7 +157,7 @@ static void put_items(KlvWriter *w, const FrameRecord *r, uint64_t time_us, cons
     const Attitude sensor = attitude_of(r_turn);
 
     klv_item_number(w, 2, time_us, 8);
-    klv_item_text(w, 3, source->mission, text_most);
+    klv_item_text(w, 3, source->mission ? source->mission : "Exercise", text_most);
     put_platform(w, &platform);
     put_names(w, r, source);
     put_position(w, &place, source);
