@@ -133,6 +133,25 @@ static void bands_are_side_by_side_to_the_bit(void **state)
     }
 }
 
+/* Time stamps of MPEG-TS have 33 bits: they wrap after 95443.7 s; and exercises may be before 1970. */
+static void time_stamps_wrap(void **state)
+{
+    static const double begin_s[] = {95443.3, -0.45, -1e9};
+    Config config;
+    char   path[temp_name_size];
+    double time_s[16];
+    for (int i = 0; i < 3; i++) {
+        snprintf(path, sizeof path, "%s/wraps%d.ts", (const char *)*state, i);
+        Consumer *video = open_video(&config, path, "h264", false);
+        for (int f = 0; f < 10; f++)
+            assert_int_equal(video->put(video, make_frame(f, begin_s[i] + 0.1 * f)), STATUS_OK);
+        assert_int_equal(video->close(video), STATUS_OK);
+        assert_int_equal(decode(path, time_s, 16, NULL), 10);
+        for (int f = 1; f < 10; f++) CHECK_NEAR(time_s[f] - time_s[f - 1], 0.1, 3e-5);
+        CHECK_NEAR(remainder(time_s[0] - begin_s[i], 0x1p33 / 90000), 0, 3e-5);
+    }
+}
+
 /* MP4 and Matroska lose what they keep at that moment, from a key frame on. */
 static void disk_full_for_a_while(const char *path, int frames_least)
 {
@@ -273,6 +292,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(bands_are_side_by_side_to_the_bit), cmocka_unit_test(a_full_disk_is_survived),
+        cmocka_unit_test(time_stamps_wrap),
         cmocka_unit_test(a_full_disk_ends_a_replay),         cmocka_unit_test(a_failing_encoder_is_survived),
         cmocka_unit_test(a_killed_run_leaves_a_film),        cmocka_unit_test(names_and_addresses),
     };

@@ -103,6 +103,11 @@ for out, ts, name, all_of in (("a", "a.ts", "group", 41), ("b", "b/lwir.ts", "ho
     assert all(abs((unix_us(k) * 9 // 100 - p + 45) % 2**33 - 45) <= 2 for k, p in zip(klv, pts)), "metadata's time is the picture's"
     of_klv = probe(ts, "d")
     assert of_klv == (["N/A"] * all_of if out == "a" else [str(p) for p in pts]), of_klv[:3]
+    # program map: type and PID 0x101; stream id of its PES packets; synchronous: an AU cell's header before the key
+    raw, of_type, of_id = read(ts), *((6, 0xBD) if out == "a" else (0x15, 0xFC))
+    assert bytes([of_type, 0xE1, 0x01]) in raw[:1000] and bytes([0, 0, 1, of_id]) in raw and bytes([0, 0, 1, of_id ^ 0x41]) not in raw[:5000]
+    at = raw.index(KEY)
+    if out == "b": assert raw[at - 5] == 0 and raw[at - 3] == 0xDF and int.from_bytes(raw[at - 2:at], "big") == len(klv[0]), raw[at - 5:at]
     # as it was sent
     shown = [int(n) for n in re.findall(r"n: *\d+ pts: *(\d+)", read(f"{name}.err").decode(errors="replace"))]
     seen = pictures(f"{name}.gray", png[0])
