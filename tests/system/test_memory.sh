@@ -7,8 +7,7 @@
 [ -w /dev/shm ] || { echo "skipped: no writable /dev/shm"; exit 77; }
 name=pitviper-test-$$
 ring=/dev/shm/$name
-started=()
-trap 'for p in "${started[@]}"; do kill -KILL "$p" 2>/dev/null; done; rm -f "$ring"* "/dev/shm/.pitviper-$name"*; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
+trap 'for p in $(jobs -p); do kill -KILL "$p" 2>/dev/null; done; rm -f "$ring"* "/dev/shm/.pitviper-$name"*; chmod -R u+w "$tmp" 2>/dev/null; rm -rf "$tmp"' EXIT
 python=$(command -v python3) && "$python" -c 'import numpy' 2>/dev/null || python=
 [ -n "$python" ] || echo "without the Python reader: no numpy"
 cc=$(command -v cc || command -v gcc || command -v clang) || { echo "skipped: no C compiler"; exit 77; }
@@ -24,7 +23,6 @@ reader() {
     local who=$1; shift
     "$@" >"$tmp/$who.said" 2>&1 &
     reader[$who]=$!
-    started+=($!)
 }
 lines() { grep -c '^frame' "$tmp/$1.said"; }
 has_read() { # NAME COUNT: until it has read so many frames
@@ -42,7 +40,6 @@ node() {
     "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/$out" --size 64x48 --threads 2 --bands lwir --memory "$name" \
         --set publish.memory_slots=32 "$@" >"$tmp/$out.said" 2>&1 &
     node=$!
-    started+=($!)
 }
 
 exercise demo "$tmp/demo.pcap"
