@@ -56,13 +56,12 @@ static Status add_video(Consumers *list, Session *s, unsigned to, bool patient)
 {
     const SessionShared *shared = s->shared;
     const char          *slash  = strrchr(s->out, '/');
-    const VideoOf        of     = {.config = shared->config, .to = to, .bands = shared->bands,
-                                   .rate_hz = s->plan.rate_hz, .patient = patient, .geoid = geoid_of(s),
-                                   .detections = s->detections,
-                                   .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
-    Consumer            *consumer = NULL;
     if (!(to & video_wanted(shared->config))) return STATUS_OK;
-    const Status status = consume_video(&consumer, &of);
+    const VideoOf of = {.config = shared->config, .to = to, .bands = shared->bands, .rate_hz = s->plan.rate_hz,
+                        .patient = patient, .geoid = geoid_of(s), .detections = s->detections,
+                        .host_folder = !shared->several ? NULL : slash ? slash + 1 : s->out};
+    Consumer     *consumer = NULL;
+    const Status  status   = consume_video(&consumer, &of);
     return status == STATUS_OK ? consumers_add(list, consumer) : status;
 }
 

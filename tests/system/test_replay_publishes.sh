@@ -39,7 +39,7 @@ if unshare -rn true 2>/dev/null; then
     unshare -rn "$pitviper" replay "$tmp/live.pcapng" --out "$tmp/alone" --causal --to "$(time_of "$tmp/live" 1)" "${few[@]}" \
         --address 239.1.2.3 --speed 100 >"$tmp/stdout" 2>"$tmp/stderr"
     check "no network: exit code" [ $? = 1 ]
-    check "no network: said" complained 'none of [24] Data PDUs could be sent to 239.1.2.3 port [0-9]+: Network is unreachable; see --address'
+    check "no network: said" complained 'none of [0-9]+ Data PDUs could be sent to 239.1.2.3 port [0-9]+: Network is unreachable; see --address'
 fi
 # those that the node received from itself are in its recording, and are not played
 heard=$(run_json "$tmp/live" | grep -oE '"own":[0-9]+')

@@ -36,12 +36,12 @@ Status memory_segment_create(MemorySegment *out, const char *name, size_t size)
     shm_unlink(s->temporary); /* of a killed process with the same number */
     s->file = shm_open(s->temporary, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
     if (s->file < 0) return not_created(s, "create", errno);
-    /* all of it now: a page that cannot be had later would end the process (SIGBUS) */
+    /* all of it now: a page that cannot be had later would end the process (SIGBUS); and mapped now, not in a frame */
     const int reserved = posix_fallocate(s->file, 0, (off_t)size);
     Status    status   = reserved == 0 ? STATUS_OK : not_created(s, "reserve", reserved);
     if (status == STATUS_OK && !lock_file(s->file)) status = not_created(s, "lock", errno);
     if (status == STATUS_OK) {
-        void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED, s->file, 0);
+        void *at = mmap(NULL, size, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_POPULATE, s->file, 0);
         if (at == MAP_FAILED) status = not_created(s, "map", errno);
         else s->at = at;
     }
