@@ -10,11 +10,11 @@ frames_of() { json_numbers "$tmp/$1/run.json" frames | tail -n 1; }
 # consumer OUT NAME FIELD: of latency_ms.consumers in its run.json
 consumer() { run_json "$tmp/$1" | grep -oE "\"$2\":\{\"[a-z][^}]*\}" | tail -n 1 | grep -oE "\"$3\":[0-9.]+" | cut -d: -f2; }
 said_times() { grep -cE -e "$2" "$tmp/$1.out"; } # said_times NAME TEXT
-# watched NAME options: 11 frames of a replay by the clock, 48x36, one band, without files
+# watched NAME options: 11 frames of a replay by the clock, 48x36, one band, without files and truth
 watched() {
     local name=$1; shift
     "$pitviper" replay "$tmp/demo.pcap" --out "$tmp/$name" --size 48x36 --bands lwir --rate 10 --from 1364 --to 1365 --threads 1 \
-        --speed 1 --no-files --set quality.budget=off "$@" >"$tmp/$name.out" 2>&1
+        --speed 1 --no-files --set publish.truth=false "$@" >"$tmp/$name.out" 2>&1
     code=$?
 }
 readers=()
@@ -61,6 +61,10 @@ LD_PRELOAD=$preload FAIL_ENCODER=5,1 watched readers "${options[@]}"
 check "readers that stop and die: the replay ends well" [ "$code" = 0 ] || cat "$tmp/readers.out"
 check "readers that stop and die: every frame is made" [ "$(frames_of readers)" = 11 ]
 check "and written" [ "$(consumer readers memory count)" = 11 -a "$(consumer readers memory left_out)" = 0 ]
+check "without truth, as told: neither lines nor hashes, and the run says so" \
+    [ ! -e "$tmp/readers/truth.jsonl" -a -z "$(hashes "$tmp/readers")" -a "$(grep -c 'no truth.jsonl' "$tmp/readers/run.json")" = 1 ]
+run replay "$tmp/demo.pcap" --out "$tmp/plain" --set publish.truth=false
+check "but not at full speed" [ $code = 1 ] && complained 'publish.truth: false is for'
 check "the memory's name is gone" [ ! -e /dev/shm/$name ]
 if [ -n "$reads" ]; then
     kill -CONT $stopped

@@ -1,7 +1,7 @@
 /* sensor/bench/sensor/network_publish.c: a live node that renders for a recogniser and a player.
  *
- * Shared memory, and video with KLV, on two cores; an exercise is sent to it over loopback. The figures are those of its
- * latency ledger (run.json). A socket takes the video in place of a player. The node makes no files and no truth
+ * Shared memory, and video with KLV, on two cores; an exercise is sent to it over loopback. The figures are those of
+ * its latency ledger (run.json). A socket takes the video in place of a player. The node makes no files and no truth
  * (publish.truth), and chooses its quality by the frame interval (quality.frame_ms). On quick rounds, which run beside
  * other load, times and losses are printed and not checked. */
 #include "sensor/bench/sensor/network.h"
