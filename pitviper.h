@@ -100,6 +100,8 @@ void random_u32x4(uint32_t out[4], const uint32_t counter[4], const uint32_t key
 /* One uniform in [0, 1) and one standard normal for (seed, stream, frame, index). */
 double random_uniform(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
 double random_normal(uint64_t seed, uint32_t stream, uint32_t frame, uint64_t index);
+/* Those of indices first .. first + count - 1: the same numbers, several times as fast. */
+void   random_normals(double *out, size_t count, uint64_t seed, uint32_t stream, uint32_t frame, uint64_t first);
 
 /* ---- text --------------------------------------------------------------------------------- */
 

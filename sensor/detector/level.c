@@ -60,39 +60,69 @@ static inline bool finite_bits(uint32_t bits) { return (bits & 0x7f800000u) != 0
 
 enum { digit_bits = 11, digits = 1 << digit_bits };
 
-/* How many finite values have each digit (key >> shift) & (digits - 1) among those whose higher bits are
- * those of `prefix`. */
-static void count_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count,
-                         uint32_t prefix, uint32_t prefix_mask, int shift)
+/* Values that begin with the same digits. */
+typedef struct Prefix {
+    uint32_t value, mask;
+    uint64_t rank;              /* sought among them */
+    uint32_t histogram[digits]; /* of their next digit */
+} Prefix;
+
+/* How many finite values have each digit (key >> shift) & (digits - 1), of those with either prefix. */
+static void count_digits(Prefix prefix[2], const float *const *plane, int plane_count, size_t count, int shift)
 {
-    memset(histogram, 0, digits * sizeof *histogram);
-    for (int p = 0; p < plane_count; p++) {
+    for (int k = 0; k < 2; k++) memset(prefix[k].histogram, 0, sizeof prefix[k].histogram);
+    for (int p = 0; p < plane_count; p++)
         for (size_t i = 0; i < count; i++) {
-            const uint32_t bits = float_bits(plane[p][i]), key = ordered(bits);
-            if (finite_bits(bits) && (key & prefix_mask) == prefix) histogram[key >> shift & (digits - 1)]++;
+            const uint32_t bits = float_bits(plane[p][i]), key = ordered(bits), digit = key >> shift & (digits - 1);
+            if (!finite_bits(bits)) continue;
+            if ((key & prefix[0].mask) == prefix[0].value) prefix[0].histogram[digit]++;
+            if ((key & prefix[1].mask) == prefix[1].value) prefix[1].histogram[digit]++;
         }
-    }
 }
 
-/* The value of rank `rank` (0: least) of the finite ones: digit by digit from the top, 11 + 11 + 10 bits.
- * Exact, O(count), no copy of the plane, and NaN cannot upset it as it would a sort. top: histogram of the
- * first digit, which both percentiles share. */
-static float order_statistic(const uint32_t top[digits], const float *const *plane, int plane_count, size_t count,
-                             uint64_t rank)
+/* The first digit of all finite values; returns their number. Neighbours are often alike, so they are counted apart. */
+static uint64_t count_first_digits(uint32_t histogram[digits], const float *const *plane, int plane_count, size_t count)
+{
+    uint32_t apart[4][digits] = {{0}};
+    uint64_t all = 0;
+    for (int p = 0; p < plane_count; p++)
+        for (size_t i = 0; i < count; i++) {
+            const uint32_t bits = float_bits(plane[p][i]);
+            apart[i % 4][ordered(bits) >> 21] += finite_bits(bits);
+        }
+    for (int d = 0; d < digits; d++) all += histogram[d] = apart[0][d] + apart[1][d] + apart[2][d] + apart[3][d];
+    return all;
+}
+
+static void take_digit(Prefix *p, int shift)
+{
+    /* the last digit has 10 bits, and its eleventh belongs to the prefix already */
+    uint32_t digit = shift == 0 ? p->value & (digits - 1) : 0;
+    while (p->rank >= p->histogram[digit]) p->rank -= p->histogram[digit++];
+    p->value |= digit << shift;
+    p->mask |= (uint32_t)(digits - 1) << shift;
+}
+
+/* The values at two shares of the finite ones in order (0: the least): digit by digit from the top, 11 + 11 + 10 bits.
+ * Exact, three passes, no copy of the plane, and NaN cannot upset it as it would a sort. False: none is finite. */
+static bool order_statistics(double out[2], const float *const *plane, int plane_count, size_t count,
+                             const double share[2])
 {
     static const int shifts[3] = {21, 10, 0};
-    uint32_t         histogram[digits], prefix = 0, mask = 0;
-    memcpy(histogram, top, sizeof histogram);
-    for (int pass = 0; pass < 3; pass++) {
-        const int shift = shifts[pass];
-        if (pass > 0) count_digits(histogram, plane, plane_count, count, prefix, mask, shift);
-        /* the last digit has 10 bits, and its eleventh belongs to the prefix already */
-        uint32_t digit = pass == 2 ? prefix >> shift & (digits - 1) : 0;
-        while (rank >= histogram[digit]) rank -= histogram[digit++];
-        prefix |= digit << shift;
-        mask |= (uint32_t)(digits - 1) << shift;
+    Prefix           prefix[2];
+    const uint64_t   n = count_first_digits(prefix[0].histogram, plane, plane_count, count);
+    if (n == 0) return false;
+    memcpy(prefix[1].histogram, prefix[0].histogram, sizeof prefix[0].histogram);
+    for (int k = 0; k < 2; k++) {
+        prefix[k].value = prefix[k].mask = 0;
+        prefix[k].rank  = (uint64_t)(share[k] * (double)(n - 1) + 0.5);
     }
-    return from_ordered(prefix);
+    for (int pass = 0; pass < 3; pass++) {
+        if (pass > 0) count_digits(prefix, plane, plane_count, count, shifts[pass]);
+        for (int k = 0; k < 2; k++) take_digit(&prefix[k], shifts[pass]);
+    }
+    for (int k = 0; k < 2; k++) out[k] = from_ordered(prefix[k].value);
+    return true;
 }
 
 DetectorLevel detector_level(const DetectorConfig *config, const float *const *plane, int plane_count, size_t count)
@@ -102,15 +132,10 @@ DetectorLevel detector_level(const DetectorConfig *config, const float *const *p
 
     DetectorLevel level = {config->level_low, config->level_high};
     if (config->auto_level) {
-        uint32_t top[digits];
-        count_digits(top, plane, plane_count, count, 0, 0, 21);
-        uint64_t n = 0;
-        for (int i = 0; i < digits; i++) n += top[i];
-        if (n == 0) return (DetectorLevel){0, 1};
-
-        const double last = (double)(n - 1);
-        level.low = order_statistic(top, plane, plane_count, count, (uint64_t)(config->percentile_low * last + 0.5));
-        level.high = order_statistic(top, plane, plane_count, count, (uint64_t)(config->percentile_high * last + 0.5));
+        const double share[2] = {config->percentile_low, config->percentile_high};
+        double       value[2];
+        if (!order_statistics(value, plane, plane_count, count, share)) return (DetectorLevel){0, 1};
+        level = (DetectorLevel){value[0], value[1]};
 
         const double middle = 0.5 * (level.low + level.high);
         double       span = (level.high - level.low) * (1 + 2 * config->margin);

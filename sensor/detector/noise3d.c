@@ -172,6 +172,11 @@ void detector_noise(float *out, const float *in, size_t first, size_t count, dou
         if (out != in) memmove(out, in, count * sizeof *out);
         return;
     }
-    for (size_t i = 0; i < count; i++)
-        out[i] = (float)(in[i] + noise_sigma * random_normal(seed, stream, frame, first + i));
+    enum { block = 256 };
+    double normal[block];
+    for (size_t from = 0; from < count; from += block) {
+        const size_t here = count - from < block ? count - from : block;
+        random_normals(normal, here, seed, stream, frame, first + from);
+        for (size_t i = 0; i < here; i++) out[from + i] = (float)(in[from + i] + noise_sigma * normal[i]);
+    }
 }

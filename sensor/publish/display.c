@@ -49,8 +49,8 @@ void frame_expose(TruthNoise *noise, Chain *const chain[BAND_COUNT], const Pictu
         noise->optical_w_m2_sr = chain_sigma(chain[BAND_OPTICAL], 0, mean_radiance(picture, BAND_OPTICAL));
     for (int b = BAND_MWIR; b <= BAND_LWIR; b++) {
         double      *netd_k = b == BAND_MWIR ? &noise->netd_mwir_k : &noise->netd_lwir_k, low_m, high_m, slope;
-        const double mean   = mean_radiance(picture, b);
-        if (!chain[b] || !(mean > 0)) continue;
+        const double mean   = chain[b] ? mean_radiance(picture, b) : 0;
+        if (!(mean > 0)) continue;
         preset_band(&low_m, &high_m, (Band)b, OPTICAL_PAN, -1);
         planck_band(low_m, high_m, planck_band_inverse(low_m, high_m, mean), &slope);
         *netd_k = chain_sigma(chain[b], 0, mean) / slope;
@@ -111,23 +111,30 @@ static DisplayColour colour_of(const DisplaysOf *of)
     return colour;
 }
 
-/* The input of a display of a band, before its level: counts or radiance with noise, of R G B balanced, in
- * out->plane, memory for as many planes as the band has, or in the chain. */
+/* Without a sensor: radiance with noise, of `count` pixels. */
+static void add_noise(float *const memory[3], const FrameDisplay *d, const DisplaysOf *of, int band, size_t first,
+                      size_t count)
+{
+    const float *in[3] = {NULL, NULL, NULL};
+    band_radiance(in, of->picture, band);
+    for (int c = 0; c < d->planes; c++)
+        detector_noise(memory[c] + first, in[c] + first, first, count, d->detector.noise_sigma,
+                       (uint64_t)of->config->seed, (uint32_t)(3 * band + c), (uint32_t)of->frame);
+}
+
+/* The input of a display of a band, before its level: counts, or radiance with noise, in memory already; of R G B
+ * balanced. */
 static void detect(FrameDisplay *out, float *const memory[3], const DisplaysOf *of, int band)
 {
     const Picture *p     = of->picture;
     const size_t   count = (size_t)p->width * (size_t)p->height;
     Chain         *chain = of->chain[band];
     const float   *in[3] = {NULL, NULL, NULL}, *seen[3];
-    out->detector = detector_of(of, band);
     band_radiance(in, p, band);
     if (chain) chain_run(chain, in, &p->small, of->frame, of->rate_px_s);
     for (int c = 0; c < out->planes; c++) {
         seen[c]       = chain ? chain_values(chain, c) : memory[c];
         out->plane[c] = memory[c];
-        if (!chain)
-            detector_noise(memory[c], in[c], 0, count, out->detector.noise_sigma, (uint64_t)of->config->seed,
-                           (uint32_t)(3 * band + c), (uint32_t)of->frame);
     }
     if (out->planes == 3) {
         const DisplayColour colour = colour_of(of);
@@ -159,6 +166,24 @@ typedef struct DisplayJobs {
     uint16_t         *counts[BAND_COUNT][3];
     int               count, band[BAND_COUNT];
 } DisplayJobs;
+
+/* Rows of the noise of a band: a task each, so that one band alone uses all threads. */
+enum { noise_rows = 32 };
+
+static int noise_tasks(const Picture *p) { return (p->height + noise_rows - 1) / noise_rows; }
+
+static void run_noise(void *user, int worker, int task)
+{
+    DisplayJobs      *jobs  = user;
+    const DisplaysOf *of    = jobs->of;
+    const Picture    *p     = of->picture;
+    const int         band  = jobs->band[task / noise_tasks(p)], row = task % noise_tasks(p) * noise_rows;
+    const int         rows  = p->height - row < noise_rows ? p->height - row : noise_rows;
+    (void)worker;
+    if (!of->chain[band])
+        add_noise(jobs->memory[band], &jobs->display[band], of, band, (size_t)row * (size_t)p->width,
+                  (size_t)rows * (size_t)p->width);
+}
 
 static void run_job(void *user, int worker, int task)
 {
@@ -200,6 +225,8 @@ Status displays_make(FrameDisplay display[BAND_COUNT], const DisplaysOf *of, uns
         }
     }
     frame_expose(&ignored, of->chain, p, of->config);
+    for (int k = 0; k < jobs.count; k++) display[jobs.band[k]].detector = detector_of(of, jobs.band[k]);
+    pool_run(pool, jobs.count * noise_tasks(p), run_noise, &jobs);
     pool_run(pool, jobs.count, run_job, &jobs);
     return STATUS_OK;
 }

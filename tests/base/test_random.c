@@ -55,12 +55,34 @@ static void every_counter_matters(void **state)
     CHECK(base != random_uniform(1, 2, 3, 1ull << 32 | 4));
 }
 
+/* Many at once are the single ones to the bit, and those Box and Muller's formula with the mathematical library's
+ * logarithm and cosine, to rounding. */
+static void normals_are_box_mullers(void **state)
+{
+    (void)state;
+    enum { n = 100003 };
+    static double many[n];
+    const uint64_t first = (1ull << 32) - 50000; /* across a word */
+    random_normals(many, n, 7, 2, 3, first);
+    for (int i = 0; i < n; i++) {
+        const uint64_t index      = first + (uint64_t)i;
+        const uint32_t counter[4] = {(uint32_t)index, (uint32_t)(index >> 32), 3, 2}, key[2] = {7, 0};
+        uint32_t       word[4];
+        random_u32x4(word, counter, key);
+        const double u = 1 - (double)(((uint64_t)word[0] << 32 | word[1]) >> 11) * 0x1p-53;
+        const double v = (double)(((uint64_t)word[2] << 32 | word[3]) >> 11) * 0x1p-53;
+        CHECK(many[i] == random_normal(7, 2, 3, index));
+        CHECK_NEAR(many[i], sqrt(-2 * log(u)) * cos(2 * pi_rad * v), 1e-14);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(philox_gives_the_published_vectors),
         cmocka_unit_test(moments_are_those_of_the_distributions),
         cmocka_unit_test(every_counter_matters),
+        cmocka_unit_test(normals_are_box_mullers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
