@@ -181,7 +181,8 @@ static Status prepare(SweepRun *s)
                                      {"memory", o->config.publish.memory}};
     for (int i = 0; i < 3; i++)
         if (*of_one[i][1]) {
-            log_error("sweep: publish.%s names one place, and variants are many; replay one variant with it", of_one[i][0]);
+            log_error("sweep: publish.%s names one place, and variants are many; replay one variant with it",
+                      of_one[i][0]);
             return STATUS_BAD_VALUE;
         }
     Status status = sweep_read(&s->sweep, o->sweep, &o->config);

@@ -26,7 +26,8 @@ Status overwrite_file(const char *command, const char *path, bool allowed)
     return STATUS_BAD_VALUE;
 }
 
-Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder, bool allowed)
+Status overwrite_video(const char *command, const Config *config, unsigned bands, const char *host_folder,
+                       bool allowed)
 {
     char found[video_path_size];
     if (allowed || !video_earlier(found, config, bands, host_folder)) return STATUS_OK;

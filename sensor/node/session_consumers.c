@@ -253,7 +253,8 @@ static Status by_the_clock(Session *s, FrameDone *done, unsigned raw)
     if (status == STATUS_OK && live && config->publish.latest) status = add_latest(&files, s);
     if (status == STATUS_OK && live && config->publish.klv_files) status = add_klv(&files, s);
     if (status == STATUS_OK && !live) status = replay_files(&files, s, done, s->publish_pool, raw);
-    if (status == STATUS_OK) status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
+    if (status == STATUS_OK)
+        status = add_video(&sent, s, live ? VIDEO_TO_FILE | VIDEO_TO_STREAM : VIDEO_TO_STREAM, true);
     const unsigned wants = consumers_wants(&first) | consumers_wants(&sent) | consumers_wants(&files);
     if (status == STATUS_OK) status = add_displays(&s->consumers, s, s->shared->pool, wants);
     if (status == STATUS_OK) status = add_queue(s, &sent, QUEUE_LEAVE_OUT, &s->streamed); /* before the hashes */
@@ -279,7 +280,8 @@ Status session_consumers(Session *s, FrameDone *done)
     if (status == STATUS_OK) status = add_memory(&s->consumers, s, false);
     if (status == STATUS_OK && shared->publish) status = add_call(&s->consumers, shared);
     if (status == STATUS_OK && shared->dis) status = add_dis(&s->consumers, s); /* before the disk */
-    if (status == STATUS_OK) status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
+    if (status == STATUS_OK)
+        status = shared->live || shared->paced ? by_the_clock(s, done, raw) : for_replay(s, done, raw);
     consumers_expect(&s->consumers, s->latency);
     s->wants = further_wants(s, consumers_wants(&s->consumers));
     /* the one being rendered, and of each queue the one that waits and the one being published */

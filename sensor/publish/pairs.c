@@ -156,7 +156,8 @@ Status consume_pairs(Consumer **out, const PairsOf *of)
         for (int m = 0; m < 3; m++) chains_destroy(&chains[m]);
         return STATUS_NO_MEMORY;
     }
-    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL, close_pairs, "pairs"};
+    p->consumer = (Consumer){WANT_WITHOUT | WANT_CELLS | WANT_PLANES | WANT_SHA256 | WANT_DISPLAY, put, NULL,
+                             close_pairs, "pairs"};
     p->of       = *of;
     p->all      = strcmp(of->config->publish.pairs, "all") == 0;
     p->noiseless = *of->config;
