@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Memory is flat over ten minutes with all consumers of frames on: a replay by the clock that writes shared memory, streams
-# video with KLV, keeps the newest pictures and the latency ledger; and its file descriptors are as
-# many as before. PITVIPER_MEMORY_S=20 is a short look. labels: deep
+# Memory is flat over ten minutes with all consumers of frames on but image files: a replay by the clock that writes shared
+# memory, streams and writes video with KLV, sends Data PDUs, keeps the newest pictures and the latency ledger; and its file
+# descriptors are as many as before. PITVIPER_MEMORY_S=20 is a short look. labels: deep
 . "$(dirname "$0")/common.sh"
 . "$(dirname "$0")/live.sh"
 
 seconds=${PITVIPER_MEMORY_S:-600}
 exercise crowd "$tmp/crowd.pcap" scale=0.02 duration_s=$((seconds + 10))
 free_port
-options=(--memory pitviper_memory_$$ --latest --no-files)
-"$pitviper" replay --help | grep -q -- --stream && options+=(--stream udp://127.0.0.1:$((port + 1000)) --set publish.klv_files=true)
+options=(--memory pitviper_memory_$$ --latest --no-files --set publish.dis=sensor --address 127.0.0.1)
+"$pitviper" replay --help | grep -q -- --stream && options+=(--stream udp://127.0.0.1:$((port + 1000)) --set publish.klv_files=true --video "$tmp/video")
 "$pitviper" replay "$tmp/crowd.pcap" --out "$tmp/out" --size 64x48 --bands lwir --rate 10 --to +$seconds --speed 1 --threads 2 "${options[@]}" >"$tmp/out.txt" 2>&1 &
 replay=$!
 rss_kb() { awk '/^VmRSS/ { print $2 }' /proc/$replay/status 2>/dev/null; }
