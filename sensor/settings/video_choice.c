@@ -75,6 +75,17 @@ VideoKind video_kind(const char *path)
     return VIDEO_FOLDER;
 }
 
+/* A name that ends as videos do in other containers is no folder. */
+static bool other_video(const char *path)
+{
+    static const char *const ends[] = {".avi", ".mov", ".m4v", ".mpg", ".mpeg", ".m2ts", ".mts", ".mxf", ".webm", ".wmv",
+                                       ".flv", ".ogv", ".gif", ".h264", ".264", ".hevc", ".265"};
+    const char *const last = strrchr(path, '.');
+    for (size_t i = 0; last && i < sizeof ends / sizeof *ends; i++)
+        if (strcasecmp(last, ends[i]) == 0) return true;
+    return false;
+}
+
 VideoCodec video_codec(const char *name)
 {
     static const char *const names[] = {"h264", "h264-10", "hevc-12", "ffv1"};
@@ -103,6 +114,10 @@ Status video_choice_check(const char *video, const char *stream, const char *cod
               *stream ? "stream" : "video");
     return STATUS_BAD_VALUE;
 #endif
+    if (kind == VIDEO_FOLDER && other_video(video)) {
+        log_error("config: publish.video: '%s': choose a name that ends with .mp4, .mkv or .ts, or a folder", video);
+        return STATUS_BAD_VALUE;
+    }
     if (*stream && !stream_url_parse(&url, &why, stream)) {
         log_error("config: publish.stream: '%s' %s; for example udp://239.1.2.3:5004", stream, why);
         return STATUS_BAD_VALUE;
