@@ -225,7 +225,7 @@ typedef struct Flood {
     pthread_t        thread;
 } Flood;
 
-/* Some ten thousand a second: several in each tick, and no more than a sanitizer's build can take: else no tick ends. */
+/* Some ten thousand a second: several in each tick, and no more than a sanitizer's build can take. */
 static void *flood_loop(void *user)
 {
     Flood *flood = user;
