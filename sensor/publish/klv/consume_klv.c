@@ -11,7 +11,6 @@ typedef struct KlvConsumer {
     Consumer     consumer;
     FILE        *file[BAND_COUNT];
     KlvFiles     of;
-    bool         truth, atr;
     KlvDetections found;
     RetryBackoff patience;
 } KlvConsumer;
@@ -23,25 +22,20 @@ static Status write_packet(FILE *file, const uint8_t *octets, size_t count)
     return STATUS_IO;
 }
 
-static Status put_band(KlvConsumer *k, Band band, const Frame *frame, const KlvTargets *targets)
+static Status put_band(KlvConsumer *k, Band band, const Frame *frame)
 {
-    uint8_t octets[klv_most_octets];
-    if (k->atr) targets = klv_detections(&k->found, frame, band);
-    const KlvSource source = {.band = band, .geoid = k->of.geoid};
-    const size_t    count  = klv_frame(octets, &frame->record, frame->unix_s, &source, targets);
+    uint8_t      octets[klv_most_octets];
+    const size_t count = klv_of_band(octets, &k->found, k->of.config->publish.vmti, frame, band, k->of.geoid);
     return count > 0 ? write_packet(k->file[band], octets, count) : STATUS_OK;
 }
 
 static Status put(Consumer *consumer, Frame *frame)
 {
-    KlvConsumer *k = (KlvConsumer *)consumer;
-    KlvTarget    kept[klv_most_targets];
-    KlvTargets   targets;
+    KlvConsumer *k      = (KlvConsumer *)consumer;
     Status       status = STATUS_OK;
-    if (k->truth) klv_truth_targets(&targets, kept, &frame->record);
     const bool due = !k->of.patient || retry_due(&k->patience);
     for (int b = 0; b < BAND_COUNT && due && status == STATUS_OK; b++)
-        if (k->file[b]) status = put_band(k, (Band)b, frame, k->truth ? &targets : NULL);
+        if (k->file[b]) status = put_band(k, (Band)b, frame);
     if (!k->of.patient) return status;
     retry_done(&k->patience, due, due ? status : STATUS_IO);
     for (int b = 0; b < BAND_COUNT; b++)
@@ -78,12 +72,11 @@ Status consume_klv(Consumer **out, const KlvFiles *of)
     char         path[frame_path_size];
     KlvConsumer *k = calloc(1, sizeof *k);
     if (!k) return STATUS_NO_MEMORY;
-    k->truth    = strcmp(of->config->publish.vmti, "truth") == 0;
-    k->atr      = of->detections && strcmp(of->config->publish.vmti, "atr") == 0;
+    const bool truth = strcmp(of->config->publish.vmti, "truth") == 0;
     k->of       = *of;
     k->found    = (KlvDetections){.from = of->detections};
     k->patience = (RetryBackoff){.what = "packets in .klv files"};
-    k->consumer = (Consumer){WANT_FOOTPRINT | (k->truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
+    k->consumer = (Consumer){WANT_FOOTPRINT | (truth ? WANT_TARGETS : 0), put, NULL, close_klv, "klv"};
     for (int b = 0; b < BAND_COUNT; b++) {
         if (!(of->bands >> b & 1)) continue;
         const bool fits = snprintf(path, sizeof path, "%s/%s.klv", of->out, band_name((Band)b)) < (int)sizeof path;

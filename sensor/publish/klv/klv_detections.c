@@ -22,3 +22,17 @@ const KlvTargets *klv_detections(KlvDetections *k, const Frame *frame, Band band
     klv_of_detections(&k->targets, k->kept, &k->set);
     return &k->targets;
 }
+
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *k, const char *vmti, const Frame *frame, Band band,
+                   const Geoid *geoid)
+{
+    const KlvSource   source  = {.band = band, .geoid = geoid};
+    const KlvTargets *targets = NULL;
+    if (strcmp(vmti, "truth") == 0) {
+        klv_truth_targets(&k->targets, k->kept, &frame->record);
+        targets = &k->targets;
+    } else if (strcmp(vmti, "atr") == 0) {
+        targets = klv_detections(k, frame, band);
+    }
+    return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
+}

@@ -22,6 +22,10 @@ typedef struct KlvDetections {
 /* The targets of a frame; NULL: none are known. Valid until the next call. */
 const KlvTargets *klv_detections(KlvDetections *kept, const Frame *frame, Band band);
 
+/* The packet of a band, with the targets of publish.vmti (vmti). Returns its octets; 0: there is none. */
+size_t klv_of_band(uint8_t out[klv_most_octets], KlvDetections *kept, const char *vmti, const Frame *frame, Band band,
+                   const Geoid *geoid);
+
 /* A box is rounded outwards to whole pixels. The id is the track; of a detection without one 2^32 plus its place in the
  * list, which says nothing from frame to frame. */
 void klv_of_detections(KlvTargets *out, KlvTarget kept[klv_most_targets], const DetectionSet *set);

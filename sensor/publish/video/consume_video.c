@@ -87,25 +87,6 @@ static Status compose(EncoderConfig *form, Video *v, const Channel *c, const Fra
     return STATUS_OK;
 }
 
-/* Returns the packet's octets; 0: there is none. */
-static size_t make_klv(uint8_t out[klv_most_octets], Video *v, const Channel *c, const Frame *frame)
-{
-    const Band        band   = (Band)__builtin_ctz(c->bands);
-    const KlvSource   source = {.band = band, .geoid = v->of.geoid};
-    const bool        truth  = strcmp(v->of.config->publish.vmti, "truth") == 0;
-    const bool        atr    = strcmp(v->of.config->publish.vmti, "atr") == 0;
-    const KlvTargets *targets = NULL;
-    KlvTarget         kept[klv_most_targets];
-    KlvTargets        of_truth;
-    if (truth) {
-        klv_truth_targets(&of_truth, kept, &frame->record);
-        targets = &of_truth;
-    } else if (atr && v->of.detections) {
-        targets = klv_detections(&v->found, frame, band);
-    }
-    return klv_frame(out, &frame->record, frame->unix_s, &source, targets);
-}
-
 /* Later than the last one, whatever the clock of the exercise does. */
 static int64_t time_of(const Channel *c, double unix_s)
 {
@@ -146,7 +127,9 @@ static Status put_channel(Video *v, Channel *c, const Frame *frame)
     if (status == STATUS_OK) status = encode(&packet, v, c, &form, pts_90k);
     if (v->of.patient) retry_done(&c->retry, due, status);
     if (status != STATUS_OK) return v->of.patient ? STATUS_OK : status;
-    const size_t klv_count = c->klv ? make_klv(klv, v, c, frame) : 0;
+    const size_t klv_count = c->klv ? klv_of_band(klv, &v->found, v->of.config->publish.vmti, frame,
+                                                  (Band)__builtin_ctz(c->bands), v->of.geoid)
+                                    : 0;
     c->last_90k = pts_90k;
     if (packet.key) c->key_90k = pts_90k;
     for (int i = 0; i < c->outputs; i++) {
