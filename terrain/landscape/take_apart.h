@@ -1,0 +1,39 @@
+/* terrain/landscape/take_apart.h: a surface model (the highest return of each cell: roofs and crowns included) taken
+ * apart into bare ground, buildings and trees. */
+#ifndef TERRAIN_LANDSCAPE_TAKE_APART_H
+#define TERRAIN_LANDSCAPE_TAKE_APART_H
+
+#include "pitviper.h"
+
+/* A window of cells, row 0 southernmost. */
+typedef struct SurfaceModel {
+    int            nx, ny;
+    double         cell_m;
+    const float   *surface_m; /* [ny][nx] NAN: void */
+    const float   *bare_m;    /* a terrain model of the same cells, NAN where it has none; NULL: none */
+    const uint8_t *rgb;       /* [ny][nx][3] sRGB of an orthophoto; NULL: none */
+} SurfaceModel;
+
+typedef enum CellKind { CELL_BARE, CELL_BUILDING, CELL_TREE } CellKind;
+
+typedef struct Crown {
+    float x_m, y_m;           /* of its top, from the window's south-west corner */
+    float height_m, radius_m; /* above bare ground; of the circle of the same area */
+} Crown;
+
+/* Arrays of nx x ny, the caller's, but the crowns: allocated. */
+typedef struct SurfaceParts {
+    float   *bare_m;          /* bare ground, also under roofs and crowns; no NAN unless all is void */
+    float   *roof_m;          /* height of the roof, its planes smoothed and its outline straightened; NAN: no building */
+    uint8_t *kind;            /* CellKind */
+    int      crown_count;
+    Crown   *crown;           /* by place, south-west first */
+} SurfaceParts;
+
+/* A cell's answer depends on cells nearer than this only: windows that overlap by it are taken apart alike. */
+static const double take_apart_reach_m = 128;
+
+/* One thread, deterministic; cell_m 0.1 .. 4, at coarser cells nothing can be told apart: STATUS_UNSUPPORTED. */
+Status surface_take_apart(SurfaceParts *out, const SurfaceModel *model);
+
+#endif
