@@ -70,13 +70,17 @@ static void fill_rays(const Elevation *e, bool one_eye)
 {
     const ElevationLevel *l = &e->level[0];
     const double          wide = l->spacing_m * (nx - 1), tall = l->spacing_m * (ny - 1);
-    double                eye[3] = {l->x0_m + uniform(0.1, 0.9) * wide, l->y0_m + uniform(0.1, 0.9) * tall, 0};
+    double                eye[3] = {l->x0_m + uniform(0.4, 0.6) * wide, l->y0_m + uniform(0.4, 0.6) * tall, 0};
     eye[2] = elevation_height(e, eye[0], eye[1], NULL) + exp(uniform(0, 7));
     for (int n = 0; n < rays; n++) {
         double o[3] = {l->x0_m + uniform(0, 1) * wide, l->y0_m + uniform(0, 1) * tall, 0}, to[3], d[3];
         post_at(to, l, pick(nx), pick(ny));
         if (n % 4 == 0) post_at(to, l, elevation_tile_cells * pick(3), pick(ny));
         if (n % 4 == 1) to[0] += uniform(0, 1) * l->spacing_m * (to[0] < l->x0_m + 0.9 * wide);
+        if (one_eye) { /* as a tile of a picture: not far apart, and within what is swept */
+            const double yaw_rad = n / 1024 + uniform(-0.2, 0.2), away = uniform(0.05, 0.5) * fmin(wide, tall);
+            to[0] = eye[0] + away * sin(yaw_rad), to[1] = eye[1] + away * cos(yaw_rad);
+        }
         if (n % 8 == 2) o[0] = to[0];
         if (n % 16 == 3) o[0] = to[0], o[1] = to[1];
         o[2] = elevation_height(e, o[0], o[1], NULL) + exp(uniform(-3, 7));
@@ -160,16 +164,16 @@ static void ragged_ground_is_every_triangle(void **state)
 {
     (void)state;
     static const double spacing_m[3] = {1, 0.1, 100};
-    for (int kind = 0; kind < 6; kind++) {
+    for (int kind = 0; kind < 12; kind++) {
         Elevation e;
         int       hits = 0, touched = 0;
-        make_ground(&e, kind < 3 ? ragged : walls, spacing_m[kind % 3]);
-        fill_rays(&e, kind == 2);
+        make_ground(&e, kind < 6 ? ragged : walls, spacing_m[kind % 3]);
+        fill_rays(&e, kind % 2);
         trace(&e);
         for (int n = 0; n < rays; n++) {
             const double o[3] = {batch.o[0][n], batch.o[1][n], batch.o[2][n]};
             const double d[3] = {batch.d[0][n], batch.d[1][n], batch.d[2][n]}, got = batch.range_m[0][n];
-            if (batch.far_m[n] < INFINITY || n % 4 > 1) continue;
+            if (batch.far_m[n] < INFINITY || n % 8 > 2) continue;
             const double want = every_triangle(&e.level[0], o, d);
             hits += got < INFINITY;
             if (got == want || fabs(got - want) <= 1e-9 + 1e-12 * want) continue;
@@ -179,7 +183,7 @@ static void ragged_ground_is_every_triangle(void **state)
                 fail_msg("kind %d, ray %d: %.17g, every triangle: %.17g", kind, n, got, want);
             touched++;
         }
-        CHECK(hits > rays / 3 && touched < rays / 50);
+        CHECK(hits > rays / 5 && touched < rays / 50);
         elevation_destroy(&e);
     }
 }
