@@ -108,8 +108,7 @@ static void choose_tiles(ElevationLevel *to, const WorkLevel *level, int32_t *po
 static void round_hole(ElevationLevel *to, const WorkLevel *level, const ElevationLevel *inside, const Seam *around)
 {
     const Seam hole = hole_of(level);
-    const int  fine = level_ratio << coarsest_on(inside, around), own = 1 << coarsest_on(to, &hole);
-    const int  unit = fine > own ? fine : own; /* powers of two */
+    const int  unit = level_ratio << coarsest_on(inside, around);
     for (int j = hole.j0; j <= hole.j1; j++)
         for (int i = hole.i0; i <= hole.i1; i++) {
             if (j > hole.j0 && j < hole.j1 && i > hole.i0) i = hole.i1;

@@ -17,8 +17,8 @@ static void make_levels(WorkLevel *level, double steep_m)
 {
     for (int k = 0; k < levels; k++) {
         level[k] = (WorkLevel){.hole_i1 = -1, .outermost = k == levels - 1};
-        assert_int_equal(field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)),
-                         STATUS_OK);
+        assert_int_equal(
+            field_create(&level[k].z, 1 << (3 * k), -80, -80 - 8 * k, cells + 1, cells + 1 - 16 * (k == 1)), STATUS_OK);
         const Field *z = &level[k].z, *in = &level[k - (k > 0)].z;
         for (int j = 0; j < z->ny; j++)
             for (int i = 0; i < z->nx; i++) z->v[j * z->nx + i] = height(k, z->i0 + i, z->j0 + j, steep_m);
