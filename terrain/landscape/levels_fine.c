@@ -4,7 +4,7 @@
 
 #include <stdlib.h>
 
-static const double finest_m = 0x1p-9;
+static const double finest_m = 0x1p-11;
 
 /* A post of a seam is moved by less than this: the coarsest unit that the rounding of a hole's outline may need. */
 enum { seam_posts = level_ratio << elevation_most_shift };
