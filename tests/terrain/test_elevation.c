@@ -220,6 +220,23 @@ static void borrowed_arrays_are_left_alone(void **state)
     CHECK(stored[1] == 512 && tile[0].base == -1024 && e.level_count == 0);
 }
 
+/* 12 x 16 km of posts 1 m apart: pyramid and rises of at most 100 MB, and indices of posts in 31 bits. */
+static void large_levels_have_small_pyramids(void **state)
+{
+    (void)state;
+    ElevationLevel level;
+    double         octets = 0;
+    CHECK(elevation_level_describe(&level, 12001, 16001, 0, 0, 1, 0, 1) == STATUS_OK);
+    for (int k = 0; k < level.pyramid_count; k++) {
+        const double nodes = (double)level.pyramid_nx[k] * level.pyramid_ny[k];
+        if (k >= elevation_pyramid_first) octets += nodes * sizeof **level.pyramid;
+        if (k >= elevation_rise_level) octets += nodes * sizeof **level.rise;
+    }
+    CHECK(octets > 0 && octets <= 100e6);
+    CHECK(elevation_level_describe(&level, 40001, 50001, 0, 0, 1, 0, 1) == STATUS_OK);
+    CHECK(elevation_level_stored(&level) <= INT32_MAX);
+}
+
 static void bad_sizes_are_refused(void **state)
 {
     (void)state;
@@ -268,7 +285,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_cell_is_two_triangles), cmocka_unit_test(the_inner_level_wins),
         cmocka_unit_test(pyramids_are_maxima),       cmocka_unit_test(tiles_share_their_edges),
-        cmocka_unit_test(borrowed_arrays_are_left_alone), cmocka_unit_test(bad_sizes_are_refused),
+        cmocka_unit_test(borrowed_arrays_are_left_alone), cmocka_unit_test(large_levels_have_small_pyramids),
+        cmocka_unit_test(bad_sizes_are_refused),
         cmocka_unit_test(every_surface_is_made_of_something),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
