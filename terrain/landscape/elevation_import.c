@@ -438,7 +438,7 @@ Status elevation_import(Elevation *out, ElevationReport *report, const Elevation
         status = levels_bend(&m.level[k].z, &m.curve);
         if (status == STATUS_OK && !m.level[k].outermost) levels_join(&m.level[k], &m.level[k + 1], import_join_band);
     }
-    if (status == STATUS_OK) status = levels_store(&elevation, m.level, m.level_count);
+    if (status == STATUS_OK) status = levels_store_fine(&elevation, m.level, m.level_count);
     if (status == STATUS_OK && patch.mips > 0 && r.correction_m == 0 && patch.factor == 1 && patch.nx[0] > 1 &&
         patch.ny[0] > 1)
         status = elevation_import_measure(&r, &m, &elevation, &patch);
